@@ -1,0 +1,211 @@
+//! A planar LiDAR: true ranges by ray casting, Gaussian range noise, and the projection of a sweep
+//! to points.
+
+use core::f64::consts::{PI, TAU};
+
+use pr_geom::{Rotation, SE2, Translation, Vector2};
+
+use crate::rng::Rng;
+use crate::world::{Viewpoint, World};
+
+/// A return at or beyond this share of the maximum range is taken for "nothing hit".
+const RETURN_SHARE: f64 = 0.995;
+
+/// A field of view this close to 2π is a full circle, whose last beam must not repeat the first.
+const FULL_CIRCLE_TOLERANCE: f64 = 1e-9;
+
+/// The sensor's parameters; the default is the one of the chapter's lap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LidarConfig {
+    /// Number of beams.
+    pub beams: usize,
+    /// Field of view in radians; 2π is the full circle.
+    pub field_of_view_rad: f64,
+    /// Longest range in metres.
+    pub max_range_m: f64,
+    /// Standard deviation of the range noise in metres.
+    pub range_sigma_m: f64,
+}
+
+impl Default for LidarConfig {
+    fn default() -> Self {
+        Self {
+            beams: 120,
+            field_of_view_rad: TAU,
+            max_range_m: 6.0,
+            range_sigma_m: 0.05,
+        }
+    }
+}
+
+/// A LiDAR with its bearings worked out and its buffers kept.
+#[derive(Clone, Debug)]
+pub struct Lidar {
+    config: LidarConfig,
+    bearings_rad: Vec<f64>,
+    directions: Vec<Rotation>,
+    viewpoint: Viewpoint,
+}
+
+impl Lidar {
+    /// A sensor with these parameters.
+    #[must_use]
+    pub fn new(config: LidarConfig) -> Self {
+        let bearings_rad: Vec<f64> = (0..config.beams).map(|k| bearing(&config, k)).collect();
+        let directions = bearings_rad.iter().map(|&b| Rotation::new(b)).collect();
+        Self {
+            config,
+            bearings_rad,
+            directions,
+            viewpoint: Viewpoint::default(),
+        }
+    }
+
+    /// The parameters.
+    #[must_use]
+    pub fn config(&self) -> &LidarConfig {
+        &self.config
+    }
+
+    /// Bearing of every beam relative to the heading, in radians.
+    #[must_use]
+    pub fn bearings_rad(&self) -> &[f64] {
+        &self.bearings_rad
+    }
+
+    /// Noise-free ranges in metres from `world_from_sensor`, one per beam, into `ranges_m`.
+    pub fn measure_into(
+        &mut self,
+        world: &World,
+        world_from_sensor: &SE2,
+        ranges_m: &mut Vec<f64>,
+    ) {
+        let Self {
+            config,
+            bearings_rad,
+            viewpoint,
+            ..
+        } = self;
+        let heading_rad = world_from_sensor.theta();
+        viewpoint.stand_at(world, world_from_sensor.translation(), config.max_range_m);
+        ranges_m.clear();
+        ranges_m.extend(
+            bearings_rad
+                .iter()
+                .map(|bearing| viewpoint.cast(heading_rad + bearing)),
+        );
+    }
+
+    /// One noisy sweep from `world_from_sensor`: ranges in metres, one per beam, into `ranges_m`.
+    ///
+    /// Each beam consumes three draws: one that would decide on a dropout or a random return
+    /// (Chapter 9; both have probability 0 here) and two for the normal noise.
+    pub fn sense_into(
+        &mut self,
+        world: &World,
+        world_from_sensor: &SE2,
+        rng: &mut Rng,
+        ranges_m: &mut Vec<f64>,
+    ) {
+        self.measure_into(world, world_from_sensor, ranges_m);
+        for range in ranges_m.iter_mut() {
+            let _dropout_decision = rng.unit();
+            *range = (*range + rng.normal(0.0, self.config.range_sigma_m))
+                .clamp(0.0, self.config.max_range_m);
+        }
+    }
+
+    /// [`Lidar::sense_into`] with a buffer of its own.
+    #[must_use]
+    pub fn sense(&mut self, world: &World, world_from_sensor: &SE2, rng: &mut Rng) -> Vec<f64> {
+        let mut ranges_m = Vec::with_capacity(self.config.beams);
+        self.sense_into(world, world_from_sensor, rng, &mut ranges_m);
+        ranges_m
+    }
+
+    /// The points of a sweep in the sensor frame, in beam order; beams that hit nothing are left
+    /// out.
+    pub fn project<'a>(&'a self, ranges_m: &'a [f64]) -> impl Iterator<Item = Vector2<f64>> + 'a {
+        let limit = RETURN_SHARE * self.config.max_range_m;
+        ranges_m
+            .iter()
+            .zip(&self.directions)
+            .filter(move |(range, _)| **range < limit)
+            .map(|(range, direction)| Vector2::new(range * direction.cos, range * direction.sin))
+    }
+}
+
+fn bearing(config: &LidarConfig, beam: usize) -> f64 {
+    // Grouped as a step times a number: the beams abeam lie on an edge of the voxel grid, and the
+    // last bit of their bearing decides which voxel they fall into.
+    let k = beam as f64;
+    let n = config.beams as f64;
+    if config.field_of_view_rad > TAU - FULL_CIRCLE_TOLERANCE {
+        -PI + k * (TAU / n)
+    } else if config.beams > 1 {
+        -config.field_of_view_rad / 2.0 + k * (config.field_of_view_rad / (n - 1.0))
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    #[test]
+    fn a_full_circle_does_not_repeat_its_first_beam() {
+        let lidar = Lidar::new(LidarConfig {
+            beams: 4,
+            ..LidarConfig::default()
+        });
+        assert_eq!(lidar.bearings_rad(), [-PI, -FRAC_PI_2, 0.0, FRAC_PI_2]);
+    }
+
+    #[test]
+    fn a_part_of_the_circle_reaches_both_ends() {
+        let lidar = Lidar::new(LidarConfig {
+            beams: 3,
+            field_of_view_rad: PI,
+            ..LidarConfig::default()
+        });
+        assert_eq!(lidar.bearings_rad(), [-FRAC_PI_2, 0.0, FRAC_PI_2]);
+    }
+
+    #[test]
+    fn projection_drops_beams_that_hit_nothing() {
+        let lidar = Lidar::new(LidarConfig {
+            beams: 4,
+            ..LidarConfig::default()
+        });
+        // 0.995 · 6 = 5.97: the first and the last beam saw nothing.
+        let points: Vec<_> = lidar.project(&[5.97, 2.0, 3.0, 6.0]).collect();
+        assert_eq!(points.len(), 2);
+        assert!((points[0] - Vector2::new(0.0, -2.0)).norm() < 1e-12);
+        assert!((points[1] - Vector2::new(3.0, 0.0)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn projected_points_of_a_noise_free_sweep_lie_on_walls() {
+        let world = World::apartment();
+        let mut lidar = Lidar::new(LidarConfig::default());
+        let world_from_sensor = SE2::new(2.0, 1.9, 0.3);
+        let mut ranges_m = Vec::new();
+        lidar.measure_into(&world, &world_from_sensor, &mut ranges_m);
+        for point in lidar.project(&ranges_m) {
+            let p = world_from_sensor.transform(point);
+            let distance = world
+                .walls()
+                .iter()
+                .map(|wall| {
+                    let edge = wall.end - wall.start;
+                    let along = ((p - wall.start).dot(&edge) / edge.norm_squared()).clamp(0.0, 1.0);
+                    (p - wall.start - edge * along).norm()
+                })
+                .fold(f64::INFINITY, f64::min);
+            assert!(distance < 1e-12, "{p} is {distance} m from a wall");
+        }
+    }
+}
