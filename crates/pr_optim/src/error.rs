@@ -1,0 +1,20 @@
+//! What can go wrong in a solve.
+
+use thiserror::Error;
+
+/// Why a step could not be computed.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum OptimizeError {
+    /// The factorization met a pivot that is not positive.
+    #[error(
+        "the normal equations are not positive definite at node {node}: \
+         nothing ties it to a fixed node, or an information matrix is indefinite"
+    )]
+    NotPositiveDefinite {
+        /// Index of the pose at whose block the factorization stopped.
+        node: usize,
+    },
+    /// The cost or the step is not a number.
+    #[error("the cost is not finite")]
+    NotFinite,
+}

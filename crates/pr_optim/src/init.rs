@@ -1,0 +1,7 @@
+//! First guesses for the poses, made from the measurements alone.
+
+mod chordal;
+mod spanning_tree;
+
+pub use chordal::chordal;
+pub use spanning_tree::spanning_tree;

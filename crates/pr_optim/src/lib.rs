@@ -1,0 +1,42 @@
+//! Sparse nonlinear least squares over SE(2) blocks (Chapter 15).
+//!
+//! A [`Problem`] holds poses and measurements between them. An [`Optimizer`] lowers
+//! `Σ ρ(eᵀΩe)` by Gauss–Newton or Levenberg–Marquardt, one [`step`](Optimizer::step) at a time or
+//! all the way with [`run`](Optimizer::run), and reports why it stopped. A [`Session`] chooses the
+//! first guess too, and another one where the first leads to a minimum that is not to be trusted.
+//!
+//! The way of an iteration: [`Problem`] → [`structure`] (which 3×3 blocks there are, in the order
+//! of [`ordering`]) → [`system`] (their values) → [`block_cholesky`] on [`supernodes`] → step.
+//!
+//! Nothing here reads a clock, depends on hash order or calls the platform's mathematics: the same
+//! input gives the same bits natively and in WebAssembly.
+
+pub mod block_cholesky;
+mod dense_kernel;
+mod elimination;
+mod error;
+mod factor;
+pub mod faer_cholesky;
+pub mod g2o;
+pub mod init;
+mod kernel;
+mod linear;
+mod marginals;
+mod optimizer;
+pub mod ordering;
+mod problem;
+mod report;
+mod session;
+pub mod structure;
+pub mod supernodes;
+pub mod system;
+
+pub use error::OptimizeError;
+pub use factor::{Between, JacobianModel, Linearization, PreparedFactor, PreparedPose};
+pub use kernel::RobustKernel;
+pub use linear::{Factorization, LinearSolver};
+pub use marginals::JointCovariance;
+pub use optimizer::{Method, Optimizer, Settings};
+pub use problem::Problem;
+pub use report::{Report, StepReport, StopReason};
+pub use session::{Outcome, SUSPICIOUS_TURN_RAD, Session, Start};

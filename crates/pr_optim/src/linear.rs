@@ -1,0 +1,129 @@
+//! The linear solver of an iteration: which factorization, and the analysis it rests on.
+
+use nalgebra::Matrix3;
+
+use crate::block_cholesky::BlockCholesky;
+use crate::error::OptimizeError;
+use crate::faer_cholesky::FaerCholesky;
+use crate::marginals::{JointCovariance, all_marginals, joint_covariance};
+use crate::ordering::minimum_degree;
+use crate::problem::Problem;
+use crate::structure::Structure;
+use crate::system::NormalEquations;
+
+/// Which sparse Cholesky factorization solves the normal equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Factorization {
+    /// This crate's multifrontal factorization of 3×3 blocks.
+    #[default]
+    Block,
+    /// `faer`'s simplicial factorization of scalars.
+    Faer,
+}
+
+/// The pattern of a graph with the factorization that belongs to it.
+#[derive(Debug)]
+pub struct LinearSolver {
+    structure: Structure,
+    cholesky: Cholesky,
+}
+
+#[derive(Debug)]
+enum Cholesky {
+    Block(Box<BlockCholesky>),
+    Faer(Box<FaerCholesky>),
+}
+
+impl LinearSolver {
+    /// Orders and analyses the graph of `problem`.
+    #[must_use]
+    pub fn new(problem: &Problem, factorization: Factorization) -> Self {
+        let structure = Structure::new(problem, minimum_degree(problem));
+        let order = BlockCholesky::postordered(&structure);
+        let structure = Structure::new(problem, order);
+        let cholesky = match factorization {
+            Factorization::Block => Cholesky::Block(Box::new(BlockCholesky::new(&structure))),
+            Factorization::Faer => Cholesky::Faer(Box::new(FaerCholesky::new(&structure))),
+        };
+        Self {
+            structure,
+            cholesky,
+        }
+    }
+
+    /// The block pattern, and the elimination order.
+    #[must_use]
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// Whether the analysis is of this graph, for this factorization.
+    #[must_use]
+    pub fn fits(&self, problem: &Problem, factorization: Factorization) -> bool {
+        let kind = match self.cholesky {
+            Cholesky::Block(_) => Factorization::Block,
+            Cholesky::Faer(_) => Factorization::Faer,
+        };
+        kind == factorization && self.structure.fits(problem)
+    }
+
+    /// Factorizes `H` with every diagonal entry multiplied by `1 + damping`.
+    ///
+    /// # Errors
+    /// [`OptimizeError::NotPositiveDefinite`] where a pivot is not positive.
+    pub fn factorize(
+        &mut self,
+        equations: &NormalEquations,
+        damping: f64,
+    ) -> Result<(), OptimizeError> {
+        match &mut self.cholesky {
+            Cholesky::Block(cholesky) => cholesky.factorize(&self.structure, equations, damping),
+            Cholesky::Faer(cholesky) => cholesky.factorize(&self.structure, equations, damping),
+        }
+    }
+
+    /// Covariance blocks of two nodes from the last factor, which was made without damping.
+    ///
+    /// Right perturbations, tangent order x, y, θ. Zero for a fixed node.
+    pub fn joint_covariance(
+        &mut self,
+        problem: &Problem,
+        first: usize,
+        second: usize,
+    ) -> JointCovariance {
+        let cholesky = &mut self.cholesky;
+        joint_covariance(
+            &self.structure,
+            problem.fixed(),
+            [first, second],
+            |column| cholesky.solve(column),
+        )
+    }
+
+    /// Covariance block of every node from the last factor, which was made without damping.
+    ///
+    /// `None` where the factorization is `faer`'s, which does not show its factor by blocks.
+    #[must_use]
+    pub fn marginals(&self, problem: &Problem) -> Option<Vec<Matrix3<f64>>> {
+        match &self.cholesky {
+            Cholesky::Block(cholesky) => {
+                Some(all_marginals(&self.structure, problem.fixed(), cholesky))
+            }
+            Cholesky::Faer(_) => None,
+        }
+    }
+
+    /// Overwrites `rhs`, in elimination order, with `H⁻¹ rhs`.
+    pub fn solve(&mut self, rhs: &mut [f64]) {
+        self.cholesky.solve(rhs);
+    }
+}
+
+impl Cholesky {
+    fn solve(&mut self, rhs: &mut [f64]) {
+        match self {
+            Self::Block(cholesky) => cholesky.solve(rhs),
+            Self::Faer(cholesky) => cholesky.solve(rhs),
+        }
+    }
+}

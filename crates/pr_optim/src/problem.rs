@@ -1,0 +1,153 @@
+//! Poses and the measurements between them: what is to be solved.
+
+use pr_geom::SE2;
+
+use crate::factor::{Between, PreparedFactor, PreparedPose};
+use crate::kernel::RobustKernel;
+
+/// A pose graph as plain arrays.
+///
+/// The cost is `Σ eᵀΩe` over the factors. Fixed poses hold the gauge: without any, a rigid motion
+/// of everything would change nothing, and the normal equations would be singular.
+#[derive(Clone, Debug, Default)]
+pub struct Problem {
+    poses: Vec<SE2>,
+    fixed: Vec<bool>,
+    factors: Vec<Between>,
+    prepared: Vec<PreparedFactor>,
+}
+
+impl Problem {
+    /// An empty problem.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a pose that the solver may move; returns its index.
+    pub fn add_pose(&mut self, pose: SE2) -> usize {
+        self.poses.push(pose);
+        self.fixed.push(false);
+        self.poses.len() - 1
+    }
+
+    /// Adds a pose that stays where it is; returns its index.
+    pub fn add_fixed_pose(&mut self, pose: SE2) -> usize {
+        let node = self.add_pose(pose);
+        self.fixed[node] = true;
+        node
+    }
+
+    /// Keeps a pose where it is from now on.
+    pub fn fix(&mut self, node: usize) {
+        self.fixed[node] = true;
+    }
+
+    /// Adds a measurement.
+    ///
+    /// # Panics
+    /// Where an end does not exist, or both ends are the same.
+    pub fn add_factor(&mut self, factor: Between) {
+        assert!(
+            factor.from < self.poses.len() && factor.to < self.poses.len(),
+            "factor {} -> {} in a problem of {} poses",
+            factor.from,
+            factor.to,
+            self.poses.len()
+        );
+        assert_ne!(factor.from, factor.to, "a factor needs two poses");
+        self.prepared.push(PreparedFactor::new(&factor));
+        self.factors.push(factor);
+    }
+
+    /// Number of poses.
+    #[must_use]
+    pub fn node_count(&self) -> usize {
+        self.poses.len()
+    }
+
+    /// The poses, by index.
+    #[must_use]
+    pub fn poses(&self) -> &[SE2] {
+        &self.poses
+    }
+
+    /// The poses, to be moved from outside.
+    pub fn poses_mut(&mut self) -> &mut [SE2] {
+        &mut self.poses
+    }
+
+    /// Which poses stay where they are.
+    #[must_use]
+    pub fn fixed(&self) -> &[bool] {
+        &self.fixed
+    }
+
+    /// The measurements, in the order in which they were added.
+    #[must_use]
+    pub fn factors(&self) -> &[Between] {
+        &self.factors
+    }
+
+    /// The measurements in the solver's form.
+    #[must_use]
+    pub(crate) fn prepared(&self) -> &[PreparedFactor] {
+        &self.prepared
+    }
+
+    /// The first pose that no chain of measurements ties to a fixed one.
+    #[must_use]
+    pub fn first_loose_node(&self) -> Option<usize> {
+        let mut parent: Vec<usize> = (0..self.node_count()).collect();
+        for factor in &self.factors {
+            let (a, b) = (
+                root_of(&mut parent, factor.from),
+                root_of(&mut parent, factor.to),
+            );
+            parent[a.max(b)] = a.min(b);
+        }
+        let mut held = vec![false; self.node_count()];
+        for node in (0..self.node_count()).filter(|&node| self.fixed[node]) {
+            held[root_of(&mut parent, node)] = true;
+        }
+        (0..self.node_count()).find(|&node| !held[root_of(&mut parent, node)])
+    }
+
+    /// `eᵀΩe` of one measurement at the present poses.
+    #[must_use]
+    pub fn factor_chi2(&self, factor: usize) -> f64 {
+        let Between { from, to, .. } = self.factors[factor];
+        self.prepared[factor].squared_norm(
+            &PreparedPose::new(&self.poses[from]),
+            &PreparedPose::new(&self.poses[to]),
+        )
+    }
+
+    /// `χ² = Σ eᵀΩe`: no kernel, no factor ½.
+    #[must_use]
+    pub fn chi2(&self) -> f64 {
+        self.cost_and_chi2(RobustKernel::None).1
+    }
+
+    /// `Σ ρ(eᵀΩe)` with a kernel, and `χ² = Σ eᵀΩe` without.
+    #[must_use]
+    pub fn cost_and_chi2(&self, kernel: RobustKernel) -> (f64, f64) {
+        let poses: Vec<_> = self.poses.iter().map(PreparedPose::new).collect();
+        let (mut cost, mut chi2) = (0.0, 0.0);
+        for (factor, prepared) in self.factors.iter().zip(&self.prepared) {
+            let squared_norm = prepared.squared_norm(&poses[factor.from], &poses[factor.to]);
+            chi2 += squared_norm;
+            cost += kernel.cost(squared_norm);
+        }
+        (cost, chi2)
+    }
+}
+
+/// The representative of a node's component, with the path to it halved on the way.
+fn root_of(parent: &mut [usize], mut node: usize) -> usize {
+    while parent[node] != node {
+        parent[node] = parent[parent[node]];
+        node = parent[node];
+    }
+    node
+}

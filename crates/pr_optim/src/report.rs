@@ -1,0 +1,133 @@
+//! What a solve did, and why it stopped.
+
+use crate::error::OptimizeError;
+use crate::kernel::RobustKernel;
+use crate::problem::Problem;
+
+/// Why [`run`](crate::Optimizer::run) returned, with the value that was measured and the threshold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StopReason {
+    /// The largest step of a node, `‖(v_x, v_y)‖ + |ω|`, fell below the tolerance.
+    SmallStep {
+        /// Largest step over the nodes, metres and radians added.
+        step: f64,
+        /// Threshold that it fell below.
+        tolerance: f64,
+    },
+    /// Less than this share of the cost is estimated to be left to win.
+    SmallDecrease {
+        /// Estimated decrease over cost.
+        decrease: f64,
+        /// Threshold that it fell below.
+        tolerance: f64,
+    },
+    /// A step raised the cost where the caller wanted none that does.
+    CostRose {
+        /// Cost before the step.
+        before: f64,
+        /// Cost after it.
+        after: f64,
+    },
+    /// The iterations ran out first.
+    IterationLimit {
+        /// How many were allowed.
+        limit: usize,
+    },
+    /// Levenberg–Marquardt found no damping, up to this one, that lowers the cost.
+    DampingLimit {
+        /// The last damping tried.
+        damping: f64,
+        /// The largest damping allowed.
+        limit: f64,
+    },
+    /// A step could not be computed. The poses are those before it.
+    Failed {
+        /// What went wrong.
+        error: OptimizeError,
+    },
+}
+
+impl StopReason {
+    /// Whether a convergence test was met.
+    #[must_use]
+    pub fn is_converged(&self) -> bool {
+        matches!(self, Self::SmallStep { .. } | Self::SmallDecrease { .. })
+    }
+}
+
+impl core::fmt::Display for StopReason {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::SmallStep { step, tolerance } => {
+                write!(f, "step {step:.2e} below {tolerance:.2e}")
+            }
+            Self::SmallDecrease {
+                decrease,
+                tolerance,
+            } => write!(f, "relative decrease {decrease:.2e} below {tolerance:.2e}"),
+            Self::CostRose { before, after } => {
+                write!(f, "the cost rose from {before:.6e} to {after:.6e}")
+            }
+            Self::IterationLimit { limit } => write!(f, "limit of {limit} iterations"),
+            Self::DampingLimit { damping, limit } => {
+                write!(f, "damping {damping:.2e} above {limit:.2e}")
+            }
+            Self::Failed { error } => write!(f, "{error}"),
+        }
+    }
+}
+
+/// What one iteration did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepReport {
+    /// χ² = Σ eᵀΩe at the poses where the step was computed, kernel not applied.
+    pub chi2_before: f64,
+    /// `Σ ρ(eᵀΩe)` there: χ² where there is no kernel.
+    pub cost_before: f64,
+    /// Largest `‖(v_x, v_y)‖ + |ω|` over the nodes.
+    pub largest_step: f64,
+    /// Decrease of the cost that the quadratic model promises, `−gᵀδ`.
+    pub predicted_decrease: f64,
+    /// Damping of the accepted step; 0 for Gauss–Newton.
+    pub damping: f64,
+    /// Whether the poses moved. Levenberg–Marquardt refuses a step that raises the cost.
+    pub accepted: bool,
+}
+
+/// What a whole solve did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Linear systems solved.
+    pub iterations: usize,
+    /// χ² = Σ eᵀΩe at the start, kernel not applied.
+    pub chi2_initial: f64,
+    /// χ² at the end, kernel not applied.
+    pub chi2: f64,
+    /// `Σ ρ(eᵀΩe)` at the end, what the solver lowered: χ² where there is no kernel.
+    pub cost: f64,
+    /// Why the solve stopped.
+    pub stop: StopReason,
+    /// One entry per iteration.
+    pub steps: Vec<StepReport>,
+}
+
+impl Report {
+    /// A report on `steps` that ended at the present poses of `problem`.
+    #[must_use]
+    pub fn new(
+        steps: Vec<StepReport>,
+        problem: &Problem,
+        kernel: RobustKernel,
+        stop: StopReason,
+    ) -> Self {
+        let (cost, chi2) = problem.cost_and_chi2(kernel);
+        Self {
+            iterations: steps.len(),
+            chi2_initial: steps.first().map_or(chi2, |step| step.chi2_before),
+            chi2,
+            cost,
+            stop,
+            steps,
+        }
+    }
+}

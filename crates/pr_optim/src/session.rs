@@ -1,0 +1,251 @@
+//! A solve from a first guess to the optimum: which guess, and what to do where it fails.
+//!
+//! Gauss–Newton finds the minimum in whose basin it starts. [`Start::Auto`] takes the better of
+//! two guesses that cost next to nothing, the poses as given and a spanning tree. Where the cost
+//! rises on the way, the steps do not converge, or a measurement ends up turned by more than
+//! [`SUSPICIOUS_TURN_RAD`], that basin is not trusted: the solve begins again from the chordal
+//! relaxation, and once more with damped steps where the result is not to be trusted either. The
+//! best of what converged is kept. This is a rule of thumb, not a proof of a global optimum.
+
+use pr_geom::SE2;
+
+use crate::error::OptimizeError;
+use crate::init::{chordal, spanning_tree};
+use crate::kernel::RobustKernel;
+use crate::optimizer::{Method, Optimizer};
+use crate::problem::Problem;
+use crate::report::{Report, StepReport, StopReason};
+
+/// A heading residual at a minimum that noise does not explain.
+///
+/// On seven recorded graphs the largest one is 0.71 rad at the best known optimum, of the graph
+/// with the worst headings, and at least 1.03 rad at every false minimum that was met.
+pub const SUSPICIOUS_TURN_RAD: f64 = 1.0;
+
+/// First damping of the attempt with damped steps.
+const FALLBACK_DAMPING: f64 = 1e-4;
+
+/// Where a solve starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Start {
+    /// The better of the given poses and the spanning tree; the chordal relaxation if that fails.
+    #[default]
+    Auto,
+    /// The poses as given.
+    Given,
+    /// Along a breadth-first tree of measurements from the fixed poses.
+    SpanningTree,
+    /// Headings and positions by two linear problems.
+    Chordal,
+}
+
+/// What a session found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// The solve that was kept.
+    pub report: Report,
+    /// Where it started, never [`Start::Auto`].
+    pub start: Start,
+    /// Linear systems solved by Gauss–Newton or Levenberg–Marquardt in all attempts.
+    pub total_iterations: usize,
+}
+
+/// One attempt that ended.
+#[derive(Clone, Debug)]
+struct Attempt {
+    report: Report,
+    start: Start,
+    poses: Vec<SE2>,
+}
+
+/// A solve that goes on step by step.
+#[derive(Debug)]
+pub struct Session<'a> {
+    optimizer: &'a mut Optimizer,
+    problem: &'a mut Problem,
+    /// What the caller asked for; the optimizer's own method is restored at the end.
+    method: Method,
+    automatic: bool,
+    start: Start,
+    steps: Vec<StepReport>,
+    last_step: Option<StepReport>,
+    ended: Vec<Attempt>,
+    total_iterations: usize,
+    finished: bool,
+}
+
+impl<'a> Session<'a> {
+    /// Moves `problem` to its first guess.
+    ///
+    /// # Errors
+    /// Where the chordal relaxation is asked for and cannot be computed.
+    pub fn new(
+        optimizer: &'a mut Optimizer,
+        problem: &'a mut Problem,
+        start: Start,
+    ) -> Result<Self, OptimizeError> {
+        let mut session = Self {
+            method: optimizer.settings.method,
+            automatic: start == Start::Auto,
+            optimizer,
+            problem,
+            start,
+            steps: Vec::new(),
+            last_step: None,
+            ended: Vec::new(),
+            total_iterations: 0,
+            finished: false,
+        };
+        if start == Start::Auto {
+            session.start_cheaply();
+            session.optimizer.restart();
+        } else {
+            session.start_from(start)?;
+        }
+        Ok(session)
+    }
+
+    /// One iteration; returns whether there is more to do.
+    pub fn step(&mut self) -> bool {
+        if self.finished {
+            return false;
+        }
+        let done = self.steps.len();
+        let stop = self.optimizer.advance(self.problem, &mut self.steps);
+        self.total_iterations += self.steps.len() - done;
+        let stop = stop.or_else(|| self.watch());
+        self.last_step = self.steps.last().copied();
+        if let Some(stop) = stop {
+            self.end_attempt(stop);
+        }
+        !self.finished
+    }
+
+    /// What the last iteration did.
+    #[must_use]
+    pub fn last_step(&self) -> Option<&StepReport> {
+        self.last_step.as_ref()
+    }
+
+    /// Iterates to the end, and leaves the best poses in the problem.
+    #[must_use]
+    pub fn run(mut self) -> Outcome {
+        while self.step() {}
+        self.finish()
+    }
+
+    /// Leaves the best poses so far in the problem.
+    #[must_use]
+    pub fn finish(mut self) -> Outcome {
+        if !self.finished {
+            let limit = self.steps.len();
+            self.automatic = false;
+            self.end_attempt(StopReason::IterationLimit { limit });
+        }
+        self.optimizer.settings.method = self.method;
+        let converged = self.ended.iter().any(is_converged);
+        let best = self
+            .ended
+            .into_iter()
+            .filter(|attempt| is_converged(attempt) || !converged)
+            .min_by(|a, b| a.report.cost.total_cmp(&b.report.cost))
+            .expect("at least one attempt has ended");
+        self.problem.poses_mut().copy_from_slice(&best.poses);
+        Outcome {
+            report: best.report,
+            start: best.start,
+            total_iterations: self.total_iterations,
+        }
+    }
+
+    /// Takes the better of the given poses and the spanning tree.
+    fn start_cheaply(&mut self) {
+        let tree = spanning_tree(self.problem);
+        let given = self.optimizer.cost_at(self.problem, self.problem.poses());
+        if self.optimizer.cost_at(self.problem, &tree) < given {
+            self.problem.poses_mut().copy_from_slice(&tree);
+            self.start = Start::SpanningTree;
+        } else {
+            self.start = Start::Given;
+        }
+    }
+
+    fn start_from(&mut self, start: Start) -> Result<(), OptimizeError> {
+        let poses = match start {
+            Start::Auto | Start::Given => None,
+            Start::SpanningTree => Some(spanning_tree(self.problem)),
+            Start::Chordal => {
+                let linear = self.optimizer.linear_for(self.problem);
+                Some(chordal(self.problem, linear)?)
+            }
+        };
+        if let Some(poses) = poses {
+            self.problem.poses_mut().copy_from_slice(&poses);
+        }
+        self.start = start;
+        self.steps.clear();
+        self.optimizer.restart();
+        Ok(())
+    }
+
+    /// A reason to give up the cheap guess: its last step began at a higher cost than the one before.
+    fn watch(&self) -> Option<StopReason> {
+        match self.steps.as_slice() {
+            [.., before, last]
+                if self.automatic
+                    && self.ended.is_empty()
+                    && last.cost_before > before.cost_before =>
+            {
+                Some(StopReason::CostRose {
+                    before: before.cost_before,
+                    after: last.cost_before,
+                })
+            }
+            _ => None,
+        }
+    }
+
+    fn end_attempt(&mut self, stop: StopReason) {
+        let steps = core::mem::take(&mut self.steps);
+        let attempt = Attempt {
+            report: Report::new(steps, self.problem, self.optimizer.settings.kernel, stop),
+            start: self.start,
+            poses: self.problem.poses().to_vec(),
+        };
+        let trusted = is_converged(&attempt) && !self.is_twisted();
+        self.ended.push(attempt);
+        self.finished = trusted || !self.automatic || !self.begin_next_attempt();
+    }
+
+    /// From the chordal relaxation; then the same with damped steps; then no more.
+    fn begin_next_attempt(&mut self) -> bool {
+        let method = match (self.ended.len(), self.method) {
+            (1, method) => method,
+            (2, Method::GaussNewton) => Method::LevenbergMarquardt {
+                initial_damping: FALLBACK_DAMPING,
+            },
+            _ => return false,
+        };
+        self.optimizer.settings.method = method;
+        self.start_from(Start::Chordal).is_ok()
+    }
+
+    /// Whether some measurement's heading residual is beyond what noise explains.
+    ///
+    /// A robust kernel is there to leave false measurements where they are: with one, nothing is.
+    fn is_twisted(&self) -> bool {
+        if self.optimizer.settings.kernel != RobustKernel::None {
+            return false;
+        }
+        let poses = self.problem.poses();
+        self.problem.factors().iter().any(|factor| {
+            let turn = poses[factor.to].theta() - poses[factor.from].theta();
+            let residual = pr_geom::wrap_angle(turn - factor.measurement.theta());
+            residual.abs() > SUSPICIOUS_TURN_RAD
+        })
+    }
+}
+
+fn is_converged(attempt: &Attempt) -> bool {
+    attempt.report.stop.is_converged()
+}

@@ -1,0 +1,316 @@
+//! Symbolic factorization: which columns of the factor share their rows.
+//!
+//! A supernode is a run of columns whose rows below the run are the same. It is stored as one
+//! dense panel, and factorized with dense kernels. A child is merged into its parent also where
+//! that stores a few zeros, as long as the estimated work falls (relaxed amalgamation).
+//!
+//! Sources: Liu, "The multifrontal method for sparse matrix solution", 1992; Ashcraft & Grimes,
+//! "The influence of relaxed supernode partitions on the multifrontal method", 1989.
+
+use crate::elimination::{NO_PARENT, elimination_tree};
+use crate::structure::Structure;
+
+/// A run of block columns with common rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Supernode {
+    /// First block column.
+    pub first: u32,
+    /// Number of block columns.
+    pub width: u32,
+    /// Where its rows below the run start in [`Supernodes::rows`].
+    pub rows_start: u32,
+    /// Number of block rows below the run.
+    pub rows_len: u32,
+    /// Where its panel starts among the factor's values.
+    pub panel_start: usize,
+    /// The supernode that its update goes to, `u32::MAX` for a root.
+    pub parent: u32,
+    /// How many supernodes have this one as their parent.
+    pub child_count: u32,
+}
+
+impl Supernode {
+    /// Block rows of the panel: the run itself and the rows below.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        (self.width + self.rows_len) as usize
+    }
+
+    /// The block columns of the run.
+    #[must_use]
+    pub fn columns(&self) -> core::ops::Range<usize> {
+        self.first as usize..(self.first + self.width) as usize
+    }
+
+    /// Where the rows below the run are.
+    #[must_use]
+    pub fn rows(&self) -> core::ops::Range<usize> {
+        self.rows_start as usize..(self.rows_start + self.rows_len) as usize
+    }
+
+    /// Where the panel's values are.
+    #[must_use]
+    pub fn panel(&self) -> core::ops::Range<usize> {
+        self.panel_start..self.panel_start + 9 * self.height() * self.width as usize
+    }
+}
+
+/// The pattern of the factor, supernode by supernode, children before parents.
+#[derive(Clone, Debug, Default)]
+pub struct Supernodes {
+    /// The supernodes; their columns ascend without gaps.
+    pub list: Vec<Supernode>,
+    /// Block rows below the runs, ascending within each.
+    pub rows: Vec<u32>,
+    /// For every entry of `rows`, its block row in the parent's panel.
+    pub row_in_parent: Vec<u32>,
+    /// For every off-diagonal slot of the structure, its block row in its panel.
+    pub row_of_slot: Vec<u32>,
+    /// Number of values of all panels.
+    pub value_count: usize,
+    /// Number of values of all updates that wait at the same time, at most.
+    pub stack_size: usize,
+}
+
+/// A supernode under construction. Its rows are owned: merging throws the child's away.
+struct Draft {
+    first: u32,
+    width: u32,
+    rows: Vec<u32>,
+}
+
+impl Supernodes {
+    /// Analyses a structure whose columns are in postorder of its elimination tree.
+    #[must_use]
+    pub fn new(structure: &Structure) -> Self {
+        let parent = elimination_tree(structure);
+        let drafts = merge(find_fundamental(structure, &parent));
+        let mut supernodes = Self::lay_out(drafts, structure.node_count());
+        supernodes.locate_rows(structure);
+        supernodes
+    }
+
+    /// Stores the drafts one after the other, and finds every parent.
+    fn lay_out(drafts: Vec<Draft>, nodes: usize) -> Self {
+        let mut supernode_of = vec![NO_PARENT; nodes];
+        for (number, draft) in (0_u32..).zip(&drafts) {
+            supernode_of[draft.first as usize..(draft.first + draft.width) as usize].fill(number);
+        }
+        let mut supernodes = Self::default();
+        for draft in drafts {
+            let supernode = Supernode {
+                first: draft.first,
+                width: draft.width,
+                rows_start: supernodes.rows.len() as u32,
+                rows_len: draft.rows.len() as u32,
+                panel_start: supernodes.value_count,
+                parent: draft
+                    .rows
+                    .first()
+                    .map_or(NO_PARENT, |&row| supernode_of[row as usize]),
+                child_count: 0,
+            };
+            supernodes.value_count = supernode.panel().end;
+            supernodes.rows.extend(draft.rows);
+            supernodes.list.push(supernode);
+        }
+        for number in 0..supernodes.list.len() {
+            let parent = supernodes.list[number].parent;
+            if parent != NO_PARENT {
+                supernodes.list[parent as usize].child_count += 1;
+            }
+        }
+        supernodes
+    }
+
+    /// Finds the place of every row in the parent's panel, and of every slot in its own.
+    fn locate_rows(&mut self, structure: &Structure) {
+        let mut place = vec![0_u32; structure.node_count()];
+        let mut children = vec![Vec::new(); self.list.len()];
+        for (number, supernode) in self.list.iter().enumerate() {
+            if supernode.parent != NO_PARENT {
+                children[supernode.parent as usize].push(number);
+            }
+        }
+        self.row_in_parent = vec![0; self.rows.len()];
+        self.row_of_slot = vec![0; structure.row.len()];
+        let mut waiting = 0;
+        for (number, supernode) in self.list.iter().enumerate() {
+            let below = self.rows[supernode.rows()].iter().copied();
+            let rows = (supernode.first..supernode.first + supernode.width).chain(below);
+            for (local, row) in (0_u32..).zip(rows) {
+                place[row as usize] = local;
+            }
+            for column in supernode.columns() {
+                for slot in structure.slots_of(column) {
+                    self.row_of_slot[slot] = place[structure.row[slot] as usize];
+                }
+            }
+            let own = update_size(supernode);
+            self.stack_size = self.stack_size.max(waiting + own);
+            waiting += own;
+            for &child in &children[number] {
+                let child = &self.list[child];
+                for entry in child.rows() {
+                    self.row_in_parent[entry] = place[self.rows[entry] as usize];
+                }
+                waiting -= update_size(child);
+            }
+        }
+    }
+}
+
+/// Number of values of a supernode's update matrix, stored as a full square.
+#[must_use]
+pub fn update_size(supernode: &Supernode) -> usize {
+    9 * (supernode.rows_len as usize) * (supernode.rows_len as usize)
+}
+
+/// Maximal runs of columns with exactly the same rows, each the only child of the next.
+fn find_fundamental(structure: &Structure, parent: &[u32]) -> Vec<Draft> {
+    let nodes = structure.node_count();
+    let mut drafts: Vec<Draft> = Vec::new();
+    // Rows of a column wait here until its parent takes them.
+    let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); nodes];
+    let mut mark = vec![NO_PARENT; nodes];
+    for column in 0..nodes {
+        mark[column] = column as u32;
+        let mut rows: Vec<u32> = Vec::new();
+        let mut add = |row: u32| {
+            if mark[row as usize] != column as u32 {
+                mark[row as usize] = column as u32;
+                rows.push(row);
+            }
+        };
+        structure.rows_of(column).iter().copied().for_each(&mut add);
+        let children = core::mem::take(&mut waiting[column]);
+        for &child in &children {
+            drafts[child].rows.iter().copied().for_each(&mut add);
+        }
+        let continues = match (children.as_slice(), drafts.last()) {
+            (&[only], Some(last)) => only + 1 == drafts.len() && last.rows.len() == rows.len() + 1,
+            _ => false,
+        };
+        if continues {
+            let last = drafts.last_mut().expect("it continues a supernode");
+            last.width += 1;
+            last.rows.retain(|&row| row != column as u32);
+        } else {
+            rows.sort_unstable();
+            drafts.push(Draft {
+                first: column as u32,
+                width: 1,
+                rows,
+            });
+        }
+        if parent[column] != NO_PARENT {
+            waiting[parent[column] as usize].push(drafts.len() - 1);
+        }
+    }
+    drafts
+}
+
+/// Merges a supernode into the one after it where that is its parent and the work falls.
+fn merge(drafts: Vec<Draft>) -> Vec<Draft> {
+    let mut merged: Vec<Draft> = Vec::with_capacity(drafts.len());
+    for mut draft in drafts {
+        while let Some(child) = merged.last() {
+            let is_child = child
+                .rows
+                .first()
+                .is_some_and(|&row| (draft.first..draft.first + draft.width).contains(&row));
+            let (height, width) = (draft.rows.len() as u32, draft.width + child.width);
+            let apart = work(child.width, child.rows.len() as u32) + work(draft.width, height);
+            if !is_child || work(width, height) > apart {
+                break;
+            }
+            draft.first = child.first;
+            draft.width = width;
+            merged.pop();
+        }
+        merged.push(draft);
+    }
+    merged
+}
+
+/// Estimated work of a front with `width` columns and `rows` rows below, in block products.
+///
+/// A front costs a constant; every block of its update is written, read and added to the parent.
+fn work(width: u32, rows: u32) -> u32 {
+    const PER_FRONT: u32 = 8;
+    const PER_UPDATE_BLOCK: u32 = 2;
+    let update_blocks = rows * (rows + 1) / 2;
+    let panel_products: u32 = (0..width)
+        .map(|done| (done + 1) * (width - done + rows))
+        .sum();
+    PER_FRONT + panel_products + update_blocks * (width + PER_UPDATE_BLOCK)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::factor::Between;
+    use crate::problem::Problem;
+    use nalgebra::Matrix3;
+    use pr_geom::SE2;
+
+    fn graph(nodes: usize, edges: &[(usize, usize)]) -> Structure {
+        let mut problem = Problem::new();
+        for _ in 0..nodes {
+            problem.add_pose(SE2::identity());
+        }
+        for &(from, to) in edges {
+            problem.add_factor(Between {
+                from,
+                to,
+                measurement: SE2::identity(),
+                information: Matrix3::identity(),
+            });
+        }
+        Structure::new(&problem, (0..nodes as u32).collect())
+    }
+
+    #[test]
+    fn a_dense_graph_is_one_supernode() {
+        let structure = graph(4, &[(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]);
+        let supernodes = Supernodes::new(&structure);
+        assert_eq!(supernodes.list.len(), 1);
+        assert_eq!(supernodes.list[0].width, 4);
+        assert_eq!(supernodes.value_count, 9 * 16);
+    }
+
+    #[test]
+    fn eliminating_a_node_ties_its_neighbours_together() {
+        // A star with its centre first: all others become one dense block.
+        let structure = graph(4, &[(0, 1), (0, 2), (0, 3)]);
+        let drafts = find_fundamental(&structure, &elimination_tree(&structure));
+        assert_eq!(drafts.len(), 1);
+        assert_eq!(drafts[0].width, 4);
+    }
+
+    #[test]
+    fn rows_are_placed_in_the_panel_of_the_parent() {
+        // Two arms, 0–1 and 2–3, that meet in 4.
+        let structure = graph(5, &[(0, 1), (1, 4), (2, 3), (3, 4)]);
+        let drafts = find_fundamental(&structure, &elimination_tree(&structure));
+        let mut supernodes = Supernodes::lay_out(drafts, 5);
+        supernodes.locate_rows(&structure);
+        let shapes: Vec<_> = supernodes
+            .list
+            .iter()
+            .map(|supernode| (supernode.first, supernode.width, supernode.rows_len))
+            .collect();
+        assert_eq!(
+            shapes,
+            [(0, 1, 1), (1, 1, 1), (2, 1, 1), (3, 1, 1), (4, 1, 0)]
+        );
+        assert_eq!(supernodes.rows, [1, 4, 3, 4]);
+        let parents: Vec<_> = supernodes
+            .list
+            .iter()
+            .map(|supernode| supernode.parent)
+            .collect();
+        assert_eq!(parents, [1, 4, 3, 4, NO_PARENT]);
+        assert_eq!(supernodes.row_in_parent, [0; 4]);
+    }
+}

@@ -1,0 +1,151 @@
+//! The normal equations `H δ = −g` as 3×3 blocks, assembled factor by factor.
+
+use pr_geom::SE2;
+
+use crate::factor::{JacobianModel, Linearization, PreparedPose};
+use crate::kernel::RobustKernel;
+use crate::problem::Problem;
+use crate::structure::{FactorSlot, Structure};
+
+/// A 3×3 block, column-major.
+pub type Block = [f64; 9];
+
+/// Normal equations in the block pattern and elimination order of a [`Structure`].
+#[derive(Clone, Debug, Default)]
+pub struct NormalEquations {
+    /// Diagonal blocks, full and symmetric, by elimination position.
+    pub diagonal: Vec<Block>,
+    /// Off-diagonal blocks by slot; rows belong to the node that is eliminated later.
+    pub lower: Vec<Block>,
+    /// `g = JᵀΩe`, three entries per elimination position.
+    pub gradient: Vec<f64>,
+    /// `Σ eᵀΩe` at the poses of the assembly, kernel not applied.
+    pub chi2: f64,
+    /// `Σ ρ(eᵀΩe)`, what the solver lowers.
+    pub cost: f64,
+    poses: Vec<PreparedPose>,
+}
+
+impl NormalEquations {
+    /// Linearizes every factor of `problem` at its present poses and adds up the blocks.
+    ///
+    /// `ridge` is added to every diagonal entry. Fixed nodes get an identity block.
+    pub fn assemble(
+        &mut self,
+        problem: &Problem,
+        structure: &Structure,
+        model: JacobianModel,
+        kernel: RobustKernel,
+        ridge: f64,
+    ) {
+        self.clear(structure, ridge);
+        self.poses.clear();
+        self.poses
+            .extend(problem.poses().iter().map(PreparedPose::new));
+        for ((factor, prepared), slot) in problem
+            .factors()
+            .iter()
+            .zip(problem.prepared())
+            .zip(&structure.factor_slots)
+        {
+            let part = prepared.linearize(
+                &self.poses[factor.from],
+                &self.poses[factor.to],
+                model,
+                kernel,
+            );
+            self.chi2 += part.squared_norm;
+            self.cost += kernel.cost(part.squared_norm);
+            let from = structure.position_of[factor.from] as usize;
+            let to = structure.position_of[factor.to] as usize;
+            self.add(&part, from, to, *slot);
+        }
+        self.hold_fixed(problem, structure, ridge);
+    }
+
+    /// `Σ ρ(eᵀΩe)` and `Σ eᵀΩe` at other poses of the same graph, without any block.
+    pub fn cost_at(
+        &mut self,
+        problem: &Problem,
+        poses: &[SE2],
+        kernel: RobustKernel,
+    ) -> (f64, f64) {
+        self.poses.clear();
+        self.poses.extend(poses.iter().map(PreparedPose::new));
+        let (mut cost, mut chi2) = (0.0, 0.0);
+        for (factor, prepared) in problem.factors().iter().zip(problem.prepared()) {
+            let squared_norm =
+                prepared.squared_norm(&self.poses[factor.from], &self.poses[factor.to]);
+            chi2 += squared_norm;
+            cost += kernel.cost(squared_norm);
+        }
+        (cost, chi2)
+    }
+
+    /// Empties the blocks; every diagonal entry becomes `ridge`.
+    pub(crate) fn clear(&mut self, structure: &Structure, ridge: f64) {
+        let nodes = structure.node_count();
+        self.diagonal.clear();
+        self.diagonal
+            .resize(nodes, [ridge, 0.0, 0.0, 0.0, ridge, 0.0, 0.0, 0.0, ridge]);
+        self.lower.clear();
+        self.lower.resize(structure.row.len(), [0.0; 9]);
+        self.gradient.clear();
+        self.gradient.resize(3 * nodes, 0.0);
+        self.chi2 = 0.0;
+        self.cost = 0.0;
+    }
+
+    #[inline]
+    fn add(&mut self, part: &Linearization, from: usize, to: usize, slot: FactorSlot) {
+        add_symmetric(&mut self.diagonal[from], &part.from_from);
+        add_symmetric(&mut self.diagonal[to], &part.to_to);
+        for axis in 0..3 {
+            self.gradient[3 * from + axis] += part.gradient_from[axis];
+            self.gradient[3 * to + axis] += part.gradient_to[axis];
+        }
+        self.add_off_diagonal(slot, &part.to_from);
+    }
+
+    /// Adds a block whose rows belong to the pose that was measured, `to`.
+    #[inline]
+    pub(crate) fn add_off_diagonal(&mut self, slot: FactorSlot, to_from: &Block) {
+        if slot.slot == FactorSlot::NONE {
+            return;
+        }
+        let block = &mut self.lower[slot.slot as usize];
+        if slot.transposed {
+            for column in 0..3 {
+                for row in 0..3 {
+                    block[3 * column + row] += to_from[3 * row + column];
+                }
+            }
+        } else {
+            for (sum, entry) in block.iter_mut().zip(to_from) {
+                *sum += entry;
+            }
+        }
+    }
+
+    fn hold_fixed(&mut self, problem: &Problem, structure: &Structure, ridge: f64) {
+        let one = 1.0 + ridge;
+        for (node, _) in problem
+            .fixed()
+            .iter()
+            .enumerate()
+            .filter(|(_, fixed)| **fixed)
+        {
+            let position = structure.position_of[node] as usize;
+            self.diagonal[position] = [one, 0.0, 0.0, 0.0, one, 0.0, 0.0, 0.0, one];
+            self.gradient[3 * position..3 * position + 3].fill(0.0);
+        }
+    }
+}
+
+#[inline]
+fn add_symmetric(block: &mut Block, upper: &[f64; 6]) {
+    let [xx, xy, xt, yy, yt, tt] = *upper;
+    for (sum, entry) in block.iter_mut().zip([xx, xy, xt, xy, yy, yt, xt, yt, tt]) {
+        *sum += entry;
+    }
+}

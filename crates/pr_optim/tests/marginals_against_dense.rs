@@ -1,0 +1,119 @@
+//! Covariances from the sparse factor against the inverse of the dense matrix.
+
+use nalgebra::{DMatrix, Matrix3, Vector3};
+use pr_geom::SE2;
+use pr_optim::{Between, JacobianModel, Optimizer, PreparedFactor, PreparedPose, Problem};
+use pr_optim::{RobustKernel, Settings};
+
+/// Twelve poses on a lawnmower path with links to the line before; the second pose is fixed.
+fn grid() -> Problem {
+    let mut problem = Problem::new();
+    for k in 0..12_usize {
+        let (line, place) = (k / 4, k % 4);
+        let x = if line % 2 == 0 { place } else { 3 - place };
+        let pose = SE2::new(x as f64, line as f64, 0.3 * k as f64);
+        if k == 1 {
+            problem.add_fixed_pose(pose);
+        } else {
+            problem.add_pose(pose);
+        }
+    }
+    let chain = (1..12).map(|k| (k - 1, k));
+    let links = [(0, 7), (2, 5), (6, 9), (11, 4), (3, 4)];
+    for (from, to) in chain.chain(links) {
+        let poses = problem.poses();
+        let noise = Vector3::new(0.02, -0.03, 0.01) * (1.0 + (from + to) as f64 / 5.0);
+        problem.add_factor(Between {
+            from,
+            to,
+            measurement: poses[from].between(&poses[to]).boxplus(&noise),
+            information: Matrix3::new(30.0, 2.0, 1.0, 2.0, 20.0, -3.0, 1.0, -3.0, 60.0),
+        });
+    }
+    problem
+}
+
+/// The dense inverse of JᵀΩJ over all poses, rows and columns of fixed poses zero.
+fn dense_covariance(problem: &Problem) -> DMatrix<f64> {
+    let nodes = problem.node_count();
+    let mut hessian = DMatrix::<f64>::zeros(3 * nodes, 3 * nodes);
+    for factor in problem.factors() {
+        let part = PreparedFactor::new(factor).linearize(
+            &PreparedPose::new(&problem.poses()[factor.from]),
+            &PreparedPose::new(&problem.poses()[factor.to]),
+            JacobianModel::Exact,
+            RobustKernel::None,
+        );
+        let symmetric =
+            |[xx, xy, xt, yy, yt, tt]: [f64; 6]| Matrix3::new(xx, xy, xt, xy, yy, yt, xt, yt, tt);
+        let off_diagonal = Matrix3::from_column_slice(&part.to_from);
+        let mut add = |row: usize, column: usize, block: Matrix3<f64>| {
+            let mut view = hessian.fixed_view_mut::<3, 3>(3 * row, 3 * column);
+            view += block;
+        };
+        add(factor.from, factor.from, symmetric(part.from_from));
+        add(factor.to, factor.to, symmetric(part.to_to));
+        add(factor.to, factor.from, off_diagonal);
+        add(factor.from, factor.to, off_diagonal.transpose());
+    }
+    let free: Vec<usize> = (0..3 * nodes).filter(|k| !problem.fixed()[k / 3]).collect();
+    let inverse = DMatrix::from_fn(free.len(), free.len(), |a, b| hessian[(free[a], free[b])])
+        .try_inverse()
+        .expect("positive definite");
+    let mut covariance = DMatrix::zeros(3 * nodes, 3 * nodes);
+    for (a, &row) in free.iter().enumerate() {
+        for (b, &column) in free.iter().enumerate() {
+            covariance[(row, column)] = inverse[(a, b)];
+        }
+    }
+    covariance
+}
+
+#[test]
+fn every_marginal_and_every_pair_equals_the_dense_inverse() {
+    let problem = grid();
+    let dense = dense_covariance(&problem);
+    let block = |a: usize, b: usize| dense.fixed_view::<3, 3>(3 * a, 3 * b).into_owned();
+    let mut optimizer = Optimizer::new(Settings::default());
+    let marginals = optimizer.marginals(&problem).unwrap();
+    // 1e-8: the solver's ridge of 1e-9 on a matrix whose smallest eigenvalue is about 1.
+    for (a, marginal) in marginals.iter().enumerate() {
+        assert!((marginal - block(a, a)).amax() < 1e-8, "node {a}");
+        for b in 0..12 {
+            let joint = optimizer.joint_covariance(&problem, a, b).unwrap();
+            assert!((joint.first - block(a, a)).amax() < 1e-8, "{a} {b}");
+            assert!((joint.cross - block(a, b)).amax() < 1e-8, "{a} {b}");
+            assert!((joint.second - block(b, b)).amax() < 1e-8, "{a} {b}");
+        }
+    }
+    assert!(
+        marginals[11].trace() > marginals[2].trace(),
+        "far is less certain"
+    );
+    assert_eq!(marginals[1], Matrix3::zeros());
+}
+
+#[test]
+fn along_a_chain_the_relative_covariance_is_that_of_the_one_measurement() {
+    let mut problem = Problem::new();
+    problem.add_fixed_pose(SE2::identity());
+    let step = SE2::new(1.0, 0.2, 0.4);
+    let information = Matrix3::new(30.0, 2.0, 1.0, 2.0, 20.0, -3.0, 1.0, -3.0, 60.0);
+    for from in 0..5 {
+        let pose = problem.poses()[from] * step;
+        problem.add_pose(pose);
+        problem.add_factor(Between {
+            from,
+            to: from + 1,
+            measurement: step,
+            information,
+        });
+    }
+    let mut optimizer = Optimizer::new(Settings::default());
+    let joint = optimizer.joint_covariance(&problem, 3, 4).unwrap();
+    let relative = joint.relative(&problem.poses()[3], &problem.poses()[4]);
+    let expected = information.try_inverse().unwrap();
+    // 1e-8: the ridge. Either pose alone is far less certain than the step between them.
+    assert!((relative - expected).amax() < 1e-8);
+    assert!(joint.first.trace() > 3.0 * expected.trace());
+}

@@ -1,0 +1,148 @@
+//! First guesses, false minima and false measurements.
+
+use core::f64::consts::TAU;
+
+use nalgebra::Matrix3;
+use pr_geom::SE2;
+use pr_optim::{
+    Between, JacobianModel, Method, Optimizer, Outcome, Problem, RobustKernel, Session, Settings,
+    Start,
+};
+
+const NODES: usize = 24;
+
+/// A ring whose measurements agree, with first poses that wind `turns` times around it.
+fn ring(turns: f64) -> Problem {
+    let step = |turns: f64| SE2::new(1.0, 0.0, turns * TAU / NODES as f64);
+    let mut problem = Problem::new();
+    let mut pose = SE2::identity();
+    problem.add_fixed_pose(pose);
+    for _ in 1..NODES {
+        pose = pose * step(turns);
+        problem.add_pose(pose);
+    }
+    for from in 0..NODES {
+        problem.add_factor(Between {
+            from,
+            to: (from + 1) % NODES,
+            measurement: step(1.0),
+            information: Matrix3::identity() * 100.0,
+        });
+    }
+    problem
+}
+
+fn solve(problem: &mut Problem, start: Start, kernel: RobustKernel) -> Outcome {
+    let mut optimizer = Optimizer::new(Settings {
+        jacobians: JacobianModel::Exact,
+        kernel,
+        max_iterations: 100,
+        step_tolerance: 1e-9,
+        ..Settings::default()
+    });
+    let session = Session::new(&mut optimizer, problem, start).unwrap();
+    session.run()
+}
+
+#[test]
+fn automatic_start_leaves_the_false_minimum_of_a_ring_wound_twice() {
+    let mut stuck = ring(2.0);
+    let outcome = solve(&mut stuck, Start::Given, RobustKernel::None);
+    // Every edge is turned by 2π/24 too much: at least 24 · 100 · 0.2618² = 164.
+    assert!(
+        outcome.report.stop.is_converged(),
+        "{}",
+        outcome.report.stop
+    );
+    assert!(outcome.report.chi2 > 164.0);
+    for start in [Start::Auto, Start::SpanningTree, Start::Chordal] {
+        let mut problem = ring(2.0);
+        let outcome = solve(&mut problem, start, RobustKernel::None);
+        assert!(outcome.report.chi2 < 1e-12, "{start:?}");
+    }
+}
+
+#[test]
+fn a_graph_without_any_contradiction_is_solved_at_once() {
+    let mut problem = Problem::new();
+    problem.add_fixed_pose(SE2::identity());
+    problem.add_pose(SE2::translation(1.0, 0.0));
+    problem.add_factor(Between {
+        from: 0,
+        to: 1,
+        measurement: SE2::translation(1.0, 0.0),
+        information: Matrix3::identity(),
+    });
+    let mut optimizer = Optimizer::new(Settings {
+        step_tolerance: 0.0,
+        decrease_tolerance: 1e-8,
+        ..Settings::default()
+    });
+    let report = optimizer.run(&mut problem);
+    assert_eq!(report.iterations, 1);
+    assert!(report.stop.is_converged(), "{}", report.stop);
+}
+
+#[test]
+fn automatic_start_keeps_given_poses_that_are_the_better_guess() {
+    // The tree goes through a long measurement that is wrong, and hardly trusted.
+    let mut problem = ring(1.0);
+    problem.add_factor(Between {
+        from: 0,
+        to: NODES / 2,
+        measurement: SE2::identity(),
+        information: Matrix3::identity() * 1e-3,
+    });
+    let outcome = solve(
+        &mut problem,
+        Start::Auto,
+        RobustKernel::Huber { width: 1.0 },
+    );
+    assert_eq!(outcome.start, Start::Given);
+    assert!(
+        outcome.report.stop.is_converged(),
+        "{}",
+        outcome.report.stop
+    );
+}
+
+#[test]
+fn a_kernel_leaves_a_false_loop_behind_that_least_squares_follows() {
+    let far = NODES / 2;
+    let error = |kernel| {
+        let mut problem = ring(1.0);
+        let truth = problem.poses()[far];
+        problem.add_factor(Between {
+            from: 0,
+            to: far,
+            measurement: SE2::identity(),
+            information: Matrix3::identity() * 100.0,
+        });
+        solve(&mut problem, Start::Given, kernel);
+        problem.poses()[far].boxminus(&truth).norm()
+    };
+    assert!(error(RobustKernel::None) > 0.5);
+    assert!(error(RobustKernel::Dcs { phi: 1.0 }) < 0.01);
+}
+
+#[test]
+fn the_method_that_was_asked_for_is_there_after_the_fallback() {
+    // A measurement that contradicts the ring by half a turn: no minimum is to be trusted.
+    let mut problem = ring(1.0);
+    problem.add_factor(Between {
+        from: 0,
+        to: 1,
+        measurement: SE2::new(1.0, 0.0, 2.9),
+        information: Matrix3::identity() * 100.0,
+    });
+    let mut optimizer = Optimizer::new(Settings {
+        jacobians: JacobianModel::Exact,
+        max_iterations: 40,
+        ..Settings::default()
+    });
+    let session = Session::new(&mut optimizer, &mut problem, Start::Auto).unwrap();
+    let outcome = session.run();
+    assert_eq!(optimizer.settings.method, Method::GaussNewton);
+    assert_eq!(problem.chi2(), outcome.report.chi2);
+    assert!(outcome.total_iterations > outcome.report.iterations);
+}
