@@ -1,0 +1,13 @@
+//! The scene of w16.1: two sweeps of room A, and where ICP ends from every start.
+//!
+//! Room A is 4.0 m × 3.8 m, almost a square. A sweep of it turned by a quarter fits nearly as well
+//! as the right way round, and ICP has no way to know: it goes down the slope on which it starts.
+//! [`BasinScene::register_from`] runs one start, [`BasinMap`] a picture of many, filled bit by bit.
+
+mod map;
+mod outcome;
+mod scene;
+
+pub use map::{BasinMap, BasinMapAxes, OffsetAxis};
+pub use outcome::{BasinOutcome, Minimum};
+pub use scene::{BasinScene, BasinStart, SUCCESS_RADIUS_M};

@@ -1,0 +1,53 @@
+//! Point clouds and the maps that find a point's nearest neighbour.
+//!
+//! - [`PointCloud`] keeps points, and normals where they were estimated, as one array a coordinate.
+//! - [`VoxelMap`] is the chapter's map: hashed cells, points added one at a time, no bound on the extent.
+//! - [`DenseMap`] is the same map frozen: built at once from a cloud, faster to ask, same answers.
+//! - [`NearestTable`] writes the answers down beforehand, for one map and very many queries.
+//!
+//! All maps answer through [`NearestMap`], so registration does not care which one it is given.
+
+mod cell_table;
+mod dense_map;
+mod nearest;
+mod nearest_table;
+mod normals;
+mod point_cloud;
+mod voxel_map;
+
+pub use dense_map::DenseMap;
+pub use nearest::{Memory, NearestMap, Neighbor};
+pub use nearest_table::NearestTable;
+pub use normals::NormalEstimator;
+pub use point_cloud::{Downsampler, PointCloud};
+pub use voxel_map::VoxelMap;
+
+/// Index of the cell that holds `coordinate_m`, for cells of `cell_m` that tile the axis from 0.
+#[inline]
+pub(crate) fn cell_index(coordinate_m: f64, cell_m: f64) -> i32 {
+    let cells = coordinate_m / cell_m;
+    // The cast cuts off towards zero and saturates: whatever lies beyond ±2³¹ cells shares the
+    // outermost one. `floor` itself is a function call where SSE 4.1 cannot be assumed.
+    let toward_zero = cells as i32;
+    toward_zero.saturating_sub(i32::from(cells < f64::from(toward_zero)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_index_is_the_floor_for_either_sign_and_saturates() {
+        for k in -4000_i32..4000 {
+            for offset in [0.0, 1e-13, 0.3, 0.999_999] {
+                let x = f64::from(k) + offset;
+                assert_eq!(cell_index(x, 1.0), x.floor() as i32, "{x}");
+                assert_eq!(cell_index(x, 0.3), (x / 0.3).floor() as i32, "{x}");
+            }
+        }
+        assert_eq!(cell_index(-1e-300, 1.0), -1);
+        assert_eq!(cell_index(1e30, 1.0), i32::MAX);
+        assert_eq!(cell_index(-1e30, 1.0), i32::MIN);
+        assert_eq!(cell_index(f64::NAN, 1.0), 0);
+    }
+}

@@ -1,0 +1,407 @@
+//! The map for speed: the same cells as a dense table, points of a column side by side.
+
+use nalgebra::Vector2;
+use pr_geom::math;
+use rustc_hash::FxHashMap;
+
+use super::cell_table::{CellTable, free_cell_m};
+use super::{Memory, NearestMap, Neighbor, PointCloud, cell_index};
+
+/// Marks "no point" where an index would stand.
+const NONE: u32 = Memory::NO_POINT;
+
+/// A remembered search looked this share of the radius beyond it, so that "nothing there" lasts.
+const LOOK_AHEAD: f64 = 0.25;
+
+/// Distances that differ by less than this, m, are compared by a new search, not from memory.
+const ROUNDING_M: f64 = 1e-9;
+
+/// A [`VoxelMap`](super::VoxelMap) frozen for queries: built at once, the same answers, no hashing.
+///
+/// The points lie sorted by cell, x index first, so the cells of one column that a query has to
+/// see are one contiguous run. Where the extent is so large that a table of the map's cells would
+/// be mostly empty, the table joins cells to larger ones; where cells have no limit, it chooses
+/// cells that hold a few points each. That changes the time, not the answers.
+#[derive(Clone, Debug)]
+pub struct DenseMap {
+    cell_m: f64,
+    max_per_cell: usize,
+    table: CellTable,
+    xs: Vec<f64>,
+    ys: Vec<f64>,
+    /// `(0, 0)` where a point has no normal; empty where no point has one.
+    normals: Vec<(f64, f64)>,
+    source_indices: Vec<u32>,
+    scratch: Vec<u32>,
+}
+
+/// What a scan of some cells found.
+#[derive(Clone, Copy)]
+struct Found {
+    /// The nearest point, or [`NONE`].
+    index: u32,
+    distance_squared_m2: f64,
+    /// No other point is nearer than this.
+    clearance_m: f64,
+}
+
+/// The nearest and the second nearest of the points seen.
+struct Scan {
+    index: u32,
+    best: f64,
+    second: f64,
+}
+
+impl DenseMap {
+    /// A map without points, of cells `cell_m` wide with at most `max_per_cell` points.
+    ///
+    /// # Panics
+    /// If the cell size is not positive and finite.
+    #[must_use]
+    pub fn new(cell_m: f64, max_per_cell: usize) -> Self {
+        assert!(
+            cell_m > 0.0 && cell_m.is_finite(),
+            "cell size {cell_m} m is not positive"
+        );
+        Self {
+            cell_m,
+            max_per_cell,
+            table: CellTable::default(),
+            xs: Vec::new(),
+            ys: Vec::new(),
+            normals: Vec::new(),
+            source_indices: Vec::new(),
+            scratch: Vec::new(),
+        }
+    }
+
+    /// A map of the points of `cloud` in order, with their normals.
+    #[must_use]
+    pub fn from_cloud(cloud: &PointCloud, cell_m: f64, max_per_cell: usize) -> Self {
+        let mut map = Self::new(cell_m, max_per_cell);
+        map.rebuild(cloud);
+        map
+    }
+
+    /// Replaces the contents by the points of `cloud` and keeps the memory.
+    pub fn rebuild(&mut self, cloud: &PointCloud) {
+        let kept = self.sort_into_cells(cloud);
+        self.xs.clear();
+        self.ys.clear();
+        self.normals.clear();
+        self.source_indices.clear();
+        self.xs.resize(kept, 0.0);
+        self.ys.resize(kept, 0.0);
+        self.source_indices.resize(kept, 0);
+        if cloud.has_normals() {
+            self.normals.resize(kept, (0.0, 0.0));
+        }
+        let (xs, ys) = (cloud.xs(), cloud.ys());
+        for index in 0..cloud.len() {
+            let cell = self.scratch[index];
+            if cell == NONE {
+                continue;
+            }
+            // Filling from the front moves each start to its end; it is moved back below.
+            let slot = self.table.starts[cell as usize] as usize;
+            self.table.starts[cell as usize] += 1;
+            self.xs[slot] = xs[index];
+            self.ys[slot] = ys[index];
+            self.source_indices[slot] = index as u32;
+            if cloud.has_normals() {
+                self.normals[slot] = cloud.raw_normal(index);
+            }
+        }
+        self.table.starts.rotate_right(1);
+        self.table.starts[0] = 0;
+    }
+
+    /// As [`NearestMap::nearest`], looking first near the point `hint`.
+    ///
+    /// The hint changes the time, never the answer.
+    #[inline]
+    #[must_use]
+    pub fn nearest_from(
+        &self,
+        query: Vector2<f64>,
+        radius_m: f64,
+        hint: Option<usize>,
+    ) -> Option<Neighbor> {
+        let hint = hint.map_or(NONE, |index| index as u32);
+        let found = self.find(query.x, query.y, radius_m, hint);
+        (found.index != NONE).then_some(Neighbor {
+            index: found.index as usize,
+            distance_squared_m2: found.distance_squared_m2,
+        })
+    }
+
+    /// Index in the cloud that the map was built from, of point `index` of the map.
+    #[must_use]
+    pub fn source_index(&self, index: usize) -> usize {
+        self.source_indices[index] as usize
+    }
+
+    /// Width of a cell, m.
+    #[must_use]
+    pub fn cell_m(&self) -> f64 {
+        self.cell_m
+    }
+
+    /// x coordinates of the points, in the order of the map's cells.
+    #[must_use]
+    pub fn xs(&self) -> &[f64] {
+        &self.xs
+    }
+
+    /// y coordinates of the points, in the order of the map's cells.
+    #[must_use]
+    pub fn ys(&self) -> &[f64] {
+        &self.ys
+    }
+
+    /// Calls `visit` with the index of every point within `radius_m`, inclusive.
+    #[inline]
+    pub fn for_each_within(
+        &self,
+        query: Vector2<f64>,
+        radius_m: f64,
+        mut visit: impl FnMut(usize),
+    ) {
+        let reach = radius_m + self.margin();
+        self.table.for_each_run(query.x, query.y, reach, |run| {
+            for index in run {
+                let (dx, dy) = (self.xs[index] - query.x, self.ys[index] - query.y);
+                if dx * dx + dy * dy <= radius_m * radius_m {
+                    visit(index);
+                }
+            }
+        });
+    }
+
+    /// Widens a box of cells: it swallows the rounding of cell edges, and gives clearance.
+    #[inline]
+    fn margin(&self) -> f64 {
+        0.0625 * self.table.cell_m
+    }
+
+    /// The nearest point closer than `radius_m`, looking first near the point `hint`.
+    #[inline]
+    fn find(&self, x: f64, y: f64, radius_m: f64, hint: u32) -> Found {
+        let mut reach = if let Some(&hint_x) = self.xs.get(hint as usize) {
+            let hint_y = self.ys[hint as usize];
+            let distance = math::norm2(hint_x - x, hint_y - y);
+            distance.min(radius_m)
+        } else {
+            self.table.cell_m.min(radius_m)
+        };
+        loop {
+            let covered = reach + self.margin();
+            let scan = self.scan_box(x, y, covered);
+            let nearest = math::sqrt(scan.best);
+            if nearest <= covered || reach >= radius_m {
+                let within = scan.best < radius_m * radius_m;
+                return Found {
+                    index: if within { scan.index } else { NONE },
+                    distance_squared_m2: scan.best,
+                    clearance_m: if within {
+                        math::sqrt(scan.second).min(covered)
+                    } else {
+                        nearest.min(covered)
+                    },
+                };
+            }
+            // A point beyond the box bounds the search; an empty box says to look twice as far.
+            let next = if scan.index == NONE {
+                2.0 * covered
+            } else {
+                nearest
+            };
+            reach = next.min(radius_m);
+        }
+    }
+
+    #[inline]
+    fn scan_box(&self, x: f64, y: f64, reach: f64) -> Scan {
+        let mut scan = Scan {
+            index: NONE,
+            best: f64::INFINITY,
+            second: f64::INFINITY,
+        };
+        self.table.for_each_run(x, y, reach, |run| {
+            let first = run.start;
+            let points = self.xs[run.clone()].iter().zip(&self.ys[run]);
+            for (offset, (&px, &py)) in points.enumerate() {
+                let (dx, dy) = (px - x, py - y);
+                let squared = dx * dx + dy * dy;
+                // Selections instead of branches: which point is nearer cannot be predicted.
+                let nearer = squared < scan.best;
+                let loser = if nearer { scan.best } else { squared };
+                scan.second = if loser < scan.second {
+                    loser
+                } else {
+                    scan.second
+                };
+                scan.best = if nearer { squared } else { scan.best };
+                scan.index = if nearer {
+                    (first + offset) as u32
+                } else {
+                    scan.index
+                };
+            }
+        });
+        if scan.second == scan.best && scan.index != NONE {
+            scan.index = self.first_of_equals(x, y, reach, scan.best);
+        }
+        scan
+    }
+
+    /// Whether the points lie in the order in which the chapter's loop visits them.
+    pub(super) fn is_in_visit_order(&self) -> bool {
+        self.table.cell_m == self.cell_m
+    }
+
+    /// Sorts points as the chapter's loop visits them.
+    pub(super) fn visit_order(&self, index: u32) -> (i32, i32, u32) {
+        let index = index as usize;
+        (
+            cell_index(self.xs[index], self.cell_m),
+            cell_index(self.ys[index], self.cell_m),
+            self.source_indices[index],
+        )
+    }
+
+    /// Of all points at exactly this squared distance, the one that the chapter's loop visits first.
+    #[cold]
+    fn first_of_equals(&self, x: f64, y: f64, reach: f64, squared_m2: f64) -> u32 {
+        let mut first = NONE;
+        self.table.for_each_run(x, y, reach, |run| {
+            for index in run {
+                let (dx, dy) = (self.xs[index] - x, self.ys[index] - y);
+                let index = index as u32;
+                let ties = dx * dx + dy * dy == squared_m2;
+                if ties && (first == NONE || self.visit_order(index) < self.visit_order(first)) {
+                    first = index;
+                }
+            }
+        });
+        first
+    }
+
+    /// Lays out the table: `scratch` holds the cell of each point, `starts` where its run begins.
+    fn sort_into_cells(&mut self, cloud: &PointCloud) -> usize {
+        // Without a limit on their points, cells only serve the search, and their size is free.
+        let chosen_m = (self.max_per_cell == usize::MAX).then(|| free_cell_m(cloud));
+        let cell_m = chosen_m.flatten().unwrap_or(self.cell_m);
+        let cells = |index: usize| {
+            let (x, y) = (cloud.xs()[index], cloud.ys()[index]);
+            (x.is_finite() && y.is_finite()).then(|| (cell_index(x, cell_m), cell_index(y, cell_m)))
+        };
+        // Cells grow with coordinates, so the extreme points have the extreme cells.
+        let ((west, east), (south, north)) = (finite_range(cloud.xs()), finite_range(cloud.ys()));
+        let (mut low, mut high) = ((i32::MAX, i32::MAX), (i32::MIN, i32::MIN));
+        if west <= east && south <= north {
+            low = (cell_index(west, cell_m), cell_index(south, cell_m));
+            high = (cell_index(east, cell_m), cell_index(north, cell_m));
+        }
+        self.table.clear(low, high, cell_m, cloud.len());
+
+        // Only joined cells need a count of their own for each map cell.
+        let mut counts = FxHashMap::<(i32, i32), usize>::default();
+        self.scratch.clear();
+        for index in 0..cloud.len() {
+            let mut slot = NONE;
+            if let Some(cell) = cells(index) {
+                let table_cell = self.table.slot(cell);
+                let count = &mut self.table.starts[table_cell + 1];
+                let in_map_cell = if self.table.factor == 1 {
+                    *count as usize
+                } else {
+                    let in_map_cell = counts.entry(cell).or_default();
+                    *in_map_cell += 1;
+                    *in_map_cell - 1
+                };
+                if in_map_cell < self.max_per_cell {
+                    *count += 1;
+                    slot = table_cell as u32;
+                }
+            }
+            self.scratch.push(slot);
+        }
+        let mut total = 0;
+        for start in &mut self.table.starts {
+            total += *start;
+            *start = total;
+        }
+        total as usize
+    }
+}
+
+/// Smallest and largest of the finite values; ∞ and −∞ where there are none.
+fn finite_range(values: &[f64]) -> (f64, f64) {
+    let finite = values.iter().filter(|value| value.is_finite());
+    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| {
+        (
+            if value < low { value } else { low },
+            if value > high { value } else { high },
+        )
+    })
+}
+
+impl NearestMap for DenseMap {
+    fn len(&self) -> usize {
+        self.xs.len()
+    }
+
+    fn point(&self, index: usize) -> Vector2<f64> {
+        Vector2::new(self.xs[index], self.ys[index])
+    }
+
+    fn normal(&self, index: usize) -> Option<Vector2<f64>> {
+        let &(x, y) = self.normals.get(index)?;
+        (x != 0.0 || y != 0.0).then(|| Vector2::new(x, y))
+    }
+
+    #[inline]
+    fn nearest(&self, query: Vector2<f64>, radius_m: f64) -> Option<Neighbor> {
+        self.nearest_from(query, radius_m, None)
+    }
+
+    /// After the query moved by m, the point it remembers is still the nearest if its distance
+    /// plus m is below the clearance: every other point was at least that far from the anchor.
+    #[inline]
+    fn nearest_again(
+        &self,
+        query: Vector2<f64>,
+        radius_m: f64,
+        memory: &mut Memory,
+    ) -> Option<Neighbor> {
+        let moved = math::norm2(query.x - memory.anchor.0, query.y - memory.anchor.1);
+        let clear_m = memory.clearance_m - moved - ROUNDING_M;
+        let within = |index: u32, distance_squared_m2: f64| {
+            (distance_squared_m2 < radius_m * radius_m).then_some(Neighbor {
+                index: index as usize,
+                distance_squared_m2,
+            })
+        };
+        if let Some(&x) = self.xs.get(memory.index as usize) {
+            let (dx, dy) = (x - query.x, self.ys[memory.index as usize] - query.y);
+            let distance_squared_m2 = dx * dx + dy * dy;
+            if clear_m > 0.0 && distance_squared_m2 < clear_m * clear_m {
+                return within(memory.index, distance_squared_m2);
+            }
+        } else if clear_m >= radius_m {
+            return None;
+        }
+        let reach = radius_m * (1.0 + LOOK_AHEAD);
+        let found = self.find(query.x, query.y, reach, memory.index);
+        *memory = Memory {
+            index: found.index,
+            anchor: (query.x, query.y),
+            clearance_m: found.clearance_m,
+        };
+        if found.index == NONE {
+            return None;
+        }
+        within(found.index, found.distance_squared_m2)
+    }
+}

@@ -1,0 +1,200 @@
+//! The map for very many queries: the answer to each is all but written down beforehand.
+
+use nalgebra::Vector2;
+use pr_geom::math;
+
+use super::{DenseMap, Memory, NearestMap, Neighbor};
+
+/// Squared distances that differ by less than this, m², count as equal when a point is ruled out.
+const ROUNDING_M2: f64 = 1e-12;
+
+/// A [`DenseMap`] with a table: for every small square, the points that can be nearest to
+/// anything in it.
+///
+/// A query is a look at the few points of its square. Building costs a search for every square,
+/// about 3 ms for a room; it pays after about 100,000 queries. The answers are those of the map.
+/// Queries off the table go to the map.
+#[derive(Clone, Debug)]
+pub struct NearestTable {
+    map: DenseMap,
+    origin: (f64, f64),
+    per_metre: f64,
+    columns: usize,
+    rows: usize,
+    /// `starts[column * rows + row]` to the next entry are the candidates of a square.
+    starts: Vec<u32>,
+    candidates: Vec<Candidate>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    x: f64,
+    y: f64,
+    index: u32,
+}
+
+/// The box that a table covers, m.
+#[derive(Clone, Copy)]
+struct Extent {
+    low: (f64, f64),
+    high: (f64, f64),
+}
+
+impl NearestTable {
+    /// A table of squares `square_m` wide that reaches `reach_m` beyond the points of `map`.
+    ///
+    /// # Panics
+    /// If the square is not positive, or the table would have more than 2³² entries.
+    #[must_use]
+    pub fn new(map: DenseMap, square_m: f64, reach_m: f64) -> Self {
+        assert!(square_m > 0.0, "a square of {square_m} m is not positive");
+        let mut table = Self {
+            origin: (0.0, 0.0),
+            per_metre: 1.0 / square_m,
+            columns: 0,
+            rows: 0,
+            starts: vec![0],
+            candidates: Vec::new(),
+            map,
+        };
+        if let Some(extent) = extent(&table.map) {
+            table.origin = (extent.low.0 - reach_m, extent.low.1 - reach_m);
+            let squares = |low: f64, high: f64| ((high - low + 2.0 * reach_m) / square_m).ceil();
+            table.columns = squares(extent.low.0, extent.high.0) as usize;
+            table.rows = squares(extent.low.1, extent.high.1) as usize;
+            table.fill(square_m);
+        }
+        table
+    }
+
+    /// The map behind the table.
+    #[must_use]
+    pub fn map(&self) -> &DenseMap {
+        &self.map
+    }
+
+    /// Kept out of line, so that the look-up itself is short.
+    #[cold]
+    fn off_table(&self, query: Vector2<f64>, radius_m: f64) -> Option<Neighbor> {
+        self.map.nearest(query, radius_m)
+    }
+
+    fn fill(&mut self, square_m: f64) {
+        let half_diagonal = square_m * core::f64::consts::FRAC_1_SQRT_2;
+        let mut near = Vec::new();
+        for column in 0..self.columns {
+            for row in 0..self.rows {
+                let low = Vector2::new(
+                    self.origin.0 + column as f64 * square_m,
+                    self.origin.1 + row as f64 * square_m,
+                );
+                let center = low.add_scalar(0.5 * square_m);
+                let Some(nearest) = self.map.nearest(center, f64::INFINITY) else {
+                    continue;
+                };
+                // A point nearest to q in the square is within |q − c| of being nearest to c.
+                let radius_m = math::sqrt(nearest.distance_squared_m2) + 2.0 * half_diagonal;
+                near.clear();
+                self.map
+                    .for_each_within(center, radius_m, |index| near.push(index as u32));
+                if !self.map.is_in_visit_order() {
+                    near.sort_by_key(|&index| self.map.visit_order(index));
+                }
+                keep_candidates(&self.map, low, square_m, &mut near);
+                self.candidates.extend(near.iter().map(|&index| Candidate {
+                    x: self.map.xs()[index as usize],
+                    y: self.map.ys()[index as usize],
+                    index,
+                }));
+                let end = u32::try_from(self.candidates.len()).expect("fewer than 2³² entries");
+                self.starts.push(end);
+            }
+        }
+    }
+}
+
+/// Drops the points to which another one is preferable in the whole square.
+///
+/// The difference of two squared distances is affine in the query, so it is enough to compare at
+/// the four corners.
+fn keep_candidates(map: &DenseMap, low: Vector2<f64>, square_m: f64, near: &mut Vec<u32>) {
+    let corners = |index: u32| {
+        let dx = map.xs()[index as usize] - low.x;
+        let dy = map.ys()[index as usize] - low.y;
+        let (ex, ey) = (dx - square_m, dy - square_m);
+        [
+            dx * dx + dy * dy,
+            ex * ex + dy * dy,
+            dx * dx + ey * ey,
+            ex * ex + ey * ey,
+        ]
+    };
+    let distances: Vec<[f64; 4]> = near.iter().map(|&index| corners(index)).collect();
+    let beaten = |mine: &[f64; 4]| {
+        distances.iter().any(|other| {
+            let mut both = mine.iter().zip(other);
+            both.all(|(mine, other)| other + ROUNDING_M2 < *mine)
+        })
+    };
+    let mut mine = distances.iter();
+    near.retain(|_| mine.next().is_some_and(|mine| !beaten(mine)));
+}
+
+fn extent(map: &DenseMap) -> Option<Extent> {
+    let range = |values: &[f64]| {
+        values
+            .iter()
+            .fold(None, |range: Option<(f64, f64)>, &value| {
+                let (low, high) = range.unwrap_or((value, value));
+                Some((low.min(value), high.max(value)))
+            })
+    };
+    let ((west, east), (south, north)) = (range(map.xs())?, range(map.ys())?);
+    Some(Extent {
+        low: (west, south),
+        high: (east, north),
+    })
+}
+
+impl NearestMap for NearestTable {
+    fn len(&self) -> usize {
+        self.map.len()
+    }
+
+    fn point(&self, index: usize) -> Vector2<f64> {
+        self.map.point(index)
+    }
+
+    fn normal(&self, index: usize) -> Option<Vector2<f64>> {
+        self.map.normal(index)
+    }
+
+    #[inline]
+    fn nearest(&self, query: Vector2<f64>, radius_m: f64) -> Option<Neighbor> {
+        let column = (query.x - self.origin.0) * self.per_metre;
+        let row = (query.y - self.origin.1) * self.per_metre;
+        let on_table =
+            column >= 0.0 && row >= 0.0 && column < self.columns as f64 && row < self.rows as f64;
+        if !on_table {
+            return self.off_table(query, radius_m);
+        }
+        let square = column as u32 as usize * self.rows + row as u32 as usize;
+        let (start, end) = (
+            self.starts[square] as usize,
+            self.starts[square + 1] as usize,
+        );
+        let (mut best, mut least) = (Memory::NO_POINT, radius_m * radius_m);
+        for candidate in &self.candidates[start..end] {
+            let (dx, dy) = (candidate.x - query.x, candidate.y - query.y);
+            let squared = dx * dx + dy * dy;
+            // Candidates lie in the chapter's order: the first of equals stays.
+            let nearer = squared < least;
+            least = if nearer { squared } else { least };
+            best = if nearer { candidate.index } else { best };
+        }
+        (best != Memory::NO_POINT).then_some(Neighbor {
+            index: best as usize,
+            distance_squared_m2: least,
+        })
+    }
+}

@@ -1,0 +1,302 @@
+//! The pose graph: keyframe poses as nodes, measured motions between them as edges.
+//!
+//! Graph SLAM looks for the poses that lower
+//!
+//! ```text
+//! χ² = Σ eᵀ Ω e,   e = log(Z⁻¹ Tᵢ⁻¹ Tⱼ)
+//! ```
+//!
+//! over all edges `(i, j)` with measurement `Z` and information `Ω` (3×3, tangent order x, y, θ).
+//! The sum is not halved and not touched by a robust kernel. Fixed nodes hold the gauge.
+//! The solver is [`pr_optim`]; this module keeps the graph on [`petgraph`], so that it can be
+//! walked, drawn and asked for its edges.
+//!
+//! Source: Grisetti, Kümmerle, Stachniss, Burgard, "A tutorial on graph-based SLAM", 2010.
+
+use nalgebra::Matrix3;
+use petgraph::Directed;
+use petgraph::graph::{EdgeIndex, Graph, NodeIndex};
+use petgraph::visit::EdgeRef;
+use pr_geom::SE2;
+use pr_optim::{
+    Between, JacobianModel, Method, OptimizeError, Optimizer, Problem, Report, RobustKernel,
+    Settings,
+};
+
+/// Handle of a node. Nodes are numbered from 0 in the order in which they were added.
+pub type NodeId = NodeIndex<usize>;
+
+/// Handle of an edge. Edges are numbered from 0 in the order in which they were added.
+pub type EdgeId = EdgeIndex<usize>;
+
+/// Where a measurement comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum EdgeKind {
+    /// From one keyframe to the next, by scan matching or wheels.
+    Odometry,
+    /// Between keyframes far apart in time, by recognizing a place.
+    Loop,
+}
+
+/// A pose in the graph.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseNode {
+    /// Present estimate, `world_from_body`.
+    pub pose: SE2,
+    /// Whether the solver leaves it where it is.
+    pub fixed: bool,
+}
+
+/// A measured motion between two nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseEdge {
+    /// The measured pose of the target in the frame of the source.
+    pub measurement: SE2,
+    /// Inverse covariance of the residual, tangent order x, y, θ.
+    pub information: Matrix3<f64>,
+    /// Where the measurement comes from.
+    pub kind: EdgeKind,
+}
+
+/// An edge together with its ends, as the iterators give it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeView<'a> {
+    /// Handle of the edge.
+    pub id: EdgeId,
+    /// The node that measured.
+    pub from: NodeId,
+    /// The node that was measured.
+    pub to: NodeId,
+    /// The measurement.
+    pub edge: &'a PoseEdge,
+}
+
+/// Poses and measurements, with the solver's workspace beside them.
+#[derive(Debug)]
+pub struct PoseGraph {
+    graph: Graph<PoseNode, PoseEdge, Directed, usize>,
+    problem: Problem,
+    optimizer: Optimizer,
+}
+
+impl Default for PoseGraph {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Clone for PoseGraph {
+    /// The clone solves to the same bits; it analyses the pattern anew when it is first solved.
+    fn clone(&self) -> Self {
+        Self {
+            graph: self.graph.clone(),
+            problem: self.problem.clone(),
+            optimizer: Optimizer::new(self.optimizer.settings),
+        }
+    }
+}
+
+impl PoseGraph {
+    /// An empty graph, solved with the chapter's Jacobians.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::with_jacobians(JacobianModel::Chapter)
+    }
+
+    /// An empty graph, solved with the given Jacobians.
+    #[must_use]
+    pub fn with_jacobians(jacobians: JacobianModel) -> Self {
+        Self {
+            graph: Graph::default(),
+            problem: Problem::new(),
+            optimizer: Optimizer::new(Settings {
+                method: Method::GaussNewton,
+                jacobians,
+                ..Settings::default()
+            }),
+        }
+    }
+
+    /// Adds a node that the solver may move.
+    pub fn add_node(&mut self, pose: SE2) -> NodeId {
+        self.problem.add_pose(pose);
+        self.graph.add_node(PoseNode { pose, fixed: false })
+    }
+
+    /// Adds a node that stays where it is: it holds the gauge.
+    pub fn add_fixed_node(&mut self, pose: SE2) -> NodeId {
+        self.problem.add_fixed_pose(pose);
+        self.graph.add_node(PoseNode { pose, fixed: true })
+    }
+
+    /// Adds the measurement that `to` is at `measurement` in the frame of `from`.
+    ///
+    /// # Panics
+    /// Where an end does not exist, or both ends are the same.
+    pub fn add_edge(
+        &mut self,
+        from: impl Into<NodeId>,
+        to: impl Into<NodeId>,
+        measurement: SE2,
+        information: Matrix3<f64>,
+        kind: EdgeKind,
+    ) -> EdgeId {
+        let (from, to) = (from.into(), to.into());
+        self.problem.add_factor(Between {
+            from: from.index(),
+            to: to.index(),
+            measurement,
+            information,
+        });
+        self.graph.add_edge(
+            from,
+            to,
+            PoseEdge {
+                measurement,
+                information,
+                kind,
+            },
+        )
+    }
+
+    /// The present pose of a node.
+    ///
+    /// # Panics
+    /// Where the node does not exist.
+    #[must_use]
+    pub fn pose(&self, node: impl Into<NodeId>) -> SE2 {
+        self.graph[node.into()].pose
+    }
+
+    /// Moves a node from outside, for an initial guess.
+    ///
+    /// # Panics
+    /// Where the node does not exist.
+    pub fn set_pose(&mut self, node: impl Into<NodeId>, pose: SE2) {
+        let node = node.into();
+        self.graph[node].pose = pose;
+        self.problem.poses_mut()[node.index()] = pose;
+    }
+
+    /// Number of nodes.
+    #[must_use]
+    pub fn node_count(&self) -> usize {
+        self.graph.node_count()
+    }
+
+    /// Number of edges.
+    #[must_use]
+    pub fn edge_count(&self) -> usize {
+        self.graph.edge_count()
+    }
+
+    /// All nodes with their handles, in the order in which they were added.
+    pub fn nodes(&self) -> impl Iterator<Item = (NodeId, &PoseNode)> {
+        self.graph
+            .node_indices()
+            .map(|node| (node, &self.graph[node]))
+    }
+
+    /// The poses of all nodes, by number.
+    #[must_use]
+    pub fn poses(&self) -> &[SE2] {
+        self.problem.poses()
+    }
+
+    /// All edges with their ends, in the order in which they were added.
+    pub fn edges(&self) -> impl Iterator<Item = EdgeView<'_>> {
+        self.graph.edge_references().map(|edge| EdgeView {
+            id: edge.id(),
+            from: edge.source(),
+            to: edge.target(),
+            edge: edge.weight(),
+        })
+    }
+
+    /// `eᵀΩe` of one edge at the present poses.
+    ///
+    /// # Panics
+    /// Where the edge does not exist.
+    #[must_use]
+    pub fn edge_chi2(&self, edge: EdgeId) -> f64 {
+        self.problem.factor_chi2(edge.index())
+    }
+
+    /// `χ² = Σ eᵀΩe` over all edges at the present poses: no kernel, no factor ½.
+    #[must_use]
+    pub fn chi2(&self) -> f64 {
+        self.problem.chi2()
+    }
+
+    /// Gauss–Newton until the largest step of a node is below `tolerance` (m and rad added).
+    ///
+    /// The step rule is `‖(v_x, v_y)‖ + |ω| < tolerance`. The report says why it stopped; where a
+    /// step could not be computed, the poses are those before it.
+    pub fn optimize(&mut self, max_iters: usize, tolerance: f64) -> Report {
+        self.optimize_robust(max_iters, tolerance, f64::INFINITY)
+    }
+
+    /// [`PoseGraph::optimize`] where an edge beyond `huber` standard deviations pulls less.
+    ///
+    /// Where the Mahalanobis norm `m` of a residual exceeds `huber`, Ω is scaled by `huber / m`.
+    pub fn optimize_robust(&mut self, max_iters: usize, tolerance: f64, huber: f64) -> Report {
+        self.optimizer.settings.kernel = RobustKernel::Huber { width: huber };
+        self.optimizer.settings.max_iterations = max_iters;
+        self.optimizer.settings.step_tolerance = tolerance;
+        let report = self.optimizer.run(&mut self.problem);
+        self.take_poses();
+        report
+    }
+
+    /// One Gauss–Newton iteration; returns the largest step of a node (m and rad added).
+    ///
+    /// NaN where the step could not be computed: an indefinite information matrix.
+    pub fn optimize_once(&mut self, huber: f64) -> f64 {
+        self.optimizer.settings.kernel = RobustKernel::Huber { width: huber };
+        let step = self.optimizer.step(&mut self.problem);
+        self.take_poses();
+        step.map_or(f64::NAN, |step| step.largest_step)
+    }
+
+    /// Exact covariance of the relative pose `T_i⁻¹ T_j`, as all edges together know it.
+    ///
+    /// Taken from the factor of the whole graph, at the present poses: 3×3, in the tangent space of
+    /// right perturbations of the relative pose, order x, y, θ, m² and rad². Other ways around,
+    /// closed loops among them, make it smaller than the sum along the path.
+    /// Kaess & Dellaert, "Covariance recovery from a square root information matrix for data
+    /// association", 2009.
+    ///
+    /// # Errors
+    /// Where the normal equations are not positive definite.
+    ///
+    /// # Panics
+    /// Where a node does not exist.
+    pub fn relative_covariance(
+        &mut self,
+        i: impl Into<NodeId>,
+        j: impl Into<NodeId>,
+    ) -> Result<Matrix3<f64>, OptimizeError> {
+        let (i, j) = (i.into(), j.into());
+        let joint = self
+            .optimizer
+            .joint_covariance(&self.problem, i.index(), j.index())?;
+        Ok(joint.relative(&self.pose(i), &self.pose(j)))
+    }
+
+    /// Exact covariance of every pose against the fixed ones, by node; zero for those.
+    ///
+    /// # Errors
+    /// Where the normal equations are not positive definite.
+    pub fn pose_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
+        self.optimizer.marginals(&self.problem)
+    }
+
+    fn take_poses(&mut self) {
+        for (node, pose) in self.graph.node_weights_mut().zip(self.problem.poses()) {
+            node.pose = *pose;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,116 @@
+use super::*;
+
+/// Three poses on a line; the loop says that the last is at 2.6 where odometry says 2.0.
+fn chapter_example() -> PoseGraph {
+    let mut graph = PoseGraph::new();
+    let a = graph.add_fixed_node(SE2::identity());
+    let b = graph.add_node(SE2::translation(1.0, 0.0));
+    let c = graph.add_node(SE2::translation(2.0, 0.0));
+    let information = Matrix3::identity();
+    let step = SE2::translation(1.0, 0.0);
+    graph.add_edge(a, b, step, information, EdgeKind::Odometry);
+    graph.add_edge(b, c, step, information, EdgeKind::Odometry);
+    graph.add_edge(
+        a,
+        c,
+        SE2::translation(2.6, 0.0),
+        information,
+        EdgeKind::Loop,
+    );
+    graph
+}
+
+#[test]
+fn chapter_three_poses_share_the_disagreement_equally() {
+    let mut graph = chapter_example();
+    // Before: (2.6 − 2.0)² = 0.36. After: three edges of 0.2 each, 3 · 0.04 = 0.12.
+    assert!((graph.chi2() - 0.36).abs() < 1e-12);
+    let report = graph.optimize(10, 1e-9);
+    assert!(report.stop.is_converged(), "{}", report.stop);
+    // 1e-9: the ridge of 1e-9 on a diagonal of 1 shifts each step by that share.
+    assert!((graph.pose(1).x() - 1.2).abs() < 1e-9);
+    assert!((graph.pose(2).x() - 2.4).abs() < 1e-9);
+    assert!((graph.chi2() - 0.12).abs() < 1e-12);
+}
+
+#[test]
+fn one_iteration_reports_the_largest_step() {
+    let mut graph = chapter_example();
+    // The last node goes from 2.0 to 2.4. 1e-8: the ridge of 1e-9.
+    assert!((graph.optimize_once(f64::INFINITY) - 0.4).abs() < 1e-8);
+    assert!(graph.optimize_once(f64::INFINITY) < 1e-8);
+}
+
+#[test]
+fn chi2_is_the_sum_over_the_edges() {
+    let graph = chapter_example();
+    let sum: f64 = graph.edges().map(|view| graph.edge_chi2(view.id)).sum();
+    assert_eq!(sum, graph.chi2());
+    let loops: Vec<_> = graph
+        .edges()
+        .filter(|view| view.edge.kind == EdgeKind::Loop)
+        .map(|view| (view.from.index(), view.to.index()))
+        .collect();
+    assert_eq!(loops, [(0, 2)]);
+}
+
+#[test]
+fn huber_lets_a_false_loop_pull_less() {
+    let mut plain = chapter_example();
+    let mut robust = chapter_example();
+    plain.optimize(50, 1e-9);
+    robust.optimize_robust(50, 1e-9, 0.05);
+    let shift = |graph: &PoseGraph| graph.pose(2).x() - 2.0;
+    assert!(shift(&robust) < 0.5 * shift(&plain));
+    assert!(shift(&robust) > 0.0);
+}
+
+#[test]
+fn fixed_node_keeps_its_bits() {
+    let start = SE2::new(0.1, 0.2, 0.3);
+    let mut graph = PoseGraph::new();
+    let a = graph.add_fixed_node(start);
+    let b = graph.add_node(SE2::identity());
+    let measurement = SE2::new(1.0, 0.0, 0.5);
+    graph.add_edge(a, b, measurement, Matrix3::identity(), EdgeKind::Odometry);
+    graph.optimize(20, 1e-12);
+    assert_eq!(graph.pose(a), start);
+    assert!(graph.pose(b).boxminus(&(start * measurement)).norm() < 1e-8);
+}
+
+#[test]
+fn a_closed_loop_makes_the_relative_pose_more_certain() {
+    let mut graph = PoseGraph::new();
+    let information = Matrix3::from_diagonal(&nalgebra::Vector3::new(100.0, 50.0, 400.0));
+    let step = SE2::translation(1.0, 0.0);
+    let mut nodes = vec![graph.add_fixed_node(SE2::identity())];
+    for k in 1..5 {
+        nodes.push(graph.add_node(SE2::translation(f64::from(k), 0.0)));
+        graph.add_edge(
+            nodes[k as usize - 1],
+            nodes[k as usize],
+            step,
+            information,
+            EdgeKind::Odometry,
+        );
+    }
+    let open = graph.relative_covariance(nodes[1], nodes[4]).unwrap();
+    // Along the line x adds up over three edges, and so does θ. 1e-7: the solver's ridge.
+    assert!((open[(0, 0)] - 3.0 / 100.0).abs() < 1e-7);
+    assert!((open[(2, 2)] - 3.0 / 400.0).abs() < 1e-7);
+    // y has the three edges' own share and the turns of the first two over 2 m and 1 m.
+    assert!((open[(1, 1)] - (3.0 / 50.0 + 5.0 / 400.0)).abs() < 1e-7);
+    graph.add_edge(
+        nodes[1],
+        nodes[4],
+        SE2::translation(3.0, 0.0),
+        information,
+        EdgeKind::Loop,
+    );
+    let closed = graph.relative_covariance(nodes[1], nodes[4]).unwrap();
+    // Three edges in a row beside one: 1/(1/3 + 1) of its variance along the line.
+    assert!((closed[(0, 0)] - 0.75 / 100.0).abs() < 1e-7);
+    let covariances = graph.pose_covariances().unwrap();
+    assert_eq!(covariances[0], Matrix3::zeros());
+    assert!((covariances[1][(0, 0)] - 1.0 / 100.0).abs() < 1e-7);
+}

@@ -1,0 +1,57 @@
+//! A correspondence distance that follows how wrong the predictions were.
+
+use pr_geom::{SE2, math};
+
+/// Deviations needed before the threshold adapts.
+const MIN_SAMPLES: usize = 3;
+
+/// The adaptive threshold of KISS-ICP: τ is three times the root mean square deviation of the
+/// registered pose from the predicted one.
+///
+/// A deviation `(Δt, Δθ)` counts as `δ = ‖Δt‖ + 2 r_max sin(|Δθ|/2)`, how far it can move a point
+/// of the scan. Deviations below `min_motion_m` are ignored. Until three are in, τ stays initial.
+///
+/// Source: Vizzo et al. 2023, "KISS-ICP", section III-B.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AdaptiveThreshold {
+    initial_m: f64,
+    min_motion_m: f64,
+    max_range_m: f64,
+    sum_of_squares_m2: f64,
+    samples: usize,
+}
+
+impl AdaptiveThreshold {
+    /// A threshold that starts at `initial_m` for a sensor that sees `max_range_m` far.
+    #[must_use]
+    pub fn new(initial_m: f64, min_motion_m: f64, max_range_m: f64) -> Self {
+        Self {
+            initial_m,
+            min_motion_m,
+            max_range_m,
+            sum_of_squares_m2: 0.0,
+            samples: 0,
+        }
+    }
+
+    /// The current τ, m.
+    #[must_use]
+    pub fn tau(&self) -> f64 {
+        if self.samples < MIN_SAMPLES {
+            return self.initial_m;
+        }
+        3.0 * math::sqrt(self.sum_of_squares_m2 / self.samples as f64)
+    }
+
+    /// Takes in one registration: what was predicted and what was found, in the same frame.
+    pub fn update(&mut self, predicted: &SE2, registered: &SE2) {
+        let deviation = predicted.between(registered);
+        let delta_m = math::norm2(deviation.x(), deviation.y())
+            + 2.0 * self.max_range_m * math::sin(0.5 * deviation.theta().abs());
+        if delta_m < self.min_motion_m {
+            return;
+        }
+        self.sum_of_squares_m2 += delta_m * delta_m;
+        self.samples += 1;
+    }
+}

@@ -1,0 +1,45 @@
+//! The settings of a registration.
+
+/// Which error the increments reduce.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum IcpVariant {
+    /// The distance between paired points (Besl & McKay 1992).
+    #[default]
+    PointToPoint,
+    /// The distance along the target's normal (Chen & Medioni 1992).
+    PointToPlane,
+}
+
+/// The settings of a registration; the defaults are the chapter's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IcpConfig {
+    /// Which error the increments reduce.
+    pub variant: IcpVariant,
+    /// At most so many increments.
+    pub max_iters: usize,
+    /// Points farther than this from the map have no pair, m.
+    pub tau: f64,
+    /// An increment smaller than this, `‖(v_x, v_y)‖ + |ω|` of its log, ends the run.
+    pub tolerance: f64,
+    /// With fewer pairs than this the run ends.
+    pub min_pairs: usize,
+    /// Share of the pairs to keep, the nearest first; 1 keeps all (Chetverikov et al. 2002).
+    pub trim_fraction: f64,
+    /// Residual beyond which a pair's weight falls as width/residual, m; infinite weighs all pairs alike
+    /// (Huber 1964).
+    pub huber_width_m: f64,
+}
+
+impl Default for IcpConfig {
+    fn default() -> Self {
+        Self {
+            variant: IcpVariant::default(),
+            max_iters: 25,
+            tau: 0.6,
+            tolerance: 1e-4,
+            min_pairs: 8,
+            trim_fraction: 1.0,
+            huber_width_m: f64::INFINITY,
+        }
+    }
+}

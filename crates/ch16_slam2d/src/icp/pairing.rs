@@ -1,0 +1,257 @@
+//! Data association: which map point each cloud point is paired with.
+
+use nalgebra::Vector2;
+use pr_geom::{SE2, math};
+
+use super::align::{PlanePair, PointPair, point_to_plane, point_to_point};
+use super::{IcpConfig, IcpTrace, IcpVariant};
+use crate::cloud::{Memory, NearestMap, PointCloud};
+
+/// A moved cloud point and the map point nearest to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// Index in the cloud.
+    pub source_index: usize,
+    /// Index in the map.
+    pub target_index: usize,
+    /// The cloud point, moved into the map's frame, m.
+    pub source: Vector2<f64>,
+    /// The map point, m.
+    pub target: Vector2<f64>,
+    /// Unit normal of the map point, where it has one.
+    pub normal: Option<Vector2<f64>>,
+}
+
+impl Pair {
+    /// Distance between the two points, m.
+    #[must_use]
+    pub fn distance_m(&self) -> f64 {
+        math::norm2(self.source.x - self.target.x, self.source.y - self.target.y)
+    }
+
+    /// Signed distance along the normal, m; without a normal, the distance.
+    #[must_use]
+    pub fn plane_distance_m(&self) -> f64 {
+        self.normal.map_or_else(
+            || self.distance_m(),
+            |n| n.dot(&(self.source - self.target)),
+        )
+    }
+}
+
+/// The pairs that a registration would use with the cloud at `target_from_source`.
+///
+/// Pairs are closer than `config.tau`; with trimming only the nearest share of them is left.
+#[must_use]
+pub fn correspondences<M: NearestMap>(
+    cloud: &PointCloud,
+    map: &M,
+    target_from_source: SE2,
+    config: &IcpConfig,
+) -> Vec<Pair> {
+    let mut workspace = IcpWorkspace::new();
+    workspace.forget(cloud.len());
+    workspace.associate(cloud, map, &target_from_source, config);
+    workspace.pairs(map).collect()
+}
+
+/// A pair as the inner loops use it; normal `(0, 0)` where there is none.
+#[derive(Clone, Copy)]
+struct RawPair {
+    source: (f64, f64),
+    target: (f64, f64),
+    normal: (f64, f64),
+    distance_squared_m2: f64,
+    source_index: u32,
+    target_index: u32,
+}
+
+impl RawPair {
+    #[inline]
+    fn has_normal(&self) -> bool {
+        self.normal.0 != 0.0 || self.normal.1 != 0.0
+    }
+
+    #[inline]
+    fn plane_residual_m(&self) -> f64 {
+        self.normal.0 * (self.source.0 - self.target.0)
+            + self.normal.1 * (self.source.1 - self.target.1)
+    }
+
+    /// The squared residual: along the normal, where there is one.
+    #[inline]
+    fn square_m2(&self) -> f64 {
+        if self.has_normal() {
+            let residual_m = self.plane_residual_m();
+            residual_m * residual_m
+        } else {
+            self.distance_squared_m2
+        }
+    }
+}
+
+/// The memory of a registration, kept between calls so that none allocates.
+#[derive(Clone, Default)]
+pub struct IcpWorkspace {
+    memory: Vec<Memory>,
+    pairs: Vec<RawPair>,
+    distances: Vec<f64>,
+    pub(super) trace: Vec<IcpTrace>,
+    /// Sum of the squared residuals of the last pairs, m².
+    sum_of_squares_m2: f64,
+    /// Mean over the cloud of `min(d², τ²)` at the last association, m².
+    pub(super) truncated_cost_m2: f64,
+}
+
+impl IcpWorkspace {
+    /// A workspace that has not grown yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The trace of the last registration; the first entry is the initial guess.
+    #[must_use]
+    pub fn trace(&self) -> &[IcpTrace] {
+        &self.trace
+    }
+
+    /// The last pairs, which `map` has to have produced.
+    pub fn pairs<'a, M: NearestMap>(&'a self, map: &'a M) -> impl Iterator<Item = Pair> + 'a {
+        self.pairs.iter().map(|pair| Pair {
+            source_index: pair.source_index as usize,
+            target_index: pair.target_index as usize,
+            source: Vector2::new(pair.source.0, pair.source.1),
+            target: Vector2::new(pair.target.0, pair.target.1),
+            normal: map.normal(pair.target_index as usize),
+        })
+    }
+
+    /// Number of the last pairs.
+    #[must_use]
+    pub fn pair_count(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// Starts over with a cloud of `points` points: nothing is known of any neighbour.
+    pub(super) fn forget(&mut self, points: usize) {
+        self.memory.clear();
+        self.memory.resize(points, Memory::default());
+        self.trace.clear();
+    }
+
+    /// Pairs every cloud point, moved by `target_from_source`, with its nearest map point.
+    pub(super) fn associate<M: NearestMap>(
+        &mut self,
+        cloud: &PointCloud,
+        map: &M,
+        target_from_source: &SE2,
+        config: &IcpConfig,
+    ) {
+        let rotation = target_from_source.rotation();
+        let tau_squared = config.tau * config.tau;
+        let with_normals = config.variant == IcpVariant::PointToPlane;
+        let (mut cost, mut last_found) = (0.0, None);
+        let is_first = self.trace.is_empty();
+        self.pairs.clear();
+        self.sum_of_squares_m2 = 0.0;
+        let points = cloud.xs().iter().zip(cloud.ys()).zip(&mut self.memory);
+        for (source_index, ((&x, &y), memory)) in points.enumerate() {
+            let (x, y) = rotation.rotate(x, y);
+            let source = (x + target_from_source.x(), y + target_from_source.y());
+            if let (true, Some(index)) = (is_first, last_found) {
+                // Neighbours in a sweep are neighbours in the map.
+                *memory = Memory::near(index);
+            }
+            let query = Vector2::new(source.0, source.1);
+            let Some(nearest) = map.nearest_again(query, config.tau, memory) else {
+                cost += tau_squared;
+                continue;
+            };
+            cost += nearest.distance_squared_m2;
+            last_found = Some(nearest.index);
+            let target = map.point(nearest.index);
+            let normal = if with_normals {
+                map.normal(nearest.index).unwrap_or_default()
+            } else {
+                Vector2::zeros()
+            };
+            let pair = RawPair {
+                source,
+                target: (target.x, target.y),
+                normal: (normal.x, normal.y),
+                distance_squared_m2: nearest.distance_squared_m2,
+                source_index: source_index as u32,
+                target_index: nearest.index as u32,
+            };
+            self.sum_of_squares_m2 += pair.square_m2();
+            self.pairs.push(pair);
+        }
+        self.truncated_cost_m2 = cost / cloud.len().max(1) as f64;
+        self.trim(config.trim_fraction);
+    }
+
+    /// Keeps the nearest `fraction` of the pairs, and with the last of them all at its distance.
+    fn trim(&mut self, fraction: f64) {
+        if fraction >= 1.0 || self.pairs.is_empty() {
+            return;
+        }
+        let kept = (fraction * self.pairs.len() as f64).ceil().max(1.0) as usize;
+        self.distances.clear();
+        self.distances
+            .extend(self.pairs.iter().map(|pair| pair.distance_squared_m2));
+        let (_, &mut limit, _) = self
+            .distances
+            .select_nth_unstable_by(kept - 1, f64::total_cmp);
+        self.pairs.retain(|pair| pair.distance_squared_m2 <= limit);
+        self.sum_of_squares_m2 = self.pairs.iter().map(RawPair::square_m2).sum();
+    }
+
+    /// The motion that the last pairs ask for.
+    pub(super) fn increment(&self, config: &IcpConfig) -> SE2 {
+        let width = config.huber_width_m;
+        let weight = |residual_m: f64| {
+            if residual_m > width {
+                width / residual_m
+            } else {
+                1.0
+            }
+        };
+        match config.variant {
+            IcpVariant::PointToPoint => {
+                point_to_point(self.pairs.iter().map(|pair| PointPair {
+                    source: pair.source,
+                    target: pair.target,
+                    weight: if width.is_finite() {
+                        weight(math::sqrt(pair.distance_squared_m2))
+                    } else {
+                        1.0
+                    },
+                }))
+                .pose
+            }
+            IcpVariant::PointToPlane => {
+                let with_normals = self.pairs.iter().filter(|pair| pair.has_normal());
+                point_to_plane(with_normals.map(|pair| {
+                    let residual_m = pair.plane_residual_m();
+                    PlanePair {
+                        source: pair.source,
+                        residual_m,
+                        normal: pair.normal,
+                        weight: weight(residual_m.abs()),
+                    }
+                }))
+            }
+        }
+    }
+
+    /// Root mean square residual of the last pairs, m; infinite without pairs.
+    ///
+    /// Point-to-plane counts the distance along the normal, where the pair has one.
+    pub(super) fn rmse_m(&self) -> f64 {
+        if self.pairs.is_empty() {
+            return f64::INFINITY;
+        }
+        math::sqrt(self.sum_of_squares_m2 / self.pairs.len() as f64)
+    }
+}

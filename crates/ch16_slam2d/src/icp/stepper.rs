@@ -1,0 +1,231 @@
+//! The loop of ICP, one iteration at a time or to the end.
+
+use pr_geom::SE2;
+
+use super::{IcpConfig, IcpWorkspace, Pair};
+use crate::cloud::{NearestMap, PointCloud};
+
+/// The state of a registration after one association.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IcpTrace {
+    /// `target_from_source`.
+    pub pose: SE2,
+    /// Number of pairs at this pose.
+    pub pairs: usize,
+    /// Root mean square residual of the pairs, m; infinite without pairs.
+    pub rmse: f64,
+    /// Mean over the cloud of `min(d², τ²)`, m²: what point-to-point ICP never raises.
+    pub truncated_cost_m2: f64,
+}
+
+/// Why a registration ended, with what was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StopReason {
+    /// The last increment was smaller than the tolerance: converged.
+    SmallStep {
+        /// `‖(v_x, v_y)‖ + |ω|` of the increment.
+        step: f64,
+        /// [`IcpConfig::tolerance`].
+        tolerance: f64,
+    },
+    /// All the iterations were used up.
+    IterationLimit {
+        /// [`IcpConfig::max_iters`].
+        max_iters: usize,
+    },
+    /// Too little of the cloud is near the map.
+    TooFewPairs {
+        /// Pairs at the last pose.
+        pairs: usize,
+        /// [`IcpConfig::min_pairs`].
+        min_pairs: usize,
+    },
+}
+
+impl StopReason {
+    /// Whether the increments became small.
+    #[must_use]
+    pub fn converged(&self) -> bool {
+        matches!(self, Self::SmallStep { .. })
+    }
+}
+
+/// One iteration: where it led, and whether it was the last.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IcpStep {
+    /// The state after the iteration; unchanged where none was made.
+    pub trace: IcpTrace,
+    /// Set once the registration has ended.
+    pub stop: Option<StopReason>,
+}
+
+/// The outcome of a registration without its history.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IcpSummary {
+    /// `target_from_source`.
+    pub pose: SE2,
+    /// Root mean square residual of the last pairs, m; infinite without pairs.
+    pub rmse: f64,
+    /// Number of the last pairs.
+    pub inliers: usize,
+    /// Increments made.
+    pub iterations: usize,
+    /// Why the registration ended.
+    pub stop: StopReason,
+}
+
+/// The outcome of a registration with its history.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IcpResult {
+    /// `target_from_source`.
+    pub pose: SE2,
+    /// Root mean square residual of the last pairs, m; infinite without pairs.
+    pub rmse: f64,
+    /// Number of the last pairs.
+    pub inliers: usize,
+    /// The initial guess and the state after each increment: iterations = length − 1.
+    pub trace: Vec<IcpTrace>,
+    /// The last pairs.
+    pub pairs: Vec<Pair>,
+    /// Why the registration ended.
+    pub stop: StopReason,
+}
+
+/// Registers `cloud` on `map` from the guess `init = target_from_source`.
+///
+/// ```
+/// use ch16_slam2d::cloud::{PointCloud, VoxelMap};
+/// use ch16_slam2d::icp::{IcpConfig, icp};
+/// use pr_geom::{SE2, Vector2};
+///
+/// // Two walls that meet in a corner.
+/// let walls = |k: i32| {
+///     let along = 0.1 * f64::from(k);
+///     [Vector2::new(along, 0.0), Vector2::new(0.0, along)]
+/// };
+/// let target: PointCloud = (1..20).flat_map(walls).collect();
+/// let map = VoxelMap::from_cloud(&target, 0.25, 8);
+/// let source = target.transformed(&SE2::new(0.02, -0.03, 0.01));
+/// let found = icp(&source, &map, SE2::identity(), &IcpConfig::default());
+/// assert!(found.stop.converged());
+/// assert!((found.pose * SE2::new(0.02, -0.03, 0.01)).step_size() < 1e-3);
+/// ```
+#[must_use]
+pub fn icp<M: NearestMap>(cloud: &PointCloud, map: &M, init: SE2, config: &IcpConfig) -> IcpResult {
+    let mut workspace = IcpWorkspace::new();
+    let summary = Icp::new(cloud, map, init, config, &mut workspace).run();
+    IcpResult {
+        pose: summary.pose,
+        rmse: summary.rmse,
+        inliers: summary.inliers,
+        pairs: workspace.pairs(map).collect(),
+        trace: workspace.trace,
+        stop: summary.stop,
+    }
+}
+
+/// A registration under way.
+pub struct Icp<'a, M> {
+    cloud: &'a PointCloud,
+    map: &'a M,
+    config: IcpConfig,
+    workspace: &'a mut IcpWorkspace,
+    current: IcpTrace,
+    stop: Option<StopReason>,
+}
+
+impl<'a, M: NearestMap> Icp<'a, M> {
+    /// Pairs the cloud at the guess `init = target_from_source`; no increment is made yet.
+    #[must_use]
+    pub fn new(
+        cloud: &'a PointCloud,
+        map: &'a M,
+        init: SE2,
+        config: &IcpConfig,
+        workspace: &'a mut IcpWorkspace,
+    ) -> Self {
+        workspace.forget(cloud.len());
+        let current = IcpTrace {
+            pose: init,
+            pairs: 0,
+            rmse: f64::INFINITY,
+            truncated_cost_m2: 0.0,
+        };
+        let mut registration = Self {
+            cloud,
+            map,
+            config: *config,
+            workspace,
+            current,
+            stop: None,
+        };
+        registration.associate_at(init);
+        registration
+    }
+
+    /// Makes one increment, unless the registration has ended.
+    pub fn step(&mut self) -> IcpStep {
+        if self.stop.is_none() {
+            self.stop = self.advance();
+        }
+        IcpStep {
+            trace: self.current,
+            stop: self.stop,
+        }
+    }
+
+    /// Steps to the end.
+    pub fn run(&mut self) -> IcpSummary {
+        loop {
+            if let Some(stop) = self.step().stop {
+                return IcpSummary {
+                    pose: self.current.pose,
+                    rmse: self.current.rmse,
+                    inliers: self.current.pairs,
+                    iterations: self.workspace.trace.len() - 1,
+                    stop,
+                };
+            }
+        }
+    }
+
+    /// The pairs at the current pose.
+    pub fn pairs(&self) -> impl Iterator<Item = Pair> + '_ {
+        self.workspace.pairs(self.map)
+    }
+
+    fn advance(&mut self) -> Option<StopReason> {
+        let IcpConfig {
+            max_iters,
+            min_pairs,
+            tolerance,
+            ..
+        } = self.config;
+        if self.workspace.trace.len() > max_iters {
+            return Some(StopReason::IterationLimit { max_iters });
+        }
+        let pairs = self.workspace.pair_count();
+        if pairs < min_pairs {
+            return Some(StopReason::TooFewPairs { pairs, min_pairs });
+        }
+        let increment = self.workspace.increment(&self.config);
+        self.associate_at(increment * self.current.pose);
+        let step = increment.step_size();
+        if step < tolerance {
+            return Some(StopReason::SmallStep { step, tolerance });
+        }
+        (self.workspace.trace.len() > max_iters).then_some(StopReason::IterationLimit { max_iters })
+    }
+
+    fn associate_at(&mut self, pose: SE2) {
+        let workspace = &mut *self.workspace;
+        workspace.associate(self.cloud, self.map, &pose, &self.config);
+        self.current = IcpTrace {
+            pose,
+            pairs: workspace.pair_count(),
+            rmse: workspace.rmse_m(),
+            truncated_cost_m2: workspace.truncated_cost_m2,
+        };
+        workspace.trace.push(self.current);
+    }
+}

@@ -1,0 +1,13 @@
+//! Scan matching and pose-graph SLAM: the system of the chapter.
+
+pub mod basin;
+pub mod chi_squared;
+pub mod cloud;
+pub mod graph;
+pub mod icp;
+pub mod loops;
+pub mod metrics;
+pub mod ndt;
+pub mod results;
+pub mod slam;
+pub mod terrain;

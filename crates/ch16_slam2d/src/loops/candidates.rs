@@ -1,0 +1,87 @@
+//! Which old keyframes might show the same place.
+
+use pr_geom::{SE2, math};
+
+use super::LoopConfig;
+
+/// An old node that is near the new one in the graph.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopCandidate {
+    /// The old node.
+    pub node: usize,
+    /// Its distance from the new node in the graph, m.
+    pub distance_m: f64,
+}
+
+/// The nodes near `poses[node]` that are old enough, nearest first; of equals the older first.
+///
+/// `poses` are the graph's, `world_from_body`. Nearness in the graph is all that is looked at: the
+/// drift that a loop would remove also hides it, where it exceeds the radius.
+#[must_use]
+pub fn detect_loop_candidates(
+    poses: &[SE2],
+    node: usize,
+    config: &LoopConfig,
+) -> Vec<LoopCandidate> {
+    let here = poses[node];
+    let old_enough = (node + 1).saturating_sub(config.min_gap_nodes);
+    let mut candidates: Vec<_> = poses[..old_enough.min(node)]
+        .iter()
+        .enumerate()
+        .map(|(node, pose)| LoopCandidate {
+            node,
+            distance_m: math::norm2(pose.x() - here.x(), pose.y() - here.y()),
+        })
+        .filter(|candidate| candidate.distance_m <= config.radius_m)
+        .collect();
+    candidates.sort_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+    candidates
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A drive along x with nodes 0.5 m apart, and back again.
+    fn there_and_back() -> Vec<SE2> {
+        let pose = |x: f64| SE2::translation(x, 0.0);
+        let out = (0..20).map(|k| pose(0.5 * f64::from(k)));
+        let back = (0..20).rev().map(|k| pose(0.5 * f64::from(k) + 0.1));
+        out.chain(back).collect()
+    }
+
+    #[test]
+    fn candidates_are_near_and_old_and_the_nearest_comes_first() {
+        let poses = there_and_back();
+        let config = LoopConfig::default();
+        // Node 32 stands at x = 3.6 m; node 7 at 3.5 m is nearest, nodes up to 10 are old enough.
+        let candidates = detect_loop_candidates(&poses, 32, &config);
+        assert_eq!(candidates[0].node, 7);
+        assert!((candidates[0].distance_m - 0.1).abs() < 1e-12);
+        for pair in candidates.windows(2) {
+            assert!(pair[0].distance_m <= pair[1].distance_m);
+        }
+        for candidate in &candidates {
+            assert!(32 - candidate.node >= config.min_gap_nodes);
+            assert!(candidate.distance_m <= config.radius_m);
+        }
+        assert_eq!(
+            candidates.len(),
+            7,
+            "x from 1.6 m to 5.6 m, but node 10 is the last old one"
+        );
+    }
+
+    #[test]
+    fn young_graphs_and_a_radius_of_zero_have_no_candidates() {
+        let poses = there_and_back();
+        let config = LoopConfig::default();
+        assert_eq!(detect_loop_candidates(&poses, 0, &config), []);
+        assert_eq!(detect_loop_candidates(&poses, 21, &config), []);
+        let off = LoopConfig {
+            radius_m: 0.0,
+            ..config
+        };
+        assert_eq!(detect_loop_candidates(&poses, 32, &off), []);
+    }
+}

@@ -1,0 +1,93 @@
+//! The constants of loop closure; the defaults are the chapter's.
+
+/// How a map of some sweeps is built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapConfig {
+    /// Side of a cell in metres.
+    pub cell_m: f64,
+    /// Points kept in a cell.
+    pub max_per_cell: usize,
+}
+
+/// How far matched points are trusted: `1/(σ² · inflate)` a pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrustConfig {
+    /// Standard deviation of a point in metres.
+    pub sigma_m: f64,
+    /// Pairs are not independent: the variance is multiplied by this.
+    pub inflate: f64,
+}
+
+/// What the gate takes for the drift between two nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum GateModel {
+    /// The chapter's: a diagonal covariance that grows with the number of nodes on the path.
+    #[default]
+    PathApproximation,
+    /// The exact covariance of the relative pose in the graph, earlier loops included.
+    ///
+    /// It is only as honest as the information of the edges: scan matching that is too sure of
+    /// itself makes this gate turn away good loops.
+    ExactMarginal,
+}
+
+/// Detection, verification and gating of loops; the defaults are the chapter's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopConfig {
+    /// Candidates lie within this distance of the new node in the graph, m.
+    pub radius_m: f64,
+    /// Candidates are at least so many nodes older.
+    pub min_gap_nodes: usize,
+    /// At most one attempt in so many nodes.
+    pub attempt_every_nodes: usize,
+    /// The submap holds the candidate and so many nodes on either side of it.
+    pub submap_half_width: usize,
+    /// The submap.
+    pub submap: MapConfig,
+    /// Most iterations of the registration against the submap.
+    pub max_iterations: usize,
+    /// Correspondence distance in metres, unless half the radius is more.
+    pub min_tau_m: f64,
+    /// A registration that fits worse than this is turned away, m.
+    pub max_rmse_m: f64,
+    /// A registration with fewer pairs is turned away.
+    pub min_inliers: usize,
+    /// Trust in the pairs of an accepted loop.
+    pub trust: TrustConfig,
+    /// What the gate takes for the drift; the two fields below belong to the path approximation.
+    pub gate_model: GateModel,
+    /// Drift of x and of y over one node, a standard deviation in metres; grows with √gap.
+    pub drift_sigma_m: f64,
+    /// Drift of the heading over one node, a standard deviation in radians; grows with √gap.
+    pub drift_sigma_rad: f64,
+    /// The largest squared innovation that is believed: the 95 % quantile of χ² with 3 degrees of
+    /// freedom is 7.815.
+    pub gate_chi2: f64,
+}
+
+impl Default for LoopConfig {
+    fn default() -> Self {
+        Self {
+            radius_m: 2.0,
+            min_gap_nodes: 22,
+            attempt_every_nodes: 4,
+            submap_half_width: 3,
+            submap: MapConfig {
+                cell_m: 0.25,
+                max_per_cell: 6,
+            },
+            max_iterations: 30,
+            min_tau_m: 0.6,
+            max_rmse_m: 0.16,
+            min_inliers: 25,
+            trust: TrustConfig {
+                sigma_m: 0.05,
+                inflate: 25.0,
+            },
+            gate_model: GateModel::PathApproximation,
+            drift_sigma_m: 0.045,
+            drift_sigma_rad: 0.012,
+            gate_chi2: 7.815,
+        }
+    }
+}

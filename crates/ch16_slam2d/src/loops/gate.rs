@@ -1,0 +1,84 @@
+//! Whether an innovation is believable.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::LoopConfig;
+use crate::graph::PoseGraph;
+
+/// Whether an innovation is believable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GateTest {
+    /// `νᵀ Ω ν`.
+    pub chi2: f64,
+    /// The largest value that passes.
+    pub gate_chi2: f64,
+}
+
+impl GateTest {
+    /// Whether the innovation is within the gate.
+    #[must_use]
+    pub fn passes(&self) -> bool {
+        self.chi2 <= self.gate_chi2
+    }
+}
+
+/// Compares the squared Mahalanobis norm of `innovation` (m, m, rad) with `gate_chi2`.
+#[must_use]
+pub fn chi_squared_gate(
+    innovation: &Vector3<f64>,
+    information: &Matrix3<f64>,
+    gate_chi2: f64,
+) -> GateTest {
+    GateTest {
+        chi2: innovation.dot(&(information * innovation)),
+        gate_chi2,
+    }
+}
+
+/// Information of the drift over a path of `gap` nodes: diagonal, standard deviations that grow
+/// with √gap.
+#[must_use]
+pub fn path_information(gap: usize, config: &LoopConfig) -> Matrix3<f64> {
+    let steps = gap as f64;
+    let xy = 1.0 / (config.drift_sigma_m * config.drift_sigma_m * steps);
+    let theta = 1.0 / (config.drift_sigma_rad * config.drift_sigma_rad * steps);
+    Matrix3::from_diagonal(&Vector3::new(xy, xy, theta))
+}
+
+/// Information of the drift as the graph knows it: the exact covariance of the pose of `new` in
+/// the frame of `old`, inverted; see [`PoseGraph::relative_covariance`].
+///
+/// # Panics
+/// Where a node does not exist, or no edges tie it to a fixed one.
+#[must_use]
+pub fn marginal_information(graph: &mut PoseGraph, old: usize, new: usize) -> Matrix3<f64> {
+    graph
+        .relative_covariance(old, new)
+        .ok()
+        .and_then(|covariance| covariance.try_inverse())
+        .expect("edges tie every node to a fixed one")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drift_of_the_path_grows_with_the_square_root_of_its_length() {
+        let config = LoopConfig::default();
+        let (one, nine) = (path_information(1, &config), path_information(9, &config));
+        assert!((one[(0, 0)].sqrt() - 1.0 / 0.045).abs() < 1e-9);
+        assert!((one[(2, 2)] / nine[(2, 2)] - 9.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_innovation_of_three_sigma_in_x_has_chi2_nine() {
+        let config = LoopConfig::default();
+        let innovation = Vector3::new(-3.0 * 0.045 * 5.0, 0.0, 0.0);
+        let test = chi_squared_gate(&innovation, &path_information(25, &config), 7.815);
+        assert!((test.chi2 - 9.0).abs() < 1e-12);
+        assert!(!test.passes());
+        let nan = chi_squared_gate(&innovation, &Matrix3::repeat(f64::NAN), 7.815);
+        assert!(!nan.passes());
+    }
+}

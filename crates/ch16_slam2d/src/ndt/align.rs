@@ -1,0 +1,248 @@
+//! Registration on an NDT map: damped Gauss–Newton on the negative score.
+
+use nalgebra::{Matrix3, Vector3};
+use pr_geom::{Rotation, SE2, math};
+
+use super::NdtMap;
+use crate::cloud::PointCloud;
+
+/// Added to every diagonal entry, so that a cloud far from every cell still has a solvable system.
+const RIDGE: f64 = 1e-9;
+/// Smallest damping that successes leave.
+const MIN_DAMPING: f64 = 1e-6;
+/// Terms smaller than this add nothing to gradient and Hessian.
+const MIN_TERM: f64 = 1e-9;
+/// `−ln` of [`MIN_TERM`], rounded up: beyond it no exponential has to be worked out.
+const MAX_EXPONENT: f64 = 20.73;
+
+/// The settings of [`ndt_align`]; the defaults are the chapter's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NdtConfig {
+    /// At most so many steps.
+    pub max_iters: usize,
+    /// Gradient below which the run ends, `‖g_xy‖ + |g_θ|`.
+    pub gradient_tolerance: f64,
+    /// First damping λ: diagonal entries grow by the factor 1 + λ.
+    pub initial_damping: f64,
+    /// Dampings tried for one step, each six times the one before.
+    pub max_tries: usize,
+}
+
+impl Default for NdtConfig {
+    fn default() -> Self {
+        Self {
+            max_iters: 25,
+            gradient_tolerance: 1e-6,
+            initial_damping: 1e-4,
+            max_tries: 10,
+        }
+    }
+}
+
+/// Why an NDT registration ended, with what was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NdtStop {
+    /// The score is flat here: a maximum, or a place where no cell is near.
+    SmallGradient {
+        /// `‖g_xy‖ + |g_θ|`.
+        gradient: f64,
+        /// [`NdtConfig::gradient_tolerance`].
+        tolerance: f64,
+    },
+    /// No damping led to a higher score: a maximum to the last digits, or a cell border.
+    NoBetterStep {
+        /// The damping tried last.
+        damping: f64,
+    },
+    /// All the steps were used up.
+    IterationLimit {
+        /// [`NdtConfig::max_iters`].
+        max_iters: usize,
+    },
+}
+
+/// The state after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NdtStep {
+    /// `map_from_cloud`.
+    pub pose: SE2,
+    /// Sum of the points' scores.
+    pub score: f64,
+    /// Set once the registration has ended.
+    pub stop: Option<NdtStop>,
+}
+
+/// The outcome of an NDT registration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NdtResult {
+    /// `map_from_cloud`.
+    pub pose: SE2,
+    /// Sum of the points' scores.
+    pub score: f64,
+    /// Iterations begun; the last one may have found no better step.
+    pub iterations: usize,
+    /// The poses from the initial guess on.
+    pub trace: Vec<SE2>,
+    /// Why the registration ended.
+    pub stop: NdtStop,
+}
+
+/// Registers `cloud` on `map` from the guess `init = map_from_cloud`.
+///
+/// With `d = R p + t − μ` and `J = [I, R' p]`, the gradient of the negative score is
+/// `Σ e Jᵀ Σ⁻¹ d` and its Gauss–Newton Hessian `Σ e Jᵀ Σ⁻¹ J`, `e = exp(−½ dᵀ Σ⁻¹ d)`. The step is
+/// added to `(t_x, t_y, θ)`.
+#[must_use]
+pub fn ndt_align(cloud: &PointCloud, map: &NdtMap, init: SE2, config: &NdtConfig) -> NdtResult {
+    let mut registration = NdtAlign::new(cloud, map, init, config);
+    let mut trace = vec![init];
+    loop {
+        let step = registration.step();
+        if trace.last() != Some(&step.pose) {
+            trace.push(step.pose);
+        }
+        if let Some(stop) = step.stop {
+            return NdtResult {
+                pose: step.pose,
+                score: step.score,
+                iterations: registration.iterations,
+                trace,
+                stop,
+            };
+        }
+    }
+}
+
+/// An NDT registration under way.
+#[derive(Clone, Debug)]
+pub struct NdtAlign<'a> {
+    cloud: &'a PointCloud,
+    map: &'a NdtMap,
+    config: NdtConfig,
+    pose: SE2,
+    score: f64,
+    damping: f64,
+    iterations: usize,
+    stop: Option<NdtStop>,
+}
+
+impl<'a> NdtAlign<'a> {
+    /// Scores the guess `init = map_from_cloud`; no step is made yet.
+    #[must_use]
+    pub fn new(cloud: &'a PointCloud, map: &'a NdtMap, init: SE2, config: &NdtConfig) -> Self {
+        Self {
+            cloud,
+            map,
+            config: *config,
+            pose: init,
+            score: map.score(cloud, &init),
+            damping: config.initial_damping,
+            iterations: 0,
+            stop: None,
+        }
+    }
+
+    /// Iterations begun so far.
+    #[must_use]
+    pub fn iterations(&self) -> usize {
+        self.iterations
+    }
+
+    /// Takes one step, unless the registration has ended.
+    pub fn step(&mut self) -> NdtStep {
+        if self.stop.is_none() {
+            self.stop = self.advance();
+        }
+        NdtStep {
+            pose: self.pose,
+            score: self.score,
+            stop: self.stop,
+        }
+    }
+
+    fn advance(&mut self) -> Option<NdtStop> {
+        let NdtConfig {
+            max_iters,
+            gradient_tolerance: tolerance,
+            max_tries,
+            ..
+        } = self.config;
+        if max_iters == 0 {
+            return Some(NdtStop::IterationLimit { max_iters });
+        }
+        self.iterations += 1;
+        let (gradient, hessian) = linearize(self.cloud, self.map, &self.pose);
+        let size = math::norm2(gradient.x, gradient.y) + gradient.z.abs();
+        if size < tolerance {
+            return Some(NdtStop::SmallGradient {
+                gradient: size,
+                tolerance,
+            });
+        }
+        for _ in 0..max_tries {
+            let mut damped = hessian;
+            for k in 0..3 {
+                damped[(k, k)] = hessian[(k, k)] * (1.0 + self.damping) + RIDGE;
+            }
+            if let Some(factor) = damped.cholesky() {
+                let step = factor.solve(&-gradient);
+                let pose = SE2::new(
+                    self.pose.x() + step.x,
+                    self.pose.y() + step.y,
+                    self.pose.theta() + step.z,
+                );
+                let score = self.map.score(self.cloud, &pose);
+                if score > self.score {
+                    self.pose = pose;
+                    self.score = score;
+                    self.damping = (0.5 * self.damping).max(MIN_DAMPING);
+                    return (self.iterations >= max_iters)
+                        .then_some(NdtStop::IterationLimit { max_iters });
+                }
+            }
+            self.damping *= 6.0;
+        }
+        Some(NdtStop::NoBetterStep {
+            damping: self.damping,
+        })
+    }
+}
+
+/// Gradient and Gauss–Newton Hessian of the negative score over `(t_x, t_y, θ)`.
+fn linearize(cloud: &PointCloud, map: &NdtMap, pose: &SE2) -> (Vector3<f64>, Matrix3<f64>) {
+    let Rotation { cos, sin } = pose.rotation();
+    let (mut gx, mut gy, mut gw) = (0.0, 0.0, 0.0);
+    let (mut xx, mut xy, mut yy, mut xw, mut yw, mut ww) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    for (&px, &py) in cloud.xs().iter().zip(cloud.ys()) {
+        let (rx, ry) = (cos * px - sin * py, sin * px + cos * py);
+        let (x, y) = (rx + pose.x(), ry + pose.y());
+        for gaussian in map.around(x, y) {
+            let exponent = gaussian.exponent(x, y);
+            if exponent > MAX_EXPONENT {
+                continue;
+            }
+            let e = math::exp(-exponent);
+            if e < MIN_TERM {
+                continue;
+            }
+            let (dx, dy) = (x - gaussian.mean.x, y - gaussian.mean.y);
+            let m = &gaussian.information;
+            let (qx, qy) = (m.m11 * dx + m.m12 * dy, m.m12 * dx + m.m22 * dy);
+            // The derivative of R p by θ is R p turned by a quarter: (−ry, rx).
+            let (ux, uy) = (m.m12 * rx - m.m11 * ry, m.m22 * rx - m.m12 * ry);
+            gx += e * qx;
+            gy += e * qy;
+            gw += e * (qy * rx - qx * ry);
+            xx += e * m.m11;
+            xy += e * m.m12;
+            yy += e * m.m22;
+            xw += e * ux;
+            yw += e * uy;
+            ww += e * (uy * rx - ux * ry);
+        }
+    }
+    (
+        Vector3::new(gx, gy, gw),
+        Matrix3::new(xx, xy, xw, xy, yy, yw, xw, yw, ww),
+    )
+}

@@ -1,0 +1,326 @@
+//! The cells of an NDT map and the score of a point.
+
+use nalgebra::{Matrix2, Vector2};
+use pr_geom::{SE2, math};
+use rustc_hash::FxHashMap;
+
+use crate::cloud::{PointCloud, cell_index};
+
+/// The larger variance of a cell is at least this, m².
+const MIN_VARIANCE_M2: f64 = 1e-4;
+/// The smaller variance is at least this share of the larger one.
+const MIN_VARIANCE_RATIO: f64 = 0.01;
+/// Half a squared Mahalanobis distance beyond which a cell adds less than 1e-17 to a score.
+const NEGLIGIBLE_EXPONENT: f64 = 40.0;
+/// Cells a dense table may have for every Gaussian; beyond that the lookup hashes.
+const TABLE_CELLS_PER_GAUSSIAN: i64 = 1024;
+
+/// One Gaussian of the map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NdtCell {
+    /// Index of the cell along x and y; cell `(0, 0)` starts at the origin.
+    pub cell: (i32, i32),
+    /// Points that fell into it.
+    pub count: usize,
+    /// Their mean, m.
+    pub mean: Vector2<f64>,
+    /// Their covariance with its eigenvalues raised to the floor, m².
+    pub covariance: Matrix2<f64>,
+    /// The inverse of the covariance, 1/m².
+    pub information: Matrix2<f64>,
+}
+
+/// A map of Gaussians on a grid of cells.
+#[derive(Clone, Debug)]
+pub struct NdtMap {
+    cell_m: f64,
+    gaussians: Vec<NdtCell>,
+    lookup: Lookup,
+    /// For every cell near a Gaussian, the Gaussians of the 3×3 cells around it, one run each.
+    near: Vec<u32>,
+}
+
+/// Where the run of a cell starts and ends in `NdtMap::near`.
+#[derive(Clone, Debug)]
+enum Lookup {
+    Dense {
+        origin: (i32, i32),
+        columns: i32,
+        rows: i32,
+        runs: Vec<(u32, u32)>,
+    },
+    Hashed(FxHashMap<(i32, i32), (u32, u32)>),
+}
+
+impl NdtMap {
+    /// The Gaussians of `cloud` on cells `cell_m` wide that hold at least `min_points` points.
+    ///
+    /// The covariance divides by n − 1. Its larger eigenvalue is raised to 1e-4 m² and the smaller
+    /// one to 0.01 of the larger, so that a cell of points in one line still has an inverse.
+    ///
+    /// # Panics
+    /// If the cell size is not positive and finite, or `min_points` is below 2.
+    #[must_use]
+    pub fn build(cloud: &PointCloud, cell_m: f64, min_points: usize) -> Self {
+        assert!(
+            cell_m > 0.0 && cell_m.is_finite(),
+            "cell size {cell_m} m is not positive"
+        );
+        assert!(min_points >= 2, "one point has no covariance");
+        let finite = cloud
+            .iter()
+            .filter(|point| point.x.is_finite() && point.y.is_finite());
+        let mut slots = FxHashMap::<(i32, i32), usize>::default();
+        let mut moments: Vec<Moments> = Vec::new();
+        for point in finite.clone() {
+            let cell = (cell_index(point.x, cell_m), cell_index(point.y, cell_m));
+            let slot = *slots.entry(cell).or_insert_with(|| {
+                moments.push(Moments::new(cell));
+                moments.len() - 1
+            });
+            moments[slot].count_in(point);
+        }
+        for point in finite {
+            let cell = (cell_index(point.x, cell_m), cell_index(point.y, cell_m));
+            moments[slots[&cell]].spread(point);
+        }
+        let gaussians: Vec<NdtCell> = moments
+            .iter()
+            .filter(|moments| moments.count >= min_points)
+            .map(Moments::gaussian)
+            .collect();
+        let (lookup, near) = Lookup::build(&gaussians);
+        Self {
+            cell_m,
+            gaussians,
+            lookup,
+            near,
+        }
+    }
+
+    /// Width of a cell, m.
+    #[must_use]
+    pub fn cell_m(&self) -> f64 {
+        self.cell_m
+    }
+
+    /// The Gaussians, in the order in which the first point fell into each.
+    #[must_use]
+    pub fn cells(&self) -> &[NdtCell] {
+        &self.gaussians
+    }
+
+    /// The Gaussians of the 3×3 cells around a point.
+    #[inline]
+    pub fn around(&self, x: f64, y: f64) -> impl Iterator<Item = &NdtCell> + Clone {
+        self.near_cell((cell_index(x, self.cell_m), cell_index(y, self.cell_m)))
+            .iter()
+            .map(|&index| &self.gaussians[index as usize])
+    }
+
+    /// Indices of the Gaussians of the 3×3 cells around `cell`.
+    #[inline]
+    pub(crate) fn near_cell(&self, cell: (i32, i32)) -> &[u32] {
+        let (start, end) = self.lookup.run(cell);
+        &self.near[start as usize..end as usize]
+    }
+
+    /// The score of a point at `(x, y)`: the sum of `exp(−½ dᵀ Σ⁻¹ d)` over the 3×3 cells around it.
+    #[inline]
+    #[must_use]
+    pub fn score_point(&self, x: f64, y: f64) -> f64 {
+        let mut score = 0.0;
+        self.add_scores(x, y, &mut score);
+        score
+    }
+
+    #[inline]
+    fn add_scores(&self, x: f64, y: f64, score: &mut f64) {
+        for gaussian in self.around(x, y) {
+            let exponent = gaussian.exponent(x, y);
+            if exponent < NEGLIGIBLE_EXPONENT {
+                *score += math::exp(-exponent);
+            }
+        }
+    }
+
+    /// The sum of the scores of all points of `cloud`, moved by `map_from_cloud`.
+    #[must_use]
+    pub fn score(&self, cloud: &PointCloud, map_from_cloud: &SE2) -> f64 {
+        let rotation = map_from_cloud.rotation();
+        let mut score = 0.0;
+        for (&x, &y) in cloud.xs().iter().zip(cloud.ys()) {
+            let (x, y) = rotation.rotate(x, y);
+            self.add_scores(x + map_from_cloud.x(), y + map_from_cloud.y(), &mut score);
+        }
+        score
+    }
+}
+
+/// Sums over the points of one cell: first the points, then their scatter about the mean.
+struct Moments {
+    cell: (i32, i32),
+    count: usize,
+    sum: Vector2<f64>,
+    scatter: [f64; 3],
+}
+
+impl Moments {
+    fn new(cell: (i32, i32)) -> Self {
+        Self {
+            cell,
+            count: 0,
+            sum: Vector2::zeros(),
+            scatter: [0.0; 3],
+        }
+    }
+
+    fn count_in(&mut self, point: Vector2<f64>) {
+        self.count += 1;
+        self.sum += point;
+    }
+
+    fn mean(&self) -> Vector2<f64> {
+        self.sum / self.count as f64
+    }
+
+    fn spread(&mut self, point: Vector2<f64>) {
+        let d = point - self.mean();
+        self.scatter[0] += d.x * d.x;
+        self.scatter[1] += d.x * d.y;
+        self.scatter[2] += d.y * d.y;
+    }
+
+    fn gaussian(&self) -> NdtCell {
+        let divisor = self.count as f64 - 1.0;
+        let [xx, xy, yy] = self.scatter.map(|sum| sum / divisor);
+        let (covariance, information) = floored(xx, xy, yy);
+        NdtCell {
+            cell: self.cell,
+            count: self.count,
+            mean: self.mean(),
+            covariance,
+            information,
+        }
+    }
+}
+
+impl NdtCell {
+    /// `½ dᵀ Σ⁻¹ d` of a point at `(x, y)`.
+    #[inline]
+    #[must_use]
+    pub fn exponent(&self, x: f64, y: f64) -> f64 {
+        let (dx, dy) = (x - self.mean.x, y - self.mean.y);
+        let m = &self.information;
+        0.5 * (m.m11 * dx * dx + 2.0 * m.m12 * dx * dy + m.m22 * dy * dy)
+    }
+}
+
+/// The covariance `[xx xy; xy yy]` with its eigenvalues raised to the floor, and its inverse.
+fn floored(xx: f64, xy: f64, yy: f64) -> (Matrix2<f64>, Matrix2<f64>) {
+    let center = 0.5 * (xx + yy);
+    let half_gap = math::norm2(0.5 * (xx - yy), xy);
+    let largest = (center + half_gap).max(MIN_VARIANCE_M2);
+    let smallest = (center - half_gap).max(MIN_VARIANCE_RATIO * largest);
+    // With the unit axis u of the larger variance, f(Σ) = f(λ_max) u uᵀ + f(λ_min) (I − u uᵀ).
+    let (ux, uy) = if xx > yy {
+        (xx - center + half_gap, xy)
+    } else {
+        (xy, yy - center + half_gap)
+    };
+    let length = math::norm2(ux, uy);
+    let (ux, uy) = if length > 0.0 {
+        (ux / length, uy / length)
+    } else {
+        (1.0, 0.0)
+    };
+    let compose = |along: f64, across: f64| {
+        let off = (along - across) * ux * uy;
+        Matrix2::new(
+            along * ux * ux + across * uy * uy,
+            off,
+            off,
+            along * uy * uy + across * ux * ux,
+        )
+    };
+    (
+        compose(largest, smallest),
+        compose(1.0 / largest, 1.0 / smallest),
+    )
+}
+
+impl Lookup {
+    /// Lists, for every cell that touches a Gaussian's, the Gaussians around it.
+    fn build(gaussians: &[NdtCell]) -> (Self, Vec<u32>) {
+        let mut index_of = FxHashMap::<(i32, i32), u32>::default();
+        let (mut low, mut high) = ((i32::MAX, i32::MAX), (i32::MIN, i32::MIN));
+        for (index, gaussian) in gaussians.iter().enumerate() {
+            let (i, j) = gaussian.cell;
+            index_of.insert(gaussian.cell, index as u32);
+            low = (low.0.min(i), low.1.min(j));
+            high = (high.0.max(i), high.1.max(j));
+        }
+        let side = |low: i32, high: i32| (i64::from(high) - i64::from(low) + 3).max(0);
+        let (columns, rows) = (side(low.0, high.0), side(low.1, high.1));
+        let budget = TABLE_CELLS_PER_GAUSSIAN * gaussians.len() as i64;
+        let mut near = Vec::new();
+        let mut run_around = |(i, j): (i32, i32)| {
+            let start = near.len() as u32;
+            for di in -1..=1 {
+                for dj in -1..=1 {
+                    let cell = (i.saturating_add(di), j.saturating_add(dj));
+                    near.extend(index_of.get(&cell));
+                }
+            }
+            (start, near.len() as u32)
+        };
+        let lookup = if columns.saturating_mul(rows) <= budget {
+            let origin = (low.0.saturating_sub(1), low.1.saturating_sub(1));
+            let mut runs = Vec::with_capacity((columns * rows) as usize);
+            for i in 0..columns as i32 {
+                for j in 0..rows as i32 {
+                    runs.push(run_around((origin.0 + i, origin.1 + j)));
+                }
+            }
+            Self::Dense {
+                origin,
+                columns: columns as i32,
+                rows: rows as i32,
+                runs,
+            }
+        } else {
+            let mut runs = FxHashMap::default();
+            for gaussian in gaussians {
+                let (i, j) = gaussian.cell;
+                for di in -1..=1 {
+                    for dj in -1..=1 {
+                        let cell = (i.saturating_add(di), j.saturating_add(dj));
+                        runs.entry(cell).or_insert_with(|| run_around(cell));
+                    }
+                }
+            }
+            Self::Hashed(runs)
+        };
+        (lookup, near)
+    }
+
+    #[inline]
+    fn run(&self, (i, j): (i32, i32)) -> (u32, u32) {
+        match self {
+            Self::Dense {
+                origin,
+                columns,
+                rows,
+                runs,
+            } => {
+                let (column, row) = (i.wrapping_sub(origin.0), j.wrapping_sub(origin.1));
+                if (0..*columns).contains(&column) && (0..*rows).contains(&row) {
+                    runs[(column * rows + row) as usize]
+                } else {
+                    (0, 0)
+                }
+            }
+            Self::Hashed(runs) => runs.get(&(i, j)).copied().unwrap_or((0, 0)),
+        }
+    }
+}
