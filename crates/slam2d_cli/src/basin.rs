@@ -1,0 +1,137 @@
+//! `slam2d basin`: where ICP ends in w16.1, from one start or a sweep of headings.
+
+use ch16_slam2d::basin::{BasinOutcome, BasinScene, BasinStart};
+use ch16_slam2d::icp::{IcpVariant, IcpWorkspace, StopReason};
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+
+use crate::numbers::{self, Headings};
+use crate::output::{pose, print_json, say};
+
+/// Register the two sweeps of room A from a start that is off.
+#[derive(Args, Clone, Debug)]
+pub struct BasinArgs {
+    /// Which error the increments reduce.
+    #[arg(long, value_enum, default_value_t = VariantName::PointToPoint)]
+    variant: VariantName,
+    /// Correspondence distance τ, m.
+    #[arg(long, default_value = "0.7", value_parser = numbers::tau_m, allow_hyphen_values = true)]
+    tau: f64,
+    /// Added to the true x, m.
+    #[arg(long, default_value = "0.55", value_parser = numbers::offset_m, allow_hyphen_values = true)]
+    dx: f64,
+    /// Added to the true y, m.
+    #[arg(long, default_value = "0.45", value_parser = numbers::offset_m, allow_hyphen_values = true)]
+    dy: f64,
+    /// Added to the true heading, degrees: A, or A:B:STEP with both ends included.
+    #[arg(
+        long,
+        value_name = "A[:B:STEP]",
+        default_value = "25",
+        value_parser = numbers::headings_deg,
+        allow_hyphen_values = true
+    )]
+    heading_deg: Headings,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// `--variant`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum VariantName {
+    /// Distances between points.
+    #[value(alias = "p2p")]
+    PointToPoint,
+    /// Distances along normals.
+    #[value(alias = "p2l")]
+    PointToPlane,
+}
+
+#[derive(Serialize)]
+struct BasinJson {
+    truth: [f64; 3],
+    runs: Vec<RunJson>,
+}
+
+#[derive(Serialize)]
+struct RunJson {
+    heading_deg: f64,
+    dx: f64,
+    dy: f64,
+    variant: &'static str,
+    tau: f64,
+    pose: [f64; 3],
+    iterations: usize,
+    converged: bool,
+    rmse: Option<f64>,
+    inliers: usize,
+    error_m: f64,
+    error_deg: f64,
+    minimum: &'static str,
+}
+
+/// Runs every heading and prints the outcomes.
+pub fn run(args: &BasinArgs) {
+    let scene = BasinScene::new();
+    let (variant, variant_name) = match args.variant {
+        VariantName::PointToPoint => (IcpVariant::PointToPoint, "point-to-point"),
+        VariantName::PointToPlane => (IcpVariant::PointToPlane, "point-to-plane"),
+    };
+    let config = BasinScene::config(variant, args.tau);
+    let start = BasinStart {
+        dx_m: args.dx,
+        dy_m: args.dy,
+        ..BasinStart::default()
+    };
+    let headings = || args.heading_deg.0.iter().copied();
+    let mut workspace = IcpWorkspace::new();
+    let outcomes = scene.sweep(start, headings(), &config, &mut workspace);
+    let runs = headings().zip(outcomes);
+    if args.json {
+        let run_json = |(heading_deg, outcome): (f64, BasinOutcome)| RunJson {
+            heading_deg,
+            dx: args.dx,
+            dy: args.dy,
+            variant: variant_name,
+            tau: args.tau,
+            pose: outcome.pose.to_array(),
+            iterations: outcome.iterations,
+            converged: outcome.stop.converged(),
+            rmse: outcome.rmse.is_finite().then_some(outcome.rmse),
+            inliers: outcome.inliers,
+            error_m: outcome.error_m,
+            error_deg: outcome.error_deg,
+            minimum: outcome.minimum.name(),
+        };
+        print_json(&BasinJson {
+            truth: scene.truth().to_array(),
+            runs: runs.map(run_json).collect(),
+        });
+        return;
+    }
+    say!(
+        "{variant_name}, tau {} m, offset ({}, {}) m",
+        args.tau,
+        args.dx,
+        args.dy
+    );
+    for (heading_deg, outcome) in runs {
+        say!(
+            "{heading_deg:>8.2}°  {:<22} error {:.3} m, {:.1}°  rmse {:.3} m  {} pairs  \
+             {} iterations{}  {}",
+            outcome.minimum.name(),
+            outcome.error_m,
+            outcome.error_deg,
+            outcome.rmse,
+            outcome.inliers,
+            outcome.iterations,
+            match outcome.stop {
+                StopReason::SmallStep { .. } => "",
+                StopReason::IterationLimit { .. } => " (limit)",
+                StopReason::TooFewPairs { .. } => " (too few pairs)",
+            },
+            pose(&outcome.pose),
+        );
+    }
+}

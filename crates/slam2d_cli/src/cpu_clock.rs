@@ -1,0 +1,49 @@
+//! Time that this thread spent computing, not waiting for a busy machine.
+
+/// A stopwatch over the CPU time of the calling thread; wall time where the system has none.
+#[derive(Debug)]
+pub struct CpuClock {
+    started_s: f64,
+    elapsed_s: f64,
+}
+
+impl CpuClock {
+    /// A clock that runs.
+    #[must_use]
+    pub fn start() -> Self {
+        Self {
+            started_s: now_s(),
+            elapsed_s: 0.0,
+        }
+    }
+
+    /// Stops counting.
+    pub fn pause(&mut self) {
+        self.elapsed_s += now_s() - self.started_s;
+    }
+
+    /// Counts again.
+    pub fn resume(&mut self) {
+        self.started_s = now_s();
+    }
+
+    /// Milliseconds counted up to the last pause.
+    #[must_use]
+    pub fn elapsed_ms(&self) -> f64 {
+        1e3 * self.elapsed_s
+    }
+}
+
+#[cfg(unix)]
+fn now_s() -> f64 {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+#[cfg(not(unix))]
+fn now_s() -> f64 {
+    use std::sync::OnceLock;
+    use std::time::Instant;
+    static START: OnceLock<Instant> = OnceLock::new();
+    START.get_or_init(Instant::now).elapsed().as_secs_f64()
+}

@@ -1,0 +1,186 @@
+//! `slam2d lap`: the Apartment's lap at one seed and noise factor.
+
+use ch16_slam2d::slam::{LapRecord, LapRunner, LoopAttempt, SlamConfig, SlamReport};
+use clap::Args;
+use serde::Serialize;
+
+use crate::numbers;
+use crate::output::{print_json, say};
+
+/// Drive the lap through the Apartment and estimate it.
+#[derive(Args, Clone, Debug)]
+pub struct LapArgs {
+    /// Seed of all noise, decimal or 0x….
+    #[arg(long, default_value = "0xC0FFEE", value_parser = numbers::seed)]
+    seed: u32,
+    /// Factor of the wheels' six noise parameters.
+    #[arg(long, default_value = "1", value_parser = numbers::noise_factor, allow_hyphen_values = true)]
+    noise: f64,
+    /// The front end alone: no loop is closed.
+    #[arg(long)]
+    no_loops: bool,
+    /// Print one JSON object with every tick, keyframe and loop event.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What `--json` prints; `max_shift`, `ate_before` and `ate_after` are null for a rejected loop.
+#[derive(Serialize)]
+struct LapJson {
+    seed: u32,
+    noise: f64,
+    loops: bool,
+    ticks: usize,
+    keyframes: usize,
+    turn_node: Option<usize>,
+    odometry_end_error: f64,
+    odometry_rms: f64,
+    keyframe_end_error: f64,
+    keyframe_rms: f64,
+    map_disagreement: Option<f64>,
+    chi2: f64,
+    occupied_cells: usize,
+    free_cells: usize,
+    digest: String,
+    events: Vec<EventJson>,
+    keyframe_poses: Vec<[f64; 3]>,
+    keyframe_truth: Vec<[f64; 3]>,
+    keyframe_errors: Vec<f64>,
+    per_tick: Vec<TickJson>,
+}
+
+#[derive(Serialize)]
+struct EventJson {
+    from: usize,
+    to: usize,
+    chi2: f64,
+    rmse: f64,
+    inliers: usize,
+    accepted: bool,
+    max_shift: Option<f64>,
+    ate_before: Option<f64>,
+    ate_after: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct TickJson {
+    truth: [f64; 3],
+    dead_reckoning: [f64; 3],
+    estimate: [f64; 3],
+    tau: f64,
+    inliers: usize,
+    rmse: Option<f64>,
+    iterations: usize,
+    keyframe: bool,
+}
+
+/// Runs the lap and prints it.
+pub fn run(args: &LapArgs) {
+    let mut config = SlamConfig::with_seed_and_noise(args.seed, args.noise);
+    if args.no_loops {
+        config = config.without_loops();
+    }
+    let record = LapRunner::new().run(&config);
+    if args.json {
+        print_json(&LapJson::new(&record, args));
+    } else {
+        print_text(&record, args);
+    }
+}
+
+impl LapJson {
+    fn new(record: &LapRecord, args: &LapArgs) -> Self {
+        let (lap, summary) = (&record.lap, &record.lap.summary);
+        let grid = record.occupancy_grid(record.ticks());
+        let poses = lap.poses(record.ticks());
+        Self {
+            seed: args.seed,
+            noise: args.noise,
+            loops: !args.no_loops,
+            ticks: summary.ticks,
+            keyframes: summary.keyframes,
+            turn_node: lap.turn_node,
+            odometry_end_error: summary.odometry_end_error_m,
+            odometry_rms: summary.odometry_rms_m,
+            keyframe_end_error: summary.keyframe_end_error_m,
+            keyframe_rms: summary.keyframe_rms_m,
+            map_disagreement: summary.map_disagreement_m,
+            chi2: summary.chi2,
+            occupied_cells: grid.occupied_cells(),
+            free_cells: grid.free_cells(),
+            digest: format!("{:016x}", record.digest()),
+            events: lap.loop_attempts().map(EventJson::new).collect(),
+            keyframe_poses: poses.iter().map(|pose| pose.to_array()).collect(),
+            keyframe_truth: lap.keyframes.iter().map(|k| k.truth.to_array()).collect(),
+            keyframe_errors: lap.keyframe_errors_m(record.ticks()).collect(),
+            per_tick: lap.reports.iter().map(TickJson::new).collect(),
+        }
+    }
+}
+
+impl EventJson {
+    fn new(attempt: &LoopAttempt) -> Self {
+        let found = &attempt.verification;
+        let rms = attempt.effect.map(|effect| effect.keyframe_rms_m);
+        Self {
+            from: found.from_node,
+            to: found.candidate.node,
+            chi2: found.gate.chi2,
+            rmse: found.rmse_m,
+            inliers: found.inliers,
+            accepted: attempt.accepted(),
+            max_shift: attempt.effect.map(|effect| effect.max_shift_m),
+            ate_before: rms.map(|rms| rms.before),
+            ate_after: rms.map(|rms| rms.after),
+        }
+    }
+}
+
+impl TickJson {
+    fn new(report: &SlamReport) -> Self {
+        let icp = &report.registration.icp;
+        Self {
+            truth: report.truth.to_array(),
+            dead_reckoning: report.dead_reckoning.to_array(),
+            estimate: report.estimate.to_array(),
+            tau: report.registration.next_tau_m,
+            inliers: icp.inliers,
+            // Infinite without pairs, and JSON has no infinity.
+            rmse: icp.rmse.is_finite().then_some(icp.rmse),
+            iterations: icp.iterations,
+            keyframe: report.new_keyframe.is_some(),
+        }
+    }
+}
+
+fn print_text(record: &LapRecord, args: &LapArgs) {
+    let summary = &record.lap.summary;
+    say!("seed {:#x}, noise ×{}", args.seed, args.noise);
+    say!("ticks             {}", summary.ticks);
+    say!("keyframes         {}", summary.keyframes);
+    say!("odometry, end     {:.4} m", summary.odometry_end_error_m);
+    say!("odometry, rms     {:.4} m", summary.odometry_rms_m);
+    say!("keyframes, end    {:.4} m", summary.keyframe_end_error_m);
+    say!("keyframes, rms    {:.4} m", summary.keyframe_rms_m);
+    match summary.map_disagreement_m {
+        Some(value) => say!("map disagreement  {value:.4} m"),
+        None => say!("map disagreement  none: nothing was seen twice"),
+    }
+    say!("graph chi2        {:.4}", summary.chi2);
+    for attempt in record.lap.loop_attempts() {
+        let found = &attempt.verification;
+        let verdict = match attempt.effect {
+            Some(effect) => format!("accepted, history moved by {:.3} m", effect.max_shift_m),
+            None => "rejected".to_owned(),
+        };
+        say!(
+            "loop {} to {}: chi2 {:.3} (gate {:.3}), rmse {:.3} m, {} pairs: {verdict}",
+            found.from_node,
+            found.candidate.node,
+            found.gate.chi2,
+            found.gate.gate_chi2,
+            found.rmse_m,
+            found.inliers,
+        );
+    }
+}

@@ -1,0 +1,99 @@
+//! The command slam2d: the chapter's numbers on the command line.
+//!
+//! Every subcommand is one file: its arguments, what it runs, what it prints. Wrong arguments and
+//! files that cannot be used end in one line on standard error and exit code 2.
+
+mod basin;
+mod cpu_clock;
+mod lap;
+mod numbers;
+mod optimize;
+mod output;
+mod register;
+mod sweep;
+mod table;
+mod terrain;
+
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+
+/// The numbers of the chapter on scan matching and pose-graph SLAM.
+#[derive(Debug, Parser)]
+#[command(name = "slam2d", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Lap(lap::LapArgs),
+    Basin(basin::BasinArgs),
+    Terrain(terrain::TerrainArgs),
+    Table(table::TableArgs),
+    Register(register::RegisterArgs),
+    Sweep(sweep::SweepArgs),
+    Optimize(optimize::OptimizeArgs),
+}
+
+fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return refuse_arguments(&error),
+    };
+    let outcome = match &cli.command {
+        Command::Lap(args) => {
+            lap::run(args);
+            Ok(())
+        }
+        Command::Basin(args) => {
+            basin::run(args);
+            Ok(())
+        }
+        Command::Terrain(args) => {
+            terrain::run(args);
+            Ok(())
+        }
+        Command::Table(args) => {
+            table::run(args);
+            Ok(())
+        }
+        Command::Register(args) => register::run(args).map_err(|e| e.to_string()),
+        Command::Sweep(args) => sweep::run(args).map_err(|e| e.to_string()),
+        Command::Optimize(args) => optimize::run(args).map_err(|e| e.to_string()),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("slam2d: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Prints help and version as asked for, and anything else as one line.
+fn refuse_arguments(error: &clap::Error) -> ExitCode {
+    if matches!(
+        error.kind(),
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+    ) {
+        print!("{error}");
+        return ExitCode::SUCCESS;
+    }
+    eprintln!("slam2d: {} (try slam2d --help)", one_line(error));
+    ExitCode::from(2)
+}
+
+/// The message of an argument error without usage and tips.
+fn one_line(error: &clap::Error) -> String {
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        return "a subcommand is needed".to_owned();
+    }
+    let text = error.to_string();
+    let message = text.split("\n\n").next().unwrap_or_default();
+    let words: Vec<&str> = message.split_whitespace().collect();
+    let joined = words.join(" ");
+    joined.strip_prefix("error: ").unwrap_or(&joined).to_owned()
+}

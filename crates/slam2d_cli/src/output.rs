@@ -1,0 +1,43 @@
+//! What the subcommands print with.
+
+use std::fmt::Arguments;
+use std::io::{ErrorKind, Write, stdout};
+use std::process::exit;
+
+use pr_geom::SE2;
+use serde::Serialize;
+
+/// Prints one line to standard output, as `println!` does, but ends quietly where the reader of a
+/// pipe has seen enough, as `head` has.
+macro_rules! say {
+    ($($text:tt)*) => { $crate::output::print_line(format_args!($($text)*)) };
+}
+pub(crate) use say;
+
+/// The function behind [`say!`].
+pub fn print_line(line: Arguments<'_>) {
+    match writeln!(stdout().lock(), "{line}") {
+        Ok(()) => {}
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => exit(0),
+        Err(error) => {
+            eprintln!("slam2d: standard output: {error}");
+            exit(2);
+        }
+    }
+}
+
+/// Prints one JSON value on one line.
+pub fn print_json(value: &impl Serialize) {
+    let line = serde_json::to_string(value).expect("plain numbers, strings and lists");
+    say!("{line}");
+}
+
+/// A pose as `x y heading°` for people.
+pub fn pose(pose: &SE2) -> String {
+    format!(
+        "({:.4} m, {:.4} m, {:.3}°)",
+        pose.x(),
+        pose.y(),
+        pose.theta().to_degrees()
+    )
+}

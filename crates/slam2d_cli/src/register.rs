@@ -1,0 +1,218 @@
+//! `slam2d register`: one registration of a scan file on a map file, timed.
+
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
+
+use ch16_slam2d::cloud::{DenseMap, PointCloud};
+use ch16_slam2d::icp::{Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace};
+use clap::{Args, ValueEnum};
+use pr_geom::{SE2, Vector2};
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::cpu_clock::CpuClock;
+use crate::numbers;
+use crate::output::{pose, print_json, say};
+
+/// Width of a map cell as a share of τ: a query then sees a handful of cells.
+const CELL_PER_TAU: f64 = 0.5;
+/// Radius in which a map without normals gets them for point-to-plane, m.
+const NORMAL_RADIUS_M: f64 = 0.3;
+
+/// Register a scan on a map, both files of x,y[,nx,ny] lines in metres.
+#[derive(Args, Clone, Debug)]
+pub struct RegisterArgs {
+    /// Points of the map.
+    #[arg(value_name = "MAP.csv")]
+    map: PathBuf,
+    /// Points of the scan.
+    #[arg(value_name = "SCAN.csv")]
+    scan: PathBuf,
+    /// Point-to-plane or point-to-point.
+    #[arg(long, value_enum, default_value_t = MethodName::P2l)]
+    method: MethodName,
+    /// Correspondence distance τ, m.
+    #[arg(long, default_value = "0.5", value_parser = numbers::tau_m, allow_hyphen_values = true)]
+    tau: f64,
+    /// Register so many times and report the fastest.
+    #[arg(long, value_name = "N", default_value = "1")]
+    repeat: NonZeroU32,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// `--method`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum MethodName {
+    /// Distances along normals.
+    P2l,
+    /// Distances between points.
+    P2p,
+}
+
+/// Why a file cannot be used.
+#[derive(Debug, Error)]
+pub enum RegisterFailure {
+    /// It cannot be read.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// Which file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A line is not a point.
+    #[error("{}: line {line}: expected x,y or x,y,nx,ny as finite numbers", path.display())]
+    Line {
+        /// Which file.
+        path: PathBuf,
+        /// Which line, counted from 1.
+        line: usize,
+    },
+    /// It has no points.
+    #[error("{}: no points", path.display())]
+    Empty {
+        /// Which file.
+        path: PathBuf,
+    },
+}
+
+#[derive(Serialize)]
+struct RegisterJson {
+    method: &'static str,
+    tau: f64,
+    map_points: usize,
+    scan_points: usize,
+    pose: [f64; 3],
+    iterations: usize,
+    converged: bool,
+    rmse: Option<f64>,
+    inliers: usize,
+    us: f64,
+    us_build: f64,
+}
+
+/// Registers and prints pose and times.
+///
+/// # Errors
+/// Where a file cannot be read or has a line that is not a point.
+pub fn run(args: &RegisterArgs) -> Result<(), RegisterFailure> {
+    let map_points = read_points(&args.map)?;
+    let scan = read_points(&args.scan)?;
+    let (variant, method) = match args.method {
+        MethodName::P2l => (IcpVariant::PointToPlane, "p2l"),
+        MethodName::P2p => (IcpVariant::PointToPoint, "p2p"),
+    };
+    let config = IcpConfig {
+        variant,
+        tau: args.tau,
+        ..IcpConfig::default()
+    };
+    let needs_normals = variant == IcpVariant::PointToPlane && !map_points.has_normals();
+    let mut map = DenseMap::new(CELL_PER_TAU * args.tau, usize::MAX);
+    let us_build = fastest_us(args.repeat, || {
+        if needs_normals {
+            let mut with_normals = map_points.clone();
+            with_normals.estimate_normals(NORMAL_RADIUS_M);
+            map.rebuild(&with_normals);
+        } else {
+            map.rebuild(&map_points);
+        }
+    });
+    let mut workspace = IcpWorkspace::new();
+    let mut register = || Icp::new(&scan, &map, SE2::identity(), &config, &mut workspace).run();
+    let found: IcpSummary = register();
+    let us = fastest_us(args.repeat, || {
+        std::hint::black_box(register());
+    });
+    if args.json {
+        print_json(&RegisterJson {
+            method,
+            tau: args.tau,
+            map_points: map_points.len(),
+            scan_points: scan.len(),
+            pose: found.pose.to_array(),
+            iterations: found.iterations,
+            converged: found.stop.converged(),
+            rmse: found.rmse.is_finite().then_some(found.rmse),
+            inliers: found.inliers,
+            us,
+            us_build,
+        });
+        return Ok(());
+    }
+    say!("pose        {}", pose(&found.pose));
+    say!("pairs       {} of {}", found.inliers, scan.len());
+    say!("rmse        {:.5} m", found.rmse);
+    say!("iterations  {}, {:?}", found.iterations, found.stop);
+    say!("time        {us:.1} µs, map {us_build:.1} µs");
+    Ok(())
+}
+
+/// The fastest of `repeat` calls in microseconds of this thread's time.
+fn fastest_us(repeat: NonZeroU32, mut call: impl FnMut()) -> f64 {
+    (0..repeat.get())
+        .map(|_| {
+            let mut clock = CpuClock::start();
+            call();
+            clock.pause();
+            1e3 * clock.elapsed_ms()
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+fn read_points(path: &Path) -> Result<PointCloud, RegisterFailure> {
+    let text = std::fs::read_to_string(path).map_err(|source| RegisterFailure::File {
+        path: path.to_owned(),
+        source,
+    })?;
+    let mut cloud = PointCloud::new();
+    let lines = text.lines().enumerate();
+    for (index, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
+        let (point, normal) = parse_point(line).ok_or_else(|| RegisterFailure::Line {
+            path: path.to_owned(),
+            line: index + 1,
+        })?;
+        cloud.push_with_normal(point, normal);
+    }
+    if cloud.is_empty() {
+        return Err(RegisterFailure::Empty {
+            path: path.to_owned(),
+        });
+    }
+    Ok(cloud)
+}
+
+/// `x,y` or `x,y,nx,ny`; a normal of (0, 0) is none, any other is scaled to length 1.
+fn parse_point(line: &str) -> Option<(Vector2<f64>, Option<Vector2<f64>>)> {
+    let numbers: Vec<f64> = line
+        .split(',')
+        .map(|field| field.trim().parse().ok().filter(|v: &f64| v.is_finite()))
+        .collect::<Option<_>>()?;
+    match numbers[..] {
+        [x, y] => Some((Vector2::new(x, y), None)),
+        [x, y, nx, ny] => {
+            let normal = Vector2::new(nx, ny).try_normalize(0.0);
+            Some((Vector2::new(x, y), normal))
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_a_point_with_or_without_its_normal() {
+        let point = Vector2::new(1.0, -2.5);
+        assert_eq!(parse_point("1, -2.5"), Some((point, None)));
+        let up = Some(Vector2::new(0.0, 1.0));
+        assert_eq!(parse_point("1,-2.5,0,2"), Some((point, up)));
+        assert_eq!(parse_point("1,-2.5,0,0"), Some((point, None)));
+        for wrong in ["1", "1,2,3", "1,2,3,4,5", "a,b", "1,nan", "1,inf", "x,y"] {
+            assert_eq!(parse_point(wrong), None, "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! `slam2d sweep`: the lap at many seeds and noise factors, over all cores. One seed is an anecdote.
+
+use std::num::NonZeroUsize;
+
+use ch16_slam2d::results::{Column, LapOutcome, LapStatistics, Row};
+use ch16_slam2d::slam::{LapRunner, SlamConfig};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::numbers::{self, Seeds};
+use crate::output::{print_json, say};
+
+/// Most laps of one sweep.
+const MAX_LAPS: u64 = 10_000_000;
+
+/// Drive the lap at many seeds and noise factors and print how its figures are distributed.
+#[derive(Args, Clone, Debug)]
+pub struct SweepArgs {
+    /// Seeds: A..=B, A..B or one.
+    #[arg(long, default_value = "1..=1000", value_parser = numbers::seeds)]
+    seeds: Seeds,
+    /// Factors of the wheels' noise, separated by commas.
+    #[arg(
+        long,
+        default_value = "0.25,1,2,4",
+        value_delimiter = ',',
+        value_parser = numbers::noise_factor,
+        allow_hyphen_values = true
+    )]
+    noise: Vec<f64>,
+    /// Number of threads; all cores without it.
+    #[arg(long)]
+    threads: Option<NonZeroUsize>,
+    /// Print one JSON list, an object for each noise factor.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Why a sweep did not start.
+#[derive(Debug, Error)]
+pub enum SweepFailure {
+    /// More laps than anyone waits for.
+    #[error("{laps} laps are too many, at most {MAX_LAPS}")]
+    TooMany {
+        /// Seeds times noise factors.
+        laps: u64,
+    },
+    /// The threads could not be started.
+    #[error(transparent)]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+/// The runs at one noise factor.
+#[derive(Serialize)]
+struct Level {
+    noise: f64,
+    runs: usize,
+    /// Shares of the runs with 0, 1, 2 and 3 or more closed loops.
+    loop_shares: [f64; 4],
+    accepted_loops: usize,
+    /// Accepted, but off by more than 0.3 m or 5° from the truth.
+    false_acceptances: usize,
+    /// Share of the runs with a false acceptance.
+    false_run_share: f64,
+    entries: Vec<Entry>,
+}
+
+/// An entry of the results table over the runs; runs that lack it are left out.
+#[derive(Serialize)]
+struct Entry {
+    column: &'static str,
+    row: &'static str,
+    p05: f64,
+    median: f64,
+    p95: f64,
+}
+
+/// Runs all laps and prints their distribution.
+///
+/// # Errors
+/// Where the sweep is too large or the threads cannot be started.
+pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
+    let laps = args.seeds.count() * args.noise.len() as u64;
+    if laps > MAX_LAPS {
+        return Err(SweepFailure::TooMany { laps });
+    }
+    let mut pool = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = args.threads {
+        pool = pool.num_threads(threads.get());
+    }
+    let by_seed = pool.build()?.install(|| all_runs(args));
+    let levels: Vec<Level> = args
+        .noise
+        .iter()
+        .enumerate()
+        .map(|(k, &noise)| {
+            let outcomes = by_seed.iter().map(|runs| runs[k]).collect();
+            Level::new(noise, &LapStatistics { outcomes })
+        })
+        .collect();
+    if args.json {
+        print_json(&levels);
+    } else {
+        levels.iter().for_each(print_level);
+    }
+    Ok(())
+}
+
+/// The runs of every seed, in order of the seeds; each has one run for each noise factor.
+fn all_runs(args: &SweepArgs) -> Vec<Vec<LapOutcome>> {
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} seeds, {eta} left")
+        .expect("the template is well formed");
+    let bar = ProgressBar::new(args.seeds.count()).with_style(style);
+    let runs = (args.seeds.first..=args.seeds.last)
+        .into_par_iter()
+        .map_init(LapRunner::new, |runner, seed| {
+            let at = |&noise: &f64| {
+                let config = SlamConfig::with_seed_and_noise(seed, noise);
+                LapOutcome::of(&runner.run(&config))
+            };
+            let runs = args.noise.iter().map(at).collect();
+            bar.inc(1);
+            runs
+        })
+        .collect();
+    bar.finish_and_clear();
+    runs
+}
+
+impl Level {
+    fn new(noise: f64, statistics: &LapStatistics) -> Self {
+        Self {
+            noise,
+            runs: statistics.outcomes.len(),
+            loop_shares: statistics.loop_shares(),
+            accepted_loops: statistics.accepted_loops(),
+            false_acceptances: statistics.false_acceptances(),
+            false_run_share: statistics.false_run_share(),
+            entries: entries(statistics),
+        }
+    }
+}
+
+fn entries(statistics: &LapStatistics) -> Vec<Entry> {
+    let cells = Column::ALL
+        .into_iter()
+        .flat_map(|column| Row::ALL.into_iter().map(move |row| (column, row)));
+    cells
+        .filter_map(|(column, row)| {
+            let spread = statistics.spread(column, row)?;
+            Some(Entry {
+                column: column_name(column),
+                row: row_name(row),
+                p05: spread.p05,
+                median: spread.median,
+                p95: spread.p95,
+            })
+        })
+        .collect()
+}
+
+fn column_name(column: Column) -> &'static str {
+    match column {
+        Column::Odometry => "odometry",
+        Column::FrontEnd => "front end",
+        Column::WithLoops => "with loops",
+    }
+}
+
+fn row_name(row: Row) -> &'static str {
+    match row {
+        Row::EndError => "position error at the end (m)",
+        Row::Rms => "rms position error (m)",
+        Row::LastKeyframesMin => "best of the last nine keyframes (m)",
+        Row::LastKeyframesMax => "worst of the last nine keyframes (m)",
+        Row::KeyframeMax => "largest keyframe error (m)",
+        Row::MapDisagreement => "map self-disagreement (m)",
+    }
+}
+
+fn print_level(level: &Level) {
+    say!("noise ×{}, {} runs", level.noise, level.runs);
+    let [none, one, two, more] = level.loop_shares.map(|share| 100.0 * share);
+    say!(
+        "  loops closed: 0 in {none:.1} %, 1 in {one:.1} %, 2 in {two:.1} %, 3 or more in {more:.1} %"
+    );
+    say!(
+        "  false acceptances: {} of {} loops, in {:.1} % of the runs",
+        level.false_acceptances,
+        level.accepted_loops,
+        100.0 * level.false_run_share
+    );
+    say!(
+        "  {:<12} {:<38} {:>8} {:>8} {:>8}",
+        "",
+        "",
+        "5 %",
+        "median",
+        "95 %"
+    );
+    for entry in &level.entries {
+        say!(
+            "  {:<12} {:<38} {:>8.4} {:>8.4} {:>8.4}",
+            entry.column,
+            entry.row,
+            entry.p05,
+            entry.median,
+            entry.p95
+        );
+    }
+}

@@ -1,0 +1,89 @@
+//! `slam2d terrain`: the landscapes of w16.3.
+
+use ch16_slam2d::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+
+use crate::numbers;
+use crate::output::{print_json, say};
+
+/// Work out ICP's cost and NDT's score over shifts of the cloud.
+#[derive(Args, Clone, Debug)]
+pub struct TerrainArgs {
+    /// Where the sweep was taken.
+    #[arg(long, value_enum, default_value_t = SceneName::Room)]
+    scene: SceneName,
+    /// Truncation of ICP's distances τ, m.
+    #[arg(long, default_value = "0.6", value_parser = numbers::tau_m, allow_hyphen_values = true)]
+    tau: f64,
+    /// Shifts along each axis.
+    #[arg(long, default_value_t = 49, value_parser = clap::value_parser!(u16).range(2..=1001))]
+    n: u16,
+    /// Print one JSON object, row-major with Δy outer.
+    #[arg(long)]
+    json: bool,
+}
+
+/// `--scene`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum SceneName {
+    /// Room A.
+    Room,
+    /// The corridor.
+    Corridor,
+}
+
+#[derive(Serialize)]
+struct TerrainJson<'a> {
+    scene: &'static str,
+    tau: f64,
+    n: usize,
+    span_m: f64,
+    points: usize,
+    ndt_cells: usize,
+    icp_cost_m2: &'a [f64],
+    ndt_score: &'a [f64],
+}
+
+/// Computes both landscapes and prints them.
+pub fn run(args: &TerrainArgs) {
+    let (kind, name) = match args.scene {
+        SceneName::Room => (SceneKind::Room, "room"),
+        SceneName::Corridor => (SceneKind::Corridor, "corridor"),
+    };
+    let scene = TerrainScene::new(kind, TerrainScene::DEFAULT_NDT_CELL_M);
+    let settings = TerrainSettings {
+        n: usize::from(args.n),
+        tau_m: args.tau,
+        ..TerrainSettings::default()
+    };
+    let terrain = Terrain::compute(&scene, &settings);
+    if args.json {
+        print_json(&TerrainJson {
+            scene: name,
+            tau: args.tau,
+            n: settings.n,
+            span_m: settings.span_m,
+            points: scene.cloud().len(),
+            ndt_cells: scene.ndt().cells().len(),
+            icp_cost_m2: terrain.icp_cost_m2(),
+            ndt_score: terrain.ndt_score(),
+        });
+        return;
+    }
+    say!(
+        "{name}, tau {} m, {} points, {} NDT cells",
+        args.tau,
+        scene.cloud().len(),
+        scene.ndt().cells().len()
+    );
+    for (what, peak) in [
+        ("lowest ICP cost", terrain.icp_minimum()),
+        ("highest NDT score", terrain.ndt_maximum()),
+    ] {
+        if let Some(peak) = peak {
+            let (dx, dy) = (settings.offset_m(peak.column), settings.offset_m(peak.row));
+            say!("{what:<18} {:.5} at ({dx:.3}, {dy:.3}) m", peak.value);
+        }
+    }
+}

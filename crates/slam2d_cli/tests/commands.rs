@@ -1,0 +1,277 @@
+//! The command itself, run as a reader runs it, against the reference files.
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+use slam2d_tests::{assert_close, reference};
+
+fn slam2d(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_slam2d"))
+        .args(arguments)
+        .output()
+        .expect("the binary was built for this test")
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = slam2d(arguments);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {errors}");
+    serde_json::from_slice(&output.stdout).expect("one JSON value")
+}
+
+/// Asserts that `actual` has every field of `expected`, numbers within `tolerance`.
+fn assert_covers(path: &str, actual: &Value, expected: &Value, tolerance: f64) {
+    match (actual, expected) {
+        (Value::Object(actual), Value::Object(expected)) => {
+            for (key, expected) in expected {
+                let path = format!("{path}.{key}");
+                let actual = actual
+                    .get(key)
+                    .unwrap_or_else(|| panic!("{path} is missing"));
+                assert_covers(&path, actual, expected, tolerance);
+            }
+        }
+        (Value::Array(actual), Value::Array(expected)) => {
+            assert_eq!(actual.len(), expected.len(), "{path}");
+            for (k, (actual, expected)) in actual.iter().zip(expected).enumerate() {
+                assert_covers(&format!("{path}[{k}]"), actual, expected, tolerance);
+            }
+        }
+        (Value::Number(actual), Value::Number(expected)) => {
+            let (actual, expected) = (actual.as_f64().unwrap(), expected.as_f64().unwrap());
+            assert_close(path, actual, expected, tolerance);
+        }
+        _ => assert_eq!(actual, expected, "{path}"),
+    }
+}
+
+#[test]
+#[should_panic(expected = "missing")]
+fn a_missing_field_is_noticed() {
+    let expected = serde_json::json!({"a": 1, "b": 2});
+    assert_covers("", &serde_json::json!({"a": 1}), &expected, 1e-6);
+}
+
+#[test]
+fn lap_prints_the_fields_of_the_reference() {
+    let laps: Vec<Value> = reference("lap.json");
+    assert_eq!(laps.len(), 9);
+    for expected in &laps {
+        let (seed, noise) = (expected["seed"].to_string(), expected["noise"].to_string());
+        let mut arguments = vec!["lap", "--seed", &seed, "--noise", &noise, "--json"];
+        if expected["loops"] == Value::Bool(false) {
+            arguments.push("--no-loops");
+        }
+        // 1e-6: a whole lap. No pose is near ±π, where a heading could jump.
+        assert_covers(&arguments.join(" "), &json(&arguments), expected, 1e-6);
+    }
+}
+
+#[test]
+fn basin_prints_the_runs_of_the_reference() {
+    let basin: Value = reference("basin.json");
+    let runs = basin["runs"].as_array().unwrap();
+    let mut seen = 0;
+    for variant in ["point-to-point", "point-to-plane"] {
+        for (tau, dx, dy) in groups(runs) {
+            let arguments = [
+                "basin",
+                "--variant",
+                variant,
+                "--tau",
+                &tau,
+                "--dx",
+                &dx,
+                "--dy",
+                &dy,
+                "--heading-deg=-180:180:1",
+                "--json",
+            ];
+            let printed = json(&arguments);
+            assert_covers("truth", &printed["truth"], &basin["truth"], 1e-9);
+            let same_start = |run: &&Value| {
+                run["variant"] == variant
+                    && [&run["tau"], &run["dx"], &run["dy"]].map(Value::to_string)
+                        == [&tau, &dx, &dy].map(String::clone)
+            };
+            for expected in runs.iter().filter(same_start) {
+                let heading = expected["heading_deg"].as_f64().unwrap();
+                let actual = &printed["runs"][(heading + 180.0) as usize];
+                assert_covers(&format!("{arguments:?}"), actual, expected, 1e-9);
+                seen += 1;
+            }
+        }
+    }
+    assert_eq!(seen, runs.len());
+}
+
+/// The offsets and thresholds that occur, as the reference writes them.
+fn groups(runs: &[Value]) -> Vec<(String, String, String)> {
+    let mut groups: Vec<_> = runs
+        .iter()
+        .map(|run| {
+            (
+                run["tau"].to_string(),
+                run["dx"].to_string(),
+                run["dy"].to_string(),
+            )
+        })
+        .collect();
+    groups.sort();
+    groups.dedup();
+    groups
+}
+
+#[test]
+fn terrain_prints_the_landscapes_of_the_reference() {
+    for expected in reference::<Vec<Value>>("terrain.json") {
+        let scene = expected["scene"].as_str().unwrap();
+        let (tau, n) = (expected["tau"].to_string(), expected["n"].to_string());
+        let arguments = [
+            "terrain", "--scene", scene, "--tau", &tau, "--n", &n, "--json",
+        ];
+        assert_covers(scene, &json(&arguments), &expected, 1e-9);
+    }
+}
+
+#[test]
+fn table_prints_what_the_chapter_prints() {
+    let output = slam2d(&["table"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for printed in [
+        "129 ticks, 41 keyframes",
+        "2.4110       0.7334            0.2389",
+        "1.1826       0.6444            0.5857",
+        "0.54–0.75         0.17–0.34",
+        "0.85              0.89",
+        "0.2377            0.0817",
+    ] {
+        assert!(text.contains(printed), "{printed} is not in\n{text}");
+    }
+}
+
+#[test]
+fn sweep_counts_every_run_once_and_does_not_depend_on_threads() {
+    let arguments = ["sweep", "--seeds", "1..=3", "--noise", "1,4", "--json"];
+    let levels = json(&arguments);
+    let one_thread = json(&[&arguments[..], &["--threads", "1"]].concat());
+    assert_eq!(levels, one_thread);
+    assert_eq!(levels.as_array().unwrap().len(), 2);
+    for level in levels.as_array().unwrap() {
+        assert_eq!(level["runs"], 3);
+        let shares = level["loop_shares"].as_array().unwrap();
+        let total: f64 = shares.iter().map(|share| share.as_f64().unwrap()).sum();
+        assert_close("shares", total, 1.0, 1e-12);
+        assert_eq!(level["entries"].as_array().unwrap().len(), 14);
+    }
+    // Seeds 1, 2, 3 at noise 1 close 2, 3 and 2 loops (lap.json).
+    assert_eq!(levels[0]["accepted_loops"], 7);
+}
+
+#[test]
+fn register_finds_the_motion_between_two_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, shift: (f64, f64)| {
+        let point = |k: i32| {
+            let along = 0.05 * f64::from(k % 60);
+            let (x, y) = if k < 60 { (along, 0.0) } else { (0.0, along) };
+            format!("{},{}\n", x - shift.0, y - shift.1)
+        };
+        let path = folder.path().join(name);
+        std::fs::write(&path, (0..120).map(point).collect::<String>()).unwrap();
+        path.to_string_lossy().into_owned()
+    };
+    let (map, scan) = (
+        write("map.csv", (0.0, 0.0)),
+        write("scan.csv", (0.11, -0.07)),
+    );
+    for method in ["p2l", "p2p"] {
+        let found = json(&[
+            "register", &map, &scan, "--method", method, "--tau", "0.5", "--repeat", "3", "--json",
+        ]);
+        // 1e-3: registration stops at a step of 1e-4, and p2p creeps along the walls.
+        for (k, expected) in [0.11, -0.07, 0.0].into_iter().enumerate() {
+            let tolerance = if method == "p2l" { 1e-3 } else { 0.05 };
+            assert_close(
+                method,
+                found["pose"][k].as_f64().unwrap(),
+                expected,
+                tolerance,
+            );
+        }
+        assert!(found["us"].as_f64().unwrap() > 0.0);
+        assert!(found["us_build"].as_f64().unwrap() > 0.0);
+    }
+}
+
+#[test]
+fn a_bad_line_is_named_with_its_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let bad = folder.path().join("bad.csv");
+    std::fs::write(&bad, "1,2\n3,nan\n").unwrap();
+    let bad = bad.to_string_lossy();
+    assert_refused(&["register", &bad, &bad], "bad.csv: line 2: ");
+}
+
+#[test]
+fn wrong_arguments_end_in_one_line_and_exit_code_2() {
+    for (arguments, said) in [
+        (&[][..], "a subcommand is needed"),
+        (&["bogus"], "bogus"),
+        (&["lap", "--seed", "-1"], "-1"),
+        (&["lap", "--seed", "4294967296"], "4294967295"),
+        (&["lap", "--noise", "nan"], "finite"),
+        (&["lap", "--noise", "-1"], "0 to 100"),
+        (&["lap", "--frob"], "--frob"),
+        (&["basin", "--tau", "inf"], "finite"),
+        (&["basin", "--variant", "plane"], "plane"),
+        (&["basin", "--heading-deg", "0:10:0"], "step"),
+        (&["terrain", "--scene", "attic"], "attic"),
+        (&["terrain", "--n", "1"], "2..=1001"),
+        (&["sweep", "--seeds", "5..5"], "empty"),
+        (&["sweep", "--seeds", "0..=4294967295"], "too many"),
+        (&["sweep", "--noise", "1,-2"], "0 to 100"),
+        (&["register", "absent.csv", "absent.csv"], "absent.csv"),
+        (&["register", "a.csv", "b.csv", "--repeat", "0"], "0"),
+    ] {
+        assert_refused(arguments, said);
+    }
+    assert!(!Path::new("absent.csv").exists());
+}
+
+fn assert_refused(arguments: &[&str], said: &str) {
+    let output = slam2d(arguments);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(message.lines().count(), 1, "{arguments:?}: {message}");
+    assert!(message.contains(said), "{arguments:?}: {message}");
+}
+
+#[test]
+fn help_goes_to_standard_output() {
+    let output = slam2d(&["--help"]);
+    assert!(output.status.success());
+    let text = String::from_utf8(output.stdout).unwrap();
+    for command in [
+        "lap", "basin", "terrain", "table", "register", "sweep", "optimize",
+    ] {
+        assert!(text.contains(command), "{command} is not in\n{text}");
+    }
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_error() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_slam2d"))
+        .args(["lap", "--json"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the binary was built for this test");
+    // Closed before the lap is computed, and far shorter than what is printed.
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.stderr.is_empty());
+    assert!(output.status.success());
+}
