@@ -1,0 +1,114 @@
+//! Instruction counts: they repeat where clocks do not, so that a slower core fails the build.
+//!
+//! A workload runs once and then twice under callgrind (Nethercote & Seward 2007); the difference
+//! is one run, without preparation, start and end of the process.
+
+use std::collections::BTreeMap;
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use slam2d_bench::workloads;
+
+/// A count may rise by this share over the recorded one.
+const ALLOWED_RISE: f64 = 0.10;
+
+/// Instructions of one run of each workload, by its name.
+type Counts = BTreeMap<String, u64>;
+
+/// Where the accepted counts stand.
+fn record() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("instructions.json")
+}
+
+/// Whether callgrind can be run here.
+pub fn is_available() -> bool {
+    let version = Command::new("valgrind").arg("--version").output();
+    version.is_ok_and(|output| output.status.success())
+}
+
+/// Counts every workload; `said` is told each count as it comes.
+pub fn count_all(said: &dyn Fn(&str, u64)) -> Result<Counts, String> {
+    let mut counts = Counts::new();
+    for workload in workloads() {
+        let count = run(workload.id, 2)? - run(workload.id, 1)?;
+        said(workload.id, count);
+        counts.insert(workload.id.to_owned(), count);
+    }
+    Ok(counts)
+}
+
+/// Writes the counts down as the accepted ones.
+pub fn accept(counts: &Counts) -> Result<(), String> {
+    let json = serde_json::to_string_pretty(counts).map_err(|error| error.to_string())?;
+    fs::write(record(), json + "\n").map_err(|error| format!("{}: {error}", record().display()))
+}
+
+/// Compares counts with the accepted ones and names every workload that got slower.
+pub fn compare(counts: &Counts) -> Result<(), String> {
+    let text =
+        fs::read_to_string(record()).map_err(|error| format!("{}: {error}", record().display()))?;
+    let accepted: Counts =
+        serde_json::from_str(&text).map_err(|error| format!("{}: {error}", record().display()))?;
+    let complaints = complaints(counts, &accepted);
+    if complaints.is_empty() {
+        Ok(())
+    } else {
+        Err(complaints.join("\n"))
+    }
+}
+
+fn complaints(counts: &Counts, accepted: &Counts) -> Vec<String> {
+    let judge = |(id, count): (&String, &u64)| match accepted.get(id) {
+        None => Some(format!(
+            "{id}: no instruction count is recorded; `slam2d_bench --counts accept` records it"
+        )),
+        Some(accepted) => {
+            let rise = *count as f64 / *accepted as f64 - 1.0;
+            (rise > ALLOWED_RISE).then(|| {
+                format!(
+                    "{id}: {count} instructions, {:.0} % more than the recorded {accepted}",
+                    100.0 * rise
+                )
+            })
+        }
+    };
+    counts.iter().filter_map(judge).collect()
+}
+
+/// Instructions of this program when it runs a workload that often.
+fn run(id: &str, times: u32) -> Result<u64, String> {
+    let program = env::current_exe().map_err(|error| error.to_string())?;
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(program)
+        .args(["--run", id, &times.to_string()])
+        .output()
+        .map_err(|error| format!("valgrind: {error}"))?;
+    let report = String::from_utf8_lossy(&output.stderr);
+    let collected = report
+        .lines()
+        .find_map(|line| line.split_once("Collected : "))
+        .and_then(|(_, count)| count.trim().parse().ok());
+    collected.ok_or_else(|| format!("valgrind counted nothing for {id}:\n{report}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rise_of_more_than_a_tenth_is_named_and_a_fall_is_not() {
+        let counts = |pairs: &[(&str, u64)]| -> Counts {
+            let pairs = pairs.iter().map(|(id, count)| ((*id).to_owned(), *count));
+            pairs.collect()
+        };
+        let accepted = counts(&[("lap", 1000), ("grid", 1000), ("solve", 1000)]);
+        let now = counts(&[("lap", 1101), ("grid", 1099), ("solve", 500), ("new", 1)]);
+        let complaints = complaints(&now, &accepted);
+        assert_eq!(complaints.len(), 2, "{complaints:?}");
+        assert!(complaints[0].starts_with("lap: 1101 instructions, 10 % more"));
+        assert!(complaints[1].starts_with("new: no instruction count"));
+    }
+}

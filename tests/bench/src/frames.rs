@@ -1,0 +1,95 @@
+//! One frame of each widget: scene, layout and tessellation, everything but the graphics card.
+
+use egui::{Context, Pos2, RawInput, Rect, vec2};
+use kit::model::Activity;
+use kit::shell::Shell;
+
+use crate::{Limit, Run, Workload, mix};
+
+/// A widget in the middle of a chapter, in points.
+const SIZE: [f32; 2] = [1000.0, 1400.0];
+
+const LIMIT: Option<Limit> = Some(Limit {
+    native_ms: 2.0,
+    wasm_ms: 4.0,
+});
+
+/// The frames, one a widget, with the picture changed before each.
+#[must_use]
+pub fn workloads() -> Vec<Workload> {
+    let frame = |id, what, prepare| Workload {
+        id,
+        what,
+        repetitions: 1,
+        limit: LIMIT,
+        prepare,
+    };
+    vec![
+        frame(
+            "frame-w16.1",
+            "a frame of w16.1 while its iterations play",
+            || Frames::of(w16_1_basin_explorer::widget(), "iteration", [3.0, 4.0]),
+        ),
+        frame(
+            "frame-w16.2",
+            "a frame of w16.2 while its timeline is dragged",
+            || Frames::of(w16_2_full_lap::widget(), "t", [100.0, 101.0]),
+        ),
+        frame(
+            "frame-w16.3",
+            "a frame of w16.3 while its crosshair is dragged",
+            || Frames::of(w16_3_cost_terraces::widget(), "probe-x", [0.3, 0.31]),
+        ),
+        frame(
+            "frame-w16.4",
+            "a frame of w16.4 while its timeline is dragged",
+            || Frames::of(w16_4_control_room::widget(), "t", [100.0, 101.0]),
+        ),
+    ]
+}
+
+/// A widget that is drawn without a screen.
+struct Frames {
+    shell: Shell,
+    context: Context,
+    input: RawInput,
+    frames: u32,
+}
+
+impl Frames {
+    fn of(mut shell: Shell, param: &'static str, values: [f64; 2]) -> Run {
+        while shell.model_mut().work() == Activity::Busy {}
+        let mut frames = Self {
+            shell,
+            context: Context::default(),
+            input: RawInput {
+                screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0], SIZE[1]))),
+                ..RawInput::default()
+            },
+            frames: 0,
+        };
+        // The first frames lay the fonts out and measure the text.
+        for _ in 0..4 {
+            frames.draw(param, values);
+        }
+        frames.frames = 0;
+        Box::new(move || frames.draw(param, values))
+    }
+
+    fn draw(&mut self, param: &str, values: [f64; 2]) -> u64 {
+        let value = values[self.frames as usize % 2];
+        self.frames += 1;
+        let model = self.shell.model_mut();
+        model.set(param, value).expect("the value is in range");
+        self.input.time = Some(f64::from(self.frames) / 60.0);
+        let mut output = self
+            .context
+            .run_ui(self.input.clone(), |ui| self.shell.ui(ui));
+        // There is no graphics card to upload them to.
+        output.textures_delta.clear();
+        let primitives = self
+            .context
+            .tessellate(output.shapes, output.pixels_per_point);
+        mix(1, primitives.len() as u64)
+    }
+}

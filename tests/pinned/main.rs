@@ -1,0 +1,13 @@
+//! Every reference figure has a test here; one binary, one module for each JSON file.
+
+mod architecture;
+mod basin;
+mod graph;
+mod lap;
+mod ndt;
+mod normals;
+mod optimum;
+mod page;
+mod rng;
+mod scan;
+mod terrain;

@@ -1,0 +1,88 @@
+//! Recorded pose graphs, solved from the file alone to the best known optimum.
+//!
+//! The recordings carry no licence and are not part of the project: where the folder with the
+//! reference data is absent, these tests say so and pass. The optima are those that came with the
+//! data, χ² = Σ eᵀΩe with the log residual; none of nine published solvers reaches those of mit and
+//! m3500b from the file's start.
+
+use std::path::PathBuf;
+
+use pr_optim::g2o::G2oFile;
+use pr_optim::{JacobianModel, Optimizer, Session, Settings, Start};
+
+/// Best known χ², seven digits.
+const OPTIMA: [(&str, f64); 7] = [
+    ("ring", 11.16310),
+    ("intel", 546.4631),
+    ("csail", 40.55088),
+    ("mit", 41.20695),
+    ("m3500", 137.9149),
+    ("m3500b", 2055.379),
+    ("city10000", 511.9875),
+];
+
+fn graph_file(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("../../shared/data/graphs")
+        .join(format!("{name}.g2o"))
+}
+
+fn settings() -> Settings {
+    Settings {
+        jacobians: JacobianModel::Exact,
+        max_iterations: 100,
+        step_tolerance: 0.0,
+        decrease_tolerance: 1e-8,
+        ..Settings::default()
+    }
+}
+
+#[test]
+fn every_recorded_graph_reaches_the_best_known_optimum() {
+    for (name, best) in OPTIMA {
+        let Ok(text) = std::fs::read_to_string(graph_file(name)) else {
+            println!("skipped {name}: the folder with the reference data is absent");
+            continue;
+        };
+        let mut problem = G2oFile::parse(&text).unwrap().problem;
+        let mut optimizer = Optimizer::new(settings());
+        let outcome = Session::new(&mut optimizer, &mut problem, Start::Auto)
+            .unwrap()
+            .run();
+        assert!(
+            outcome.report.stop.is_converged(),
+            "{name}: {}",
+            outcome.report.stop
+        );
+        // 1e-6 relative, and half a unit of the seventh digit that the optimum is given with.
+        let digits = best.log10().floor();
+        let tolerance = 1e-6 * best + 0.5 * 10_f64.powf(digits - 6.0);
+        assert!(
+            (outcome.report.chi2 - best).abs() < tolerance,
+            "{name}: {} instead of {best}",
+            outcome.report.chi2
+        );
+        assert_eq!(
+            problem.chi2(),
+            outcome.report.chi2,
+            "{name}: the best poses are left"
+        );
+    }
+}
+
+#[test]
+fn a_second_solve_with_the_analysis_kept_has_the_same_bits() {
+    let Ok(text) = std::fs::read_to_string(graph_file("m3500")) else {
+        println!("skipped: the folder with the reference data is absent");
+        return;
+    };
+    let file = G2oFile::parse(&text).unwrap();
+    let mut optimizer = Optimizer::new(settings());
+    let mut solve = || {
+        let mut problem = file.problem.clone();
+        let session = Session::new(&mut optimizer, &mut problem, Start::Auto).unwrap();
+        let _ = session.run();
+        problem.poses().to_vec()
+    };
+    assert_eq!(solve(), solve());
+}

@@ -1,0 +1,222 @@
+//! Reads the chapter's source as a reader sees it: numbers, links, and what surrounds them.
+//!
+//! A tokenizer for the HTML that we write ourselves: quoted attributes, no comments, no script text.
+
+use std::fs;
+use std::path::Path;
+
+/// A number that the page says was computed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// Which result, for example `lap.canonical.rms`.
+    pub name: String,
+    /// As printed: `0.5857`, `−39`, `three`.
+    pub text: String,
+}
+
+/// A number in the text that sets a widget.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NumberLink {
+    /// The query: `?w=16.1&heading=60`.
+    pub href: String,
+    /// The words of the link.
+    pub text: String,
+}
+
+/// A question that the reader answers before the widget may.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Prediction {
+    /// The widget that answers.
+    pub widget: String,
+    /// What it is set to: `heading=40&tau=1.4`.
+    pub state: String,
+    /// The fact of its outcome that is asked for; empty where the verdict is.
+    pub fact: String,
+    /// The verdicts to choose from.
+    pub choices: Vec<String>,
+}
+
+/// The source of the page, taken apart.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Document {
+    /// Every marked number, in the text and in formulas.
+    pub figures: Vec<Figure>,
+    /// Every link that sets a widget.
+    pub links: Vec<NumberLink>,
+    /// Every question, in order.
+    pub predictions: Vec<Prediction>,
+    /// Names of the widgets on the page.
+    pub widgets: Vec<String>,
+    /// Targets of links within the page, with their words.
+    pub citations: Vec<(String, String)>,
+    /// Every `id`, with the text of the element where it is an entry of the references.
+    pub references: Vec<(String, String)>,
+    /// Text that no mark covers and that holds a digit: there should be none.
+    pub loose_numbers: Vec<String>,
+    /// The path of the walls in the plan.
+    pub wall_path: String,
+}
+
+/// What the text under way belongs to.
+enum Open {
+    Figure(Figure),
+    Link(NumberLink),
+    Citation(String, String),
+    Reference(String, String),
+    Formula(String),
+    /// A number of our own ordering: exercises.
+    Ordinal,
+    /// A command, whose digits are part of its name.
+    Code,
+}
+
+/// A file of the project, by its path from the top level.
+pub fn source(path: &str) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    fs::read_to_string(root.join(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
+impl Document {
+    /// Takes the source of a page apart.
+    pub fn parse(html: &str) -> Self {
+        let mut document = Self::default();
+        let mut open: Option<Open> = None;
+        let mut rest = html;
+        while let Some(start) = rest.find('<') {
+            document.take_text(&mut open, &rest[..start]);
+            let end = start + rest[start..].find('>').expect("a tag ends");
+            document.take_tag(&mut open, &rest[start + 1..end]);
+            rest = &rest[end + 1..];
+        }
+        document
+    }
+
+    fn take_text(&mut self, open: &mut Option<Open>, text: &str) {
+        let text = unescape(text);
+        match open {
+            Some(
+                Open::Figure(Figure { text: words, .. })
+                | Open::Link(NumberLink { text: words, .. })
+                | Open::Citation(_, words)
+                | Open::Reference(_, words)
+                | Open::Formula(words),
+            ) => words.push_str(&text),
+            Some(Open::Ordinal | Open::Code) => {}
+            None if text.contains(|c: char| c.is_ascii_digit()) => {
+                self.loose_numbers.push(text.trim().to_owned());
+            }
+            None => {}
+        }
+    }
+
+    fn take_tag(&mut self, open: &mut Option<Open>, tag: &str) {
+        let name = tag.split_whitespace().next().unwrap_or_default();
+        let attribute = |name: &str| attribute(tag, name);
+        let class = attribute("class").unwrap_or_default();
+        match name {
+            "span" if class == "figure" => {
+                let name = attribute("data-figure").expect("a figure has a name");
+                let text = String::new();
+                *open = Some(Open::Figure(Figure { name, text }));
+            }
+            "span" if class == "ordinal" => *open = Some(Open::Ordinal),
+            "a" if class.split(' ').any(|class| class == "slam-link") => {
+                let href = attribute("href").expect("a link has a target");
+                let text = String::new();
+                *open = Some(Open::Link(NumberLink { href, text }));
+            }
+            "a" if class == "cite" => {
+                let href = attribute("href").expect("a citation has a target");
+                *open = Some(Open::Citation(href, String::new()));
+            }
+            "li" if attribute("id").is_some() => {
+                let id = attribute("id").unwrap_or_default();
+                *open = Some(Open::Reference(id, String::new()));
+            }
+            "slam-predict" => self.predictions.push(Prediction {
+                widget: attribute("widget").unwrap_or_default(),
+                state: attribute("state").unwrap_or_default(),
+                fact: attribute("fact").unwrap_or_default(),
+                choices: Vec::new(),
+            }),
+            "li" if attribute("data-choice").is_some() => {
+                if let Some(prediction) = self.predictions.last_mut() {
+                    prediction.choices.extend(attribute("data-choice"));
+                }
+            }
+            "code" => *open = Some(Open::Code),
+            "tex" => *open = Some(Open::Formula(String::new())),
+            "slam-widget" => self.widgets.extend(attribute("name")),
+            "path" if class == "walls" => self.wall_path = attribute("d").unwrap_or_default(),
+            "/span" | "/a" | "/tex" | "/li" | "/code" => self.close(open, name),
+            _ => {}
+        }
+    }
+
+    fn close(&mut self, open: &mut Option<Open>, name: &str) {
+        let ends = match open {
+            Some(Open::Figure(_) | Open::Ordinal) => "/span",
+            Some(Open::Link(_) | Open::Citation(..)) => "/a",
+            Some(Open::Reference(..)) => "/li",
+            Some(Open::Formula(_)) => "/tex",
+            Some(Open::Code) => "/code",
+            None => return,
+        };
+        if name != ends {
+            return;
+        }
+        match open.take() {
+            Some(Open::Figure(figure)) => self.figures.push(figure),
+            Some(Open::Link(link)) => self.links.push(link),
+            Some(Open::Citation(href, text)) => self.citations.push((href, text)),
+            Some(Open::Reference(id, text)) => self.references.push((id, text)),
+            Some(Open::Formula(tex)) => self.take_formula(&tex),
+            Some(Open::Ordinal | Open::Code) | None => {}
+        }
+    }
+
+    /// `\fig{name}{text}` is a figure. What is left may count (½, squares), but not measure.
+    fn take_formula(&mut self, tex: &str) {
+        let mut rest = tex;
+        let mut unmarked = String::new();
+        while let Some(start) = rest.find("\\fig{") {
+            unmarked.push_str(&rest[..start]);
+            let after = &rest[start + 5..];
+            let (name, after) = after.split_once("}{").expect("\\fig has two arguments");
+            let (text, after) = after.split_once('}').expect("\\fig ends");
+            self.figures.push(Figure {
+                name: name.to_owned(),
+                text: text.to_owned(),
+            });
+            unmarked.push(' ');
+            rest = after;
+        }
+        unmarked.push_str(rest);
+        let measures = unmarked
+            .split(|c: char| !(c.is_ascii_digit() || c == '.'))
+            .any(|run| run.len() > 1 && run.contains(|c: char| c.is_ascii_digit()));
+        if measures {
+            self.loose_numbers.push(tex.to_owned());
+        }
+    }
+}
+
+/// The numbers in a text, with their signs.
+pub fn numbers_in(text: &str) -> Vec<f64> {
+    let text = text.replace('\u{2212}', "-");
+    text.split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-'))
+        .filter_map(|run| run.trim_end_matches(['.', '-']).parse().ok())
+        .collect()
+}
+
+fn attribute(tag: &str, name: &str) -> Option<String> {
+    let key = format!(" {name}=\"");
+    let value = &tag[tag.find(&key)? + key.len()..];
+    Some(unescape(&value[..value.find('"')?]))
+}
+
+fn unescape(text: &str) -> String {
+    text.replace("&lt;", "<")
+        .replace("&gt;", ">")
+        .replace("&amp;", "&")
+}

@@ -1,0 +1,137 @@
+//! Laps that differ only in their seed, at four noise factors: what of the canonical run is luck.
+//!
+//! The same laps as `slam2d sweep` drives by default, and the same statistics of the core.
+
+use std::ops::RangeInclusive;
+use std::thread;
+
+use ch16_slam2d::results::{Column, LapOutcome, LapStatistics, Row};
+use ch16_slam2d::slam::{
+    FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LapRunner, LapSummary, SlamConfig,
+};
+
+const SEEDS: RangeInclusive<u32> = 1..=1000;
+/// Factors of the wheels' noise, by the names that the page gives them.
+const NOISE: [(&str, f64); 4] = [
+    ("quarter", 0.25),
+    ("once", 1.0),
+    ("double", 2.0),
+    ("fourfold", 4.0),
+];
+
+/// The laps of all seeds at all noise factors.
+pub struct Sweep {
+    levels: [LapStatistics; 4],
+    canonical: LapOutcome,
+}
+
+impl Sweep {
+    /// Drives all of them over all cores; the laps are independent, so threads change nothing.
+    pub fn run() -> Self {
+        let seeds: Vec<u32> = SEEDS.collect();
+        let workers = thread::available_parallelism().map_or(1, usize::from);
+        let shares = seeds.chunks(seeds.len().div_ceil(workers));
+        let by_seed: Vec<[LapOutcome; 4]> = thread::scope(|scope| {
+            let running: Vec<_> = shares.map(|share| scope.spawn(|| laps(share))).collect();
+            let finished = running.into_iter();
+            finished
+                .flat_map(|worker| worker.join().expect("no lap panics"))
+                .collect()
+        });
+        let level = |k: usize| LapStatistics {
+            outcomes: by_seed.iter().map(|laps| laps[k]).collect(),
+        };
+        Self {
+            levels: [0, 1, 2, 3].map(level),
+            canonical: LapOutcome::of(&LapRunner::new().run(&SlamConfig::default())),
+        }
+    }
+
+    /// `once.with_loops.end_error.median`, `double.loops.0`, `last`: statistics by name.
+    pub fn value(&self, path: &[&str]) -> Option<f64> {
+        let (&name, rest) = path.split_first()?;
+        if let Some(level) = NOISE.iter().position(|&(known, _)| known == name) {
+            return self.of_level(level, rest);
+        }
+        let [_, once, ..] = &self.levels;
+        let end_error = |lap: &LapOutcome| lap.entry(Column::WithLoops, Row::EndError);
+        let spread = once.spread(Column::WithLoops, Row::EndError)?;
+        let below = |limit| 100.0 * once.share(|lap| end_error(lap) < Some(limit));
+        match *path {
+            ["first"] => Some(f64::from(*SEEDS.start())),
+            ["last"] => Some(f64::from(*SEEDS.end())),
+            ["below_low_percent"] => Some(below(spread.p05)),
+            ["below_high_percent"] => Some(below(spread.p95)),
+            ["canonical_noise"] => Some(SlamConfig::default().drive.noise_factor),
+            ["false_m"] => Some(FALSE_LOOP_DISTANCE_M),
+            ["false_deg"] => Some(FALSE_LOOP_TURN_DEG),
+            _ => None,
+        }
+    }
+
+    fn of_level(&self, level: usize, path: &[&str]) -> Option<f64> {
+        let laps = &self.levels[level];
+        let percent = |is_true: fn(&LapOutcome) -> bool| 100.0 * laps.share(is_true);
+        Some(match *path {
+            ["noise"] => NOISE[level].1,
+            ["loops", count] => 100.0 * laps.loop_shares().get(count.parse::<usize>().ok()?)?,
+            ["accepted"] => laps.accepted_loops() as f64,
+            ["false"] => laps.false_acceptances() as f64,
+            ["false_runs_percent"] => 100.0 * laps.false_run_share(),
+            ["rms_grew_percent"] => percent(|lap| grew(lap, |lap| lap.keyframe_rms_m)),
+            ["max_grew_percent"] => percent(|lap| grew(lap, |lap| lap.keyframe_max_m)),
+            [column, row, "below_canonical_percent"] => {
+                let (column, row) = (column_of(column)?, row_of(row)?);
+                let canonical = self.canonical.entry(column, row)?;
+                100.0 * laps.share(|lap| lap.entry(column, row) < Some(canonical))
+            }
+            [column, row, quantile] => {
+                let spread = laps.spread(column_of(column)?, row_of(row)?)?;
+                match quantile {
+                    "low" => spread.p05,
+                    "median" => spread.median,
+                    "high" => spread.p95,
+                    _ => return None,
+                }
+            }
+            _ => return None,
+        })
+    }
+}
+
+/// One runner for all: it keeps what a seed simulates over the noise factors.
+fn laps(seeds: &[u32]) -> Vec<[LapOutcome; 4]> {
+    let mut runner = LapRunner::new();
+    let mut lap = |seed, noise| {
+        let config = SlamConfig::with_seed_and_noise(seed, noise);
+        LapOutcome::of(&runner.run(&config))
+    };
+    let of_seed = |&seed: &u32| NOISE.map(|(_, noise)| lap(seed, noise));
+    seeds.iter().map(of_seed).collect()
+}
+
+/// Whether closing loops made an error larger.
+fn grew(lap: &LapOutcome, error_m: impl Fn(&LapSummary) -> f64) -> bool {
+    error_m(&lap.lap) > error_m(&lap.front_end)
+}
+
+fn column_of(name: &str) -> Option<Column> {
+    match name {
+        "odometry" => Some(Column::Odometry),
+        "front_end" => Some(Column::FrontEnd),
+        "with_loops" => Some(Column::WithLoops),
+        _ => None,
+    }
+}
+
+fn row_of(name: &str) -> Option<Row> {
+    match name {
+        "end_error" => Some(Row::EndError),
+        "rms" => Some(Row::Rms),
+        "last_nine_min" => Some(Row::LastKeyframesMin),
+        "last_nine_max" => Some(Row::LastKeyframesMax),
+        "max_error" => Some(Row::KeyframeMax),
+        "map_disagreement" => Some(Row::MapDisagreement),
+        _ => None,
+    }
+}
