@@ -1,0 +1,104 @@
+//! Finds texts of a picture that overlap or are cut off: for the tests of every widget.
+
+use crate::model::Model;
+use crate::palette::{Rgb, Theme};
+use crate::picture::picture;
+use crate::scene::Raster;
+use crate::surface::{Align, Measure, Pen, Px, PxRect, Surface, TextSize};
+use crate::svg::SvgSurface;
+use crate::view::View;
+
+/// Height of letters and figures as a share of the font's size.
+const LETTER_HEIGHT: f32 = 0.75;
+/// Overlap below which nobody sees it, in pixels.
+const SLACK: f32 = 1.0;
+
+/// A sentence for every text outside of the panels' layers that leaves the picture or lies on
+/// another one, at that width.
+///
+/// Widths are those of the widest usual face, so what passes here passes in narrower ones.
+#[must_use]
+pub fn text_faults(model: &dyn Model, view: &dyn View, width_px: f32) -> Vec<String> {
+    let mut recorder = Recorder {
+        measure: SvgSurface::new(Theme::Light),
+        texts: Vec::new(),
+        in_layers: false,
+    };
+    let height = picture(&mut recorder, model, view, width_px, Theme::Light);
+    let mut faults = Vec::new();
+    for (index, (text, rect)) in recorder.texts.iter().enumerate() {
+        let inside = rect.left >= -SLACK
+            && rect.right() <= width_px + SLACK
+            && rect.top >= 0.0
+            && rect.bottom() <= height;
+        if !inside {
+            faults.push(format!(
+                "`{text}` leaves the picture of {width_px} × {height}: {rect:?}"
+            ));
+        }
+        for (other, place) in &recorder.texts[index + 1..] {
+            if overlap(rect, place) {
+                faults.push(format!(
+                    "`{text}` lies on `{other}` at a width of {width_px}"
+                ));
+            }
+        }
+    }
+    faults
+}
+
+fn overlap(a: &PxRect, b: &PxRect) -> bool {
+    a.left + SLACK < b.right()
+        && b.left + SLACK < a.right()
+        && a.top + SLACK < b.bottom()
+        && b.top + SLACK < a.bottom()
+}
+
+/// A surface that keeps the places of texts and draws nothing.
+struct Recorder {
+    measure: SvgSurface,
+    texts: Vec<(String, PxRect)>,
+    in_layers: bool,
+}
+
+impl Measure for Recorder {
+    fn text_width(&mut self, text: &str, size: TextSize) -> f32 {
+        self.measure.text_width(text, size)
+    }
+}
+
+impl Surface for Recorder {
+    fn clip(&mut self, rect: Option<PxRect>) {
+        // Layers are cut to their plot; their words lie where the data put them.
+        self.in_layers = rect.is_some();
+    }
+
+    fn line(&mut self, _points: &[Px], _pen: Pen) {}
+
+    fn polygon(&mut self, _points: &[Px], _fill: Rgb) {}
+
+    fn circle(&mut self, _center: Px, _radius: f32, _fill: Option<Rgb>, _ring: Option<Pen>) {}
+
+    fn rect(&mut self, _rect: PxRect, _fill: Rgb) {}
+
+    fn raster(&mut self, _rect: PxRect, _raster: &Raster, _key: &str) {}
+
+    fn text(&mut self, at: Px, align: Align, text: &str, size: TextSize, _color: Rgb) {
+        if self.in_layers {
+            return;
+        }
+        let width = self.text_width(text, size);
+        let left = match align {
+            Align::Left => at[0],
+            Align::Center => at[0] - 0.5 * width,
+            Align::Right => at[0] - width,
+        };
+        let height = LETTER_HEIGHT * size.px();
+        let rect = PxRect::new(left, at[1] - 0.5 * height, width, height);
+        self.texts.push((text.to_owned(), rect));
+    }
+
+    fn snap(&self, coordinate: f32) -> f32 {
+        coordinate
+    }
+}

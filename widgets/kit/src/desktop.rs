@@ -1,0 +1,42 @@
+//! Opens a widget as a desktop window.
+
+use eframe::egui;
+
+use crate::palette::Theme;
+use crate::shell::Shell;
+
+/// Opens a window with that widget and returns when it is closed.
+///
+/// # Errors
+/// [`eframe::Error`] where no window can be had, such as without a display.
+pub fn run(shell: Shell) -> eframe::Result {
+    let title = shell.model().spec().title;
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_inner_size([1180.0, 860.0])
+            .with_min_inner_size([360.0, 480.0])
+            .with_title(title),
+        ..Default::default()
+    };
+    eframe::run_native(title, options, Box::new(|_| Ok(Box::new(Window { shell }))))
+}
+
+struct Window {
+    shell: Shell,
+}
+
+impl eframe::App for Window {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.shell.set_theme(match ui.ctx().theme() {
+            egui::Theme::Light => Theme::Light,
+            egui::Theme::Dark => Theme::Dark,
+        });
+        egui::ScrollArea::vertical()
+            .auto_shrink(false)
+            .show(ui, |ui| self.shell.ui(ui));
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+}

@@ -1,0 +1,37 @@
+//! Draws a panel on a surface: the one drawing code for the live picture, SVG and print.
+
+mod frame;
+mod layers;
+mod marks;
+
+use crate::layout::PanelLayout;
+use crate::palette::Theme;
+use crate::scene::{Bounds, Panel};
+use crate::surface::{Px, Surface};
+use crate::transform::Transform;
+
+/// The transform of a panel whose top left corner lies at `origin`; `window` is what is shown.
+#[must_use]
+pub fn transform(panel: &Panel, layout: &PanelLayout, origin: Px, window: &Bounds) -> Transform {
+    Transform::new(layout.plot.moved(origin), *window, panel.aspect)
+}
+
+/// Draws a panel with its frame, layers, colour bar and legend.
+pub fn panel(
+    surface: &mut dyn Surface,
+    panel: &Panel,
+    layout: &PanelLayout,
+    origin: Px,
+    window: &Bounds,
+    theme: Theme,
+) {
+    let transform = transform(panel, layout, origin, window);
+    frame::back(surface, panel, &transform, theme);
+    surface.clip(Some(transform.plot()));
+    for (index, layer) in panel.layers.iter().enumerate() {
+        let key = format!("{}/{index}", panel.id);
+        layers::layer(surface, layer, &transform, theme, &key);
+    }
+    surface.clip(None);
+    frame::front(surface, panel, layout, origin, &transform, theme);
+}

@@ -1,0 +1,191 @@
+//! What surrounds a panel's layers: paper, grid, ticks, names, colour bar, legend.
+
+use super::marks::mark;
+use crate::layout::{PanelLayout, SWATCH, TICK, x_ticks, y_ticks};
+use crate::palette::{Theme, level_color, mix, tone};
+use crate::scene::{ColorBar, LegendEntry, Mark, Panel, Tone};
+use crate::surface::{Align, Pen, Px, PxRect, Surface, TextSize};
+use crate::ticks::signed;
+use crate::transform::Transform;
+
+/// Width of the colour bar.
+const BAR_WIDTH: f32 = 120.0;
+
+/// Paper and grid.
+pub fn back(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: Theme) {
+    let plot = to.plot();
+    let shown = to.shown();
+    surface.rect(plot, tone(theme, Tone::Paper));
+    let grid = Pen::solid(
+        mix(tone(theme, Tone::Paper), tone(theme, Tone::Faint), 0.6),
+        1.0,
+    );
+    for value in x_ticks(
+        shown.min[0],
+        shown.max[0],
+        plot.width,
+        &panel.x.label,
+        surface,
+    )
+    .values
+    {
+        let x = surface.snap(to.to_px([value, 0.0])[0]);
+        surface.line(&[[x, plot.top], [x, plot.bottom()]], grid);
+    }
+    for value in y_ticks(shown.min[1], shown.max[1], plot.height, &panel.y.label).values {
+        let y = surface.snap(to.to_px([0.0, value])[1]);
+        surface.line(&[[plot.left, y], [plot.right(), y]], grid);
+    }
+}
+
+/// Border, ticks with labels, names, title, colour bar and legend.
+pub fn front(
+    surface: &mut dyn Surface,
+    panel: &Panel,
+    layout: &PanelLayout,
+    origin: Px,
+    to: &Transform,
+    theme: Theme,
+) {
+    let ink = tone(theme, Tone::Ink);
+    let quiet = tone(theme, Tone::Truth);
+    for (line, y) in &layout.title {
+        let at = [origin[0], origin[1] + y];
+        surface.text(at, Align::Left, line, TextSize::Body, ink);
+    }
+    border(surface, to.plot(), Pen::solid(quiet, 1.0));
+    ticks(surface, panel, layout, origin, to, theme);
+    if let (Some(bar), Some(y)) = (&panel.color_bar, layout.color_bar_y) {
+        color_bar(surface, bar, [origin[0], origin[1] + y], theme);
+    }
+    for (entry, at) in panel.legend.iter().zip(&layout.legend) {
+        legend_entry(
+            surface,
+            entry,
+            [origin[0] + at[0], origin[1] + at[1]],
+            theme,
+        );
+    }
+}
+
+fn border(surface: &mut dyn Surface, plot: PxRect, pen: Pen) {
+    let (left, right) = (surface.snap(plot.left), surface.snap(plot.right()));
+    let (top, bottom) = (surface.snap(plot.top), surface.snap(plot.bottom()));
+    surface.line(
+        &[
+            [left, top],
+            [right, top],
+            [right, bottom],
+            [left, bottom],
+            [left, top],
+        ],
+        pen,
+    );
+}
+
+fn ticks(
+    surface: &mut dyn Surface,
+    panel: &Panel,
+    layout: &PanelLayout,
+    origin: Px,
+    to: &Transform,
+    theme: Theme,
+) {
+    let plot = to.plot();
+    let shown = to.shown();
+    let ink = tone(theme, Tone::Ink);
+    let pen = Pen::solid(tone(theme, Tone::Truth), 1.0);
+
+    let x_axis = x_ticks(
+        shown.min[0],
+        shown.max[0],
+        plot.width,
+        &panel.x.label,
+        surface,
+    );
+    for value in &x_axis.values {
+        let x = surface.snap(to.to_px([*value, 0.0])[0]);
+        surface.line(&[[x, plot.bottom()], [x, plot.bottom() + 4.0]], pen);
+        let at = [x, origin[1] + layout.x_ticks_y];
+        surface.text(
+            at,
+            Align::Center,
+            &x_axis.label(*value),
+            TextSize::Small,
+            ink,
+        );
+    }
+    let y_axis = y_ticks(shown.min[1], shown.max[1], plot.height, &panel.y.label);
+    for value in &y_axis.values {
+        let y = surface.snap(to.to_px([0.0, *value])[1]);
+        surface.line(&[[plot.left - 4.0, y], [plot.left, y]], pen);
+        let at = [plot.left - TICK + 1.0, y];
+        surface.text(
+            at,
+            Align::Right,
+            &y_axis.label(*value),
+            TextSize::Small,
+            ink,
+        );
+    }
+
+    let at = [plot.center()[0], origin[1] + layout.x_name_y];
+    surface.text(at, Align::Center, &panel.x.label, TextSize::Small, ink);
+    let at = [origin[0], origin[1] + layout.y_name_y];
+    surface.text(at, Align::Left, &panel.y.label, TextSize::Small, ink);
+}
+
+fn color_bar(surface: &mut dyn Surface, bar: &ColorBar, at: Px, theme: Theme) {
+    let ink = tone(theme, Tone::Ink);
+    let decimals = match (bar.max - bar.min).abs() {
+        span if span < 0.1 => 4,
+        span if span < 10.0 => 2,
+        _ => 0,
+    };
+    let low = signed(bar.min, decimals);
+    let high = format!("{} {}", signed(bar.max, decimals), bar.label);
+    surface.text(at, Align::Left, &low, TextSize::Small, ink);
+    let left = at[0] + surface.text_width(&low, TextSize::Small) + 6.0;
+    const STRIPS: u16 = 60;
+    let strip = BAR_WIDTH / f32::from(STRIPS);
+    for k in 0..STRIPS {
+        let x = left + strip * f32::from(k);
+        // Strips overlap by a pixel, so that no seam shows between them.
+        let rest = (left + BAR_WIDTH - x).min(strip + 1.0);
+        let color = level_color(f32::from(k) / f32::from(STRIPS - 1));
+        surface.rect(PxRect::new(x, at[1] - 6.0, rest, 12.0), color);
+    }
+    let right = [left + BAR_WIDTH + 6.0, at[1]];
+    surface.text(right, Align::Left, &high, TextSize::Small, ink);
+}
+
+fn legend_entry(surface: &mut dyn Surface, entry: &LegendEntry, at: Px, theme: Theme) {
+    let color = tone(theme, entry.tone);
+    let [x, y] = at;
+    if let Some(stroke) = entry.stroke {
+        let pen = Pen {
+            color,
+            width: 2.0,
+            stroke,
+        };
+        surface.line(&[[x + 1.0, y], [x + SWATCH - 8.0, y]], pen);
+    }
+    let middle = [x + 0.5 * (SWATCH - 7.0), y];
+    match entry.mark {
+        Some(Mark::Dot) => mark(surface, middle, Mark::Dot, 3.0, color),
+        Some(shape) => mark(surface, middle, shape, 5.0, color),
+        // Neither mark nor line: an area, such as the class of a raster's cells.
+        None if entry.stroke.is_none() => {
+            surface.rect(PxRect::new(x + 3.0, y - 6.0, 15.0, 12.0), color);
+        }
+        None => {}
+    }
+    let ink = tone(theme, Tone::Ink);
+    surface.text(
+        [x + SWATCH - 4.0, y],
+        Align::Left,
+        &entry.label,
+        TextSize::Small,
+        ink,
+    );
+}

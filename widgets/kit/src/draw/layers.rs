@@ -1,0 +1,136 @@
+//! The layers of a panel.
+
+use super::marks::mark;
+use crate::palette::{Rgb, Theme, readable_on, tone};
+use crate::scene::{Layer, Mark, Stroke, Tone};
+use crate::surface::{Align, Pen, Px, Surface, TextSize};
+use crate::transform::Transform;
+
+/// Radius of a handle's ring in pixels: a target of 24 pixels across.
+const HANDLE_RADIUS: f32 = 9.0;
+
+/// Draws one layer; `key` names it among the textures.
+pub fn layer(surface: &mut dyn Surface, layer: &Layer, to: &Transform, theme: Theme, key: &str) {
+    match layer {
+        Layer::Points {
+            points,
+            mark: shape,
+            tone: meaning,
+            radius_px,
+        } => {
+            let color = tone(theme, *meaning);
+            for at in points.iter().filter(|at| is_finite(at)) {
+                mark(surface, to.to_px(*at), *shape, *radius_px, color);
+            }
+        }
+        Layer::Line {
+            points,
+            stroke,
+            tone: meaning,
+            width_px,
+        } => {
+            let pen = pen(theme, *meaning, *width_px, *stroke);
+            for run in points.split(|at| !is_finite(at)) {
+                let run: Vec<Px> = run.iter().map(|at| to.to_px(*at)).collect();
+                if run.len() > 1 {
+                    surface.line(&run, pen);
+                }
+            }
+        }
+        Layer::Segments {
+            segments,
+            stroke,
+            tone: meaning,
+            width_px,
+        } => {
+            let pen = pen(theme, *meaning, *width_px, *stroke);
+            for [a, b] in segments
+                .iter()
+                .filter(|[a, b]| is_finite(a) && is_finite(b))
+            {
+                surface.line(&[to.to_px(*a), to.to_px(*b)], pen);
+            }
+        }
+        Layer::Pose {
+            pose,
+            mark: shape,
+            tone: meaning,
+            radius_px,
+        } => {
+            if pose.iter().all(|value| value.is_finite()) {
+                let color = tone(theme, *meaning);
+                let at = to.to_px([pose[0], pose[1]]);
+                let length = 2.4 * radius_px;
+                let (sin, cos) = pose[2].sin_cos();
+                let tip = [at[0] + length * cos as f32, at[1] - length * sin as f32];
+                surface.line(&[at, tip], Pen::solid(color, 2.0));
+                mark(surface, at, *shape, *radius_px, color);
+            }
+        }
+        Layer::Handle {
+            at, tone: meaning, ..
+        } => {
+            if is_finite(at) {
+                handle(surface, to.to_px(*at), tone(theme, *meaning), theme);
+            }
+        }
+        Layer::Ellipse {
+            center,
+            half_axes: [a, b],
+            stroke,
+            tone: meaning,
+        } => {
+            let pen = pen(theme, *meaning, 1.75, *stroke);
+            let points: Vec<Px> = (0..=64)
+                .map(|k| {
+                    let (sin, cos) = (f64::from(k) / 64.0 * core::f64::consts::TAU).sin_cos();
+                    to.to_px(core::array::from_fn(|i| {
+                        center[i] + a[i] * cos + b[i] * sin
+                    }))
+                })
+                .filter(|px| px.iter().all(|value| value.is_finite()))
+                .collect();
+            if points.len() > 1 {
+                surface.line(&points, pen);
+            }
+        }
+        Layer::Raster(raster) => surface.raster(to.rect_to_px(&raster.bounds), raster, key),
+        Layer::Text {
+            at,
+            text,
+            tone: meaning,
+        } => {
+            if is_finite(at) {
+                let color = text_color(theme, *meaning);
+                surface.text(to.to_px(*at), Align::Center, text, TextSize::Small, color);
+            }
+        }
+    }
+}
+
+/// A disc of paper with a ring and a dot: it looks like something to take hold of.
+fn handle(surface: &mut dyn Surface, at: Px, color: Rgb, theme: Theme) {
+    let paper = tone(theme, Tone::Paper);
+    surface.circle(at, HANDLE_RADIUS, Some(paper), Some(Pen::solid(color, 2.5)));
+    mark(surface, at, Mark::Dot, 3.5, color);
+}
+
+/// Words in the colour of a class lie on that class's area: black or white, whichever reads.
+fn text_color(theme: Theme, meaning: Tone) -> Rgb {
+    match meaning {
+        Tone::Class(_) => readable_on(tone(theme, meaning)),
+        _ => tone(theme, meaning),
+    }
+}
+
+fn pen(theme: Theme, meaning: Tone, width: f32, stroke: Stroke) -> Pen {
+    Pen {
+        color: tone(theme, meaning),
+        width,
+        stroke,
+    }
+}
+
+fn is_finite(at: &[f64; 2]) -> bool {
+    at[0].is_finite() && at[1].is_finite()
+}

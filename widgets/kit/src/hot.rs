@@ -1,0 +1,39 @@
+//! Where a frame put its controls: for focus rings, and for what a touch may drag.
+
+use egui::{Rect, Response};
+
+/// Places of this frame's controls.
+#[derive(Clone, Debug, Default)]
+pub struct Hot {
+    controls: Vec<(&'static str, Rect)>,
+    drags: Vec<Rect>,
+}
+
+impl Hot {
+    /// Remembers a control by the name of its parameter, button or preset.
+    pub fn control(&mut self, id: &'static str, response: &Response) {
+        match self.controls.iter_mut().find(|(known, _)| *known == id) {
+            // The slider and the number field of one parameter share a ring.
+            Some((_, rect)) => *rect = rect.union(response.rect),
+            None => self.controls.push((id, response.rect)),
+        }
+    }
+
+    /// Remembers something that follows a pressed pointer.
+    pub fn drag(&mut self, response: &Response) {
+        self.drags.push(response.rect);
+    }
+
+    /// Where a control lies.
+    #[must_use]
+    pub fn rect(&self, id: &str) -> Option<Rect> {
+        let found = self.controls.iter().find(|(known, _)| *known == id);
+        found.map(|(_, rect)| *rect)
+    }
+
+    /// Whether something that follows the pointer lies there.
+    #[must_use]
+    pub fn drags_at(&self, at: egui::Pos2) -> bool {
+        self.drags.iter().any(|rect| rect.contains(at))
+    }
+}

@@ -1,0 +1,204 @@
+//! Where the parts of a panel lie: title, axis names, plot, tick labels, colour bar, legend.
+//!
+//! ```text
+//! title
+//! y name
+//! 2 ┌────────────┐
+//! 1 │    plot    │
+//! 0 └────────────┘
+//!   0     1     2     x name is centred below
+//! colour bar
+//! legend, in as many rows as it needs
+//! ```
+//!
+//! Names stand above and below the plot, never rotated: they are read, not deciphered.
+
+use crate::scene::{Axis, LegendEntry, Panel};
+use crate::surface::{Measure, PxRect, TextSize};
+use crate::ticks::{Scale, Ticks};
+
+/// Height of a row of small text.
+pub const ROW: f32 = 17.0;
+/// Height of the title's row.
+const TITLE_ROW: f32 = 22.0;
+/// Length of a tick with its distance to the label.
+pub const TICK: f32 = 8.0;
+/// Room between legend entries.
+const LEGEND_GAP: f32 = 14.0;
+/// Width of a legend's swatch with the room beside it.
+pub const SWATCH: f32 = 28.0;
+/// Space between blocks.
+const GAP: f32 = 4.0;
+
+/// How high the plot itself shall be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlotHeight {
+    /// As high as its axes' scale asks for, but at most that.
+    Natural {
+        /// Upper limit in pixels.
+        most: f32,
+    },
+    /// Exactly that.
+    Fixed(f32),
+}
+
+/// The places of a panel's parts, relative to its top left corner.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PanelLayout {
+    /// Whole width and height.
+    pub size: [f32; 2],
+    /// The plot height that was asked for.
+    pub asked: PlotHeight,
+    /// The title's lines, each with the middle of its row.
+    pub title: Vec<(String, f32)>,
+    /// Middle of the row with the name of the vertical axis.
+    pub y_name_y: f32,
+    /// The plot itself.
+    pub plot: PxRect,
+    /// Middle of the row with the labels of the horizontal ticks.
+    pub x_ticks_y: f32,
+    /// Middle of the row with the name of the horizontal axis.
+    pub x_name_y: f32,
+    /// Middle of the colour bar's row.
+    pub color_bar_y: Option<f32>,
+    /// Left edge and middle of every legend entry.
+    pub legend: Vec<[f32; 2]>,
+}
+
+impl PanelLayout {
+    /// Lays a panel out in that width.
+    #[must_use]
+    pub fn new(panel: &Panel, width: f32, height: PlotHeight, measure: &mut dyn Measure) -> Self {
+        let left = tick_label_width(&panel.y, measure) + TICK + 2.0;
+        // Half of the last label of the horizontal axis hangs over the plot's edge.
+        let right = 0.5 * measure.text_width(&format!("{:.0}", panel.x.max), TextSize::Small) + 4.0;
+        let plot_width = (width - left - right).max(40.0);
+        let plot_height = match height {
+            PlotHeight::Fixed(height) => height,
+            PlotHeight::Natural { most } => {
+                let size = panel.bounds().size();
+                (plot_width * (size[1] / size[0]) as f32).min(most)
+            }
+        };
+
+        let mut y = 0.0;
+        let mut row = |height: f32| {
+            y += height;
+            y - 0.5 * height
+        };
+        let title = wrap(&panel.title, width, TextSize::Body, measure)
+            .into_iter()
+            .map(|line| (line, row(TITLE_ROW)))
+            .collect();
+        let y_name_y = row(ROW);
+        row(GAP);
+        let plot_middle = row(plot_height);
+        let plot = PxRect::new(
+            left,
+            plot_middle - 0.5 * plot_height,
+            plot_width,
+            plot_height,
+        );
+        row(TICK - 4.0);
+        let x_ticks_y = row(ROW);
+        let x_name_y = row(ROW);
+        let color_bar_y = panel.color_bar.is_some().then(|| {
+            row(GAP);
+            row(ROW)
+        });
+        let mut legend = Vec::with_capacity(panel.legend.len());
+        if !panel.legend.is_empty() {
+            row(GAP);
+            let mut x = 0.0;
+            let mut middle = row(ROW + 2.0);
+            for entry in &panel.legend {
+                let entry_width = legend_width(entry, measure);
+                if x > 0.0 && x + entry_width > width {
+                    x = 0.0;
+                    middle = row(ROW + 2.0);
+                }
+                legend.push([x, middle]);
+                x += entry_width + LEGEND_GAP;
+            }
+        }
+        row(GAP);
+        Self {
+            size: [width, y],
+            asked: height,
+            title,
+            y_name_y,
+            plot,
+            x_ticks_y,
+            x_name_y,
+            color_bar_y,
+            legend,
+        }
+    }
+}
+
+/// Breaks a text at its spaces into lines of that width; a longer word stands alone.
+#[must_use]
+pub fn wrap(text: &str, width: f32, size: TextSize, measure: &mut dyn Measure) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut line = String::new();
+    for word in text.split_whitespace() {
+        let longer = if line.is_empty() {
+            word.to_owned()
+        } else {
+            format!("{line} {word}")
+        };
+        if !line.is_empty() && measure.text_width(&longer, size) > width {
+            lines.push(core::mem::replace(&mut line, word.to_owned()));
+        } else {
+            line = longer;
+        }
+    }
+    if !line.is_empty() {
+        lines.push(line);
+    }
+    lines
+}
+
+/// Ticks of a vertical axis of that height in pixels.
+#[must_use]
+pub fn y_ticks(min: f64, max: f64, height: f32, label: &str) -> Ticks {
+    let most = (height / 34.0).clamp(2.0, 10.0) as usize;
+    Ticks::new(min, max, most, Scale::of_label(label))
+}
+
+/// Ticks of a horizontal axis of that width, as many as fit beside each other.
+#[must_use]
+pub fn x_ticks(min: f64, max: f64, width: f32, label: &str, measure: &mut dyn Measure) -> Ticks {
+    let scale = Scale::of_label(label);
+    let mut most = 12;
+    loop {
+        let ticks = Ticks::new(min, max, most, scale);
+        let widest = ticks
+            .values
+            .iter()
+            .map(|value| measure.text_width(&ticks.label(*value), TextSize::Small))
+            .fold(0.0, f32::max);
+        let spacing = (ticks.step / (max - min)) as f32 * width;
+        if most <= 2 || widest + 14.0 <= spacing {
+            return ticks;
+        }
+        most -= 1;
+    }
+}
+
+fn tick_label_width(axis: &Axis, measure: &mut dyn Measure) -> f32 {
+    // The step depends on the height, which depends on this width: the widest of several steps.
+    [3, 5, 8]
+        .into_iter()
+        .flat_map(|most| {
+            let ticks = Ticks::new(axis.min, axis.max, most, Scale::of_label(&axis.label));
+            let labels: Vec<_> = ticks.values.iter().map(|v| ticks.label(*v)).collect();
+            labels
+        })
+        .map(|label| measure.text_width(&label, TextSize::Small))
+        .fold(0.0, f32::max)
+}
+
+fn legend_width(entry: &LegendEntry, measure: &mut dyn Measure) -> f32 {
+    SWATCH + measure.text_width(&entry.label, TextSize::Small)
+}

@@ -1,0 +1,400 @@
+//! Parameters: declared once, and from that one list come the sliders, the link form, the
+//! JavaScript interface and the tables of the docs.
+//!
+//! Every value is an `f64`: a choice is the index of its option, a switch is 0 or 1, a seed is a
+//! whole number below 2³². A link writes choices and switches by name.
+
+use thiserror::Error;
+
+/// One option of a choice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// Name in links and in JavaScript: `point-to-plane`.
+    pub id: &'static str,
+    /// Name on screen: `point to plane`.
+    pub label: &'static str,
+}
+
+/// How a parameter is shown, and which values it takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ParamKind {
+    /// A number in `[min, max]`, moved in steps of `step` by keys and pointer alike.
+    Slider {
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+        /// Distance of neighbouring values; fine steps are a tenth of it.
+        step: f64,
+    },
+    /// A position on the widget's timeline, from 0 to the length that the model reports at the
+    /// moment; `max` bounds what a link may ask for.
+    Timeline {
+        /// Largest value that a link may carry.
+        max: f64,
+    },
+    /// A whole number that is typed, such as a seed, from 0 to `max`.
+    Seed {
+        /// Largest value.
+        max: f64,
+    },
+    /// One of a few named options; the value is the index.
+    Choice {
+        /// The options in order.
+        options: &'static [Choice],
+    },
+    /// On (1) or off (0).
+    Switch,
+}
+
+/// One parameter of a widget.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParamSpec {
+    /// Name in links and in JavaScript: `heading`.
+    pub id: &'static str,
+    /// Name on screen: `heading error`.
+    pub label: &'static str,
+    /// Unit on screen: `°`, `m`, or empty.
+    pub unit: &'static str,
+    /// How it is shown and which values it takes.
+    pub kind: ParamKind,
+    /// Value at the start and after "defaults".
+    pub default: f64,
+    /// One sentence on what it does.
+    pub help: &'static str,
+}
+
+/// Why a value was refused. The old value stands.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ParamError {
+    /// No parameter of that name.
+    #[error("{widget} has no parameter `{id}`; it has {known}")]
+    UnknownParam {
+        /// Widget that was asked.
+        widget: &'static str,
+        /// The name that was given.
+        id: String,
+        /// The names there are.
+        known: String,
+    },
+    /// No button of that name.
+    #[error("{widget} has no button `{id}`; it has {known}")]
+    UnknownButton {
+        /// Widget that was asked.
+        widget: &'static str,
+        /// The name that was given.
+        id: String,
+        /// The names there are.
+        known: String,
+    },
+    /// A number outside the range.
+    #[error("`{id}` takes {min} to {max}, not {value}")]
+    OutOfRange {
+        /// Parameter.
+        id: &'static str,
+        /// Value that was given.
+        value: f64,
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
+    /// Text that is no value of this parameter.
+    #[error("`{id}` takes {expected}, not `{text}`")]
+    Unreadable {
+        /// Parameter.
+        id: &'static str,
+        /// Text that was given.
+        text: String,
+        /// What would have been right.
+        expected: String,
+    },
+}
+
+impl ParamKind {
+    /// A seed of the core's generator: any 32-bit number.
+    pub const SEED: Self = Self::Seed {
+        max: u32::MAX as f64,
+    };
+}
+
+impl ParamSpec {
+    /// Smallest and largest value.
+    #[must_use]
+    pub fn range(&self) -> (f64, f64) {
+        match self.kind {
+            ParamKind::Slider { min, max, .. } => (min, max),
+            ParamKind::Timeline { max } | ParamKind::Seed { max } => (0.0, max),
+            ParamKind::Choice { options } => (0.0, options.len() as f64 - 1.0),
+            ParamKind::Switch => (0.0, 1.0),
+        }
+    }
+
+    /// Distance of neighbouring values.
+    #[must_use]
+    pub fn step(&self) -> f64 {
+        match self.kind {
+            ParamKind::Slider { step, .. } => step,
+            _ => 1.0,
+        }
+    }
+
+    /// The value as it is kept: checked against the range, whole where it must be.
+    ///
+    /// # Errors
+    /// [`ParamError::OutOfRange`] where the value is not a number of the range.
+    pub fn check(&self, value: f64) -> Result<f64, ParamError> {
+        let (min, max) = self.range();
+        // A sum of steps may end a few last bits beyond the range.
+        let slack = 1e-6 * self.step();
+        if !value.is_finite() || value < min - slack || value > max + slack {
+            return Err(ParamError::OutOfRange {
+                id: self.id,
+                value,
+                min,
+                max,
+            });
+        }
+        let value = value.clamp(min, max);
+        Ok(match self.kind {
+            ParamKind::Slider { .. } => value,
+            _ => value.round(),
+        })
+    }
+
+    /// Digits after the point that the step needs, one more for fine steps.
+    #[must_use]
+    pub fn decimals(&self) -> usize {
+        match self.kind {
+            ParamKind::Slider { step, .. } => {
+                let mut decimals = 0;
+                let mut scaled = step;
+                while decimals < 6 && (scaled - scaled.round()).abs() > 1e-9 {
+                    scaled *= 10.0;
+                    decimals += 1;
+                }
+                decimals
+            }
+            _ => 0,
+        }
+    }
+
+    /// The value as a link writes it: `60`, `point-to-plane`, `on`.
+    #[must_use]
+    pub fn to_text(&self, value: f64) -> String {
+        match self.kind {
+            ParamKind::Choice { options } => options
+                .get(value as usize)
+                .map_or_else(|| value.to_string(), |choice| choice.id.to_owned()),
+            ParamKind::Switch => if value == 0.0 { "off" } else { "on" }.to_owned(),
+            // Display of an f64 is the shortest text that reads back to the same bits.
+            _ => format!("{value}"),
+        }
+    }
+
+    /// The value as a reader sees it: `60°`, `0.70 m`, `point to plane`.
+    #[must_use]
+    pub fn to_label(&self, value: f64) -> String {
+        match self.kind {
+            ParamKind::Choice { options } => options
+                .get(value as usize)
+                .map_or_else(|| value.to_string(), |choice| choice.label.to_owned()),
+            ParamKind::Switch => if value == 0.0 { "off" } else { "on" }.to_owned(),
+            _ => {
+                let space = if self.unit.is_empty() || self.unit == "°" {
+                    ""
+                } else {
+                    "\u{202f}"
+                };
+                let decimals = self.decimals();
+                let number = format!("{value:.decimals$}");
+                format!("{number}{space}{}", self.unit)
+            }
+        }
+    }
+
+    /// Reads what [`ParamSpec::to_text`] writes, checked against the range.
+    ///
+    /// # Errors
+    /// [`ParamError::Unreadable`] or [`ParamError::OutOfRange`], each naming what would be right.
+    pub fn parse(&self, text: &str) -> Result<f64, ParamError> {
+        let text = text.trim();
+        let unreadable = |expected: String| ParamError::Unreadable {
+            id: self.id,
+            text: text.to_owned(),
+            expected,
+        };
+        match self.kind {
+            ParamKind::Choice { options } => options
+                .iter()
+                .position(|choice| choice.id == text)
+                .map(|index| index as f64)
+                .ok_or_else(|| {
+                    let ids: Vec<_> = options.iter().map(|choice| choice.id).collect();
+                    unreadable(ids.join(" or "))
+                }),
+            ParamKind::Switch => match text {
+                "on" | "1" | "true" => Ok(1.0),
+                "off" | "0" | "false" => Ok(0.0),
+                _ => Err(unreadable("on or off".to_owned())),
+            },
+            _ => {
+                let value = text
+                    .parse()
+                    .map_err(|_| unreadable("a number".to_owned()))?;
+                self.check(value)
+            }
+        }
+    }
+}
+
+/// The current value of every parameter of a list, in its order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Values {
+    specs: &'static [ParamSpec],
+    values: Vec<f64>,
+}
+
+impl Values {
+    /// Every parameter at its default.
+    #[must_use]
+    pub fn defaults(specs: &'static [ParamSpec]) -> Self {
+        Self {
+            specs,
+            values: specs.iter().map(|spec| spec.default).collect(),
+        }
+    }
+
+    /// The list these values belong to.
+    #[must_use]
+    pub fn specs(&self) -> &'static [ParamSpec] {
+        self.specs
+    }
+
+    /// The parameter of that name with its value.
+    #[must_use]
+    pub fn find(&self, id: &str) -> Option<(&'static ParamSpec, f64)> {
+        let index = self.specs.iter().position(|spec| spec.id == id)?;
+        Some((&self.specs[index], self.values[index]))
+    }
+
+    /// The value of a parameter that the widget itself declares.
+    ///
+    /// # Panics
+    /// Where the list has no such name: a bug of the widget.
+    #[must_use]
+    pub fn get(&self, id: &str) -> f64 {
+        match self.find(id) {
+            Some((_, value)) => value,
+            None => panic!("no parameter `{id}` in the list"),
+        }
+    }
+
+    /// Sets a parameter after checking name and range; says whether the value changed.
+    ///
+    /// # Errors
+    /// [`ParamError::UnknownParam`] or [`ParamError::OutOfRange`]; nothing changes then.
+    pub fn set(
+        &mut self,
+        widget: &'static str,
+        id: &str,
+        value: f64,
+    ) -> Result<Changed, ParamError> {
+        let Some(index) = self.specs.iter().position(|spec| spec.id == id) else {
+            let known: Vec<_> = self.specs.iter().map(|spec| spec.id).collect();
+            return Err(ParamError::UnknownParam {
+                widget,
+                id: id.to_owned(),
+                known: known.join(", "),
+            });
+        };
+        let value = self.specs[index].check(value)?;
+        if value.to_bits() == self.values[index].to_bits() {
+            return Ok(Changed::No);
+        }
+        self.values[index] = value;
+        Ok(Changed::Yes)
+    }
+
+    /// Every parameter with its value, in the list's order.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static ParamSpec, f64)> {
+        self.specs.iter().zip(self.values.iter().copied())
+    }
+}
+
+/// Whether a call changed anything.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Changed {
+    /// Something is new: compute again.
+    Yes,
+    /// All is as it was.
+    No,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPECS: &[ParamSpec] = &[
+        ParamSpec {
+            id: "heading",
+            label: "heading error",
+            unit: "°",
+            kind: ParamKind::Slider {
+                min: -180.0,
+                max: 180.0,
+                step: 1.0,
+            },
+            default: 25.0,
+            help: "",
+        },
+        ParamSpec {
+            id: "variant",
+            label: "variant",
+            unit: "",
+            kind: ParamKind::Choice {
+                options: &[
+                    Choice {
+                        id: "point-to-point",
+                        label: "point to point",
+                    },
+                    Choice {
+                        id: "point-to-plane",
+                        label: "point to plane",
+                    },
+                ],
+            },
+            default: 0.0,
+            help: "",
+        },
+    ];
+
+    #[test]
+    fn what_a_link_writes_reads_back_to_the_same_bits() {
+        for value in [0.1 + 0.2, -179.999_999_9, 25.0] {
+            let text = SPECS[0].to_text(value);
+            assert_eq!(SPECS[0].parse(&text).unwrap().to_bits(), value.to_bits());
+        }
+        assert_eq!(SPECS[1].parse("point-to-plane"), Ok(1.0));
+        assert_eq!(SPECS[1].to_text(1.0), "point-to-plane");
+    }
+
+    #[test]
+    fn a_refused_value_changes_nothing_and_names_the_remedy() {
+        let mut values = Values::defaults(SPECS);
+        for bad in [f64::NAN, f64::INFINITY, 181.0, -1e300] {
+            assert!(values.set("w", "heading", bad).is_err(), "{bad} was taken");
+        }
+        let error = values.set("w", "headin", 3.0).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "w has no parameter `headin`; it has heading, variant"
+        );
+        assert_eq!(values, Values::defaults(SPECS));
+        let error = SPECS[1].parse("plane").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "`variant` takes point-to-point or point-to-plane, not `plane`"
+        );
+    }
+}

@@ -1,0 +1,75 @@
+//! A whole widget without its controls on any surface: title, panels, verdict and numbers.
+
+use crate::draw;
+use crate::layout::wrap;
+use crate::model::Model;
+use crate::palette::{self, Rgb, Theme, tone};
+use crate::readout::fact_text;
+use crate::scene::Tone;
+use crate::surface::{Align, Surface, TextSize};
+use crate::view::{View, place};
+
+/// Space around the picture.
+const MARGIN: f32 = 12.0;
+/// Distance of two lines of text.
+const LINE: f32 = 19.0;
+/// Distance of two lines of the title.
+const TITLE_LINE: f32 = 26.0;
+/// Space between blocks.
+const GAP: f32 = 12.0;
+
+/// Draws a widget as it is now; returns the height that it takes.
+pub fn picture(
+    surface: &mut dyn Surface,
+    model: &dyn Model,
+    view: &dyn View,
+    width_px: f32,
+    theme: Theme,
+) -> f32 {
+    let scene = model.scene();
+    let outcome = model.outcome();
+    let spec = model.spec();
+    let width = width_px - 2.0 * MARGIN;
+    let ink = tone(theme, Tone::Ink);
+    let mut y = MARGIN;
+    let paragraph = |surface: &mut dyn Surface, y: f32, text: &str, size, color: Rgb| {
+        let line_height = match size {
+            TextSize::Title => TITLE_LINE,
+            _ => LINE,
+        };
+        let mut y = y;
+        for line in wrap(text, width, size, surface) {
+            y += line_height;
+            let at = [MARGIN, y - 0.5 * line_height];
+            surface.text(at, Align::Left, &line, size, color);
+        }
+        y
+    };
+
+    let title = format!("{} {}", spec.id, spec.title);
+    y = paragraph(surface, y, &title, TextSize::Title, ink) + 0.5 * GAP;
+    let arrangement = view.arrange(&scene, width);
+    for rows in [&arrangement.stage, &arrangement.below] {
+        let (placed, height) = place(&scene, rows, width, surface);
+        for placed in &placed {
+            let panels = scene.panels.iter();
+            for panel in panels.filter(|panel| panel.id == placed.panel) {
+                let origin = [MARGIN + placed.origin[0], y + placed.origin[1]];
+                let window = panel.bounds();
+                draw::panel(surface, panel, &placed.layout, origin, &window, theme);
+            }
+        }
+        if height > 0.0 {
+            y += height + GAP;
+        }
+    }
+    let verdict = palette::standing(theme, outcome.standing);
+    y = paragraph(surface, y, &outcome.verdict, TextSize::Body, verdict);
+    y = paragraph(surface, y, &outcome.sentence, TextSize::Body, ink);
+    let facts: Vec<_> = outcome
+        .facts
+        .iter()
+        .map(|fact| format!("{} {}", fact.label, fact_text(fact)))
+        .collect();
+    paragraph(surface, y, &facts.join(" · "), TextSize::Body, ink) + MARGIN
+}

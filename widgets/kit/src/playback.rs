@@ -1,0 +1,118 @@
+//! Play, step, reset, speed: seconds in, positions on a timeline out.
+
+use crate::param::{Choice, ParamKind, ParamSpec};
+
+/// The speed of the playback, a parameter that every widget with a timeline lists.
+pub const SPEED: ParamSpec = ParamSpec {
+    id: "speed",
+    label: "speed",
+    unit: "",
+    kind: ParamKind::Choice {
+        options: &[
+            Choice {
+                id: "quarter",
+                label: "×¼",
+            },
+            Choice {
+                id: "half",
+                label: "×½",
+            },
+            Choice {
+                id: "normal",
+                label: "×1",
+            },
+            Choice {
+                id: "double",
+                label: "×2",
+            },
+            Choice {
+                id: "fourfold",
+                label: "×4",
+            },
+        ],
+    },
+    default: 2.0,
+    help: "How fast the run plays.",
+};
+
+/// The factor that a value of [`SPEED`] stands for.
+#[must_use]
+pub fn speed_factor(value: f64) -> f64 {
+    [0.25, 0.5, 1.0, 2.0, 4.0][(value as usize).min(4)]
+}
+
+/// A playback: whether it runs, and the part of a step that has gone by.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Playback {
+    playing: bool,
+    part: f64,
+}
+
+impl Playback {
+    /// Whether it runs.
+    #[must_use]
+    pub fn is_playing(&self) -> bool {
+        self.playing
+    }
+
+    /// Runs from here, or from the start where the end is reached; returns the position.
+    pub fn toggle(&mut self, position: f64, last: f64) -> f64 {
+        self.playing = !self.playing;
+        self.part = 0.0;
+        if self.playing && position >= last {
+            0.0
+        } else {
+            position
+        }
+    }
+
+    /// Stops where it is.
+    pub fn pause(&mut self) {
+        *self = Self::default();
+    }
+
+    /// The position after `elapsed_s` at `steps_per_s`; stops at `last`.
+    ///
+    /// A long gap (a page in the background) counts as a quarter of a second.
+    pub fn advance(&mut self, position: f64, last: f64, elapsed_s: f64, steps_per_s: f64) -> f64 {
+        if !self.playing {
+            return position;
+        }
+        self.part += elapsed_s.clamp(0.0, 0.25) * steps_per_s;
+        let whole = self.part.floor();
+        self.part -= whole;
+        let next = position + whole;
+        if next >= last {
+            self.pause();
+            return last;
+        }
+        next
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn playing_covers_the_timeline_once_and_stops_at_its_end() {
+        let mut playback = Playback::default();
+        let mut position = playback.toggle(0.0, 10.0);
+        let mut frames = 0;
+        while playback.is_playing() {
+            position = playback.advance(position, 10.0, 1.0 / 60.0, 5.0);
+            frames += 1;
+        }
+        assert_eq!(position, 10.0);
+        // Ten steps at five a second are two seconds of sixty frames.
+        assert!((119..=121).contains(&frames), "{frames} frames");
+        assert_eq!(playback.toggle(position, 10.0), 0.0);
+    }
+
+    #[test]
+    fn a_page_left_in_the_background_does_not_jump_ahead() {
+        let mut playback = Playback::default();
+        playback.toggle(0.0, 1000.0);
+        assert!(playback.advance(0.0, 1000.0, 3600.0, 8.0) <= 2.0);
+    }
+}

@@ -1,0 +1,269 @@
+//! The pointer over the panels: take hold, drag, hover, zoom, pan.
+
+use std::collections::HashMap;
+
+use egui::{CursorIcon, Response, Sense, Ui};
+
+use crate::hot::Hot;
+use crate::model::{Handle, Model};
+use crate::scene::{Aspect, Bounds, Layer, Panel};
+use crate::transform::Transform;
+
+/// A mouse takes hold of what lies within that many pixels.
+pub const MOUSE_REACH_PX: f64 = 14.0;
+/// A finger takes hold of what lies within that many pixels.
+pub const TOUCH_REACH_PX: f64 = 24.0;
+/// How far a map zooms in.
+const MOST_ZOOM: f64 = 40.0;
+
+/// What the pointer is doing, and how far each map is zoomed in.
+#[derive(Clone, Debug, Default)]
+pub struct Pointer {
+    windows: HashMap<&'static str, Bounds>,
+    held: Option<Held>,
+    hovered: Option<(&'static str, [f64; 2])>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Held {
+    Thing(Handle),
+    /// The spot of a zoomed map that stays under the pointer.
+    Map {
+        panel: &'static str,
+        spot: [f64; 2],
+    },
+}
+
+/// Whether the pointer changed the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Touched {
+    /// The scene must be asked for again.
+    Yes,
+    /// Nothing changed.
+    No,
+}
+
+impl Pointer {
+    /// What a panel shows: everything, or the part that it is zoomed to.
+    #[must_use]
+    pub fn window(&self, panel: &Panel) -> Bounds {
+        self.windows
+            .get(panel.id)
+            .copied()
+            .unwrap_or_else(|| panel.bounds())
+    }
+
+    /// Whether a panel is zoomed in.
+    #[must_use]
+    pub fn is_zoomed(&self, panel: &str) -> bool {
+        self.windows.contains_key(panel)
+    }
+
+    /// Shows all of a panel again.
+    pub fn reset_zoom(&mut self, panel: &str) {
+        self.windows.remove(panel);
+    }
+
+    /// Lets go of everything.
+    pub fn release(&mut self) {
+        self.held = None;
+    }
+
+    /// Handles the pointer over one panel.
+    pub fn panel(
+        &mut self,
+        ui: &Ui,
+        panel: &Panel,
+        to: &Transform,
+        model: &mut dyn Model,
+        hot: &mut Hot,
+    ) -> Touched {
+        let plot = to.plot();
+        let rect = egui::Rect::from_min_size(
+            egui::pos2(plot.left, plot.top),
+            egui::vec2(plot.width, plot.height),
+        );
+        let response = ui.interact(rect, ui.scope_id().with(panel.id), Sense::click_and_drag());
+        if self.is_zoomed(panel.id) {
+            hot.drag(&response);
+        }
+        self.zoom(ui, &response, panel, to);
+        let pressed = self.press(ui, &response, panel, to, model);
+        let hovered = self.hover(ui, &response, panel, to, model);
+        if pressed == Touched::Yes || hovered == Touched::Yes {
+            Touched::Yes
+        } else {
+            Touched::No
+        }
+    }
+
+    fn press(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        panel: &Panel,
+        to: &Transform,
+        model: &mut dyn Model,
+    ) -> Touched {
+        if !response.is_pointer_button_down_on() {
+            if self.panel_held() == Some(panel.id) {
+                self.held = None;
+            }
+            return Touched::No;
+        }
+        let Some(at) = response
+            .interact_pointer_pos()
+            .map(|pos| to.from_px([pos.x, pos.y]))
+        else {
+            return Touched::No;
+        };
+        let (just_pressed, touch, moved) = ui.input(|input| {
+            let moved = input.pointer.delta() != egui::Vec2::ZERO;
+            (input.pointer.primary_pressed(), input.any_touches(), moved)
+        });
+        if just_pressed {
+            self.held = match model.grab(panel.id, at, reach(to, touch)) {
+                Some(handle) => Some(Held::Thing(handle)),
+                None if self.is_zoomed(panel.id) => Some(Held::Map {
+                    panel: panel.id,
+                    spot: at,
+                }),
+                None => None,
+            };
+        }
+        match self.held {
+            Some(Held::Thing(handle)) if handle.panel == panel.id && (just_pressed || moved) => {
+                ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+                model.drag(handle, at);
+                Touched::Yes
+            }
+            Some(Held::Map { panel: held, spot }) if held == panel.id => {
+                ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+                let shift = [spot[0] - at[0], spot[1] - at[1]];
+                let window = moved_within(self.window(panel), shift, &panel.bounds());
+                self.windows.insert(panel.id, window);
+                Touched::No
+            }
+            _ => Touched::No,
+        }
+    }
+
+    fn hover(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        panel: &Panel,
+        to: &Transform,
+        model: &mut dyn Model,
+    ) -> Touched {
+        let place = response
+            .hover_pos()
+            .filter(|_| self.held.is_none())
+            .map(|pos| (panel.id, to.from_px([pos.x, pos.y])));
+        let was_here = self.hovered.is_some_and(|(id, _)| id == panel.id);
+        if let Some((_, at)) = place {
+            if model.grab(panel.id, at, reach(to, false)).is_some() {
+                ui.ctx().set_cursor_icon(CursorIcon::Grab);
+            }
+            if let Some(label) = handle_label(panel, to, at) {
+                response.show_tooltip_text(label);
+            }
+        }
+        if place == self.hovered || (place.is_none() && !was_here) {
+            return Touched::No;
+        }
+        model.hover(panel.id, place.map(|(_, at)| at));
+        self.hovered = place;
+        Touched::Yes
+    }
+
+    fn zoom(&mut self, ui: &Ui, response: &Response, panel: &Panel, to: &Transform) {
+        if panel.aspect != Aspect::Equal {
+            return;
+        }
+        if response.double_clicked() {
+            self.reset_zoom(panel.id);
+        }
+        let factor = f64::from(ui.input(egui::InputState::zoom_delta));
+        let Some(pos) = response.hover_pos().filter(|_| factor != 1.0) else {
+            return;
+        };
+        let full = panel.bounds();
+        let shown = self.window(panel);
+        let width = (shown.size()[0] / factor).max(full.size()[0] / MOST_ZOOM);
+        if width >= full.size()[0] {
+            self.reset_zoom(panel.id);
+            return;
+        }
+        // The spot under the pointer stays where it is.
+        let spot = to.from_px([pos.x, pos.y]);
+        let kept = width / shown.size()[0];
+        let window = Bounds {
+            min: core::array::from_fn(|i| spot[i] + (shown.min[i] - spot[i]) * kept),
+            max: core::array::from_fn(|i| spot[i] + (shown.max[i] - spot[i]) * kept),
+        };
+        self.windows
+            .insert(panel.id, moved_within(window, [0.0; 2], &full));
+    }
+
+    fn panel_held(&self) -> Option<&'static str> {
+        self.held.map(|held| match held {
+            Held::Thing(handle) => handle.panel,
+            Held::Map { panel, .. } => panel,
+        })
+    }
+}
+
+/// The reach of mouse or finger in units of the axes.
+#[must_use]
+pub fn reach(to: &Transform, touch: bool) -> [f64; 2] {
+    let px = if touch {
+        TOUCH_REACH_PX
+    } else {
+        MOUSE_REACH_PX
+    };
+    to.units_per_px().map(|units| px * units)
+}
+
+fn handle_label(panel: &Panel, to: &Transform, at: [f64; 2]) -> Option<&'static str> {
+    let reach = reach(to, false);
+    panel.layers.iter().rev().find_map(|layer| match layer {
+        Layer::Handle {
+            at: place, label, ..
+        } if (0..2).all(|i| (place[i] - at[i]).abs() <= reach[i]) => Some(*label),
+        _ => None,
+    })
+}
+
+/// A window moved by `shift`, and back as far as needed to stay within `full`.
+fn moved_within(window: Bounds, shift: [f64; 2], full: &Bounds) -> Bounds {
+    let size = window.size();
+    let min: [f64; 2] = core::array::from_fn(|i| {
+        let most = (full.max[i] - size[i]).max(full.min[i]);
+        (window.min[i] + shift[i]).clamp(full.min[i], most)
+    });
+    Bounds {
+        min,
+        max: core::array::from_fn(|i| min[i] + size[i]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_zoomed_map_cannot_be_pushed_off_the_paper() {
+        let full = Bounds {
+            min: [0.0, 0.0],
+            max: [12.0, 9.0],
+        };
+        let window = Bounds {
+            min: [1.0, 1.0],
+            max: [5.0, 4.0],
+        };
+        let moved = moved_within(window, [100.0, -100.0], &full);
+        assert_eq!(moved.min, [8.0, 0.0]);
+        assert_eq!(moved.size(), window.size());
+    }
+}

@@ -1,0 +1,176 @@
+//! The outcome in words and numbers, and the tables beside the picture.
+
+use egui::{Align, Color32, FontId, Layout, RichText, Sense, Stroke, Ui, pos2, vec2};
+
+use crate::egui_surface::{color, font};
+use crate::model::{Fact, Outcome, Standing, Table};
+use crate::palette::{self, Rgb, Theme};
+use crate::surface::TextSize;
+use crate::ticks::signed;
+
+/// Space between the columns of a table.
+const COLUMN_GAP: f32 = 12.0;
+/// Height of a fact.
+const FACT_ROW: f32 = 18.0;
+/// From this width on, facts stand in two columns.
+const TWO_COLUMNS: f32 = 460.0;
+
+/// The verdict, its sentence, and the facts.
+pub fn outcome(ui: &mut Ui, outcome: &Outcome, theme: Theme) {
+    let ink = palette::standing(theme, outcome.standing);
+    ui.horizontal(|ui| {
+        sign(ui, outcome.standing, ink);
+        ui.label(
+            RichText::new(&outcome.verdict)
+                .color(color(ink))
+                .strong()
+                .size(16.0),
+        );
+    });
+    ui.label(&outcome.sentence);
+    ui.add_space(4.0);
+    // Nothing here is pressed: the rows may stand closer than controls.
+    ui.spacing_mut().interact_size.y = FACT_ROW;
+    ui.spacing_mut().item_spacing.y = 3.0;
+    if ui.available_width() < TWO_COLUMNS {
+        for fact in &outcome.facts {
+            fact_row(ui, fact);
+        }
+        return;
+    }
+    let half = outcome.facts.len().div_ceil(2).max(1);
+    ui.spacing_mut().item_spacing.x = 28.0;
+    ui.columns(2, |columns| {
+        for (index, fact) in outcome.facts.iter().enumerate() {
+            fact_row(&mut columns[index / half], fact);
+        }
+    });
+}
+
+/// A shape for the standing, so that colour does not stand alone.
+fn sign(ui: &mut Ui, standing: Standing, ink: Rgb) {
+    let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
+    let painter = ui.painter();
+    let stroke = Stroke::new(2.2, color(ink));
+    let at = |x: f32, y: f32| rect.min + vec2(16.0 * x, 16.0 * y);
+    match standing {
+        Standing::Good => {
+            painter.line(vec![at(0.1, 0.55), at(0.4, 0.85), at(0.95, 0.15)], stroke);
+        }
+        Standing::Bad => {
+            painter.line_segment([at(0.15, 0.15), at(0.85, 0.85)], stroke);
+            painter.line_segment([at(0.15, 0.85), at(0.85, 0.15)], stroke);
+        }
+        Standing::Neutral => {
+            painter.circle_stroke(rect.center(), 5.5, stroke);
+        }
+    }
+}
+
+fn fact_row(ui: &mut Ui, fact: &Fact) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(fact.label).weak());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(fact_text(fact));
+        });
+    });
+}
+
+/// A fact's value with its unit, a dash where there is none.
+#[must_use]
+pub fn fact_text(fact: &Fact) -> String {
+    if !fact.value.is_finite() {
+        return "–".to_owned();
+    }
+    let number = signed(fact.value, fact.decimals);
+    match fact.unit {
+        Fact::YES_OR_NO if fact.value == 0.0 => "no".to_owned(),
+        Fact::YES_OR_NO => "yes".to_owned(),
+        "" | "°" | "%" => format!("{number}{}", fact.unit),
+        unit => format!("{number}\u{202f}{unit}"),
+    }
+}
+
+/// A table as wide as its words need, wrapping the first column where there is no room.
+pub fn table(ui: &mut Ui, table: &Table, theme: Theme) {
+    ui.label(RichText::new(&table.title).strong());
+    let font = font(TextSize::Small);
+    let room = ui.available_width();
+    let widths = column_widths(ui, table, &font, room);
+    let ink = color(palette::tone(theme, crate::scene::Tone::Ink));
+    let rule = ui.visuals().widgets.noninteractive.bg_stroke;
+    // Numbers stand on the right, below their heads; words on the left.
+    let numeric: Vec<bool> = (0..widths.len())
+        .map(|column| {
+            let cells = table.rows.iter().filter_map(|row| row.get(column));
+            cells.clone().count() > 0 && cells.into_iter().all(|cell| is_number(cell))
+        })
+        .collect();
+    let rows = core::iter::once(&table.columns).chain(&table.rows);
+    for (index, row) in rows.enumerate() {
+        let galleys: Vec<_> = row
+            .iter()
+            .zip(&widths)
+            .map(|(text, width)| ui.painter().layout(text.clone(), font.clone(), ink, *width))
+            .collect();
+        let height = galleys
+            .iter()
+            .map(|galley| galley.size().y)
+            .fold(0.0, f32::max)
+            + 6.0;
+        let (rect, response) = ui.allocate_exact_size(vec2(room, height), Sense::hover());
+        let spoken = row.join(", ");
+        response
+            .widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, &spoken));
+        let mut left = rect.left();
+        for (column, (galley, width)) in galleys.into_iter().zip(&widths).enumerate() {
+            let x = if numeric[column] {
+                left + width - galley.size().x
+            } else {
+                left
+            };
+            ui.painter()
+                .galley(pos2(x, rect.top() + 3.0), galley, Color32::PLACEHOLDER);
+            left += width + COLUMN_GAP;
+        }
+        if index == 0 {
+            ui.painter().hline(rect.x_range(), rect.bottom(), rule);
+        }
+    }
+}
+
+/// Whether a cell holds a number, a range of numbers, or nothing.
+fn is_number(cell: &str) -> bool {
+    cell.chars()
+        .all(|c| c.is_ascii_digit() || "+-−–.×% \u{202f}".contains(c))
+}
+
+/// Every column gets what its longest word needs, and of the rest as much as it could use.
+fn column_widths(ui: &Ui, table: &Table, font: &FontId, room: f32) -> Vec<f32> {
+    let columns = table.columns.len();
+    let mut wanted = vec![0.0_f32; columns];
+    let mut needed = vec![0.0_f32; columns];
+    let width = |text: &str| {
+        let galley = ui
+            .painter()
+            .layout_no_wrap(text.to_owned(), font.clone(), Color32::WHITE);
+        // Half a pixel more, or rounding wraps what just fits.
+        galley.size().x + 0.5
+    };
+    for row in core::iter::once(&table.columns).chain(&table.rows) {
+        for (column, text) in row.iter().enumerate().take(columns) {
+            wanted[column] = wanted[column].max(width(text));
+            let longest = text.split(' ').map(width).fold(0.0, f32::max);
+            needed[column] = needed[column].max(longest);
+        }
+    }
+    let gaps = COLUMN_GAP * columns.saturating_sub(1) as f32;
+    let least: f32 = needed.iter().sum();
+    let slack = wanted.iter().sum::<f32>() - least;
+    let spare = (room - gaps - least).max(0.0);
+    let share = if slack > spare { spare / slack } else { 1.0 };
+    let pairs = needed.iter().zip(&wanted);
+    pairs
+        .map(|(least, most)| least + share * (most - least))
+        .collect()
+}

@@ -1,0 +1,354 @@
+//! A picture as plain data, in metres: what [`crate::model::Model::scene`] returns.
+//!
+//! A scene is a list of panels; a panel has two axes and layers, painted in order. Maps and plots
+//! are panels alike: a map has equal axes. Colours are named by meaning ([`Tone`]), marks by kind
+//! ([`Mark`]), and only the drawing code knows pixels.
+
+use std::sync::Arc;
+
+/// Meaning of a colour; the palette gives each theme its shade.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Tone {
+    /// What was believed before: blue, ○.
+    Prior,
+    /// What motion predicts: orange, △.
+    Prediction,
+    /// What was sensed: green, ×.
+    Measurement,
+    /// What is believed after: purple, ■.
+    Posterior,
+    /// What really is: grey, dashed.
+    Truth,
+    /// Walls, axes and words.
+    Ink,
+    /// Grid lines and what should stand back.
+    Faint,
+    /// Paper.
+    Paper,
+    /// A thing of class n in a picture of classes: minima, cells. Each class also has a letter.
+    Class(u8),
+}
+
+/// Shape of a point; each of the first four belongs to the tone of its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Mark {
+    /// ○, prior.
+    Circle,
+    /// △, prediction.
+    Triangle,
+    /// ×, measurement.
+    Cross,
+    /// ■, posterior.
+    Square,
+    /// A small filled disc: map points, plot samples.
+    Dot,
+    /// ＋, truth and chosen positions.
+    Plus,
+}
+
+/// Line pattern.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Stroke {
+    /// ———
+    Solid,
+    /// – – –, truth.
+    Dashed,
+    /// · · ·, thresholds and gates.
+    Dotted,
+}
+
+/// Rectangle in the units of a panel's axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Smallest x and y.
+    pub min: [f64; 2],
+    /// Largest x and y.
+    pub max: [f64; 2],
+}
+
+impl Bounds {
+    /// Width and height.
+    #[must_use]
+    pub fn size(&self) -> [f64; 2] {
+        [self.max[0] - self.min[0], self.max[1] - self.min[1]]
+    }
+
+    /// Middle.
+    #[must_use]
+    pub fn middle(&self) -> [f64; 2] {
+        core::array::from_fn(|i| 0.5 * (self.min[i] + self.max[i]))
+    }
+}
+
+/// One thing to paint. Coordinates are in the units of the panel's axes (metres in maps).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Layer {
+    /// Separate points.
+    Points {
+        /// Positions.
+        points: Vec<[f64; 2]>,
+        /// Shape.
+        mark: Mark,
+        /// Meaning.
+        tone: Tone,
+        /// Radius in pixels.
+        radius_px: f32,
+    },
+    /// An open line through points; a point that is not finite breaks it.
+    Line {
+        /// Vertices.
+        points: Vec<[f64; 2]>,
+        /// Pattern.
+        stroke: Stroke,
+        /// Meaning.
+        tone: Tone,
+        /// Width in pixels.
+        width_px: f32,
+    },
+    /// Separate segments: correspondences, factors, walls.
+    Segments {
+        /// End points.
+        segments: Vec<[[f64; 2]; 2]>,
+        /// Pattern.
+        stroke: Stroke,
+        /// Meaning.
+        tone: Tone,
+        /// Width in pixels.
+        width_px: f32,
+    },
+    /// A pose: its mark with a short line towards the heading.
+    Pose {
+        /// `[x, y, θ]`, metres and radians.
+        pose: [f64; 3],
+        /// Shape.
+        mark: Mark,
+        /// Meaning.
+        tone: Tone,
+        /// Radius in pixels.
+        radius_px: f32,
+    },
+    /// Something that can be dragged: drawn larger, with a ring.
+    Handle {
+        /// Position.
+        at: [f64; 2],
+        /// Meaning.
+        tone: Tone,
+        /// What it does, for the tooltip: `turn the source`.
+        label: &'static str,
+    },
+    /// The ellipse `center + A u`, |u| = 1, with the columns of A as half axes.
+    Ellipse {
+        /// Centre.
+        center: [f64; 2],
+        /// Half axes as vectors.
+        half_axes: [[f64; 2]; 2],
+        /// Pattern.
+        stroke: Stroke,
+        /// Meaning.
+        tone: Tone,
+    },
+    /// A picture over a rectangle; row 0 is at the smallest y.
+    Raster(Raster),
+    /// Words at a point.
+    Text {
+        /// Anchor, the middle of the text.
+        at: [f64; 2],
+        /// The words.
+        text: String,
+        /// Meaning.
+        tone: Tone,
+    },
+}
+
+impl Layer {
+    /// [`Layer::Points`].
+    #[must_use]
+    pub fn points(points: Vec<[f64; 2]>, mark: Mark, tone: Tone, radius_px: f32) -> Self {
+        Self::Points {
+            points,
+            mark,
+            tone,
+            radius_px,
+        }
+    }
+
+    /// [`Layer::Pose`].
+    #[must_use]
+    pub fn pose(pose: [f64; 3], mark: Mark, tone: Tone, radius_px: f32) -> Self {
+        Self::Pose {
+            pose,
+            mark,
+            tone,
+            radius_px,
+        }
+    }
+}
+
+/// A picture of cells, ready to upload as a texture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Raster {
+    /// Rectangle that it covers.
+    pub bounds: Bounds,
+    /// Cells along x.
+    pub columns: usize,
+    /// Cells along y.
+    pub rows: usize,
+    /// What the cells mean, row by row from the smallest y, `columns × rows`.
+    pub cells: Arc<[Cell]>,
+    /// Another number whenever `cells` changed, so that a texture is uploaded only then.
+    pub revision: u64,
+}
+
+/// One cell of a raster.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cell {
+    /// Nothing known yet: paper.
+    Unknown,
+    /// Position in the perceptual colour map, 0…1.
+    Level(f32),
+    /// Class n, see [`Tone::Class`].
+    Class(u8),
+    /// Occupancy, 0 (free) … 1 (occupied): paper to ink.
+    Occupancy(f32),
+}
+
+/// How an axis is divided.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Name with unit: `Δx (m)`.
+    pub label: String,
+    /// Smallest value shown.
+    pub min: f64,
+    /// Largest value shown.
+    pub max: f64,
+}
+
+impl Axis {
+    /// An axis from `min` to `max`.
+    #[must_use]
+    pub fn new(label: &str, min: f64, max: f64) -> Self {
+        Self {
+            label: label.to_owned(),
+            min,
+            max,
+        }
+    }
+}
+
+/// Whether both axes have the same scale.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aspect {
+    /// A metre is a metre in both directions: maps.
+    Equal,
+    /// Each axis fills its side: plots.
+    Free,
+}
+
+/// How much room a panel wants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weight {
+    /// The picture that the widget is about.
+    Main,
+    /// One of several pictures side by side of equal right.
+    Half,
+    /// A small plot beside or below.
+    Side,
+}
+
+/// One entry of a legend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LegendEntry {
+    /// Words.
+    pub label: String,
+    /// Meaning.
+    pub tone: Tone,
+    /// Shape, where it stands for points.
+    pub mark: Option<Mark>,
+    /// Pattern, where it stands for a line.
+    pub stroke: Option<Stroke>,
+}
+
+impl LegendEntry {
+    /// Stands for points.
+    #[must_use]
+    pub fn mark(label: &str, tone: Tone, mark: Mark) -> Self {
+        Self {
+            label: label.to_owned(),
+            tone,
+            mark: Some(mark),
+            stroke: None,
+        }
+    }
+
+    /// Stands for a line.
+    #[must_use]
+    pub fn line(label: &str, tone: Tone, stroke: Stroke) -> Self {
+        Self {
+            label: label.to_owned(),
+            tone,
+            mark: None,
+            stroke: Some(stroke),
+        }
+    }
+
+    /// Stands for a line with marks on it.
+    #[must_use]
+    pub fn marked_line(label: &str, tone: Tone, mark: Mark, stroke: Stroke) -> Self {
+        Self {
+            stroke: Some(stroke),
+            ..Self::mark(label, tone, mark)
+        }
+    }
+}
+
+/// Scale of a raster's colours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColorBar {
+    /// Name with unit: `cost (m²)`.
+    pub label: String,
+    /// Value at level 0.
+    pub min: f64,
+    /// Value at level 1.
+    pub max: f64,
+}
+
+/// One map or plot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// Name for pointer events: `map`.
+    pub id: &'static str,
+    /// Title on screen.
+    pub title: String,
+    /// How much room it wants.
+    pub weight: Weight,
+    /// Same scale on both axes, or not.
+    pub aspect: Aspect,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis, upwards.
+    pub y: Axis,
+    /// What to paint, in order.
+    pub layers: Vec<Layer>,
+    /// What the colours and marks mean.
+    pub legend: Vec<LegendEntry>,
+    /// Scale of the raster's colours, where there is one.
+    pub color_bar: Option<ColorBar>,
+}
+
+impl Panel {
+    /// What the axes span.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        Bounds {
+            min: [self.x.min, self.y.min],
+            max: [self.x.max, self.y.max],
+        }
+    }
+}
+
+/// Everything a widget shows besides its controls.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Scene {
+    /// The panels, main ones first.
+    pub panels: Vec<Panel>,
+}

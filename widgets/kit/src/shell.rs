@@ -1,0 +1,332 @@
+//! A whole widget on egui: words, presets, panels, transport, controls, readouts, tables.
+
+mod parts;
+mod stage;
+
+use egui::{Pos2, Rect, Ui, UiBuilder, pos2, vec2};
+use web_time::{Duration, Instant};
+
+use crate::audit::text_faults;
+use crate::egui_surface::{Textures, color};
+use crate::hot::Hot;
+use crate::model::{Activity, Model, Motion, Outcome, Table};
+use crate::palette::{self, Theme};
+use crate::param::Values;
+use crate::pointer::{Pointer, TOUCH_REACH_PX};
+use crate::scene::{Scene, Tone};
+use crate::style;
+use crate::svg::picture_svg;
+use crate::transform::Transform;
+use crate::view::View;
+
+/// From this width on, controls and readouts stand beside the panels.
+const WIDE: f32 = 820.0;
+/// Width of the controls beside the panels.
+const SIDE_WIDTH: f32 = 300.0;
+/// Space around everything.
+const MARGIN: f32 = 12.0;
+/// Space between blocks.
+const GAP: f32 = 14.0;
+/// Part of a frame that [`Model::work`] may take while the pointer drags something.
+const WORK_WHILE_DRAGGING: Duration = Duration::from_millis(4);
+/// Part of a frame that it may take otherwise: a frame at 60 Hz has 16 ms.
+const WORK_AT_REST: Duration = Duration::from_millis(9);
+
+/// A parameter that the pointer changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change {
+    /// The parameter.
+    pub id: &'static str,
+    /// Its new value.
+    pub value: f64,
+}
+
+/// A widget on egui: model and view, and what a frame leaves for the next.
+pub struct Shell {
+    model: Box<dyn Model>,
+    view: Box<dyn View>,
+    theme: Theme,
+    focus: Option<String>,
+    shown: Shown,
+    /// Counts the changes of `shown`.
+    revision: u64,
+    stale: bool,
+    moving: Moving,
+    working: bool,
+    pointer: Pointer,
+    panels: Vec<(&'static str, Transform)>,
+    textures: Textures,
+    hot: Hot,
+    changes: Vec<Change>,
+    content_height: f32,
+}
+
+/// Whether the model moves by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Moving {
+    /// It said that it does not.
+    No,
+    /// It was touched since: ask.
+    Perhaps,
+    /// It did at the last frame.
+    Yes,
+}
+
+/// What the model said at its last change.
+struct Shown {
+    scene: Scene,
+    outcome: Outcome,
+    tables: Vec<Table>,
+}
+
+impl Shown {
+    fn of(model: &dyn Model) -> Self {
+        Self {
+            scene: model.scene(),
+            outcome: model.outcome(),
+            tables: model.shown_tables(),
+        }
+    }
+}
+
+impl Shell {
+    /// A widget from its two halves.
+    #[must_use]
+    pub fn new(model: Box<dyn Model>, view: Box<dyn View>) -> Self {
+        Self {
+            shown: Shown::of(model.as_ref()),
+            model,
+            view,
+            theme: Theme::default(),
+            focus: None,
+            revision: 0,
+            stale: false,
+            moving: Moving::Perhaps,
+            working: true,
+            pointer: Pointer::default(),
+            panels: Vec::new(),
+            textures: Textures::default(),
+            hot: Hot::default(),
+            changes: Vec::new(),
+            content_height: 0.0,
+        }
+    }
+
+    /// The model, to read.
+    #[must_use]
+    pub fn model(&self) -> &dyn Model {
+        self.model.as_ref()
+    }
+
+    /// The model, to change: the next frame shows it anew.
+    pub fn model_mut(&mut self) -> &mut dyn Model {
+        self.touch();
+        self.model.as_mut()
+    }
+
+    /// Points needed at the width of the last [`Shell::ui`].
+    #[must_use]
+    pub fn content_height(&self) -> f32 {
+        self.content_height
+    }
+
+    /// Light or dark.
+    pub fn set_theme(&mut self, theme: Theme) {
+        self.theme = theme;
+    }
+
+    /// Whether things may move by themselves.
+    pub fn set_motion(&mut self, motion: Motion) {
+        self.model.set_motion(motion);
+        self.touch();
+    }
+
+    /// Rings the control that has the focus outside of egui.
+    pub fn set_focus(&mut self, id: Option<&str>) {
+        self.focus = id.map(str::to_owned);
+    }
+
+    /// Whether something that follows a pressed pointer lies there: a touch that starts elsewhere
+    /// scrolls the page.
+    #[must_use]
+    pub fn drags_at(&self, pos: Pos2) -> bool {
+        self.hot.drags_at(pos)
+            || self.panels.iter().any(|(panel, to)| {
+                let px = [pos.x, pos.y];
+                let reach = to.units_per_px().map(|units| TOUCH_REACH_PX * units);
+                to.plot().contains(px) && self.model.grab(panel, to.from_px(px), reach).is_some()
+            })
+    }
+
+    /// Where a point of a panel's axes lies on the screen, in points.
+    #[must_use]
+    pub fn panel_to_screen(&self, panel: &str, at: [f64; 2]) -> Option<[f32; 2]> {
+        let (_, to) = self.panels.iter().find(|(id, _)| *id == panel)?;
+        Some(to.to_px(at))
+    }
+
+    /// Where a control stood in the last frame, so that a host can scroll to it.
+    #[must_use]
+    pub fn control_rect(&self, id: &str) -> Option<Rect> {
+        self.hot.rect(id)
+    }
+
+    /// Lets go of what is dragged: the touch was cancelled.
+    pub fn release_drags(&mut self) {
+        self.pointer.release();
+    }
+
+    /// Parameters changed by the pointer since the last call.
+    pub fn take_changes(&mut self) -> Vec<Change> {
+        core::mem::take(&mut self.changes)
+    }
+
+    /// The static picture of the widget as it is now.
+    #[must_use]
+    pub fn picture_svg(&self, width_px: f32, theme: Theme) -> String {
+        picture_svg(self.model.as_ref(), self.view.as_ref(), width_px, theme)
+    }
+
+    /// What is wrong with the texts of that picture, see [`crate::audit`].
+    #[must_use]
+    pub fn text_faults(&self, width_px: f32) -> Vec<String> {
+        text_faults(self.model.as_ref(), self.view.as_ref(), width_px)
+    }
+
+    /// Whether another frame is needed although nobody touches anything.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.moving != Moving::No || self.working || self.stale
+    }
+
+    /// Draws everything into the available width.
+    pub fn ui(&mut self, ui: &mut Ui) {
+        ui.set_style(style::style(self.theme));
+        let paper = color(palette::tone(self.theme, Tone::Paper));
+        ui.painter().rect_filled(ui.clip_rect(), 0.0, paper);
+        self.advance(ui);
+        self.hot = Hot::default();
+        self.panels.clear();
+
+        let whole = ui.available_rect_before_wrap();
+        let left = whole.left() + MARGIN;
+        let width = (whole.width() - 2.0 * MARGIN).max(200.0);
+        let mut y = self.block(ui, [left, whole.top() + MARGIN], width, Self::header);
+        let mut reserved = Vec::new();
+        if width >= WIDE {
+            let stage_width = width - SIDE_WIDTH - 2.0 * GAP;
+            let side_left = left + width - SIDE_WIDTH;
+            // Controls come first in time: what they change shows in this very frame.
+            let side = self.block(ui, [side_left, y], SIDE_WIDTH, Self::side);
+            let stage = self.stage(ui, [left, y], stage_width, &mut reserved);
+            let notice = self.block(ui, [left, stage], stage_width, Self::notice);
+            y = side.max(notice);
+        } else {
+            y = self.stage_narrow(ui, [left, y], width, &mut reserved);
+            y = self.block(ui, [left, y], width, Self::notice);
+        }
+
+        self.work(if ui.input(|input| input.pointer.any_down()) {
+            WORK_WHILE_DRAGGING
+        } else {
+            WORK_AT_REST
+        });
+        self.paint(ui, &reserved);
+        self.ring(ui);
+        self.content_height = y - whole.top() + MARGIN - GAP;
+        ui.allocate_rect(
+            Rect::from_min_size(whole.min, vec2(whole.width(), self.content_height)),
+            egui::Sense::hover(),
+        );
+        if self.is_busy() {
+            ui.ctx().request_repaint();
+        }
+    }
+
+    /// Draws one block of egui widgets below `at`; returns where the next one starts.
+    fn block(
+        &mut self,
+        ui: &mut Ui,
+        at: [f32; 2],
+        width: f32,
+        contents: fn(&mut Self, &mut Ui),
+    ) -> f32 {
+        let room = Rect::from_min_size(pos2(at[0], at[1]), vec2(width, f32::INFINITY));
+        let mut child = ui.new_child(UiBuilder::new().max_rect(room));
+        child.set_max_width(width);
+        let before = self.model.values().clone();
+        contents(self, &mut child);
+        self.note_changes(&before);
+        let height = child.min_rect().height();
+        if height > 0.0 {
+            at[1] + height + GAP
+        } else {
+            at[1]
+        }
+    }
+
+    fn advance(&mut self, ui: &Ui) {
+        if self.moving != Moving::No {
+            let elapsed_s = f64::from(ui.input(|input| input.stable_dt));
+            let activity = self.model.advance(elapsed_s);
+            // The last step of a run changes the picture and says idle already.
+            self.stale |= activity == Activity::Busy || self.moving == Moving::Yes;
+            self.moving = match activity {
+                Activity::Busy => Moving::Yes,
+                Activity::Idle => Moving::No,
+            };
+        }
+        self.refresh();
+    }
+
+    fn work(&mut self, budget: Duration) {
+        let start = Instant::now();
+        while self.working && start.elapsed() < budget {
+            self.working = self.model.work() == Activity::Busy;
+            self.stale |= self.working;
+        }
+    }
+
+    /// Asks the model anew, where something changed.
+    fn refresh(&mut self) {
+        if self.stale {
+            self.shown = Shown::of(self.model.as_ref());
+            self.stale = false;
+            self.revision += 1;
+        }
+    }
+
+    /// The model may have changed.
+    fn touch(&mut self) {
+        self.stale = true;
+        self.working = true;
+        if self.moving == Moving::No {
+            self.moving = Moving::Perhaps;
+        }
+    }
+
+    fn note_changes(&mut self, before: &Values) {
+        let changes: Vec<_> = before
+            .iter()
+            .zip(self.model.values().iter())
+            .filter(|((_, old), (_, new))| old.to_bits() != new.to_bits())
+            .map(|(_, (spec, value))| Change { id: spec.id, value })
+            .collect();
+        if !changes.is_empty() {
+            self.touch();
+            self.changes.extend(changes);
+        }
+    }
+
+    fn ring(&self, ui: &Ui) {
+        let rect = self.focus.as_deref().and_then(|id| self.hot.rect(id));
+        if let Some(rect) = rect {
+            ui.painter().rect_stroke(
+                rect.expand(3.0),
+                6.0,
+                egui::Stroke::new(3.0, style::focus_color(self.theme)),
+                egui::StrokeKind::Outside,
+            );
+        }
+    }
+}

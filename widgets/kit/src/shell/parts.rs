@@ -1,0 +1,105 @@
+//! The blocks of a widget around its panels.
+
+use egui::{Button, Frame, RichText, Ui, vec2};
+
+use super::Shell;
+use crate::model::apply_preset;
+use crate::pointer::Touched;
+use crate::spec::DEFAULTS;
+use crate::style::TARGET;
+use crate::{controls, readout, transport};
+
+impl Shell {
+    /// Title, misconception, and what to try.
+    pub(super) fn header(&mut self, ui: &mut Ui) {
+        let spec = self.model.spec();
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new(spec.id).weak());
+            ui.heading(spec.title);
+        });
+        ui.label(spec.misconception);
+        if spec.presets.is_empty() {
+            return;
+        }
+        ui.add_space(2.0);
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new("What to try").strong());
+            for preset in spec.presets {
+                let response = ui.add(Button::new(preset.label).min_size(vec2(0.0, TARGET)));
+                self.hot.control(preset.id, &response);
+                if response.on_hover_text(preset.help).clicked() {
+                    // A preset that fails names what the widget lacks: its tests press them all.
+                    let _ = apply_preset(self.model.as_mut(), preset);
+                    self.touch();
+                }
+            }
+        });
+    }
+
+    /// What to notice.
+    pub(super) fn notice(&mut self, ui: &mut Ui) {
+        let spec = self.model.spec();
+        if spec.notice.is_empty() {
+            return;
+        }
+        ui.label(RichText::new("What to notice").strong());
+        for sentence in spec.notice {
+            ui.horizontal_top(|ui| {
+                ui.label("•");
+                ui.add(egui::Label::new(*sentence).wrap());
+            });
+        }
+    }
+
+    /// Buttons, speed, timeline.
+    pub(super) fn transport(&mut self, ui: &mut Ui) {
+        let touched = transport::bar(ui, self.model.as_mut(), self.theme, &mut self.hot);
+        if touched == Touched::Yes {
+            self.touch();
+        }
+    }
+
+    /// The controls, with "defaults" below them.
+    pub(super) fn controls(&mut self, ui: &mut Ui) {
+        controls::params(ui, self.model.as_mut(), &mut self.hot);
+        let defaults = self
+            .model
+            .spec()
+            .buttons
+            .iter()
+            .find(|button| button.id == DEFAULTS.id);
+        if let Some(spec) = defaults
+            && transport::button(ui, spec, false, &mut self.hot).clicked()
+        {
+            // The list of buttons has it.
+            let _ = self.model.press(spec.id);
+            self.touch();
+        }
+    }
+
+    /// Verdict and numbers, as they are after what the controls changed.
+    pub(super) fn outcome(&mut self, ui: &mut Ui) {
+        self.refresh();
+        Frame::group(ui.style()).inner_margin(10.0).show(ui, |ui| {
+            ui.set_min_width(ui.available_width());
+            readout::outcome(ui, &self.shown.outcome, self.theme);
+        });
+    }
+
+    /// Tables beside the picture.
+    pub(super) fn tables(&mut self, ui: &mut Ui) {
+        for table in &self.shown.tables {
+            readout::table(ui, table, self.theme);
+            ui.add_space(6.0);
+        }
+    }
+
+    /// Controls, outcome and tables in one column.
+    pub(super) fn side(&mut self, ui: &mut Ui) {
+        self.controls(ui);
+        ui.add_space(6.0);
+        self.outcome(ui);
+        ui.add_space(6.0);
+        self.tables(ui);
+    }
+}

@@ -1,0 +1,134 @@
+//! The panels of a widget: their places, the pointer on them, and their painting.
+//!
+//! Places are settled first and panels painted last. In between come the controls, so what they
+//! change shows in the same frame.
+
+use egui::{Rect, Ui, pos2, vec2};
+
+use super::{GAP, Shell};
+use crate::egui_surface::{EguiMeasure, EguiSurface};
+use crate::layout::PanelLayout;
+use crate::pointer::Touched;
+use crate::scene::{Panel, Scene};
+use crate::view::{self, Arrangement, Placed, Row};
+use crate::{draw, style};
+
+/// A panel whose place this frame is settled; it is painted last, when the model is.
+pub(super) struct Reserved {
+    placed: Placed,
+    origin: [f32; 2],
+    /// Of which scene the layout is.
+    revision: u64,
+}
+
+impl Shell {
+    /// Panels, transport bar and side plots in one column.
+    pub(super) fn stage(
+        &mut self,
+        ui: &mut Ui,
+        at: [f32; 2],
+        width: f32,
+        out: &mut Vec<Reserved>,
+    ) -> f32 {
+        let Arrangement { stage, below } = self.view.arrange(&self.shown.scene, width);
+        let y = self.reserve(ui, at, width, &stage, out);
+        let y = self.block(ui, [at[0], y], width, Self::transport);
+        self.reserve(ui, [at[0], y], width, &below, out)
+    }
+
+    /// Everything in one column: panels, transport, verdict and controls, side plots, tables.
+    pub(super) fn stage_narrow(
+        &mut self,
+        ui: &mut Ui,
+        at: [f32; 2],
+        width: f32,
+        out: &mut Vec<Reserved>,
+    ) -> f32 {
+        let Arrangement { stage, below } = self.view.arrange(&self.shown.scene, width);
+        let y = self.reserve(ui, at, width, &stage, out);
+        let y = self.block(ui, [at[0], y], width, Self::transport);
+        let y = self.block(ui, [at[0], y], width, Self::controls);
+        let y = self.block(ui, [at[0], y], width, Self::outcome);
+        let y = self.reserve(ui, [at[0], y], width, &below, out);
+        self.block(ui, [at[0], y], width, Self::tables)
+    }
+
+    /// Settles the places of panels, and lets the pointer act on them.
+    fn reserve(
+        &mut self,
+        ui: &mut Ui,
+        at: [f32; 2],
+        width: f32,
+        rows: &[Row],
+        out: &mut Vec<Reserved>,
+    ) -> f32 {
+        let mut measure = EguiMeasure(ui.painter().clone());
+        let (placed, height) = view::place(&self.shown.scene, rows, width, &mut measure);
+        let before = self.model.values().clone();
+        let mut touched = false;
+        for placed in placed {
+            let origin = [at[0] + placed.origin[0], at[1] + placed.origin[1]];
+            let Some(panel) = find(&self.shown.scene, placed.panel) else {
+                continue;
+            };
+            let window = self.pointer.window(panel);
+            let to = draw::transform(panel, &placed.layout, origin, &window);
+            let effect = self
+                .pointer
+                .panel(ui, panel, &to, self.model.as_mut(), &mut self.hot);
+            touched |= effect == Touched::Yes;
+            if self.pointer.is_zoomed(panel.id) {
+                let size = vec2(96.0, style::TARGET);
+                let corner = pos2(origin[0] + placed.layout.size[0] - size.x, origin[1]);
+                let button = egui::Button::new("Reset zoom");
+                if ui.put(Rect::from_min_size(corner, size), button).clicked() {
+                    self.pointer.reset_zoom(panel.id);
+                }
+            }
+            out.push(Reserved {
+                placed,
+                origin,
+                revision: self.revision,
+            });
+        }
+        if touched {
+            self.touch();
+        }
+        self.note_changes(&before);
+        if height > 0.0 {
+            at[1] + height + GAP
+        } else {
+            at[1]
+        }
+    }
+
+    /// Paints the reserved panels as the model is now.
+    pub(super) fn paint(&mut self, ui: &Ui, reserved: &[Reserved]) {
+        self.refresh();
+        let mut surface = EguiSurface::new(ui.painter(), &mut self.textures, self.theme);
+        for reserved in reserved {
+            let Reserved { placed, origin, .. } = reserved;
+            let Some(panel) = find(&self.shown.scene, placed.panel) else {
+                continue;
+            };
+            let window = self.pointer.window(panel);
+            let [width, height] = placed.layout.size;
+            let whole = Rect::from_min_size(pos2(origin[0], origin[1]), vec2(width, height));
+            if !ui.is_rect_visible(whole) {
+                continue;
+            }
+            let again = (reserved.revision != self.revision)
+                .then(|| PanelLayout::new(panel, width, placed.layout.asked, &mut surface))
+                // Where the words need another row, the next frame makes room for it.
+                .filter(|layout| layout.size == placed.layout.size);
+            let layout = again.as_ref().unwrap_or(&placed.layout);
+            draw::panel(&mut surface, panel, layout, *origin, &window, self.theme);
+            let to = draw::transform(panel, layout, *origin, &window);
+            self.panels.push((panel.id, to));
+        }
+    }
+}
+
+fn find<'a>(scene: &'a Scene, id: &str) -> Option<&'a Panel> {
+    scene.panels.iter().find(|panel| panel.id == id)
+}

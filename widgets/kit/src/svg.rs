@@ -1,0 +1,254 @@
+//! A static picture of a widget: for pages without WebAssembly, for print, for the README.
+
+mod png;
+
+use core::fmt::Write as _;
+
+use crate::model::Model;
+use crate::palette::{self, Rgb, Theme, tone};
+use crate::picture::picture;
+use crate::scene::{Raster, Tone};
+use crate::surface::{Align, Measure, Pen, Px, PxRect, Surface, TextSize};
+use crate::view::View;
+
+/// The picture of a widget as it is now: title, panels, verdict and numbers.
+#[must_use]
+pub fn picture_svg(model: &dyn Model, view: &dyn View, width_px: f32, theme: Theme) -> String {
+    let mut svg = SvgSurface::new(theme);
+    let height = picture(&mut svg, model, view, width_px, theme);
+    let spec = model.spec();
+    svg.finish(width_px, height, &format!("{} {}", spec.id, spec.title))
+}
+
+/// Writes SVG elements.
+///
+/// Neighbouring shapes of the same look share one `path` element: thousands of points would
+/// otherwise repeat their colour thousands of times.
+pub struct SvgSurface {
+    theme: Theme,
+    body: String,
+    /// Look and outline of the path that is still open.
+    path: (String, String),
+    clips: usize,
+    clipped: bool,
+}
+
+impl SvgSurface {
+    /// An empty picture.
+    #[must_use]
+    pub fn new(theme: Theme) -> Self {
+        Self {
+            theme,
+            body: String::new(),
+            path: Default::default(),
+            clips: 0,
+            clipped: false,
+        }
+    }
+
+    /// The whole document.
+    #[must_use]
+    pub fn finish(mut self, width: f32, height: f32, title: &str) -> String {
+        self.clip(None);
+        let (width, height) = (width.ceil(), height.ceil());
+        let paper = css(tone(self.theme, Tone::Paper));
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+             viewBox=\"0 0 {width} {height}\" role=\"img\" \
+             font-family=\"system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif\">\
+             <title>{}</title><rect width=\"{width}\" height=\"{height}\" fill=\"{paper}\"/>{}</svg>",
+            escape(title),
+            self.body
+        )
+    }
+
+    fn element(&mut self, element: core::fmt::Arguments) {
+        self.close_path();
+        // Writing to a string cannot fail.
+        let _ = self.body.write_fmt(element);
+    }
+
+    /// Adds an outline in that look.
+    fn path(&mut self, look: &str, outline: &str) {
+        if self.path.0 != look {
+            self.close_path();
+            look.clone_into(&mut self.path.0);
+        }
+        self.path.1.push_str(outline);
+    }
+
+    fn close_path(&mut self) {
+        let (look, outline) = core::mem::take(&mut self.path);
+        if !outline.is_empty() {
+            let _ = write!(self.body, "<path {look} d=\"{outline}\"/>");
+        }
+    }
+}
+
+impl Measure for SvgSurface {
+    /// A careful estimate: the reader's font is not known here.
+    fn text_width(&mut self, text: &str, size: TextSize) -> f32 {
+        let ems: f32 = text.chars().map(char_width_em).sum();
+        ems * size.px()
+    }
+}
+
+/// Width of a character in the widest usual face, DejaVu Sans, in em.
+fn char_width_em(c: char) -> f32 {
+    match c {
+        'i' | 'j' | 'l' | '\'' | '|' => 0.29,
+        '.' | ',' | ':' | ';' | ' ' | '\u{202f}' | 'I' => 0.33,
+        'f' | 't' | 'r' | '(' | ')' | '[' | ']' | '-' | '/' => 0.41,
+        'm' | 'w' | 'M' | 'W' | '%' => 0.95,
+        '−' | '+' | '×' | '=' => 0.84,
+        'A'..='Z' => 0.70,
+        _ => 0.62,
+    }
+}
+
+impl Surface for SvgSurface {
+    fn clip(&mut self, rect: Option<PxRect>) {
+        self.close_path();
+        if core::mem::replace(&mut self.clipped, rect.is_some()) {
+            self.body.push_str("</g>");
+        }
+        if let Some(PxRect {
+            left,
+            top,
+            width,
+            height,
+        }) = rect
+        {
+            self.clips += 1;
+            let id = self.clips;
+            self.element(format_args!(
+                "<clipPath id=\"c{id}\"><rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" \
+                 height=\"{height:.1}\"/></clipPath><g clip-path=\"url(#c{id})\">"
+            ));
+        }
+    }
+
+    fn line(&mut self, points: &[Px], pen: Pen) {
+        self.path(
+            &format!("fill=\"none\" {}", pen_attributes(pen)),
+            &outline(points),
+        );
+    }
+
+    fn polygon(&mut self, points: &[Px], fill: Rgb) {
+        let look = format!("fill=\"{}\"", css(fill));
+        self.path(&look, &format!("{}Z", outline(points)));
+    }
+
+    fn circle(&mut self, [x, y]: Px, radius: f32, fill: Option<Rgb>, ring: Option<Pen>) {
+        let look = format!(
+            "fill=\"{}\" {}",
+            fill.map_or("none".to_owned(), css),
+            ring.map_or(String::new(), pen_attributes)
+        );
+        // Two half circles, there and back.
+        let (left, width) = (x - radius, 2.0 * radius);
+        let outline = format!(
+            "M{left:.1} {y:.1}a{radius:.1} {radius:.1} 0 1 0 {width:.1} 0\
+             a{radius:.1} {radius:.1} 0 1 0 -{width:.1} 0Z"
+        );
+        self.path(&look, &outline);
+    }
+
+    fn rect(&mut self, rect: PxRect, fill: Rgb) {
+        let PxRect {
+            left,
+            top,
+            width,
+            height,
+        } = rect;
+        self.element(format_args!(
+            "<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" \
+             fill=\"{}\"/>",
+            css(fill)
+        ));
+    }
+
+    fn raster(&mut self, rect: PxRect, raster: &Raster, _key: &str) {
+        if raster.cells.len() != raster.columns * raster.rows || raster.cells.is_empty() {
+            return;
+        }
+        let rows = raster.cells.chunks(raster.columns).rev();
+        let pixels: Vec<Rgb> = rows
+            .flatten()
+            .map(|cell| palette::cell(self.theme, *cell))
+            .collect();
+        let data = png::data_url(&pixels, raster.columns, raster.rows);
+        let PxRect {
+            left,
+            top,
+            width,
+            height,
+        } = rect;
+        self.element(format_args!(
+            "<image x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" \
+             preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"{data}\"/>"
+        ));
+    }
+
+    fn text(&mut self, [x, y]: Px, align: Align, text: &str, size: TextSize, color: Rgb) {
+        let anchor = match align {
+            Align::Left => "start",
+            Align::Center => "middle",
+            Align::Right => "end",
+        };
+        let px = size.px();
+        // The middle of the small letters lies a third of the size above the base line.
+        let base = y + 0.35 * px;
+        self.element(format_args!(
+            "<text x=\"{x:.1}\" y=\"{base:.1}\" font-size=\"{px}\" text-anchor=\"{anchor}\" \
+             fill=\"{}\">{}</text>",
+            css(color),
+            escape(text)
+        ));
+    }
+
+    fn snap(&self, coordinate: f32) -> f32 {
+        coordinate.floor() + 0.5
+    }
+}
+
+fn outline(points: &[Px]) -> String {
+    let mut outline = String::with_capacity(12 * points.len());
+    for (index, [x, y]) in points.iter().enumerate() {
+        let command = if index == 0 { 'M' } else { 'L' };
+        let _ = write!(outline, "{command}{x:.1} {y:.1}");
+    }
+    outline
+}
+
+fn pen_attributes(pen: Pen) -> String {
+    let mut attributes = format!(
+        "stroke=\"{}\" stroke-width=\"{:.2}\"",
+        css(pen.color),
+        pen.width
+    );
+    if let Some((dash, gap)) = pen.dashes() {
+        let _ = write!(attributes, " stroke-dasharray=\"{dash} {gap}\"");
+    }
+    attributes
+}
+
+fn css([r, g, b]: Rgb) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// Text as XML takes it.
+fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}

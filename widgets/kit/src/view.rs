@@ -1,0 +1,160 @@
+//! Where a widget's panels stand: rows of columns of panels.
+
+use crate::layout::{PanelLayout, PlotHeight};
+use crate::scene::{Aspect, Panel, Scene, Weight};
+use crate::surface::{Measure, Px};
+
+/// Space between panels.
+pub const PANEL_GAP: f32 = 16.0;
+
+/// From this width on, panels stand side by side.
+pub const SIDE_BY_SIDE: f32 = 520.0;
+
+/// A widget's pixels: how its panels are arranged. The default suits most.
+pub trait View {
+    /// Arranges the panels of a scene in a stage of that width.
+    fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
+        Arrangement::by_weight(scene, width)
+    }
+}
+
+/// The view that leaves everything to the kit.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DefaultView;
+
+impl View for DefaultView {}
+
+/// One panel in a column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slot {
+    /// The panel's name; a name that the scene lacks leaves no gap.
+    pub panel: &'static str,
+    /// Height of its plot.
+    pub height: PlotHeight,
+}
+
+/// Panels above each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Share of the row's width, relative to the other columns.
+    pub share: f32,
+    /// The panels from the top.
+    pub slots: Vec<Slot>,
+}
+
+/// Columns beside each other.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Row {
+    /// The columns from the left.
+    pub columns: Vec<Column>,
+}
+
+impl Row {
+    /// Panels of equal width beside each other.
+    #[must_use]
+    pub fn of(slots: &[Slot]) -> Self {
+        let columns = slots.iter().map(|slot| Column {
+            share: 1.0,
+            slots: vec![*slot],
+        });
+        Self {
+            columns: columns.collect(),
+        }
+    }
+}
+
+/// Rows above and below the transport bar.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Arrangement {
+    /// The pictures that the widget is about.
+    pub stage: Vec<Row>,
+    /// The plots below them.
+    pub below: Vec<Row>,
+}
+
+impl Arrangement {
+    /// Main panels over the whole width, halves in pairs, side plots in pairs below.
+    #[must_use]
+    pub fn by_weight(scene: &Scene, width: f32) -> Self {
+        let slots = |weight: Weight, columns: usize| {
+            let column_width = width / columns as f32 - PANEL_GAP;
+            let slots: Vec<Slot> = scene
+                .panels
+                .iter()
+                .filter(|panel| panel.weight == weight)
+                .map(|panel| default_slot(panel, column_width))
+                .collect();
+            slots.chunks(columns).map(Row::of).collect::<Vec<_>>()
+        };
+        let pair = if width >= SIDE_BY_SIDE { 2 } else { 1 };
+        let mut stage = slots(Weight::Main, 1);
+        stage.extend(slots(Weight::Half, pair));
+        Self {
+            stage,
+            below: slots(Weight::Side, pair),
+        }
+    }
+}
+
+fn default_slot(panel: &Panel, width: f32) -> Slot {
+    let height = match (panel.aspect, panel.weight) {
+        (Aspect::Equal, Weight::Side) => PlotHeight::Natural { most: 260.0 },
+        (Aspect::Equal, _) => PlotHeight::Natural { most: 560.0 },
+        (Aspect::Free, Weight::Side) => PlotHeight::Fixed(130.0),
+        (Aspect::Free, _) => PlotHeight::Fixed((0.6 * width).clamp(180.0, 420.0)),
+    };
+    Slot {
+        panel: panel.id,
+        height,
+    }
+}
+
+/// A panel in its place, relative to the top left corner of its rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placed {
+    /// The panel's name.
+    pub panel: &'static str,
+    /// Top left corner.
+    pub origin: Px,
+    /// Its parts.
+    pub layout: PanelLayout,
+}
+
+/// Places the panels of rows in that width; returns them with the height they take.
+#[must_use]
+pub fn place(
+    scene: &Scene,
+    rows: &[Row],
+    width: f32,
+    measure: &mut dyn Measure,
+) -> (Vec<Placed>, f32) {
+    let mut placed = Vec::with_capacity(scene.panels.len());
+    let mut top = 0.0;
+    for row in rows {
+        let shares: f32 = row.columns.iter().map(|column| column.share).sum();
+        let gaps = PANEL_GAP * (row.columns.len().max(1) - 1) as f32;
+        let mut left = 0.0;
+        let mut bottom: f32 = top;
+        for column in &row.columns {
+            let column_width = (width - gaps) * column.share / shares;
+            let mut y = top;
+            for slot in &column.slots {
+                let Some(panel) = scene.panels.iter().find(|panel| panel.id == slot.panel) else {
+                    continue;
+                };
+                let layout = PanelLayout::new(panel, column_width, slot.height, measure);
+                let height = layout.size[1];
+                placed.push(Placed {
+                    panel: panel.id,
+                    origin: [left, y],
+                    layout,
+                });
+                y += height + PANEL_GAP;
+            }
+            bottom = bottom.max(y);
+            left += column_width + PANEL_GAP;
+        }
+        top = bottom;
+    }
+    (placed, (top - PANEL_GAP).max(0.0))
+}

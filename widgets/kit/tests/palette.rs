@@ -1,0 +1,206 @@
+//! The colours stay apart for every usual kind of colour vision, and words can be read.
+
+use kit::model::Standing;
+use kit::palette::{Rgb, Theme, cell, contrast, level_color, readable_on, standing, tone};
+use kit::scene::{Cell, Tone};
+
+const THEMES: [Theme; 2] = [Theme::Light, Theme::Dark];
+const MEANINGS: [Tone; 5] = [
+    Tone::Prior,
+    Tone::Prediction,
+    Tone::Measurement,
+    Tone::Posterior,
+    Tone::Truth,
+];
+
+type Matrix = [[f32; 3]; 3];
+
+/// How linear RGB looks with full protanopia and deuteranopia (Machado, Oliveira & Fernandes 2009,
+/// severity 1).
+const VISIONS: [(&str, Matrix); 3] = [
+    ("usual", [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
+    (
+        "protanopia",
+        [
+            [0.152_286, 1.052_583, -0.204_868],
+            [0.114_503, 0.786_281, 0.099_216],
+            [-0.003_882, -0.048_116, 1.051_998],
+        ],
+    ),
+    (
+        "deuteranopia",
+        [
+            [0.367_322, 0.860_646, -0.227_968],
+            [0.280_085, 0.672_501, 0.047_413],
+            [-0.011_820, 0.042_940, 0.968_881],
+        ],
+    ),
+];
+
+/// Least CIE76 distance of two colours that must not be taken for each other: about six times the
+/// just noticeable 2.3 (Mahy, Van Eycken & Oosterlinck 1994).
+const APART: f32 = 15.0;
+
+fn linear(color: Rgb) -> [f32; 3] {
+    color.map(|channel| {
+        let share = f32::from(channel) / 255.0;
+        if share <= 0.040_45 {
+            share / 12.92
+        } else {
+            ((share + 0.055) / 1.055).powf(2.4)
+        }
+    })
+}
+
+fn times(matrix: &Matrix, v: [f32; 3]) -> [f32; 3] {
+    core::array::from_fn(|i| (0..3).map(|j| matrix[i][j] * v[j]).sum())
+}
+
+/// CIE L*a*b* of linear sRGB, white point D65.
+fn lab(rgb: [f32; 3]) -> [f32; 3] {
+    const XYZ: Matrix = [
+        [0.412_456_4, 0.357_576_1, 0.180_437_5],
+        [0.212_672_9, 0.715_152_2, 0.072_175],
+        [0.019_333_9, 0.119_192, 0.950_304_1],
+    ];
+    const WHITE: [f32; 3] = [0.950_47, 1.0, 1.088_83];
+    let xyz = times(&XYZ, rgb);
+    let f: [f32; 3] = core::array::from_fn(|i| {
+        let t = xyz[i] / WHITE[i];
+        if t > 216.0 / 24_389.0 {
+            t.cbrt()
+        } else {
+            (24_389.0 / 27.0 * t + 16.0) / 116.0
+        }
+    });
+    [
+        116.0 * f[1] - 16.0,
+        500.0 * (f[0] - f[1]),
+        200.0 * (f[1] - f[2]),
+    ]
+}
+
+fn distance(a: Rgb, b: Rgb, vision: &Matrix) -> f32 {
+    let seen = |color| lab(times(vision, linear(color)).map(|v| v.clamp(0.0, 1.0)));
+    let (a, b) = (seen(a), seen(b));
+    (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f32>().sqrt()
+}
+
+fn assert_apart(colors: &[Rgb], what: &str) {
+    for (name, vision) in &VISIONS {
+        for (i, a) in colors.iter().enumerate() {
+            for b in &colors[i + 1..] {
+                let d = distance(*a, *b, vision);
+                assert!(d >= APART, "{what}, {name}: {a:?} and {b:?} are {d} apart");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_measure_tells_red_from_green_only_where_the_eye_does() {
+    let [(_, usual), _, (_, deuteranopia)] = &VISIONS;
+    let (olive, rust) = ([0x8a, 0x8a, 0x00], [0xb8, 0x70, 0x10]);
+    assert!(distance(olive, rust, usual) > 2.0 * distance(olive, rust, deuteranopia));
+    // Black and white are 100 apart by definition of L*.
+    assert!((distance([0; 3], [255; 3], usual) - 100.0).abs() < 0.1);
+}
+
+#[test]
+fn the_five_meanings_stay_apart() {
+    for theme in THEMES {
+        assert_apart(&MEANINGS.map(|meaning| tone(theme, meaning)), "meanings");
+    }
+}
+
+#[test]
+fn the_six_classes_stay_apart() {
+    for theme in THEMES {
+        let classes: [Rgb; 6] = core::array::from_fn(|k| cell(theme, Cell::Class(k as u8)));
+        assert_apart(&classes, "classes");
+    }
+}
+
+#[test]
+fn lines_and_marks_stand_out_from_paper_by_three_to_one() {
+    for theme in THEMES {
+        let paper = tone(theme, Tone::Paper);
+        for meaning in MEANINGS {
+            let ratio = contrast(tone(theme, meaning), paper);
+            assert!(ratio >= 3.0, "{theme:?} {meaning:?}: {ratio}");
+        }
+    }
+}
+
+#[test]
+fn words_stand_out_by_four_and_a_half_to_one() {
+    for theme in THEMES {
+        let paper = tone(theme, Tone::Paper);
+        for words in [Tone::Ink, Tone::Truth] {
+            assert!(
+                contrast(tone(theme, words), paper) >= 4.5,
+                "{theme:?} {words:?}"
+            );
+        }
+        for verdict in [Standing::Good, Standing::Bad, Standing::Neutral] {
+            let ratio = contrast(standing(theme, verdict), paper);
+            assert!(ratio >= 4.5, "{theme:?} {verdict:?}: {ratio}");
+        }
+        for class in 0..6 {
+            let back = cell(theme, Cell::Class(class));
+            assert!(
+                contrast(readable_on(back), back) >= 4.5,
+                "{theme:?} class {class}"
+            );
+        }
+    }
+}
+
+#[test]
+fn egui_draws_its_own_words_readably_too() {
+    for theme in THEMES {
+        let visuals = kit::style::style(theme).visuals;
+        let rgb = |color: egui::Color32| [color.r(), color.g(), color.b()];
+        let paper = rgb(visuals.panel_fill);
+        for (words, back) in [
+            (visuals.weak_text_color(), paper),
+            (
+                visuals.selection.stroke.color,
+                rgb(visuals.selection.bg_fill),
+            ),
+            (
+                visuals.widgets.inactive.fg_stroke.color,
+                rgb(visuals.widgets.inactive.weak_bg_fill),
+            ),
+            (
+                visuals.widgets.hovered.fg_stroke.color,
+                rgb(visuals.widgets.hovered.weak_bg_fill),
+            ),
+            (
+                visuals.widgets.active.fg_stroke.color,
+                rgb(visuals.widgets.active.weak_bg_fill),
+            ),
+        ] {
+            let ratio = contrast(rgb(words), back);
+            assert!(ratio >= 4.5, "{theme:?}: {words:?} on {back:?} is {ratio}");
+        }
+        let border = contrast(rgb(visuals.widgets.inactive.bg_stroke.color), paper);
+        assert!(border >= 3.0, "{theme:?}: borders of controls {border}");
+    }
+}
+
+#[test]
+fn lightness_rises_evenly_along_the_colour_map() {
+    let lightness = |k: usize| lab(linear(level_color(k as f32 / 20.0)))[0];
+    // Even would be (92 − 15)/20 = 3.85 a step; the anchors are rounded to whole channels.
+    for k in 1..=20 {
+        let step = lightness(k) - lightness(k - 1);
+        assert!((2.5..=5.2).contains(&step), "step {k} rises by {step}");
+    }
+}
+
+#[test]
+fn contrast_matches_its_definition() {
+    assert!((contrast([0; 3], [255; 3]) - 21.0).abs() < 1e-3);
+    assert_eq!(contrast([9, 9, 9], [9, 9, 9]), 1.0);
+}

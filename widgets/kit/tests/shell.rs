@@ -1,0 +1,357 @@
+//! The shell driven as a reader drives it, through egui's accessibility tree and its pointer.
+
+mod fake;
+
+use egui::accesskit::Role;
+use egui::{Event, Modifiers, PointerButton, Pos2, pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use fake::Fake;
+use kit::palette::Theme;
+use kit::shell::{Change, Shell};
+use kit::view::DefaultView;
+
+fn shell() -> Shell {
+    Shell::new(Box::new(Fake::new()), Box::new(DefaultView))
+}
+
+fn harness(width: f32) -> Harness<'static, Shell> {
+    let mut harness = Harness::builder()
+        .with_size(vec2(width, 1400.0))
+        .with_max_steps(600)
+        .build_ui_state(|ui, shell: &mut Shell| shell.ui(ui), shell());
+    harness.run_steps(3);
+    harness
+}
+
+fn value(harness: &Harness<'_, Shell>, id: &str) -> f64 {
+    harness.state().model().values().get(id)
+}
+
+/// Presses at one place, moves to another, lets go.
+fn drag(harness: &mut Harness<'_, Shell>, from: Pos2, to: Pos2) {
+    for (pos, pressed) in [(from, Some(true)), (to, None), (to, Some(false))] {
+        harness.event(Event::PointerMoved(pos));
+        if let Some(pressed) = pressed {
+            harness.event(Event::PointerButton {
+                pos,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::NONE,
+            });
+        }
+        harness.run_steps(2);
+    }
+}
+
+#[test]
+fn every_slider_has_its_parameters_name_and_takes_arrow_keys() {
+    let mut harness = harness(1100.0);
+    let slider = harness.get_by_role_and_label(Role::Slider, "place along x");
+    slider.focus();
+    harness.run_steps(2);
+    harness.key_press(egui::Key::ArrowRight);
+    harness.run_steps(2);
+    assert!(
+        (value(&harness, "x") - 1.1).abs() < 1e-9,
+        "{}",
+        value(&harness, "x")
+    );
+    let changes = harness.state_mut().take_changes();
+    assert!(
+        matches!(changes[..], [Change { id: "x", .. }]),
+        "{changes:?}"
+    );
+    assert!(harness.state_mut().take_changes().is_empty());
+}
+
+#[test]
+fn a_preset_sets_the_state_that_it_names() {
+    let mut harness = harness(1100.0);
+    harness.get_by_label("Far away").click();
+    harness.run_steps(2);
+    assert_eq!(value(&harness, "x"), 3.5);
+}
+
+#[test]
+fn a_choice_is_a_radio_group_and_a_switch_a_checkbox() {
+    let mut harness = harness(700.0);
+    harness
+        .get_by_role_and_label(Role::RadioButton, "kind: two")
+        .click();
+    harness
+        .get_by_role_and_label(Role::CheckBox, "show the ghost")
+        .click();
+    harness.run_steps(2);
+    assert_eq!(value(&harness, "kind"), 1.0);
+    assert_eq!(value(&harness, "ghost"), 0.0);
+}
+
+#[test]
+fn a_handle_follows_the_pointer_by_the_spot_that_was_grabbed() {
+    let mut harness = harness(1100.0);
+    let at = |harness: &Harness<'_, Shell>, world: [f64; 2]| {
+        let [x, y] = harness
+            .state()
+            .panel_to_screen("map", world)
+            .expect("the map is shown");
+        pos2(x, y)
+    };
+    // Five pixels beside the handle: it must not jump by them.
+    let from = at(&harness, [1.0, 1.0]) + vec2(5.0, 0.0);
+    let to = at(&harness, [2.0, 1.0]) + vec2(5.0, 0.0);
+    drag(&mut harness, from, to);
+    assert!(
+        (value(&harness, "x") - 2.0).abs() < 0.02,
+        "{}",
+        value(&harness, "x")
+    );
+}
+
+#[test]
+fn only_what_drags_keeps_a_touch_from_scrolling_the_page() {
+    let harness = harness(390.0);
+    let screen = |world| {
+        let [x, y] = harness
+            .state()
+            .panel_to_screen("map", world)
+            .expect("the map is shown");
+        pos2(x, y)
+    };
+    assert!(harness.state().drags_at(screen([1.0, 1.0])));
+    assert!(!harness.state().drags_at(screen([3.5, 2.5])));
+    let slider = harness
+        .get_by_role_and_label(Role::Slider, "place along x")
+        .rect();
+    assert!(harness.state().drags_at(slider.center()));
+    assert!(!harness.state().drags_at(pos2(5.0, 5.0)));
+}
+
+#[test]
+fn a_press_on_the_timeline_goes_there_and_play_runs_to_the_end() {
+    let mut harness = harness(1100.0);
+    let rail = harness.get_by_role_and_label(Role::Slider, "tick").rect();
+    drag(&mut harness, rail.center(), rail.center());
+    assert_eq!(value(&harness, "time"), 10.0);
+    harness.get_by_role_and_label(Role::Button, "Play").click();
+    harness.run_steps(2);
+    assert!(harness.state().is_busy());
+    assert!(
+        harness
+            .query_by_role_and_label(Role::Button, "Pause")
+            .is_some()
+    );
+    harness.run_steps(400);
+    assert_eq!(value(&harness, "time"), 20.0);
+    assert!(
+        !harness.state().is_busy(),
+        "an idle widget asks for no frame"
+    );
+}
+
+#[test]
+fn nothing_is_cut_off_at_any_width() {
+    for width in [340.0, 390.0, 560.0, 700.0, 820.0, 900.0, 1100.0, 1400.0] {
+        let harness = harness(width);
+        let height = harness.state().content_height();
+        for (role, label) in [
+            (Role::Slider, "place along x"),
+            (Role::Slider, "tick"),
+            (Role::Button, "Defaults"),
+            (Role::Button, "Far away"),
+            (Role::RadioButton, "speed: ×4"),
+        ] {
+            let rect = harness.get_by_role_and_label(role, label).rect();
+            assert!(
+                rect.left() >= 0.0 && rect.right() <= width && rect.bottom() <= height,
+                "{label} at {rect} leaves {width} × {height}"
+            );
+            assert!(
+                rect.height() >= 24.0 || role == Role::Slider,
+                "{label} is {}",
+                rect.height()
+            );
+        }
+    }
+}
+
+#[test]
+fn the_wheel_belongs_to_the_page_and_with_ctrl_to_the_map() {
+    let mut harness = harness(1100.0);
+    let spot = harness
+        .state()
+        .panel_to_screen("map", [2.0, 1.5])
+        .expect("the map is shown");
+    let before = harness.state().panel_to_screen("map", [1.0, 1.0]);
+    let wheel = |harness: &mut Harness<'_, Shell>, modifiers| {
+        harness.event(Event::PointerMoved(pos2(spot[0], spot[1])));
+        harness.event(Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Line,
+            delta: vec2(0.0, 3.0),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers,
+        });
+        harness.run_steps(8);
+    };
+    wheel(&mut harness, Modifiers::NONE);
+    assert_eq!(harness.state().panel_to_screen("map", [1.0, 1.0]), before);
+    wheel(&mut harness, Modifiers::COMMAND);
+    assert_ne!(harness.state().panel_to_screen("map", [1.0, 1.0]), before);
+    harness
+        .get_by_role_and_label(Role::Button, "Reset zoom")
+        .click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().panel_to_screen("map", [1.0, 1.0]), before);
+}
+
+#[test]
+fn the_static_picture_is_well_formed_in_both_themes() {
+    for theme in [Theme::Light, Theme::Dark] {
+        for width in [390.0, 1100.0] {
+            let svg = shell().picture_svg(width, theme);
+            assert_well_formed(&svg);
+            assert!(svg.contains("Map &lt;of&gt; &quot;things&quot; &amp; ghosts"));
+            assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        }
+    }
+}
+
+/// Every element closes in order; attributes and text hold no bare `<` or `&`.
+fn assert_well_formed(svg: &str) {
+    let mut open = Vec::new();
+    let mut rest = svg;
+    while let Some(start) = rest.find('<') {
+        assert!(
+            !rest[..start].contains('>'),
+            "stray > before {}",
+            &rest[..start]
+        );
+        for part in rest[..start].split('&').skip(1) {
+            let entity = part.split(';').next().unwrap_or_default();
+            assert!(["amp", "lt", "gt", "quot"].contains(&entity), "&{entity}");
+        }
+        let end = rest[start..].find('>').expect("a tag closes") + start;
+        let tag = &rest[start + 1..end];
+        assert!(
+            tag.matches('"').count().is_multiple_of(2),
+            "quotes of <{tag}>"
+        );
+        if let Some(name) = tag.strip_prefix('/') {
+            assert_eq!(open.pop().as_deref(), Some(name));
+        } else if !tag.ends_with('/') {
+            open.push(tag.split([' ', '\n']).next().unwrap_or_default().to_owned());
+        }
+        rest = &rest[end + 1..];
+    }
+    assert!(open.is_empty(), "left open: {open:?}");
+}
+
+#[test]
+fn no_text_overlaps_or_is_cut_off_at_any_width() {
+    for width in [320.0, 340.0, 390.0, 520.0, 560.0, 700.0, 1100.0, 1400.0] {
+        let faults = kit::audit::text_faults(&Fake::new(), &DefaultView, width);
+        assert!(faults.is_empty(), "{faults:#?}");
+    }
+}
+
+#[test]
+fn the_audit_finds_what_is_cut_off_and_what_overlaps() {
+    use kit::layout::PlotHeight;
+    use kit::view::{Arrangement, Row, Slot, View};
+    struct Flat;
+    impl View for Flat {
+        fn arrange(&self, _scene: &kit::scene::Scene, _width: f32) -> Arrangement {
+            // Six pixels are too few for two tick labels above each other.
+            let slot = Slot {
+                panel: "map",
+                height: PlotHeight::Fixed(6.0),
+            };
+            Arrangement {
+                stage: vec![Row::of(&[slot])],
+                below: Vec::new(),
+            }
+        }
+    }
+    let faults = kit::audit::text_faults(&Fake::new(), &Flat, 60.0);
+    assert!(
+        faults
+            .iter()
+            .any(|fault| fault.contains("leaves the picture")),
+        "{faults:#?}"
+    );
+    assert!(
+        faults.iter().any(|fault| fault.contains("lies on")),
+        "{faults:#?}"
+    );
+}
+
+#[test]
+fn a_typed_number_is_taken_and_one_out_of_range_stops_at_the_border() {
+    let mut harness = harness(1100.0);
+    for (typed, expected) in [("2.75", 2.75), ("99", 4.0), ("nonsense", 4.0)] {
+        let field = harness.get_by_role_and_label(Role::SpinButton, "place along x as a number");
+        field.focus();
+        harness.run_steps(2);
+        harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::A);
+        harness.event(Event::Text(typed.to_owned()));
+        harness.run_steps(2);
+        harness.key_press(egui::Key::Enter);
+        harness.run_steps(2);
+        assert_eq!(value(&harness, "x"), expected, "{typed}");
+    }
+}
+
+#[test]
+fn a_cancelled_touch_lets_go_of_what_it_dragged() {
+    let mut harness = harness(1100.0);
+    let [x, y] = harness
+        .state()
+        .panel_to_screen("map", [1.0, 1.0])
+        .expect("the map is shown");
+    let button = |pressed| Event::PointerButton {
+        pos: pos2(x, y),
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.event(Event::PointerMoved(pos2(x, y)));
+    harness.event(button(true));
+    harness.run_steps(2);
+    harness.state_mut().release_drags();
+    harness.event(Event::PointerMoved(pos2(x + 80.0, y)));
+    harness.run_steps(2);
+    assert_eq!(value(&harness, "x"), 1.0, "it must not follow any more");
+}
+
+#[test]
+fn the_control_with_the_pages_focus_wears_a_ring() {
+    let shapes = |focus: Option<&str>| {
+        let mut harness = harness(1100.0);
+        harness.state_mut().set_focus(focus);
+        harness.run_steps(1);
+        harness.output().shapes.len()
+    };
+    let without = shapes(None);
+    for id in [
+        "x", "kind", "ghost", "seed", "time", "speed", "play", "defaults", "far",
+    ] {
+        assert_eq!(shapes(Some(id)), without + 1, "{id}");
+    }
+    assert_eq!(shapes(Some("nothing of ours")), without);
+}
+
+#[test]
+fn points_of_one_look_share_one_element() {
+    use kit::surface::{Pen, Surface as _};
+    use kit::svg::SvgSurface;
+    let mut svg = SvgSurface::new(Theme::Light);
+    for k in 0..1000_u16 {
+        svg.circle([f32::from(k), 5.0], 2.0, Some([1, 2, 3]), None);
+    }
+    svg.line(&[[0.0, 0.0], [9.0, 9.0]], Pen::solid([1, 2, 3], 1.0));
+    let svg = svg.finish(100.0, 10.0, "");
+    assert_eq!(svg.matches("<path").count(), 2);
+    assert_eq!(svg.matches('M').count(), 1001);
+    assert_well_formed(&svg);
+}

@@ -1,0 +1,291 @@
+//! The state of the basin explorer and every rule that changes it.
+
+mod basins;
+mod hands;
+mod letters;
+mod picture;
+mod report;
+mod settings;
+
+use ch16_slam2d::basin::{BasinOutcome, BasinScene, BasinStart};
+use ch16_slam2d::icp::{IcpTrace, IcpWorkspace, Pair, correspondences};
+use kit::model::{
+    Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark,
+    unknown_button,
+};
+use kit::param::{Changed, ParamError, Values};
+use kit::playback::{Playback, speed_factor};
+use kit::scene::Scene;
+use kit::spec::WidgetSpec;
+
+use crate::spec::{OFFSET_SPAN_M, PARAMS, SPEC};
+use basins::Basins;
+use settings::{config, other_variant, start, variant};
+
+/// Names of the panels.
+pub mod panel {
+    /// The two sweeps.
+    pub const SWEEPS: &str = "sweeps";
+    /// The basin map of point-to-point.
+    pub const POINT: &str = "basin-point-to-point";
+    /// The basin map of point-to-plane.
+    pub const PLANE: &str = "basin-point-to-plane";
+    /// rmse and error over the iterations.
+    pub const CURVE: &str = "rmse";
+}
+
+/// Iterations a second at normal speed.
+const STEPS_PER_S: f64 = 6.0;
+
+/// The basin explorer without its picture.
+pub struct BasinExplorer {
+    values: Values,
+    playback: Playback,
+    motion: Motion,
+    scene: BasinScene,
+    workspace: IcpWorkspace,
+    run: Run,
+    /// The other variant from the same start, to compare.
+    other: BasinOutcome,
+    basins: Basins,
+}
+
+/// One registration: how it went, and how it ended.
+struct Run {
+    trace: Vec<IcpTrace>,
+    outcome: BasinOutcome,
+}
+
+impl Default for BasinExplorer {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl BasinExplorer {
+    /// The widget with every setting at its default.
+    #[must_use]
+    pub fn new() -> Self {
+        let values = Values::defaults(PARAMS);
+        let scene = BasinScene::with_seed(values.get("seed") as u32);
+        let mut workspace = IcpWorkspace::new();
+        let config = config(&values, variant(&values));
+        let outcome = scene.register_from(&start(&values), &config, &mut workspace);
+        let basins = Basins::new(&values);
+        let mut explorer = Self {
+            run: Run {
+                trace: workspace.trace().to_vec(),
+                outcome,
+            },
+            other: outcome,
+            playback: Playback::default(),
+            motion: Motion::default(),
+            values,
+            scene,
+            workspace,
+            basins,
+        };
+        explorer.register();
+        explorer
+    }
+
+    /// Registers from the current start, in both variants.
+    fn register(&mut self) {
+        let start = start(&self.values);
+        let variant = variant(&self.values);
+        let mut run = |variant| {
+            let config = config(&self.values, variant);
+            self.scene
+                .register_from(&start, &config, &mut self.workspace)
+        };
+        self.other = run(other_variant(variant));
+        self.run.outcome = run(variant);
+        self.run.trace.clear();
+        self.run.trace.extend_from_slice(self.workspace.trace());
+    }
+
+    /// Last iteration of the run.
+    fn last(&self) -> usize {
+        self.run.trace.len() - 1
+    }
+
+    /// The iteration that is shown.
+    fn iteration(&self) -> usize {
+        (self.values.get("iteration") as usize).min(self.last())
+    }
+
+    /// The state at the iteration that is shown.
+    fn shown(&self) -> &IcpTrace {
+        &self.run.trace[self.iteration()]
+    }
+
+    /// The pairs at the iteration that is shown.
+    fn pairs(&self) -> Vec<Pair> {
+        let config = config(&self.values, variant(&self.values));
+        correspondences(
+            self.scene.source(),
+            self.scene.map(),
+            self.shown().pose,
+            &config,
+        )
+    }
+
+    /// Makes a pose the new start and shows it, rounded so that links stay short.
+    fn start_at(&mut self, start: BasinStart) {
+        let rounded = |value: f64, per_unit: f64| (value * per_unit).round() / per_unit;
+        let heading_deg = rounded(start.heading_deg, 10.0);
+        let offset = |value: f64| rounded(value, 100.0).clamp(-OFFSET_SPAN_M, OFFSET_SPAN_M);
+        self.playback.pause();
+        for (id, value) in [
+            ("heading", heading_deg.clamp(-180.0, 180.0)),
+            ("dx", offset(start.dx_m)),
+            ("dy", offset(start.dy_m)),
+            ("iteration", 0.0),
+        ] {
+            self.store(id, value);
+        }
+        self.register();
+        self.basins.follow(&self.values);
+    }
+
+    /// Keeps a value that lies in its range by construction.
+    fn store(&mut self, id: &str, value: f64) -> Changed {
+        match self.values.set(SPEC.id, id, value) {
+            Ok(changed) => changed,
+            Err(error) => panic!("a value of our own was refused: {error}"),
+        }
+    }
+}
+
+impl Model for BasinExplorer {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        if self.values.set(SPEC.id, id, value)? == Changed::No {
+            return Ok(());
+        }
+        match id {
+            "iteration" | "speed" => {}
+            "seed" => {
+                self.scene = BasinScene::with_seed(self.values.get("seed") as u32);
+                self.basins.restart(&self.values);
+                self.register();
+            }
+            _ => {
+                self.register();
+                self.basins.follow(&self.values);
+            }
+        }
+        Ok(())
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        let last = self.last() as f64;
+        let here = self.iteration() as f64;
+        match id {
+            "play" if self.motion == Motion::Reduced => {
+                self.store("iteration", last);
+            }
+            "play" => {
+                let from = self.playback.toggle(here, last);
+                self.store("iteration", from);
+            }
+            "step" => {
+                self.playback.pause();
+                self.store("iteration", (here + 1.0).min(last));
+            }
+            "reset" => {
+                self.playback.pause();
+                self.store("iteration", 0.0);
+            }
+            "defaults" => {
+                self.playback.pause();
+                for spec in PARAMS {
+                    self.set(spec.id, spec.default)?;
+                }
+            }
+            _ => {
+                let Some(preset) = SPEC.presets.iter().find(|preset| preset.id == id) else {
+                    return Err(unknown_button(&SPEC, id));
+                };
+                kit::model::apply_preset(self, preset)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        if !self.playback.is_playing() {
+            return Activity::Idle;
+        }
+        let rate = STEPS_PER_S * speed_factor(self.values.get("speed"));
+        let (here, last) = (self.iteration() as f64, self.last() as f64);
+        let next = self.playback.advance(here, last, elapsed_s, rate);
+        self.store("iteration", next);
+        Activity::Busy
+    }
+
+    fn work(&mut self) -> Activity {
+        self.basins.work(&self.scene, &mut self.workspace)
+    }
+
+    fn scene(&self) -> Scene {
+        picture::scene(self)
+    }
+
+    fn outcome(&self) -> Outcome {
+        report::outcome(self)
+    }
+
+    fn summary(&self) -> String {
+        report::summary(self)
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        let last = self.last() as f64;
+        let (standing, verdict) = report::verdict(&self.run.outcome);
+        Some(Timeline {
+            param: "iteration",
+            last,
+            playing: self.playback.is_playing(),
+            marks: vec![TimelineMark {
+                at: last,
+                label: match standing {
+                    Standing::Good => format!("ends in the {verdict}"),
+                    _ => format!("ends wrong: {verdict}"),
+                },
+                standing,
+            }],
+        })
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        report::tables(self)
+    }
+
+    fn shown_tables(&self) -> Vec<Table> {
+        vec![report::variants(self)]
+    }
+
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        hands::grab(self, panel, at, reach)
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        hands::drag(self, handle, at);
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        self.motion = motion;
+        if motion == Motion::Reduced && self.playback.is_playing() {
+            self.playback.pause();
+            self.store("iteration", self.last() as f64);
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Where the letters of a picture of classes stand: in the middle of the widest areas.
+
+use core::cmp::Reverse;
+
+/// A letter needs that many cells of its own kind around it.
+const LEAST_ROOM: u16 = 3;
+/// Equal letters keep that many columns or rows apart.
+const APART: usize = 24;
+/// Different letters keep that many columns or rows apart.
+const DIFFERENT_APART: usize = 8;
+/// Columns and rows around a mark that carry no letter.
+const CLEAR: (f64, f64) = (7.0, 6.0);
+
+/// A cell with room for a letter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Room<C> {
+    /// Its column.
+    pub column: usize,
+    /// Its row.
+    pub row: usize,
+    /// Its class.
+    pub class: C,
+    /// Chessboard distance to the border of its area.
+    pub room: u16,
+}
+
+/// All cells with room for a letter, the roomiest first.
+pub fn rooms<C: Copy + PartialEq>(cells: &[Option<C>], columns: usize) -> Vec<Room<C>> {
+    let distances = distances(cells, columns);
+    let wide = cells.iter().zip(distances).enumerate();
+    let mut rooms: Vec<_> = wide
+        .filter(|(_, (_, room))| *room >= LEAST_ROOM)
+        .filter_map(|(k, (class, room))| {
+            class.map(|class| Room {
+                column: k % columns,
+                row: k / columns,
+                class,
+                room,
+            })
+        })
+        .collect();
+    // Stable: of equal rooms the first in the picture wins.
+    rooms.sort_by_key(|room| Reverse(room.room));
+    rooms
+}
+
+/// A few of the rooms, far apart; none near the spot (column, row) that is kept clear.
+pub fn spread<C: Copy + PartialEq>(rooms: &[Room<C>], keep_clear: (f64, f64)) -> Vec<Room<C>> {
+    let mut chosen: Vec<Room<C>> = Vec::new();
+    for room in rooms {
+        let hides = (room.column as f64 - keep_clear.0).abs() < CLEAR.0
+            && (room.row as f64 - keep_clear.1).abs() < CLEAR.1;
+        let crowds = |other: &Room<C>| {
+            let apart = if other.class == room.class {
+                APART
+            } else {
+                DIFFERENT_APART
+            };
+            other.column.abs_diff(room.column) < apart && other.row.abs_diff(room.row) < apart
+        };
+        if !hides && !chosen.iter().any(crowds) {
+            chosen.push(*room);
+        }
+    }
+    chosen
+}
+
+/// Chessboard distance of every cell to the next cell of another class or to the border, 1 at the
+/// edge of an area, in two passes (Rosenfeld & Pfaltz 1966).
+fn distances<C: Copy + PartialEq>(cells: &[Option<C>], columns: usize) -> Vec<u16> {
+    let rows = cells.len() / columns;
+    let mut distances = vec![u16::MAX; cells.len()];
+    let mut relax = |column: usize, row: usize, steps: [[isize; 2]; 4]| {
+        let k = row * columns + column;
+        for [dc, dr] in steps {
+            let neighbour = column
+                .checked_add_signed(dc)
+                .filter(|c| *c < columns)
+                .zip(row.checked_add_signed(dr).filter(|r| *r < rows))
+                .map(|(c, r)| r * columns + c)
+                .filter(|n| cells[*n] == cells[k]);
+            let beyond = neighbour.map_or(0, |n| distances[n]);
+            distances[k] = distances[k].min(beyond.saturating_add(1));
+        }
+    };
+    for row in 0..rows {
+        for column in 0..columns {
+            relax(column, row, [[-1, 0], [-1, -1], [0, -1], [1, -1]]);
+        }
+    }
+    for row in (0..rows).rev() {
+        for column in (0..columns).rev() {
+            relax(column, row, [[1, 0], [1, 1], [0, 1], [-1, 1]]);
+        }
+    }
+    distances
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NOWHERE: (f64, f64) = (-100.0, -100.0);
+
+    #[test]
+    fn room_is_the_distance_to_the_next_other_cell() {
+        let mut cells = vec![Some('a'); 9 * 9];
+        cells[4 * 9 + 8] = Some('b');
+        let distances = distances(&cells, 9);
+        assert_eq!(
+            distances[4 * 9 + 4],
+            4,
+            "four columns from the b, five from the border"
+        );
+        assert_eq!(distances[0], 1);
+        assert_eq!(distances[4 * 9 + 8], 1);
+    }
+
+    #[test]
+    fn every_wide_area_gets_its_letter_inside_and_narrow_ones_none() {
+        let cells: Vec<_> = (0..20)
+            .flat_map(|_| 0..60)
+            .map(|column| match column {
+                0..=29 => Some('a'),
+                30..=32 => Some('b'),
+                _ => Some('c'),
+            })
+            .collect();
+        let letters = spread(&rooms(&cells, 60), NOWHERE);
+        assert!(letters.iter().any(|room| room.class == 'a'));
+        assert!(letters.iter().any(|room| room.class == 'c'));
+        for room in letters {
+            assert_ne!(room.class, 'b', "three cells are too narrow for a letter");
+            assert_eq!(cells[room.row * 60 + room.column], Some(room.class));
+        }
+    }
+
+    #[test]
+    fn a_strip_between_two_wide_areas_still_gets_its_letter() {
+        let cells: Vec<_> = (0..41)
+            .flat_map(|_| 0..100)
+            .map(|column| match column {
+                0..=39 => 'a',
+                40..=49 => 'b',
+                _ => 'c',
+            })
+            .map(Some)
+            .collect();
+        let letters = spread(&rooms(&cells, 100), NOWHERE);
+        assert!(letters.iter().any(|room| room.class == 'b'), "{letters:?}");
+    }
+
+    #[test]
+    fn no_letter_hides_the_mark_of_the_start() {
+        let cells = vec![Some('a'); 20 * 20];
+        let rooms = rooms(&cells, 20);
+        assert!(!spread(&rooms, NOWHERE).is_empty());
+        for room in spread(&rooms, (9.5, 9.5)) {
+            let away = (room.column as f64 - 9.5).abs() >= CLEAR.0
+                || (room.row as f64 - 9.5).abs() >= CLEAR.1;
+            assert!(away, "{room:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_known_yet_carries_no_letter() {
+        assert!(rooms(&vec![None::<char>; 400], 20).is_empty());
+    }
+}

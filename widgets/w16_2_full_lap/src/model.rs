@@ -1,0 +1,308 @@
+//! The state of the widget: parameters, the laps they lead to, playback and animation.
+//!
+//! Any parameter that changes the lap recomputes all of it at once; the moment shown stays.
+
+mod closeup;
+mod gates;
+mod map;
+mod moment;
+mod plots;
+mod runs;
+mod say;
+mod tables;
+mod track;
+mod transition;
+mod words;
+
+use ch16_slam2d::chi_squared::gate_threshold;
+use ch16_slam2d::loops::GateModel;
+use ch16_slam2d::slam::{LoopAttempt, LoopClosure};
+use kit::model::{
+    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, apply_preset,
+    unknown_button,
+};
+use kit::param::{Changed, ParamError, Values};
+use kit::playback::{Playback, speed_factor};
+use kit::scene::Scene;
+use kit::spec::{DEFAULTS, PLAY, RESET, STEP, WidgetSpec};
+
+pub use words::{AFTER, AT, BEFORE, NEXT, SPEC};
+
+use moment::Moment;
+use runs::{LapSettings, Results, Runs};
+use transition::Transition;
+
+/// Ticks a second at speed 1: twice as fast as the robot.
+const TICKS_PER_S: f64 = 8.0;
+
+/// The full lap.
+pub struct FullLap {
+    values: Values,
+    runs: Runs,
+    canonical: Results,
+    playback: Playback,
+    transition: Option<Transition>,
+    motion: Motion,
+}
+
+impl Default for FullLap {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl FullLap {
+    /// The chapter's run, at its first loop.
+    #[must_use]
+    pub fn new() -> Self {
+        let values = Values::defaults(SPEC.params);
+        let runs = Runs::new(&settings(&values));
+        Self {
+            canonical: runs.results(),
+            values,
+            runs,
+            playback: Playback::default(),
+            transition: None,
+            motion: Motion::default(),
+        }
+    }
+
+    fn tick(&self) -> usize {
+        self.values.get("t") as usize
+    }
+
+    fn last(&self) -> f64 {
+        self.runs.ticks() as f64
+    }
+
+    /// Goes to a tick; where a loop was closed in it, the nodes move from old to new.
+    fn go_to(&mut self, tick: usize) {
+        let tick = (tick as f64).min(self.last());
+        self.values
+            .set(SPEC.id, "t", tick)
+            .expect("a tick of the lap is within the timeline");
+        self.animate();
+    }
+
+    fn animate(&mut self) {
+        let closed = self
+            .runs
+            .graph
+            .attempt_at(self.tick())
+            .is_some_and(LoopAttempt::accepted);
+        self.transition = (closed && self.motion == Motion::Full).then(Transition::default);
+    }
+
+    fn press_loop_button(&mut self, offset: isize) {
+        self.playback.pause();
+        if let Some(attempt) = self.runs.graph.attempt_near(self.tick()) {
+            self.go_to(attempt.tick.saturating_add_signed(offset));
+        }
+    }
+
+    fn next_loop(&mut self) {
+        self.playback.pause();
+        let tick = self.tick();
+        let attempts = self.runs.graph.attempts();
+        let next = attempts.iter().find(|attempt| attempt.tick > tick);
+        if let Some(attempt) = next.or(attempts.first()) {
+            self.go_to(attempt.tick);
+        }
+    }
+
+    fn back_to_defaults(&mut self) {
+        self.values = Values::defaults(SPEC.params);
+        self.playback.pause();
+        self.transition = None;
+        self.recompute();
+    }
+
+    fn recompute(&mut self) {
+        self.runs.update(&settings(&self.values));
+        self.transition = None;
+        if self.values.get("t") > self.last() {
+            self.go_to(self.runs.ticks());
+        }
+    }
+
+    /// Plays on; stops for the animation of every loop on the way.
+    fn play(&mut self, elapsed_s: f64) {
+        let now = self.values.get("t");
+        let rate = TICKS_PER_S * speed_factor(self.values.get("speed"));
+        let reached = self.playback.advance(now, self.last(), elapsed_s, rate) as usize;
+        let ahead = |attempt: &&LoopAttempt| attempt.tick > now as usize && attempt.tick < reached;
+        let stop = self.runs.graph.attempts().iter().find(ahead);
+        let target = stop.map_or(reached, |attempt| attempt.tick);
+        if target < reached && !self.playback.is_playing() {
+            // The end was in reach, but the loop comes first: play on from there.
+            self.playback.toggle(target as f64, self.last());
+        }
+        if target as f64 != now {
+            self.go_to(target);
+        }
+    }
+
+    fn moment(&self) -> Moment<'_> {
+        let share = self.transition.as_ref().map_or(1.0, Transition::share);
+        Moment::new(&self.runs, self.tick(), share)
+    }
+}
+
+fn settings(values: &Values) -> LapSettings {
+    LapSettings {
+        seed: values.get("seed") as u32,
+        noise_factor: values.get("noise"),
+        loop_closure: if values.get("loops") == 0.0 {
+            LoopClosure::Off
+        } else {
+            LoopClosure::On
+        },
+        gate_chi2: gate_threshold(values.get("gate")),
+        gate_model: if values.get("gate-model") == 0.0 {
+            GateModel::PathApproximation
+        } else {
+            GateModel::ExactMarginal
+        },
+    }
+}
+
+impl Model for FullLap {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        if self.values.set(SPEC.id, id, value)? == Changed::No {
+            return Ok(());
+        }
+        match id {
+            "t" => self.go_to(self.tick()),
+            "speed" => {}
+            _ => self.recompute(),
+        }
+        Ok(())
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        if id == PLAY.id {
+            let now = self.values.get("t");
+            let position = self.playback.toggle(now, self.last());
+            if position != now {
+                self.go_to(position as usize);
+            }
+        } else if id == STEP.id {
+            self.playback.pause();
+            self.go_to(self.tick() + 1);
+        } else if id == RESET.id {
+            self.playback.pause();
+            self.go_to(0);
+        } else if id == BEFORE.id {
+            self.press_loop_button(-1);
+        } else if id == AT.id {
+            self.press_loop_button(0);
+        } else if id == AFTER.id {
+            self.press_loop_button(1);
+        } else if id == NEXT.id {
+            self.next_loop();
+        } else if id == DEFAULTS.id {
+            self.back_to_defaults();
+        } else if let Some(preset) = SPEC.presets.iter().find(|preset| preset.id == id) {
+            apply_preset(self, preset)?;
+        } else {
+            return Err(unknown_button(&SPEC, id));
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        if let Some(transition) = &mut self.transition {
+            if transition.advance(elapsed_s) == Activity::Idle {
+                self.transition = None;
+            }
+        } else if self.playback.is_playing() {
+            self.play(elapsed_s);
+        }
+        if self.transition.is_some() || self.playback.is_playing() {
+            Activity::Busy
+        } else {
+            Activity::Idle
+        }
+    }
+
+    fn scene(&self) -> Scene {
+        let (runs, tick) = (&self.runs, self.tick());
+        Scene {
+            panels: vec![
+                map::map(&self.moment()),
+                closeup::closeup(runs, tick),
+                plots::errors(runs, tick),
+                plots::disagreement(runs, tick),
+                plots::gate(runs, tick),
+            ],
+        }
+    }
+
+    fn outcome(&self) -> Outcome {
+        say::outcome(&self.runs, self.tick())
+    }
+
+    fn summary(&self) -> String {
+        say::summary(&self.runs, self.tick())
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        let mark = |attempt: &LoopAttempt| TimelineMark {
+            at: attempt.tick as f64,
+            label: say::mark(attempt),
+            standing: say::standing(&self.runs, attempt),
+        };
+        Some(Timeline {
+            param: "t",
+            last: self.last(),
+            playing: self.playback.is_playing(),
+            marks: self.runs.graph.attempts().iter().map(mark).collect(),
+        })
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let mut tables = self.shown_tables();
+        tables.extend(tables::exported(&self.runs));
+        tables
+    }
+
+    fn shown_tables(&self) -> Vec<Table> {
+        tables::shown(&self.runs, &self.canonical)
+    }
+
+    /// The line at the moment shown, in every plot over time.
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        let panel = *plots::OVER_TIME.iter().find(|id| **id == panel)?;
+        let from_line = at[0] - self.values.get("t");
+        (from_line.abs() <= reach[0]).then_some(Handle {
+            panel,
+            id: "now",
+            offset: [from_line, 0.0],
+        })
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        let tick = (at[0] - handle.offset[0]).round().max(0.0) as usize;
+        if tick != self.tick() {
+            self.go_to(tick);
+        }
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        self.motion = motion;
+        if motion == Motion::Reduced {
+            self.transition = None;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,231 @@
+//! The map panel: the Apartment, the three estimates, the graph and its map.
+
+use ch16_slam2d::slam::LoopAttempt;
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use pr_geom::{SE2, math};
+use pr_sim::World;
+
+use super::moment::Moment;
+use super::say::mark;
+
+/// Room around the Apartment, m.
+const MARGIN_M: f64 = 0.4;
+
+/// Lowest and highest arc of a loop, m; in between it is as high as its ends are apart.
+const ARC_HEIGHT_M: [f64; 2] = [0.7, 1.2];
+
+/// Segments of a loop's arc.
+const ARC_STEPS: u32 = 24;
+
+/// The Apartment at a moment.
+pub fn map(moment: &Moment) -> Panel {
+    let bounds = World::apartment().bounds();
+    let mut layers = apartment();
+    layers.extend(map_points(moment));
+    layers.extend(paths(moment));
+    layers.extend(history(moment));
+    layers.extend(graph(moment));
+    layers.extend(attempt_now(moment));
+    layers.extend(robots(moment));
+    Panel {
+        id: "map",
+        title: format!("The Apartment after tick {}", moment.tick),
+        weight: Weight::Main,
+        aspect: Aspect::Equal,
+        x: Axis::new("x (m)", bounds.min.x - MARGIN_M, bounds.max.x + MARGIN_M),
+        y: Axis::new("y (m)", bounds.min.y - MARGIN_M, bounds.max.y + MARGIN_M),
+        layers,
+        legend: legend(),
+        color_bar: None,
+    }
+}
+
+fn apartment() -> Vec<Layer> {
+    let world = World::apartment();
+    let walls = world.walls().iter();
+    let walls = walls.map(|wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]]);
+    let mut layers = vec![Layer::Segments {
+        segments: walls.collect(),
+        stroke: Stroke::Solid,
+        tone: Tone::Truth,
+        width_px: 1.0,
+    }];
+    // In the middle of a room, where no sweep has points.
+    layers.extend(World::apartment_rooms().iter().map(|room| Layer::Text {
+        at: [
+            0.5 * (room.bounds.min.x + room.bounds.max.x),
+            0.5 * (room.bounds.min.y + room.bounds.max.y),
+        ],
+        text: room.name.to_owned(),
+        tone: Tone::Truth,
+    }));
+    layers
+}
+
+/// The sweeps of the keyframes at the graph's poses: dots from the way out, × from the way back.
+fn map_points(moment: &Moment) -> [Layer; 2] {
+    let turn = moment.runs.graph.turn_node();
+    let mut out = Vec::new();
+    let mut back = Vec::new();
+    for (node, pose) in moment.nodes.iter().enumerate() {
+        let pass = if turn.is_some_and(|turn| node > turn) {
+            &mut back
+        } else {
+            &mut out
+        };
+        pass.extend(moment.runs.sweep_at(node, *pose));
+    }
+    [
+        Layer::points(out, Mark::Dot, Tone::Measurement, 1.2),
+        Layer::points(back, Mark::Cross, Tone::Measurement, 1.8),
+    ]
+}
+
+fn paths(moment: &Moment) -> [Layer; 3] {
+    let until = 0..=moment.tick;
+    let path = |pose_at: &dyn Fn(usize) -> SE2, stroke, tone| Layer::Line {
+        points: until.clone().map(|tick| xy(&pose_at(tick))).collect(),
+        stroke,
+        tone,
+        width_px: 1.75,
+    };
+    [
+        path(&|tick| moment.runs.truth(tick), Stroke::Dashed, Tone::Truth),
+        path(
+            &|tick| moment.runs.dead_reckoning(tick),
+            Stroke::Solid,
+            Tone::Prediction,
+        ),
+        path(
+            &|tick| moment.runs.front_end.estimate(tick),
+            Stroke::Solid,
+            Tone::Prior,
+        ),
+    ]
+}
+
+/// Nodes, the factors between neighbours, and the factors of the loops closed so far.
+fn graph(moment: &Moment) -> Vec<Layer> {
+    let nodes: Vec<_> = moment.nodes.iter().map(xy).collect();
+    let mut layers = vec![Layer::Segments {
+        segments: nodes.windows(2).map(|pair| [pair[0], pair[1]]).collect(),
+        stroke: Stroke::Solid,
+        tone: Tone::Posterior,
+        width_px: 1.0,
+    }];
+    layers.extend(moment.closed_loops().map(|attempt| Layer::Line {
+        points: arc(moment, attempt),
+        stroke: Stroke::Solid,
+        tone: Tone::Posterior,
+        width_px: 2.0,
+    }));
+    layers.push(Layer::points(nodes, Mark::Square, Tone::Posterior, 3.0));
+    layers
+}
+
+/// A loop's factor, bent to the north: straight it would hide behind the factors of the corridor.
+fn arc(moment: &Moment, attempt: &LoopAttempt) -> Vec<[f64; 2]> {
+    let loop_ = &attempt.verification;
+    let [from, to] = [loop_.from_node, loop_.candidate.node].map(|node| xy(&moment.nodes[node]));
+    let apart = math::norm2(to[0] - from[0], to[1] - from[1]);
+    let top = apart.clamp(ARC_HEIGHT_M[0], ARC_HEIGHT_M[1]);
+    (0..=ARC_STEPS)
+        .map(|step| {
+            let s = f64::from(step) / f64::from(ARC_STEPS);
+            let height = top * 4.0 * s * (1.0 - s);
+            [
+                from[0] + s * (to[0] - from[0]),
+                from[1] + s * (to[1] - from[1]) + height,
+            ]
+        })
+        .collect()
+}
+
+/// At a closed loop: where the nodes stood before it, and how each moved.
+fn history(moment: &Moment) -> Vec<Layer> {
+    if !moment.attempt.is_some_and(LoopAttempt::accepted) {
+        return Vec::new();
+    }
+    let old: Vec<_> = moment.old_nodes.iter().map(xy).collect();
+    let moved = old.iter().zip(moment.nodes.iter().map(xy));
+    vec![
+        Layer::Segments {
+            segments: moved.map(|(old, new)| [*old, new]).collect(),
+            stroke: Stroke::Solid,
+            tone: Tone::Prior,
+            width_px: 1.0,
+        },
+        Layer::points(old, Mark::Circle, Tone::Prior, 3.5),
+    ]
+}
+
+/// The loop tried in this tick, by name; a rejected one has no factor and is dotted.
+fn attempt_now(moment: &Moment) -> Vec<Layer> {
+    let Some(attempt) = moment.attempt else {
+        return Vec::new();
+    };
+    let arc = arc(moment, attempt);
+    let top = arc[arc.len() / 2];
+    let mut layers = vec![Layer::Text {
+        at: [top[0], top[1] + 0.35],
+        text: mark(attempt),
+        tone: Tone::Ink,
+    }];
+    if !attempt.accepted() {
+        layers.push(Layer::Line {
+            points: arc,
+            stroke: Stroke::Dotted,
+            tone: Tone::Measurement,
+            width_px: 2.5,
+        });
+    }
+    layers
+}
+
+/// Where each estimate has the robot now.
+fn robots(moment: &Moment) -> [Layer; 4] {
+    let tick = moment.tick;
+    let robot =
+        |pose: SE2, mark, tone, radius_px| Layer::pose(pose.to_array(), mark, tone, radius_px);
+    [
+        robot(moment.runs.truth(tick), Mark::Plus, Tone::Truth, 7.0),
+        robot(
+            moment.runs.dead_reckoning(tick),
+            Mark::Triangle,
+            Tone::Prediction,
+            6.0,
+        ),
+        robot(
+            moment.runs.front_end.estimate(tick),
+            Mark::Circle,
+            Tone::Prior,
+            6.0,
+        ),
+        robot(moment.estimate, Mark::Square, Tone::Posterior, 6.0),
+    ]
+}
+
+fn legend() -> Vec<LegendEntry> {
+    vec![
+        LegendEntry::marked_line("truth", Tone::Truth, Mark::Plus, Stroke::Dashed),
+        LegendEntry::marked_line("odometry", Tone::Prediction, Mark::Triangle, Stroke::Solid),
+        LegendEntry::marked_line(
+            "front end alone; nodes before a loop",
+            Tone::Prior,
+            Mark::Circle,
+            Stroke::Solid,
+        ),
+        LegendEntry::marked_line(
+            "pose graph: nodes and factors",
+            Tone::Posterior,
+            Mark::Square,
+            Stroke::Solid,
+        ),
+        LegendEntry::mark("map, way out", Tone::Measurement, Mark::Dot),
+        LegendEntry::mark("map, way back", Tone::Measurement, Mark::Cross),
+    ]
+}
+
+fn xy(pose: &SE2) -> [f64; 2] {
+    [pose.x(), pose.y()]
+}

@@ -1,0 +1,194 @@
+//! The laps that the settings lead to: the front end alone, and with its loops.
+
+use std::sync::Arc;
+
+use ch16_slam2d::loops::{GateModel, LoopConfig};
+use ch16_slam2d::metrics::position_error_m;
+use ch16_slam2d::slam::{
+    Drive, LapRecord, LapRunner, LapSummary, LoopAttempt, LoopClosure, SlamConfig,
+};
+use pr_geom::SE2;
+
+use super::gates::Gates;
+use super::track::Track;
+
+/// What a lap depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LapSettings {
+    /// Seed of all noise.
+    pub seed: u32,
+    /// Multiplies the variances of the wheels.
+    pub noise_factor: f64,
+    /// Whether loops are closed.
+    pub loop_closure: LoopClosure,
+    /// Largest squared innovation that is believed.
+    pub gate_chi2: f64,
+    /// What the gate takes for the drift.
+    pub gate_model: GateModel,
+}
+
+impl LapSettings {
+    fn config(&self) -> SlamConfig {
+        let mut config = SlamConfig::with_seed_and_noise(self.seed, self.noise_factor);
+        config.loop_closure = self.loop_closure;
+        config.loops.gate_chi2 = self.gate_chi2;
+        config.loops.gate_model = self.gate_model;
+        config
+    }
+}
+
+/// A drive with both estimators that ran over it, and the errors over time.
+pub struct Runs {
+    runner: LapRunner,
+    config: SlamConfig,
+    drive: Arc<Drive>,
+    /// Of each attempt of `graph`, in order.
+    gates: Vec<Gates>,
+    /// The front end alone: no loop is ever closed.
+    pub front_end: Track,
+    /// The pose graph, with loops where they are on.
+    pub graph: Track,
+    /// Position error of dead reckoning after each tick, m; the start first.
+    pub odometry_errors_m: Vec<f64>,
+}
+
+/// The results table of a lap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Results {
+    /// The front end alone.
+    pub front_end: LapSummary,
+    /// The pose graph with its loops.
+    pub graph: LapSummary,
+}
+
+/// How far a loop's measurement is from the truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopError {
+    /// Distance in metres.
+    pub position_m: f64,
+    /// Turn in degrees, not negative.
+    pub heading_deg: f64,
+}
+
+impl Runs {
+    /// Simulates the drive and runs both estimators over it.
+    pub fn new(settings: &LapSettings) -> Self {
+        Self::of(LapRunner::new(), settings)
+    }
+
+    /// Runs again with other settings; what they leave as it is, is not simulated anew.
+    pub fn update(&mut self, settings: &LapSettings) {
+        *self = Self::of(core::mem::take(&mut self.runner), settings);
+    }
+
+    fn of(mut runner: LapRunner, settings: &LapSettings) -> Self {
+        let LapRecord {
+            config,
+            drive,
+            lap,
+            front_end,
+        } = runner.run(&settings.config());
+        let errors = lap
+            .reports
+            .iter()
+            .map(|report| report.metrics.odometry_error_m);
+        let start = config.drive.start;
+        let gates = lap
+            .loop_attempts()
+            .map(|attempt| Gates::of(&lap, attempt, &config.loops))
+            .collect();
+        Self {
+            odometry_errors_m: core::iter::once(0.0).chain(errors).collect(),
+            front_end: Track::new(front_end, start),
+            graph: Track::new(lap, start),
+            runner,
+            gates,
+            config,
+            drive,
+        }
+    }
+
+    /// Ticks of the lap.
+    pub fn ticks(&self) -> usize {
+        self.drive.ticks().len()
+    }
+
+    /// The settings of loop detection.
+    pub fn loop_config(&self) -> &LoopConfig {
+        &self.config.loops
+    }
+
+    /// Largest squared innovation that is believed.
+    pub fn gate_chi2(&self) -> f64 {
+        self.config.loops.gate_chi2
+    }
+
+    /// Both gates over an attempt of the pose graph.
+    ///
+    /// # Panics
+    /// Where the attempt is none of this lap's.
+    pub fn gates(&self, attempt: &LoopAttempt) -> &Gates {
+        let attempts = self.graph.attempts();
+        let index = attempts.partition_point(|other| other.tick < attempt.tick);
+        &self.gates[index]
+    }
+
+    /// True pose after so many ticks, world frame.
+    pub fn truth(&self, tick: usize) -> SE2 {
+        self.drive.truth(tick)
+    }
+
+    /// Odometry composed from the start, after so many ticks, world frame.
+    pub fn dead_reckoning(&self, tick: usize) -> SE2 {
+        match tick.checked_sub(1) {
+            Some(index) => self.drive.ticks()[index].dead_reckoning,
+            None => self.config.drive.start,
+        }
+    }
+
+    /// The thinned sweep of a keyframe of the graph, seen from `frame_from_body`.
+    pub fn sweep_at(&self, node: usize, frame_from_body: SE2) -> impl Iterator<Item = [f64; 2]> {
+        let cloud = &self.drive.sweep(self.graph.keyframe_tick(node)).cloud;
+        let rotation = frame_from_body.rotation();
+        cloud.iter().map(move |point| {
+            let (x, y) = rotation.rotate(point.x, point.y);
+            [x + frame_from_body.x(), y + frame_from_body.y()]
+        })
+    }
+
+    /// Whether the robot is on its way back after so many ticks.
+    pub fn is_way_back(&self, tick: usize) -> bool {
+        let turn = self
+            .drive
+            .ticks()
+            .iter()
+            .position(|tick| tick.reached == Some(0));
+        turn.is_some_and(|turn| tick > turn)
+    }
+
+    /// The true pose of an attempt's new node in the frame of its old node.
+    pub fn loop_truth(&self, attempt: &LoopAttempt) -> SE2 {
+        let truth = |node| self.truth(self.graph.keyframe_tick(node));
+        let loop_ = &attempt.verification;
+        truth(loop_.candidate.node).between(&truth(loop_.from_node))
+    }
+
+    /// How far the measurement of an attempt is from the truth.
+    pub fn loop_error(&self, attempt: &LoopAttempt) -> LoopError {
+        let error = self
+            .loop_truth(attempt)
+            .between(&attempt.verification.registered);
+        LoopError {
+            position_m: position_error_m(&error, &SE2::identity()),
+            heading_deg: error.theta().abs().to_degrees(),
+        }
+    }
+
+    /// The results table.
+    pub fn results(&self) -> Results {
+        Results {
+            front_end: *self.front_end.summary(),
+            graph: *self.graph.summary(),
+        }
+    }
+}

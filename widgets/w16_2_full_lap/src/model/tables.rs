@@ -1,0 +1,242 @@
+//! The tables: this run beside the canonical one, the loops, and the data of every plot.
+
+use ch16_slam2d::loops::LoopRejection;
+use ch16_slam2d::slam::{LapSummary, LoopAttempt, LoopEffect};
+use kit::model::{Table, TablePlace};
+
+use super::runs::{Results, Runs};
+use super::say::{ends, model_name};
+
+/// The tables beside the picture.
+pub fn shown(runs: &Runs, canonical: &Results) -> Vec<Table> {
+    vec![
+        results("run", "This run", &runs.results()),
+        results("canonical", "The chapter's run", canonical),
+        loops(runs),
+    ]
+}
+
+/// The data of the plots, for the export alone.
+pub fn exported(runs: &Runs) -> Vec<Table> {
+    vec![loop_attempts(runs), over_time(runs), keyframes(runs)]
+}
+
+fn results(id: &'static str, title: &str, results: &Results) -> Table {
+    let Results { front_end, graph } = results;
+    let keyframes = |name: &str, of: fn(&LapSummary) -> String| {
+        vec![name.to_owned(), String::new(), of(front_end), of(graph)]
+    };
+    let with_odometry = |name: &str, odometry: f64, of: fn(&LapSummary) -> f64| {
+        vec![
+            name.to_owned(),
+            metres(odometry),
+            metres(of(front_end)),
+            metres(of(graph)),
+        ]
+    };
+    Table {
+        id,
+        title: title.to_owned(),
+        columns: vec![
+            "error in m".to_owned(),
+            "odometry".to_owned(),
+            "front end".to_owned(),
+            match graph.loops {
+                1 => "+ 1 loop".to_owned(),
+                loops => format!("+ {loops} loops"),
+            },
+        ],
+        rows: vec![
+            with_odometry("at the end", graph.odometry_end_error_m, |lap| {
+                lap.keyframe_end_error_m
+            }),
+            with_odometry("rms", graph.odometry_rms_m, |lap| lap.keyframe_rms_m),
+            keyframes("last nine keyframes", |lap| {
+                let (least, most) = lap.last_keyframes_m;
+                format!("{least:.2}–{most:.2}")
+            }),
+            keyframes("largest", |lap| format!("{:.2}", lap.keyframe_max_m)),
+            keyframes("map disagreement", |lap| {
+                metres(lap.map_disagreement_m.unwrap_or(f64::NAN))
+            }),
+        ],
+        place: TablePlace::Shown,
+    }
+}
+
+fn loops(runs: &Runs) -> Table {
+    let head = [
+        "loop",
+        "χ² path",
+        "χ² exact",
+        "rmse (m)",
+        "moved (m)",
+        "verdict",
+    ];
+    let row = |attempt: &LoopAttempt| {
+        let loop_ = &attempt.verification;
+        let gates = runs.gates(attempt);
+        let moved = attempt.effect.map(|effect| effect.max_shift_m);
+        vec![
+            ends(attempt),
+            format!("{:.3}", gates.path.test.chi2),
+            format!("{:.3}", gates.exact.test.chi2),
+            format!("{:.3}", loop_.rmse_m),
+            moved.map_or("–".to_owned(), |moved| format!("{moved:.3}")),
+            verdict_with_reason(attempt).to_owned(),
+        ]
+    };
+    Table {
+        id: "loops",
+        title: format!(
+            "Loops tried, {} gate χ² {:.3}",
+            model_name(runs.loop_config().gate_model),
+            runs.gate_chi2()
+        ),
+        columns: head.map(str::to_owned).to_vec(),
+        rows: runs.graph.attempts().iter().map(row).collect(),
+        place: TablePlace::Shown,
+    }
+}
+
+/// All that is known of each attempt.
+fn loop_attempts(runs: &Runs) -> Table {
+    let head = [
+        "tick",
+        "new node",
+        "old node",
+        "χ²",
+        "gate χ²",
+        "χ² path",
+        "χ² exact",
+        "rmse (m)",
+        "pairs",
+        "off the truth (m)",
+        "off the truth (°)",
+        "moved (m)",
+        "keyframe rms before (m)",
+        "keyframe rms after (m)",
+        "verdict",
+    ];
+    let row = |attempt: &LoopAttempt| {
+        let loop_ = &attempt.verification;
+        let gates = runs.gates(attempt);
+        let error = runs.loop_error(attempt);
+        let effect =
+            |of: fn(&LoopEffect) -> f64| exact(attempt.effect.as_ref().map_or(f64::NAN, of));
+        vec![
+            attempt.tick.to_string(),
+            loop_.from_node.to_string(),
+            loop_.candidate.node.to_string(),
+            exact(loop_.gate.chi2),
+            exact(loop_.gate.gate_chi2),
+            exact(gates.path.test.chi2),
+            exact(gates.exact.test.chi2),
+            exact(loop_.rmse_m),
+            loop_.inliers.to_string(),
+            exact(error.position_m),
+            exact(error.heading_deg),
+            effect(|effect| effect.max_shift_m),
+            effect(|effect| effect.keyframe_rms_m.before),
+            effect(|effect| effect.keyframe_rms_m.after),
+            verdict_with_reason(attempt).to_owned(),
+        ]
+    };
+    Table {
+        id: "loop-attempts",
+        title: "Loops tried".to_owned(),
+        columns: head.map(str::to_owned).to_vec(),
+        rows: runs.graph.attempts().iter().map(row).collect(),
+        place: TablePlace::ExportOnly,
+    }
+}
+
+fn verdict_with_reason(attempt: &LoopAttempt) -> &'static str {
+    match attempt.verification.rejection {
+        None => "accepted",
+        Some(LoopRejection::PoorFit { .. }) => "rejected: rmse",
+        Some(LoopRejection::FewInliers { .. }) => "rejected: pairs",
+        Some(LoopRejection::OutsideGate(_)) => "rejected: χ²",
+    }
+}
+
+fn over_time(runs: &Runs) -> Table {
+    let head = [
+        "tick",
+        "odometry error (m)",
+        "front end error (m)",
+        "pose graph error (m)",
+        "front end keyframe rms (m)",
+        "pose graph keyframe rms (m)",
+        "front end map disagreement (m)",
+        "pose graph map disagreement (m)",
+    ];
+    let row = |tick: usize| {
+        let columns = [
+            runs.odometry_errors_m[tick],
+            runs.front_end.errors_m[tick],
+            runs.graph.errors_m[tick],
+            runs.front_end.keyframe_rms_m[tick],
+            runs.graph.keyframe_rms_m[tick],
+            runs.front_end.disagreement_m[tick],
+            runs.graph.disagreement_m[tick],
+        ];
+        let cells = columns.into_iter().map(exact);
+        core::iter::once(tick.to_string()).chain(cells).collect()
+    };
+    Table {
+        id: "errors-over-time",
+        title: "Errors over time".to_owned(),
+        columns: head.map(str::to_owned).to_vec(),
+        rows: (0..=runs.ticks()).map(row).collect(),
+        place: TablePlace::ExportOnly,
+    }
+}
+
+fn keyframes(runs: &Runs) -> Table {
+    let head = [
+        "node",
+        "tick",
+        "true x (m)",
+        "true y (m)",
+        "x (m)",
+        "y (m)",
+        "heading (rad)",
+    ];
+    let poses = runs.graph.poses_at(runs.ticks());
+    let row = |(node, pose): (usize, &pr_geom::SE2)| {
+        let tick = runs.graph.keyframe_tick(node);
+        let truth = runs.truth(tick);
+        let columns = [truth.x(), truth.y(), pose.x(), pose.y(), pose.theta()];
+        let cells = columns.into_iter().map(exact);
+        [node.to_string(), tick.to_string()]
+            .into_iter()
+            .chain(cells)
+            .collect()
+    };
+    Table {
+        id: "keyframes",
+        title: "Keyframes at the end of the lap".to_owned(),
+        columns: head.map(str::to_owned).to_vec(),
+        rows: poses.iter().enumerate().map(row).collect(),
+        place: TablePlace::ExportOnly,
+    }
+}
+
+/// Four digits, as the chapter's table; a dash where there is none.
+fn metres(value: f64) -> String {
+    if value.is_finite() {
+        format!("{value:.4}")
+    } else {
+        "–".to_owned()
+    }
+}
+
+/// All digits, empty where there is none.
+fn exact(value: f64) -> String {
+    if value.is_finite() {
+        value.to_string()
+    } else {
+        String::new()
+    }
+}

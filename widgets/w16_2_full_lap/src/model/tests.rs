@@ -1,0 +1,58 @@
+//! The widget without its picture, against the reference laps and the words it says of itself.
+
+mod both_gates;
+mod playing;
+mod reference;
+mod settings;
+
+use kit::model::Fact;
+use kit::scene::{Layer, Mark, Tone};
+
+use super::*;
+
+fn fact(model: &FullLap, id: &str) -> f64 {
+    let facts = model.outcome().facts;
+    let find = |fact: &&Fact| fact.id == id;
+    facts
+        .iter()
+        .find(find)
+        .unwrap_or_else(|| panic!("no fact `{id}`"))
+        .value
+}
+
+fn at(settings: &[(&str, f64)]) -> FullLap {
+    let mut model = FullLap::new();
+    for (id, value) in settings {
+        model.set(id, *value).unwrap();
+    }
+    model
+}
+
+fn table(model: &FullLap, id: &str) -> Vec<Vec<String>> {
+    let tables = model.tables();
+    tables
+        .into_iter()
+        .find(|table| table.id == id)
+        .unwrap()
+        .rows
+}
+
+/// The picture as text: equal where it is the same, also where a sample is not a number.
+fn picture(model: &FullLap) -> String {
+    format!("{:?}", model.scene())
+}
+
+/// The nodes as the map shows them: the purple squares.
+fn shown_nodes(model: &FullLap) -> Vec<[f64; 2]> {
+    let scene = model.scene();
+    let nodes = scene.panels[0].layers.iter().find_map(|layer| match layer {
+        Layer::Points {
+            points,
+            mark: Mark::Square,
+            tone: Tone::Posterior,
+            ..
+        } => Some(points.clone()),
+        _ => None,
+    });
+    nodes.expect("the map shows the graph's nodes")
+}

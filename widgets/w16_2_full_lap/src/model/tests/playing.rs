@@ -1,0 +1,147 @@
+//! Buttons, playback and the animation of a loop.
+
+use super::*;
+
+#[test]
+fn before_at_and_after_stay_with_their_loop_and_next_goes_round() {
+    let mut model = at(&[("t", 129.0)]);
+    for (button, tick) in [
+        ("before", 118),
+        ("at", 119),
+        ("after", 120),
+        ("next", 92),
+        ("after", 93),
+        ("before", 91),
+        ("at", 92),
+        ("next", 107),
+        ("next", 119),
+        ("next", 92),
+    ] {
+        model.press(button).unwrap();
+        assert_eq!(model.tick(), tick, "after {button}");
+    }
+    let mut model = at(&[("t", 0.0)]);
+    model.press("at").unwrap();
+    assert_eq!(model.tick(), 92);
+    let mut model = at(&[("loops", 0.0), ("t", 5.0)]);
+    for button in ["before", "at", "after", "next"] {
+        model.press(button).unwrap();
+        assert_eq!(model.tick(), 5, "there is no loop to go to");
+    }
+}
+
+#[test]
+fn at_a_loop_the_nodes_move_from_the_old_poses_to_the_new_ones() {
+    let mut model = FullLap::new();
+    let settled = shown_nodes(&model);
+    model.press("at").unwrap();
+    let old = shown_nodes(&model);
+    let moved = |to: &[[f64; 2]]| {
+        let distances = old
+            .iter()
+            .zip(to)
+            .map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
+        distances.fold(0.0, f64::max)
+    };
+    // lap.json, first event: max_shift 0.2389.
+    assert!((moved(&settled) - fact(&model, "shift_m")).abs() < 1e-12);
+    assert!((moved(&settled) - 0.2389).abs() < 5e-5);
+    let mut last = 0.0;
+    while model.advance(0.05) == Activity::Busy {
+        let now = moved(&shown_nodes(&model));
+        assert!(now >= last - 1e-12);
+        last = now;
+    }
+    assert_eq!(shown_nodes(&model), settled);
+}
+
+#[test]
+fn with_reduced_motion_a_loop_jumps() {
+    let mut model = FullLap::new();
+    let settled = shown_nodes(&model);
+    model.set_motion(Motion::Reduced);
+    model.press("at").unwrap();
+    assert_eq!(shown_nodes(&model), settled);
+    assert_eq!(model.advance(0.1), Activity::Idle);
+    // Asked for in the middle of an animation, it ends it.
+    model.set_motion(Motion::Full);
+    model.press("at").unwrap();
+    assert_ne!(shown_nodes(&model), settled);
+    model.set_motion(Motion::Reduced);
+    assert_eq!(shown_nodes(&model), settled);
+}
+
+#[test]
+fn playing_shows_every_loop_and_ends_at_the_end() {
+    for speed in 0..=4 {
+        let mut model = at(&[("speed", f64::from(speed)), ("t", 129.0)]);
+        model.press("play").unwrap();
+        assert_eq!(model.tick(), 0, "at the end, play starts over");
+        let mut seen = vec![0];
+        while model.advance(0.25) == Activity::Busy {
+            if seen.last() != Some(&model.tick()) {
+                seen.push(model.tick());
+            }
+        }
+        assert_eq!(model.tick(), 129);
+        for tick in [92, 107, 119] {
+            assert!(
+                seen.contains(&tick),
+                "speed {speed} skipped the loop at {tick}"
+            );
+        }
+        assert!(!model.timeline().unwrap().playing);
+    }
+}
+
+#[test]
+fn a_loop_just_before_the_end_does_not_stop_the_playback() {
+    // At four times the speed a slow frame covers 8 ticks: the end and the loop fall in one.
+    let mut model = at(&[("speed", 4.0)]);
+    let late = (0..60).find_map(|seed| {
+        model.set("seed", f64::from(seed)).unwrap();
+        let last = model.runs.graph.attempts().last()?;
+        (123..129).contains(&last.tick).then_some(last.tick)
+    });
+    let tick = late.expect("some seed has its last loop in the last ticks");
+    model.set("t", tick as f64 - 1.0).unwrap();
+    model.press("play").unwrap();
+    model.advance(0.25);
+    assert_eq!(model.tick(), tick);
+    while model.advance(0.25) == Activity::Busy {}
+    assert_eq!(model.tick(), 129);
+}
+
+#[test]
+fn transport_buttons_step_reset_and_restore() {
+    let mut model = at(&[("noise", 2.0), ("t", 50.0)]);
+    model.press("step").unwrap();
+    assert_eq!(model.tick(), 51);
+    model.press("reset").unwrap();
+    assert_eq!(model.tick(), 0);
+    assert_eq!(model.values().get("noise"), 2.0);
+    model.press("defaults").unwrap();
+    assert_eq!(model.values(), &Values::defaults(SPEC.params));
+    assert!(picture(&model) == picture(&FullLap::new()));
+    let mut model = at(&[("t", 129.0)]);
+    model.press("step").unwrap();
+    assert_eq!(model.tick(), 129, "the lap has an end");
+}
+
+#[test]
+fn the_line_at_the_moment_shown_can_be_dragged_in_every_plot_over_time() {
+    let mut model = at(&[("t", 50.0)]);
+    let scene = model.scene();
+    for panel in &scene.panels {
+        let grabbed = model.grab(panel.id, [51.0, 0.1], [3.0, 0.1]);
+        let over_time = panel.x.label == "tick";
+        assert_eq!(grabbed.is_some(), over_time, "{}", panel.id);
+        assert!(model.grab(panel.id, [54.0, 0.1], [3.0, 0.1]).is_none());
+    }
+    let line = model.grab("errors", [51.0, 0.1], [3.0, 0.1]).unwrap();
+    // Grabbed one tick beside the line: it does not jump by that tick.
+    for (to, tick) in [(61.0, 60), (-40.0, 0), (500.0, 129)] {
+        model.drag(line, [to, 0.0]);
+        assert_eq!(model.tick(), tick);
+    }
+}

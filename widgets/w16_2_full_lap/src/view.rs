@@ -1,0 +1,72 @@
+//! Where the panels stand: the map large, the loop from near and the errors beside or below it.
+
+use kit::layout::PlotHeight;
+use kit::scene::Scene;
+use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
+
+/// From this width on the loop stands beside the map.
+const BESIDE_THE_MAP: f32 = 860.0;
+
+/// Height of a plot over time.
+const PLOT: PlotHeight = PlotHeight::Fixed(130.0);
+
+const MAP: Slot = Slot {
+    panel: "map",
+    height: PlotHeight::Natural { most: 620.0 },
+};
+
+const LOOP: Slot = Slot {
+    panel: "loop",
+    height: PlotHeight::Natural { most: 280.0 },
+};
+
+const ERRORS: Slot = plot("errors");
+const DISAGREEMENT: Slot = plot("disagreement");
+const GATE: Slot = plot("gate");
+
+const fn plot(panel: &'static str) -> Slot {
+    Slot {
+        panel,
+        height: PLOT,
+    }
+}
+
+/// The arrangement of w16.2.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FullLapView;
+
+impl View for FullLapView {
+    fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
+        if width >= BESIDE_THE_MAP {
+            Arrangement {
+                stage: vec![Row {
+                    columns: vec![column(2.0, &[MAP]), column(1.0, &[LOOP, ERRORS])],
+                }],
+                below: vec![Row::of(&[DISAGREEMENT, GATE])],
+            }
+        } else if width >= SIDE_BY_SIDE {
+            Arrangement {
+                stage: vec![Row::of(&[MAP])],
+                below: vec![Row {
+                    columns: vec![
+                        column(1.0, &[LOOP, DISAGREEMENT]),
+                        column(1.0, &[ERRORS, GATE]),
+                    ],
+                }],
+            }
+        } else {
+            let below = [LOOP, ERRORS, DISAGREEMENT, GATE];
+            Arrangement {
+                stage: vec![Row::of(&[MAP])],
+                below: below.iter().map(|slot| Row::of(&[*slot])).collect(),
+            }
+        }
+    }
+}
+
+fn column(share: f32, slots: &[Slot]) -> Column {
+    Column {
+        share,
+        slots: slots.to_vec(),
+    }
+}

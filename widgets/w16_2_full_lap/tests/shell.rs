@@ -1,0 +1,177 @@
+//! The widget driven as a reader drives it: through egui's accessibility tree, without a GPU.
+
+use egui::accesskit::Role;
+use egui::vec2;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use kit::model::Motion;
+use kit::palette::Theme;
+use kit::shell::Shell;
+use w16_2_full_lap::widget;
+
+fn harness(width: f32) -> Harness<'static, Shell> {
+    let mut shell = widget();
+    // Animations of egui and of the loop would take frames to settle.
+    shell.set_motion(Motion::Reduced);
+    let mut harness = Harness::builder()
+        .with_size(vec2(width, 2400.0))
+        .with_max_steps(600)
+        .build_ui_state(|ui, shell: &mut Shell| shell.ui(ui), shell);
+    harness.run_steps(3);
+    harness
+}
+
+fn value(harness: &Harness<'_, Shell>, id: &str) -> f64 {
+    harness.state().model().values().get(id)
+}
+
+fn fact(harness: &Harness<'_, Shell>, id: &str) -> f64 {
+    let facts = harness.state().model().outcome().facts;
+    facts.iter().find(|fact| fact.id == id).unwrap().value
+}
+
+fn press(harness: &mut Harness<'_, Shell>, label: &str) {
+    harness.get_by_role_and_label(Role::Button, label).click();
+    harness.run_steps(2);
+}
+
+fn key(harness: &mut Harness<'_, Shell>, slider: &str, key: egui::Key) {
+    harness.get_by_role_and_label(Role::Slider, slider).focus();
+    harness.run_steps(2);
+    harness.key_press(key);
+    harness.run_steps(2);
+}
+
+#[test]
+fn a_key_on_the_noise_slider_drives_another_lap_and_keeps_the_time() {
+    let mut harness = harness(1100.0);
+    let before = fact(&harness, "odometry_error_m");
+    key(&mut harness, "odometry noise ×", egui::Key::ArrowRight);
+    assert_eq!(value(&harness, "noise"), 1.05);
+    assert_ne!(fact(&harness, "odometry_error_m"), before);
+    assert_eq!(value(&harness, "t"), 92.0);
+    let changes = harness.state_mut().take_changes();
+    assert_eq!(changes.len(), 1, "{changes:?}");
+    assert_eq!(changes[0].id, "noise");
+}
+
+#[test]
+fn a_value_between_two_steps_stays_until_somebody_moves_it() {
+    let mut harness = harness(700.0);
+    harness
+        .state_mut()
+        .model_mut()
+        .set("noise", 1.2345)
+        .unwrap();
+    harness.run_steps(3);
+    assert_eq!(value(&harness, "noise"), 1.2345);
+    assert!(harness.state_mut().take_changes().is_empty());
+}
+
+#[test]
+fn the_gate_slider_shows_its_threshold() {
+    let mut harness = harness(1100.0);
+    assert_eq!(fact(&harness, "gate_chi2"), 7.815);
+    key(&mut harness, "gate quantile", egui::Key::ArrowRight);
+    assert_eq!(value(&harness, "gate"), 0.951);
+    // The 0.951 quantile of χ²₃ is 7.8598, by bisection of its distribution function.
+    assert_eq!(fact(&harness, "gate_chi2"), 7.860);
+}
+
+#[test]
+fn the_buttons_of_the_loop_go_before_at_and_after_it() {
+    for width in [390.0, 700.0, 1100.0] {
+        let mut harness = harness(width);
+        for (label, tick) in [
+            ("Before the loop", 91.0),
+            ("At the loop", 92.0),
+            ("After the loop", 93.0),
+            ("Next loop", 107.0),
+            ("Step", 108.0),
+            ("Reset", 0.0),
+        ] {
+            press(&mut harness, label);
+            assert_eq!(value(&harness, "t"), tick, "{label} at {width}");
+        }
+    }
+}
+
+#[test]
+fn the_switch_takes_the_loops_away() {
+    let mut harness = harness(700.0);
+    let switch = harness.get_by_role_and_label(Role::CheckBox, "loop closure");
+    switch.click();
+    harness.run_steps(2);
+    assert_eq!(value(&harness, "loops"), 0.0);
+    assert_eq!(fact(&harness, "loops_closed"), 0.0);
+    assert!(harness.state().model().timeline().unwrap().marks.is_empty());
+}
+
+#[test]
+fn every_preset_is_a_button_that_sets_what_it_names() {
+    let mut harness = harness(1100.0);
+    let presets = harness.state().model().spec().presets;
+    for preset in presets {
+        press(&mut harness, preset.label);
+        for (id, expected) in preset.set {
+            assert_eq!(value(&harness, id), *expected, "{} {id}", preset.id);
+        }
+    }
+}
+
+#[test]
+fn the_speeds_stand_side_by_side_at_every_width() {
+    for width in [340.0, 390.0, 560.0, 720.0, 900.0, 1100.0, 1400.0] {
+        let harness = harness(width);
+        let speeds = ["×¼", "×½", "×1", "×2", "×4"].map(|speed| {
+            let label = format!("speed: {speed}");
+            harness
+                .get_by_role_and_label(Role::RadioButton, &label)
+                .rect()
+        });
+        let top = speeds[0].top();
+        assert!(
+            speeds.iter().all(|rect| rect.top() == top),
+            "at {width}: {speeds:?}"
+        );
+    }
+}
+
+#[test]
+fn a_loop_animates_and_then_the_widget_is_idle() {
+    let mut harness = harness(1100.0);
+    harness.state_mut().set_motion(Motion::Full);
+    press(&mut harness, "At the loop");
+    assert!(harness.state().is_busy());
+    harness.run_steps(240);
+    assert!(
+        !harness.state().is_busy(),
+        "an idle widget asks for no frame"
+    );
+}
+
+#[test]
+fn all_controls_are_there_at_every_width_and_in_both_themes() {
+    for theme in [Theme::Light, Theme::Dark] {
+        for width in [340.0, 390.0, 700.0, 1100.0, 1400.0] {
+            let mut harness = harness(width);
+            harness.state_mut().set_theme(theme);
+            harness.run_steps(2);
+            let height = harness.state().content_height();
+            for (role, label) in [
+                (Role::Slider, "odometry noise ×"),
+                (Role::Slider, "gate quantile"),
+                (Role::CheckBox, "loop closure"),
+                (Role::Button, "Next loop"),
+                (Role::Button, "Defaults"),
+                (Role::Slider, "tick"),
+            ] {
+                let rect = harness.get_by_role_and_label(role, label).rect();
+                assert!(
+                    rect.left() >= 0.0 && rect.right() <= width && rect.bottom() <= height,
+                    "{label} at {rect} leaves {width} × {height}"
+                );
+            }
+        }
+    }
+}

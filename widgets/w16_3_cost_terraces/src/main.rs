@@ -1,0 +1,7 @@
+//! Opens the widget as a desktop window.
+
+use std::error::Error;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    Ok(kit::desktop::run(w16_3_cost_terraces::widget())?)
+}

@@ -1,0 +1,255 @@
+//! State and rules of the widget; no egui.
+//!
+//! A sweep is shifted over the map that it was taken for, heading fixed. Every shift gets ICP's
+//! truncated cost and NDT's score. Two balls descend from the cross hair, one on each landscape.
+//! What a parameter does not touch is not computed again: see [`terrains`].
+
+mod landscape;
+mod params;
+mod picture;
+mod tables;
+mod terrains;
+mod words;
+
+use kit::model::{Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark};
+use kit::model::{Standing, apply_preset, unknown_button};
+use kit::param::{Changed, ParamError, Values};
+use kit::playback::{Playback, speed_factor};
+use kit::scene::Scene;
+use kit::spec::WidgetSpec;
+
+use params::{ID, MAX_BALL_STEPS, PARAMS, SPEC, Settings};
+use picture::Moment;
+use terrains::Terrains;
+
+/// The maps reach this far from the truth in every direction, m.
+const HALF_SPAN_M: f64 = 1.3;
+
+/// Steps of the balls in a second at speed ×1.
+const STEPS_PER_S: f64 = 24.0;
+
+/// The widget without its picture.
+#[derive(Debug)]
+pub struct CostTerraces {
+    values: Values,
+    terrains: Terrains,
+    playback: Playback,
+    motion: Motion,
+    hover_m: Option<[f64; 2]>,
+}
+
+impl Default for CostTerraces {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl CostTerraces {
+    /// The widget with every parameter at its default.
+    #[must_use]
+    pub fn new() -> Self {
+        let values = Values::defaults(PARAMS);
+        Self {
+            terrains: Terrains::new(Settings::read(&values)),
+            values,
+            playback: Playback::default(),
+            motion: Motion::default(),
+            hover_m: None,
+        }
+    }
+
+    fn settings(&self) -> Settings {
+        Settings::read(&self.values)
+    }
+
+    /// Position on the timeline: past the last step means the end.
+    fn step(&self) -> usize {
+        (self.values.get("t") as usize).min(self.last_step())
+    }
+
+    /// Steps until both balls rest.
+    fn last_step(&self) -> usize {
+        self.terrains
+            .icp
+            .ball
+            .steps()
+            .max(self.terrains.ndt.ball.steps())
+    }
+
+    /// Goes to a step; at the end it stays at the end, wherever the next balls will rest.
+    fn go_to(&mut self, step: f64) {
+        let at_end = step >= self.last_step() as f64;
+        self.put("t", if at_end { MAX_BALL_STEPS as f64 } else { step });
+    }
+
+    /// Sets a parameter of the own list to a value of its range.
+    fn put(&mut self, id: &'static str, value: f64) {
+        if let Err(error) = self.values.set(ID, id, value) {
+            unreachable!("the widget's own value was refused: {error}");
+        }
+    }
+
+    fn drop_balls(&mut self) {
+        self.playback.pause();
+        match self.motion {
+            Motion::Full => {
+                let start = self.playback.toggle(0.0, self.last_step() as f64);
+                self.go_to(start);
+            }
+            Motion::Reduced => self.go_to(f64::INFINITY),
+        }
+    }
+
+    fn play(&mut self) {
+        if self.motion == Motion::Reduced {
+            self.go_to(f64::INFINITY);
+            return;
+        }
+        let start = self
+            .playback
+            .toggle(self.step() as f64, self.last_step() as f64);
+        self.go_to(start);
+    }
+
+    fn moment(&self) -> Moment {
+        Moment {
+            probe_m: self.settings().probe_m,
+            hover_m: self.hover_m,
+            step: self.step(),
+            colors: self.settings().colors,
+        }
+    }
+}
+
+impl Model for CostTerraces {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        if self.values.set(ID, id, value)? == Changed::Yes {
+            self.terrains.update(self.settings());
+        }
+        Ok(())
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        match id {
+            "drop" => self.drop_balls(),
+            "play" => self.play(),
+            "step" => {
+                self.playback.pause();
+                self.go_to(self.step() as f64 + 1.0);
+            }
+            "reset" => {
+                self.playback.pause();
+                self.go_to(0.0);
+            }
+            "defaults" => {
+                self.playback.pause();
+                self.values = Values::defaults(PARAMS);
+                self.terrains.update(self.settings());
+            }
+            _ => {
+                let preset = SPEC.presets.iter().find(|preset| preset.id == id);
+                return apply_preset(self, preset.ok_or_else(|| unknown_button(&SPEC, id))?);
+            }
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        if !self.playback.is_playing() {
+            return Activity::Idle;
+        }
+        let rate = STEPS_PER_S * speed_factor(self.values.get("speed"));
+        let last = self.last_step() as f64;
+        let next = self
+            .playback
+            .advance(self.step() as f64, last, elapsed_s, rate);
+        self.go_to(next);
+        Activity::Busy
+    }
+
+    fn scene(&self) -> Scene {
+        picture::scene(&self.terrains, self.moment())
+    }
+
+    fn outcome(&self) -> Outcome {
+        words::outcome(&self.terrains, &self.settings())
+    }
+
+    fn summary(&self) -> String {
+        words::summary(&self.terrains, &self.settings())
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        let mark = |name: &str, steps: usize| TimelineMark {
+            at: steps as f64,
+            label: format!("{name} ball rests"),
+            standing: Standing::Neutral,
+        };
+        Some(Timeline {
+            param: "t",
+            last: self.last_step() as f64,
+            playing: self.playback.is_playing(),
+            marks: vec![
+                mark("ICP", self.terrains.icp.ball.steps()),
+                mark("NDT", self.terrains.ndt.ball.steps()),
+            ],
+        })
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        tables::all(&self.terrains, &self.settings())
+    }
+
+    fn shown_tables(&self) -> Vec<Table> {
+        tables::shown(&self.terrains)
+    }
+
+    fn grab(&self, panel: &str, at: [f64; 2], _reach: [f64; 2]) -> Option<Handle> {
+        let panel = map_id(panel)?;
+        // The whole map is the target: a press anywhere puts the cross hair there.
+        is_on_map(at).then_some(Handle {
+            panel,
+            id: "cell",
+            offset: [0.0, 0.0],
+        })
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        let onto_map =
+            |axis: usize| (at[axis] - handle.offset[axis]).clamp(-HALF_SPAN_M, HALF_SPAN_M);
+        let probe = [onto_map(0), onto_map(1)];
+        if probe.iter().all(|value| value.is_finite()) {
+            self.put("probe-x", probe[0]);
+            self.put("probe-y", probe[1]);
+            self.terrains.update(self.settings());
+        }
+    }
+
+    fn hover(&mut self, panel: &str, at: Option<[f64; 2]>) {
+        self.hover_m = at.filter(|at| map_id(panel).is_some() && is_on_map(*at));
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        self.motion = motion;
+        if motion == Motion::Reduced && self.playback.is_playing() {
+            self.playback.pause();
+            self.go_to(f64::INFINITY);
+        }
+    }
+}
+
+fn map_id(panel: &str) -> Option<&'static str> {
+    ["icp", "ndt"].into_iter().find(|id| *id == panel)
+}
+
+fn is_on_map(at: [f64; 2]) -> bool {
+    at.iter().all(|value| value.abs() <= HALF_SPAN_M)
+}

@@ -1,0 +1,178 @@
+//! The data of every panel: shown beside the picture, or given out as CSV.
+
+use kit::model::{Table, TablePlace};
+use kit::ticks::signed;
+
+use super::landscape::{Ball, Landscape, shift_m};
+use super::params::Settings;
+use super::terrains::Terrains;
+
+/// The tables beside the picture.
+pub fn shown(terrains: &Terrains) -> Vec<Table> {
+    vec![results(terrains)]
+}
+
+/// All tables, the shown ones first.
+pub fn all(terrains: &Terrains, settings: &Settings) -> Vec<Table> {
+    let mut tables = shown(terrains);
+    tables.extend([
+        information(terrains),
+        slice(
+            "slice-x",
+            "Slice along x",
+            "Δx (m)",
+            terrains,
+            |landscape| landscape.row(settings.probe_m[1]),
+        ),
+        slice(
+            "slice-y",
+            "Slice along y",
+            "Δy (m)",
+            terrains,
+            |landscape| landscape.column(settings.probe_m[0]),
+        ),
+        way(
+            "icp-ball",
+            "Way of ICP's ball",
+            "cost (m²)",
+            &terrains.icp.ball,
+        ),
+        way(
+            "ndt-ball",
+            "Way of NDT's ball",
+            "−score",
+            &terrains.ndt.ball,
+        ),
+        maps(terrains),
+    ]);
+    tables
+}
+
+fn table(
+    id: &'static str,
+    title: &str,
+    columns: &[&str],
+    place: TablePlace,
+    rows: Vec<Vec<String>>,
+) -> Table {
+    Table {
+        id,
+        title: title.to_owned(),
+        columns: columns.iter().map(|&head| head.to_owned()).collect(),
+        rows,
+        place,
+    }
+}
+
+/// Where each measure is lowest, and where its ball ends.
+fn results(terrains: &Terrains) -> Table {
+    let row = |name: &str, landscape: &Landscape| {
+        vec![
+            name.to_owned(),
+            point(landscape.lowest_m),
+            point(landscape.ball.end_m()),
+        ]
+    };
+    table(
+        "balls",
+        "Lowest cells and balls, Δx and Δy",
+        &["measure", "lowest cell (m)", "ball ends at (m)"],
+        TablePlace::Shown,
+        vec![row("ICP", &terrains.icp), row("NDT", &terrains.ndt)],
+    )
+}
+
+fn point([x, y]: [f64; 2]) -> String {
+    format!("{}, {}", signed(x, 2), signed(y, 2))
+}
+
+/// Eigenvalues and directions of the information of a shift at the truth.
+fn information(terrains: &Terrains) -> Table {
+    let information = &terrains.information;
+    let row = |name: &str, k: usize| {
+        let eigenvalue = information.eigenvalues_per_cm2[k];
+        vec![
+            name.to_owned(),
+            signed(information.directions_deg[k], 0),
+            format!("{eigenvalue:.2}"),
+        ]
+    };
+    table(
+        "information",
+        "Information at the truth",
+        &["direction", "angle from x (°)", "eigenvalue (1/cm²)"],
+        TablePlace::ExportOnly,
+        vec![row("firmest", 0), row("loosest", 1)],
+    )
+}
+
+fn slice(
+    id: &'static str,
+    title: &str,
+    head: &str,
+    terrains: &Terrains,
+    heights: impl Fn(&Landscape) -> Vec<[f64; 2]>,
+) -> Table {
+    let (icp, ndt) = (heights(&terrains.icp), heights(&terrains.ndt));
+    let rows = icp
+        .iter()
+        .zip(&ndt)
+        .map(|([at, cost], [_, negative_score])| {
+            vec![
+                format!("{at:.4}"),
+                cost.to_string(),
+                (-negative_score).to_string(),
+            ]
+        });
+    table(
+        id,
+        title,
+        &[head, "ICP cost (m²)", "NDT score"],
+        TablePlace::ExportOnly,
+        rows.collect(),
+    )
+}
+
+fn way(id: &'static str, title: &str, height: &str, ball: &Ball) -> Table {
+    let rows = ball
+        .path_m
+        .iter()
+        .zip(&ball.heights)
+        .enumerate()
+        .map(|(step, ([x, y], h))| {
+            vec![
+                step.to_string(),
+                x.to_string(),
+                y.to_string(),
+                h.to_string(),
+            ]
+        });
+    table(
+        id,
+        title,
+        &["step", "Δx (m)", "Δy (m)", height],
+        TablePlace::ExportOnly,
+        rows.collect(),
+    )
+}
+
+fn maps(terrains: &Terrains) -> Table {
+    let cells = terrains.icp.cells();
+    let heights = terrains.icp.heights().iter().zip(terrains.ndt.heights());
+    let rows = heights.enumerate().map(|(index, (cost, negative_score))| {
+        vec![
+            format!("{:.4}", shift_m(cells, index % cells)),
+            format!("{:.4}", shift_m(cells, index / cells)),
+            cost.to_string(),
+            (-negative_score).to_string(),
+        ]
+    });
+    let columns = ["Δx (m)", "Δy (m)", "ICP cost (m²)", "NDT score"];
+    table(
+        "maps",
+        "Both maps",
+        &columns,
+        TablePlace::ExportOnly,
+        rows.collect(),
+    )
+}

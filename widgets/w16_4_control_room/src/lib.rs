@@ -1,0 +1,17 @@
+//! Widget w16.4: one live run with its grid, graph, registration and event log.
+//!
+//! [`model`] holds every rule and no pixel, [`view`] every pixel and no rule.
+
+pub mod model;
+pub mod view;
+
+use kit::shell::Shell;
+
+/// The widget, ready to be drawn.
+#[must_use]
+pub fn widget() -> Shell {
+    Shell::new(
+        Box::new(model::ControlRoom::new()),
+        Box::new(view::ControlRoomView),
+    )
+}

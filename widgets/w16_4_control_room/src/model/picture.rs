@@ -1,0 +1,174 @@
+//! The two pictures: the map with its graph, and the registration of the newest sweep.
+
+use std::sync::Arc;
+
+use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::graph::EdgeKind;
+use ch16_slam2d::slam::{LapRecord, RegistrationView};
+use kit::scene::{
+    Aspect, Axis, Bounds, Cell, Layer, LegendEntry, Mark, Panel, Raster, Stroke, Tone, Weight,
+};
+use pr_geom::{SE2, math};
+use pr_grid::OccupancyGrid;
+use pr_sim::World;
+
+/// Half the side of the close-up, in metres.
+const CLOSE_UP_M: f64 = 4.0;
+
+/// The grid as a raster of occupancies.
+pub fn raster(grid: &OccupancyGrid, revision: u64) -> Raster {
+    let config = grid.config();
+    let (min, cell_m) = (config.min_m, config.cell_m);
+    let cells: Arc<[Cell]> = grid.log_odds().iter().map(|l| occupancy(*l)).collect();
+    Raster {
+        bounds: Bounds {
+            min: [min.x, min.y],
+            max: [
+                min.x + cell_m * grid.columns() as f64,
+                min.y + cell_m * grid.rows() as f64,
+            ],
+        },
+        columns: grid.columns(),
+        rows: grid.rows(),
+        cells,
+        revision,
+    }
+}
+
+/// Probability of occupancy, `1 − 1/(1 + e^l)`; a log odds of 0 means that nothing was seen.
+fn occupancy(log_odds: f64) -> Cell {
+    if log_odds == 0.0 {
+        return Cell::Unknown;
+    }
+    Cell::Occupancy((1.0 - 1.0 / (1.0 + math::exp(log_odds))) as f32)
+}
+
+/// The map at a tick: grid, graph, truth and robot.
+pub fn map(record: &LapRecord, tick: usize, raster: &Raster, world: &World) -> Panel {
+    let bounds = world.bounds();
+    let truth = |tick| record.drive.truth(tick);
+    let layers = vec![
+        Layer::Raster(raster.clone()),
+        Layer::Line {
+            points: (0..=tick).map(|tick| xy(&truth(tick))).collect(),
+            stroke: Stroke::Dashed,
+            tone: Tone::Truth,
+            width_px: 1.5,
+        },
+        factors(record, tick, EdgeKind::Odometry, 1.5),
+        factors(record, tick, EdgeKind::Loop, 2.5),
+        Layer::points(
+            record.lap.poses(tick).iter().map(xy).collect(),
+            Mark::Square,
+            Tone::Posterior,
+            3.0,
+        ),
+        robot(&truth(tick), Mark::Plus, Tone::Truth),
+        robot(&estimate(record, tick), Mark::Square, Tone::Posterior),
+    ];
+    Panel {
+        id: "map",
+        title: "Occupancy grid and pose graph".to_owned(),
+        weight: Weight::Main,
+        aspect: Aspect::Equal,
+        x: Axis::new("x (m)", bounds.min.x, bounds.max.x),
+        y: Axis::new("y (m)", bounds.min.y, bounds.max.y),
+        layers,
+        legend: vec![
+            LegendEntry::marked_line("truth", Tone::Truth, Mark::Plus, Stroke::Dashed),
+            LegendEntry::marked_line(
+                "pose graph: nodes and factors",
+                Tone::Posterior,
+                Mark::Square,
+                Stroke::Solid,
+            ),
+        ],
+        color_bar: None,
+    }
+}
+
+/// A tick's registration: local map, the sweep where the wheels put it and where ICP put it.
+///
+/// A loop that is closed in the same tick moves the estimate afterwards.
+pub fn registration(record: &LapRecord, tick: usize, view: Option<&RegistrationView>) -> Panel {
+    let center = view.map_or_else(|| record.drive.truth(0), |view| view.icp.pose);
+    Panel {
+        id: "registration",
+        title: "Registration of this sweep".to_owned(),
+        weight: Weight::Half,
+        aspect: Aspect::Equal,
+        x: Axis::new("x (m)", center.x() - CLOSE_UP_M, center.x() + CLOSE_UP_M),
+        y: Axis::new("y (m)", center.y() - CLOSE_UP_M, center.y() + CLOSE_UP_M),
+        layers: view.map_or_else(Vec::new, |view| registration_layers(record, tick, view)),
+        legend: vec![
+            LegendEntry::mark("local map, last six sweeps", Tone::Prior, Mark::Circle),
+            LegendEntry::mark("sweep as predicted", Tone::Prediction, Mark::Triangle),
+            LegendEntry::mark("sweep as registered", Tone::Measurement, Mark::Cross),
+            LegendEntry::mark("robot", Tone::Posterior, Mark::Square),
+        ],
+        color_bar: None,
+    }
+}
+
+fn registration_layers(record: &LapRecord, tick: usize, view: &RegistrationView) -> Vec<Layer> {
+    let sweep = &record.drive.sweep(tick).cloud;
+    let placed = |pose: &SE2| positions(&sweep.transformed(pose));
+    let pairs = view.icp.pairs.iter();
+    vec![
+        Layer::points(positions(&view.local_cloud), Mark::Circle, Tone::Prior, 2.0),
+        Layer::Segments {
+            segments: pairs
+                .map(|pair| {
+                    [
+                        [pair.source.x, pair.source.y],
+                        [pair.target.x, pair.target.y],
+                    ]
+                })
+                .collect(),
+            stroke: Stroke::Solid,
+            tone: Tone::Ink,
+            width_px: 1.0,
+        },
+        Layer::points(
+            placed(&view.prediction),
+            Mark::Triangle,
+            Tone::Prediction,
+            3.0,
+        ),
+        Layer::points(placed(&view.icp.pose), Mark::Cross, Tone::Measurement, 3.0),
+        robot(&view.prediction, Mark::Triangle, Tone::Prediction),
+        robot(&view.icp.pose, Mark::Square, Tone::Posterior),
+    ]
+}
+
+/// The estimate at the end of a tick, `world_from_body`.
+fn estimate(record: &LapRecord, tick: usize) -> SE2 {
+    let report = record.lap.report(tick);
+    report.map_or_else(|| record.drive.truth(0), |report| report.estimate)
+}
+
+fn factors(record: &LapRecord, tick: usize, kind: EdgeKind, width_px: f32) -> Layer {
+    let poses = record.lap.poses(tick);
+    let edges = record.lap.edges(tick).iter();
+    Layer::Segments {
+        segments: edges
+            .filter(|edge| edge.kind == kind)
+            .map(|edge| [xy(&poses[edge.from]), xy(&poses[edge.to])])
+            .collect(),
+        stroke: Stroke::Solid,
+        tone: Tone::Posterior,
+        width_px,
+    }
+}
+
+fn positions(cloud: &PointCloud) -> Vec<[f64; 2]> {
+    cloud.iter().map(|point| [point.x, point.y]).collect()
+}
+
+fn robot(pose: &SE2, mark: Mark, tone: Tone) -> Layer {
+    Layer::pose(pose.to_array(), mark, tone, 6.0)
+}
+
+fn xy(pose: &SE2) -> [f64; 2] {
+    [pose.x(), pose.y()]
+}

@@ -1,0 +1,38 @@
+//! Where the control room's panels stand: the map large, the registration beside it.
+
+use kit::layout::PlotHeight;
+use kit::scene::Scene;
+use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
+
+/// The view of [`crate::model::ControlRoom`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ControlRoomView;
+
+impl View for ControlRoomView {
+    fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
+        if width < SIDE_BY_SIDE {
+            return Arrangement::by_weight(scene, width);
+        }
+        let natural = |panel| Slot {
+            panel,
+            height: PlotHeight::Natural { most: 480.0 },
+        };
+        let plot = |panel| Slot {
+            panel,
+            height: PlotHeight::Fixed(130.0),
+        };
+        let column = |share, slot| Column {
+            share,
+            slots: vec![slot],
+        };
+        Arrangement {
+            stage: vec![Row {
+                columns: vec![
+                    column(3.0, natural("map")),
+                    column(2.0, natural("registration")),
+                ],
+            }],
+            below: vec![Row::of(&[plot("tau"), plot("errors")])],
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! The control room driven headless; figures from `tests/reference/lap.json`.
+
+use kit::model::{Activity, Model as _, Standing};
+use kit::param::ParamKind;
+use kit::scene::Layer;
+use w16_4_control_room::model::{ControlRoom, SPEC};
+
+/// The run of the reference file with that seed, noise factor and loop closure.
+fn reference(seed: u64, noise: f64, loops: bool) -> serde_json::Value {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../tests/reference/lap.json"
+    );
+    let text = std::fs::read_to_string(path).expect("the reference file is in the project");
+    let runs: Vec<serde_json::Value> = serde_json::from_str(&text).expect("it is JSON");
+    let wanted = |run: &serde_json::Value| {
+        run["seed"] == seed && run["noise"].as_f64() == Some(noise) && run["loops"] == loops
+    };
+    runs.into_iter()
+        .find(wanted)
+        .expect("the run is in the file")
+}
+
+fn fact(room: &ControlRoom, id: &str) -> f64 {
+    let facts = room.outcome().facts;
+    facts.iter().find(|fact| fact.id == id).expect(id).value
+}
+
+fn revision(room: &ControlRoom) -> u64 {
+    let scene = room.scene();
+    let grid = scene.panels[0].layers.iter().find_map(|layer| match layer {
+        Layer::Raster(raster) => Some(raster.revision),
+        _ => None,
+    });
+    grid.expect("the map has a grid")
+}
+
+#[test]
+fn the_end_of_every_reference_run_has_its_grid_its_loops_and_its_errors() {
+    let mut room = ControlRoom::new();
+    for (seed, noise, loops) in [
+        (12_648_430, 1.0, true),
+        (6, 2.0, true),
+        (12_648_430, 1.0, false),
+    ] {
+        let run = reference(seed, noise, loops);
+        room.set("seed", seed as f64).unwrap();
+        room.set("noise", noise).unwrap();
+        room.set("loops", f64::from(u8::from(loops))).unwrap();
+        room.set("t", run["ticks"].as_f64().unwrap()).unwrap();
+        assert_eq!(fact(&room, "keyframes"), run["keyframes"].as_f64().unwrap());
+        assert_eq!(
+            fact(&room, "occupied_cells"),
+            run["occupied_cells"].as_f64().unwrap()
+        );
+        assert_eq!(
+            fact(&room, "free_cells"),
+            run["free_cells"].as_f64().unwrap()
+        );
+        let events = run["events"].as_array().unwrap();
+        let marks = room.timeline().unwrap().marks;
+        assert_eq!(marks.len(), events.len(), "one mark for each loop test");
+        for (mark, event) in marks.iter().zip(events) {
+            let accepted = event["accepted"] == true;
+            assert_eq!(mark.standing == Standing::Good, accepted, "{}", mark.label);
+        }
+        // 1e-6: a whole lap.
+        let error = run["odometry_end_error"].as_f64().unwrap();
+        assert!((fact(&room, "odometry_error_m") - error).abs() < 1e-6);
+        let disagreement = run["map_disagreement"].as_f64().unwrap();
+        assert!((fact(&room, "map_disagreement_m") - disagreement).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn the_grid_is_drawn_again_when_a_loop_moves_its_keyframes() {
+    let mut room = ControlRoom::new();
+    room.set("t", 91.0).unwrap();
+    let before = fact(&room, "occupied_cells");
+    assert_eq!(fact(&room, "loops"), 0.0);
+    room.press("step").unwrap();
+    assert_eq!(fact(&room, "loops"), 1.0);
+    assert_ne!(fact(&room, "occupied_cells"), before);
+    assert!(
+        room.outcome().sentence.starts_with(
+            "loop 29 to 7 accepted, chi-squared 4.24 below 7.815, history moved 0.24 m"
+        ),
+        "{}",
+        room.outcome().sentence
+    );
+}
+
+#[test]
+fn a_tick_without_a_keyframe_uploads_no_new_texture() {
+    let mut room = ControlRoom::new();
+    room.set("t", 0.0).unwrap();
+    let first = revision(&room);
+    room.press("step").unwrap();
+    assert_eq!(revision(&room), first);
+    room.set("t", 20.0).unwrap();
+    assert_ne!(revision(&room), first);
+}
+
+#[test]
+fn scrubbing_back_shows_what_playing_showed() {
+    let mut played = ControlRoom::new();
+    played.set("t", 0.0).unwrap();
+    played.press("play").unwrap();
+    while played.values().get("t") < 96.0 {
+        assert_eq!(played.advance(0.125), Activity::Busy);
+    }
+    played.press("play").unwrap();
+    assert_eq!(played.advance(0.125), Activity::Idle);
+    let mut scrubbed = ControlRoom::new();
+    scrubbed.set("t", 129.0).unwrap();
+    scrubbed.set("t", played.values().get("t")).unwrap();
+    assert_eq!(played.outcome(), scrubbed.outcome());
+    assert_eq!(played.summary(), scrubbed.summary());
+}
+
+#[test]
+fn changing_the_run_keeps_the_moment() {
+    let mut room = ControlRoom::new();
+    room.set("t", 87.0).unwrap();
+    let before = room.outcome();
+    room.set("noise", 4.0).unwrap();
+    assert_eq!(room.values().get("t"), 87.0);
+    assert_ne!(room.outcome(), before);
+    room.press("defaults").unwrap();
+    room.set("t", 87.0).unwrap();
+    assert_eq!(room.outcome(), before);
+}
+
+#[test]
+fn every_preset_and_button_does_what_it_names() {
+    let mut room = ControlRoom::new();
+    for button in SPEC.buttons {
+        room.press(button.id).unwrap();
+    }
+    for preset in SPEC.presets {
+        room.press(preset.id).unwrap();
+        for (id, value) in preset.set {
+            assert_eq!(room.values().get(id), *value, "{}: {id}", preset.id);
+        }
+    }
+    let refused = room.press("plya").unwrap_err().to_string();
+    assert!(refused.contains("next-event"), "{refused}");
+}
+
+#[test]
+fn a_bad_value_is_refused_and_nothing_changes() {
+    let mut room = ControlRoom::new();
+    let before = room.values().clone();
+    for spec in SPEC.params {
+        let (_, max) = spec.range();
+        assert!(room.set(spec.id, f64::NAN).is_err());
+        assert!(room.set(spec.id, max + 1.0).is_err());
+    }
+    assert_eq!(room.values(), &before);
+}
+
+#[test]
+fn a_link_past_the_end_of_the_lap_shows_the_end() {
+    let mut room = ControlRoom::new();
+    let ParamKind::Timeline { max } = SPEC.params.iter().find(|spec| spec.id == "t").unwrap().kind
+    else {
+        panic!("t is the timeline");
+    };
+    room.set("t", max).unwrap();
+    assert_eq!(room.values().get("t"), 129.0);
+    assert_eq!(room.outcome().verdict, "run finished");
+}
