@@ -1,0 +1,236 @@
+// node web/build.mjs DIST PROFILE: from wasm-pack's output to the element and its files in DIST.
+//
+// 1. wraps the glue in a function, so that a page can hold an instance for each widget;
+// 2. runs the module here in Node: it writes its own schema and draws the static pictures;
+// 3. bundles the element; wasm and bundle carry a hash of their content in their names, so that an
+//    old cached one is never paired with a new one;
+// 4. measures what a reader downloads.
+
+import { createHash } from 'node:crypto';
+import { cp, mkdir, readFile, rm, writeFile } from 'node:fs/promises';
+import { dirname, join } from 'node:path';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+import { brotliCompressSync, constants, gzipSync } from 'node:zlib';
+import * as esbuild from 'esbuild';
+
+import { writeParameterTables, writeTypes } from './generate.mjs';
+
+const WEB = dirname(fileURLToPath(import.meta.url));
+const PKG = join(WEB, 'pkg');
+const PICTURE_WIDTH_PX = 900;
+/** All widgets together, wasm and glue, brotli −11. */
+const BUDGET_BYTES = 1_000_000;
+
+const [dist, profile] = process.argv.slice(2);
+if (dist === undefined || profile === undefined) {
+  throw new Error('usage: node web/build.mjs DIST PROFILE');
+}
+
+const wasm = withoutNames(await readFile(join(PKG, 'slam_web_bg.wasm')));
+await wrapGlue();
+const glue = await instantiate(wasm);
+const schema = JSON.parse(glue.widgetSchemas());
+await writeFile(join(PKG, 'schema.json'), JSON.stringify(schema));
+await writeTypes(schema, join(WEB, 'slam-widget.d.ts'));
+
+await rm(dist, { recursive: true, force: true });
+await mkdir(join(dist, 'pictures'), { recursive: true });
+for (const { id } of schema) await drawPictures(id);
+
+const wasmFile = `slam_web-${hash(wasm)}.wasm`;
+await writeFile(join(dist, wasmFile), wasm);
+await bundle();
+await copyExamples();
+await writePackage();
+await writeFile(join(dist, 'schema.json'), JSON.stringify(schema, null, 1));
+await writeParameterTables(schema, join(WEB, '..', 'docs', 'parameters.md'));
+await measure();
+
+/** The glue as a module that exports one function; frames are asked of its argument. */
+async function wrapGlue() {
+  let text = await readFile(join(PKG, 'slam_web.js'), 'utf8');
+  // A hidden page schedules by timers: those wait at the same gate.
+  text = replaceOnce(text, /arg0\.requestAnimationFrame\(arg1\)/, 'frames.request(arg1)');
+  text = replaceOnce(text, /arg0\.cancelAnimationFrame\(arg1\)/, 'frames.cancel(arg1)');
+  text = replaceOnce(text, /arg0\.setTimeout\(arg1, arg2\)/, 'frames.request(arg1)');
+  text = replaceOnce(text, /arg0\.clearTimeout\(arg1\)/, 'frames.cancel(arg1)');
+  // A browser whose pixel ratio is emulated reports device pixels that disagree with it.
+  text = replaceOnce(text, /arg0\.devicePixelContentBoxSize/, 'frames.deviceSize(arg0)');
+  // Where the file lies is for the host to say; a bundled glue would guess wrong.
+  text = replaceOnce(text, /module_or_path = script_src\.replace\([^;]*;/, '');
+  const wrapped = `export function createGlue(frames) {\n${text}\nreturn wasm_bindgen;\n}\n`;
+  await writeFile(join(PKG, 'glue.js'), wrapped);
+  await cp(join(WEB, 'glue.template.d.ts'), join(PKG, 'glue.d.ts'));
+}
+
+function replaceOnce(text, pattern, replacement) {
+  const found = text.match(new RegExp(pattern, 'g'))?.length ?? 0;
+  if (found !== 1) throw new Error(`the glue has ${found} places like ${pattern}, not one`);
+  return text.replace(pattern, replacement);
+}
+
+/** The names of functions serve debuggers alone, and weigh a quarter of the module. */
+function withoutNames(module) {
+  const kept = [module.subarray(0, 8)];
+  for (let at = 8; at < module.length; ) {
+    const [size, start] = leb128(module, at + 1);
+    const [nameLength, nameStart] = leb128(module, start);
+    const name = module.subarray(nameStart, nameStart + nameLength).toString();
+    const isCustom = module[at] === 0;
+    if (!isCustom || (name !== 'name' && name !== 'producers')) {
+      kept.push(module.subarray(at, start + size));
+    }
+    at = start + size;
+  }
+  return Buffer.concat(kept);
+}
+
+/** An unsigned number at an offset, and the offset behind it. */
+function leb128(bytes, at) {
+  let value = 0;
+  for (let shift = 0; ; shift += 7) {
+    const byte = bytes[at];
+    at += 1;
+    value += (byte & 127) * 2 ** shift;
+    if (byte < 128) return [value, at];
+  }
+}
+
+async function instantiate(bytes) {
+  const { createGlue } = await import(pathToFileURL(join(PKG, 'glue.js')).href);
+  const noFrames = { request: () => 0, cancel: () => {}, deviceSize: () => [] };
+  const made = createGlue(noFrames);
+  made.initSync({ module: bytes });
+  return made;
+}
+
+async function drawPictures(id) {
+  const widget = new glue.Widget(id);
+  widget.finish();
+  for (const theme of ['light', 'dark']) {
+    const svg = widget.picture(PICTURE_WIDTH_PX, theme);
+    await writeFile(join(dist, 'pictures', `${id}-${theme}.svg`), svg);
+  }
+  widget.free();
+}
+
+async function bundle() {
+  const shared = {
+    bundle: true,
+    format: 'esm',
+    target: 'es2022',
+    minify: profile === 'web',
+    sourcemap: profile === 'web' ? false : 'inline',
+    define: { WASM_FILE: JSON.stringify(`./${wasmFile}`) },
+    write: false,
+    legalComments: 'none',
+    logLevel: 'warning',
+  };
+  const built = await esbuild.build({
+    ...shared,
+    entryPoints: [join(WEB, 'ts', 'main.ts')],
+    outfile: join(dist, 'slam-widget-core.js'),
+  });
+  const [code] = built.outputFiles.filter((file) => file.path.endsWith('.js'));
+  const coreFile = `slam-widget-${hash(code.contents)}.js`;
+  await writeFile(join(dist, coreFile), code.contents);
+  // The one name that pages know; small, and fetched afresh.
+  await writeFile(join(dist, 'slam-widget.js'), `export * from './${coreFile}';\n`);
+  for (const entry of ['embed', 'predict', 'anywidget']) {
+    await esbuild.build({
+      ...shared,
+      entryPoints: [join(WEB, 'ts', `${entry}.ts`)],
+      external: ['./slam-widget.js'],
+      outfile: join(dist, `slam-${entry}.js`),
+      write: true,
+    });
+  }
+  await cp(join(WEB, 'embed.html'), join(dist, 'embed.html'));
+  await cp(join(WEB, 'slam-widget.d.ts'), join(dist, 'slam-widget.d.ts'));
+}
+
+/** `dist/` is the npm package, too: `npm pack dist`. */
+async function writePackage() {
+  const { name, version, description, license } = JSON.parse(await readFile(join(WEB, 'package.json'), 'utf8'));
+  const manifest = {
+    name,
+    version,
+    description,
+    license,
+    type: 'module',
+    exports: {
+      '.': { types: './slam-widget.d.ts', default: './slam-widget.js' },
+      './predict': './slam-predict.js',
+      './anywidget': './slam-anywidget.js',
+      './embed.html': './embed.html',
+      './schema.json': './schema.json',
+      './pictures/*': './pictures/*',
+      './package.json': './package.json',
+    },
+    sideEffects: true,
+    files: ['*.js', '*.wasm', '*.d.ts', 'embed.html', 'schema.json', 'pictures'],
+  };
+  await writeFile(join(dist, 'package.json'), `${JSON.stringify(manifest, null, 2)}\n`);
+}
+
+async function copyExamples() {
+  await cp(join(WEB, 'examples'), join(dist, 'examples'), { recursive: true });
+}
+
+/** Sizes of the program; over the budget, the build of the published profile fails. */
+async function measure() {
+  const glueBundle = await esbuild.build({
+    stdin: { contents: "export { createGlue } from './glue.js';", resolveDir: PKG },
+    bundle: true,
+    minify: true,
+    format: 'esm',
+    write: false,
+  });
+  const files = { wasm, glue: Buffer.from(glueBundle.outputFiles[0].contents) };
+  const sizes = {};
+  for (const [name, bytes] of Object.entries(files)) {
+    sizes[name] = {
+      raw: bytes.length,
+      gzip: gzipSync(bytes, { level: 9 }).length,
+      brotli: profile === 'web' ? brotli(bytes) : null,
+    };
+  }
+  await writeFile(join(PKG, 'sizes.json'), JSON.stringify({ profile, ...sizes }, null, 2));
+  if (profile !== 'web') return;
+  await writeSizes(sizes);
+  const total = sizes.wasm.brotli + sizes.glue.brotli;
+  console.log(`wasm + glue: ${total} bytes brotli -11, budget ${BUDGET_BYTES}`);
+  if (total > BUDGET_BYTES) throw new Error(`${total} bytes are over the budget`);
+}
+
+/** The table in the README. */
+async function writeSizes(sizes) {
+  const path = join(WEB, '..', 'README.md');
+  const text = await readFile(path, 'utf8');
+  const rows = Object.entries(sizes).map(
+    ([name, { raw, gzip, brotli: small }]) => `| ${name} | ${raw} | ${gzip} | ${small} |`,
+  );
+  const total = (which) => sizes.wasm[which] + sizes.glue[which];
+  const table = [
+    '| bytes | raw | gzip −9 | brotli −11 |',
+    '| --- | --- | --- | --- |',
+    ...rows,
+    `| both | ${total('raw')} | ${total('gzip')} | ${total('brotli')} |`,
+  ].join('\n');
+  const marked = /(<!-- sizes: [^>]*-->\n)[\s\S]*?(<!-- end of sizes -->)/;
+  const updated = text.replace(marked, `$1${table}\n$2`);
+  if (updated !== text) await writeFile(path, updated);
+}
+
+function brotli(bytes) {
+  const params = {
+    [constants.BROTLI_PARAM_QUALITY]: 11,
+    [constants.BROTLI_PARAM_LGWIN]: 24,
+    [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length,
+  };
+  return brotliCompressSync(bytes, { params }).length;
+}
+
+function hash(bytes) {
+  return createHash('sha256').update(bytes).digest('hex').slice(0, 12);
+}

@@ -1,0 +1,24 @@
+"""The widgets in Jupyter, marimo and MyST: `pip install anywidget`, then in a cell
+
+    from slam_widget import SlamWidget
+    lap = SlamWidget(name="w16.2", value={"noise": 2})
+    lap
+
+Afterwards `lap.value` is the state and `lap.outcome` the result; setting `lap.value` moves it.
+"""
+
+import anywidget
+import traitlets
+
+# The address where the built site is served; `cargo xtask serve` prints it.
+SITE = "http://localhost:8016"
+
+
+class SlamWidget(anywidget.AnyWidget):
+    """One widget of the chapter; names and parameters are in docs/parameters.md."""
+
+    _esm = f"{SITE}/slam-anywidget.js"
+
+    name = traitlets.Unicode("w16.1").tag(sync=True)
+    value = traitlets.Dict().tag(sync=True)
+    outcome = traitlets.Dict(allow_none=True, default_value=None).tag(sync=True)

@@ -1,0 +1,113 @@
+// Renders the chapter: index.html with its formulas as HTML and MathML, its style, its script and
+// KaTeX's style and fonts, all into one directory. Nothing of it is loaded from another host.
+//
+//     node web/page/build.mjs <out-dir>
+
+import { existsSync } from 'node:fs';
+import { cp, mkdir, readFile, writeFile } from 'node:fs/promises';
+import { createRequire } from 'node:module';
+import path from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+import { build } from 'esbuild';
+import katex from 'katex';
+
+const here = path.dirname(fileURLToPath(import.meta.url));
+const root = path.join(here, '..', '..');
+
+const [outDir] = process.argv.slice(2);
+if (outDir === undefined) {
+  console.error('usage: node web/page/build.mjs <out-dir>');
+  process.exit(2);
+}
+
+await mkdir(outDir, { recursive: true });
+await Promise.all([renderPage(), copyStyle(), copyKatex(), bundleScript()]);
+
+async function renderPage() {
+  const source = await readFile(path.join(root, 'index.html'), 'utf8');
+  const page = addPictures(renderFormulas(source), await summaries());
+  await writeFile(path.join(outDir, 'index.html'), page);
+}
+
+/** What each widget's picture shows, in words: beside the pictures where those were built. */
+async function summaries() {
+  const file = path.join(outDir, 'schema.json');
+  const widgets = existsSync(file) ? JSON.parse(await readFile(file, 'utf8')) : [];
+  return new Map(widgets.map((widget) => [widget.id, widget.summary]));
+}
+
+/** What a reader without JavaScript sees; the element hides it once it is defined. */
+function addPictures(html, summaryOf) {
+  return html.replace(/(<slam-widget name="([^"]+)"[^>]*>)(<\/slam-widget>)/g, (_, open, id, close) => {
+    const alt = escapeHtml(summaryOf.get(id) ?? `Widget ${id}`);
+    return `${open}
+    <picture>
+      <source media="(prefers-color-scheme: dark)" srcset="pictures/${id}-dark.svg">
+      <img src="pictures/${id}-light.svg" alt="${alt}">
+    </picture>
+    <p>This widget needs JavaScript. The picture shows how it starts.</p>
+  ${close}`;
+  });
+}
+
+/** `<tex>…</tex>` in the line and `<tex display>…</tex>` on lines of its own. */
+function renderFormulas(html) {
+  return html.replace(/(\(?)<tex( display)?>([\s\S]*?)<\/tex>((?:&nbsp;[^\s<.,;:]+|[.,;:?!)°])*)/g, (_, before, display, escaped, after) => {
+    const formula = katex.renderToString(dropFigureNames(unescapeHtml(escaped)), {
+      displayMode: display !== undefined,
+      output: 'htmlAndMathml',
+      throwOnError: true,
+      strict: 'error',
+    });
+    if (display !== undefined) {
+      return `${before}<div class="math" role="group" aria-label="Formula">${formula}</div>${after}`;
+    }
+    // A unit or a full stop must not begin a line, nor may an opening bracket end one.
+    const text = `${before}${formula}${after}`;
+    return text === formula ? formula : `<span class="unbroken">${text}</span>`;
+  });
+}
+
+/** \fig{name}{text} prints the text; the name says which result a test compares it with. */
+function dropFigureNames(tex) {
+  return tex.replace(/\\fig\{[^{}]*\}\{([^{}]*)\}/g, '{$1}');
+}
+
+function escapeHtml(text) {
+  return text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('"', '&quot;');
+}
+
+function unescapeHtml(text) {
+  return text.replaceAll('&lt;', '<').replaceAll('&gt;', '>').replaceAll('&amp;', '&');
+}
+
+async function copyStyle() {
+  await cp(path.join(here, 'page.css'), path.join(outDir, 'page.css'));
+}
+
+/** Browsers that run WebAssembly all read woff2: the older font formats stay out. */
+async function copyKatex() {
+  const dist = path.dirname(createRequire(import.meta.url).resolve('katex'));
+  const target = path.join(outDir, 'katex');
+  await mkdir(path.join(target, 'fonts'), { recursive: true });
+  const style = await readFile(path.join(dist, 'katex.min.css'), 'utf8');
+  const woff2Only = style.replace(/,url\([^)]*\.(?:woff|ttf)\) format\("(?:woff|truetype)"\)/g, '');
+  await writeFile(path.join(target, 'katex.css'), woff2Only);
+  await cp(path.join(dist, 'fonts'), path.join(target, 'fonts'), {
+    recursive: true,
+    filter: (source) => path.extname(source) === '' || source.endsWith('.woff2'),
+  });
+}
+
+async function bundleScript() {
+  await build({
+    entryPoints: [path.join(here, 'page.ts')],
+    outfile: path.join(outDir, 'page.js'),
+    bundle: true,
+    format: 'esm',
+    minify: true,
+    target: 'es2022',
+    logLevel: 'warning',
+  });
+}

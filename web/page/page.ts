@@ -1,0 +1,46 @@
+// What the chapter does around its widgets: the choice of light and dark, and wide formulas and
+// tables that the keyboard can scroll. The widgets and the numbers that set them are the custom
+// element's business.
+
+type ThemeChoice = 'auto' | 'light' | 'dark';
+
+document.documentElement.dataset['script'] = 'on';
+listenToThemeButtons();
+letKeyboardScroll(document.querySelectorAll<HTMLElement>('.math, .scroll'));
+
+/** The choice holds until the page is left: it is not worth storing anything on the reader's disk. */
+function listenToThemeButtons(): void {
+  const buttons = document.querySelectorAll<HTMLButtonElement>('[data-theme-choice]');
+  for (const button of buttons) {
+    button.addEventListener('click', () => {
+      chooseTheme(button.dataset['themeChoice'] as ThemeChoice);
+      for (const other of buttons) {
+        other.setAttribute('aria-pressed', String(other === button));
+      }
+    });
+  }
+}
+
+/** The style and the widgets both follow `data-theme`; without it, the system's choice. */
+function chooseTheme(choice: ThemeChoice): void {
+  if (choice === 'auto') {
+    delete document.documentElement.dataset['theme'];
+  } else {
+    document.documentElement.dataset['theme'] = choice;
+  }
+}
+
+/** What is wider than its box can be reached by Tab; what fits is no stop on the way. */
+function letKeyboardScroll(boxes: Iterable<HTMLElement>): void {
+  const observer = new ResizeObserver((entries) => {
+    for (const { target } of entries) {
+      const box = target as HTMLElement;
+      if (box.scrollWidth > box.clientWidth) {
+        box.tabIndex = 0;
+      } else {
+        box.removeAttribute('tabindex');
+      }
+    }
+  });
+  for (const box of boxes) observer.observe(box);
+}

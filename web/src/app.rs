@@ -1,0 +1,156 @@
+//! A widget as an eframe app, and what eframe has to leave to the page around it.
+
+use std::any::Any;
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+
+use egui::{Event, Pos2, RawInput, TouchPhase};
+use kit::palette::{self, Theme};
+use kit::scene::Tone;
+use kit::shell::Shell;
+
+/// What the app and the handle of JavaScript both hold.
+pub struct Shared {
+    /// The widget.
+    pub shell: RefCell<Shell>,
+    /// egui's context while the widget runs.
+    pub ctx: RefCell<Option<egui::Context>>,
+    /// Light or dark.
+    pub theme: Cell<Theme>,
+    /// Frames laid out since the start.
+    pub frames: Cell<u32>,
+    /// Whether the pointer went down on something that drags.
+    pub dragging: Cell<bool>,
+    /// A touch was cancelled, of which egui hears nothing.
+    pub cancelled: Cell<bool>,
+}
+
+impl Shared {
+    /// Whether something that drags lies there; no while the widget is busy with itself.
+    pub fn drags_at(&self, pos: Pos2) -> bool {
+        self.shell
+            .try_borrow()
+            .is_ok_and(|shell| shell.drags_at(pos))
+    }
+
+    /// Asks for a frame, where the widget runs.
+    pub fn request_repaint(&self) {
+        if let Some(ctx) = &*self.ctx.borrow() {
+            ctx.request_repaint();
+        }
+    }
+}
+
+/// The adapter.
+pub struct WidgetApp {
+    shared: Rc<Shared>,
+}
+
+impl WidgetApp {
+    /// Prepares egui for the widget.
+    pub fn new(ctx: &egui::Context, shared: Rc<Shared>) -> Self {
+        crate::fonts::install(ctx);
+        // Following the system's theme would fight with the page's own.
+        apply_theme(ctx, shared.theme.get());
+        shared.shell.borrow_mut().set_theme(shared.theme.get());
+        *shared.ctx.borrow_mut() = Some(ctx.clone());
+        Self { shared }
+    }
+}
+
+/// Tells egui's own widgets the theme.
+pub fn apply_theme(ctx: &egui::Context, theme: Theme) {
+    ctx.set_theme(match theme {
+        Theme::Light => egui::Theme::Light,
+        Theme::Dark => egui::Theme::Dark,
+    });
+}
+
+impl eframe::App for WidgetApp {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.shared.frames.set(self.shared.frames.get() + 1);
+        self.shared.shell.borrow_mut().ui(ui);
+    }
+
+    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
+        let [red, green, blue] = palette::tone(self.shared.theme.get(), Tone::Paper);
+        egui::Color32::from_rgb(red, green, blue).to_normalized_gamma_f32()
+    }
+
+    fn raw_input_hook(&mut self, _ctx: &egui::Context, input: &mut RawInput) {
+        input.events.retain(|event| !scrolls_page(event));
+        let touch_cancelled = input.events.iter().any(|event| {
+            matches!(
+                event,
+                Event::Touch {
+                    phase: TouchPhase::Cancel,
+                    ..
+                }
+            )
+        });
+        if touch_cancelled || self.shared.cancelled.take() {
+            release_pointer(input);
+            self.shared.dragging.set(false);
+            self.shared.shell.borrow_mut().release_drags();
+        }
+    }
+
+    fn persist_egui_memory(&self) -> bool {
+        false
+    }
+
+    fn as_any_mut(&mut self) -> Option<&mut dyn Any> {
+        Some(self)
+    }
+}
+
+/// The plain wheel belongs to the page; with ctrl it zooms the view.
+fn scrolls_page(event: &Event) -> bool {
+    matches!(event, Event::MouseWheel { modifiers, .. } if !modifiers.ctrl && !modifiers.command)
+}
+
+/// Far outside, so that the release is a click on nothing.
+fn release_pointer(input: &mut RawInput) {
+    let nowhere = Pos2::new(-1e4, -1e4);
+    input.events.push(Event::PointerMoved(nowhere));
+    input.events.push(Event::PointerButton {
+        pos: nowhere,
+        button: egui::PointerButton::Primary,
+        pressed: false,
+        modifiers: egui::Modifiers::NONE,
+    });
+    input.events.push(Event::PointerGone);
+}
+
+/// eframe's options for a widget on a page of other things.
+pub fn web_options(shared: &Rc<Shared>) -> eframe::WebOptions {
+    let shared = Rc::clone(shared);
+    eframe::WebOptions {
+        should_stop_propagation: Box::new(|_| false),
+        should_prevent_default: Box::new(move |event| is_ours_alone(&shared, event)),
+        dithering: false,
+        ..Default::default()
+    }
+}
+
+/// Whether the browser should do nothing by itself on that event.
+fn is_ours_alone(shared: &Shared, event: &Event) -> bool {
+    match event {
+        // Zooms our view, not the page.
+        Event::Zoom(_) | Event::Rotate(_) => true,
+        Event::MouseWheel { modifiers, .. } => modifiers.ctrl || modifiers.command,
+        // A touch scrolls the page unless it starts on something that drags.
+        Event::PointerButton { pos, pressed, .. } => {
+            let was_dragging = shared.dragging.get();
+            shared.dragging.set(*pressed && shared.drags_at(*pos));
+            was_dragging || shared.dragging.get()
+        }
+        Event::PointerMoved(_) | Event::PointerGone | Event::Touch { .. } => shared.dragging.get(),
+        Event::Text(_) | Event::Paste(_) | Event::Copy | Event::Cut => {
+            let ctx = shared.ctx.borrow();
+            ctx.as_ref()
+                .is_some_and(egui::Context::egui_wants_keyboard_input)
+        }
+        _ => false,
+    }
+}

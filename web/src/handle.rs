@@ -1,0 +1,358 @@
+//! What JavaScript sees: one object per widget, text and JSON in and out.
+
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+
+use kit::model::{Activity, Motion};
+use kit::palette::Theme;
+use kit::param::{ParamError, ParamSpec};
+use kit::shell::Shell;
+use serde_json::{Value, json};
+use wasm_bindgen::prelude::*;
+
+use crate::app::{Shared, WidgetApp, apply_theme, web_options};
+use crate::{registry, schema, state};
+
+/// The schema of every widget, a JSON array.
+#[wasm_bindgen(js_name = widgetSchemas)]
+pub fn widget_schemas() -> String {
+    let widgets = registry::WIDGETS.map(|(_, maker)| schema::widget(maker().model()));
+    Value::from(widgets.to_vec()).to_string()
+}
+
+/// State and results of a widget after each of its presets, a line of JSON each.
+///
+/// # Errors
+/// Where there is no such widget.
+#[wasm_bindgen(js_name = afterEachPreset)]
+pub fn after_each_preset(name: &str) -> Result<String, JsError> {
+    let found = registry::WIDGETS.iter().find(|(known, _)| *known == name);
+    let (_, maker) = found.ok_or_else(|| unknown_widget(name))?;
+    Ok(state::after_each_preset(*maker))
+}
+
+/// The digest of a lap's poses and metrics, 16 hexadecimal digits as `slam2d lap` prints it.
+#[wasm_bindgen(js_name = lapDigest)]
+pub fn lap_digest(seed: u32, noise_factor: f64) -> String {
+    format!("{:016x}", ch16_slam2d::slam::lap_digest(seed, noise_factor))
+}
+
+/// Reads a text as the core does: `[true, value as text]` or `[false, what was wrong]`.
+///
+/// # Errors
+/// Where there is no such widget or parameter.
+#[wasm_bindgen(js_name = parseParam)]
+pub fn parse_param(name: &str, id: &str, text: &str) -> Result<String, JsError> {
+    let shell = registry::make(name).ok_or_else(|| unknown_widget(name))?;
+    let mut params = shell.model().spec().params.iter();
+    let spec = params
+        .find(|param| param.id == id)
+        .ok_or_else(|| JsError::new("no such parameter"))?;
+    let answer = match spec.parse(text) {
+        Ok(value) => json!([true, spec.to_text(value)]),
+        Err(problem) => json!([false, problem.to_string()]),
+    };
+    Ok(answer.to_string())
+}
+
+fn unknown_widget(name: &str) -> JsError {
+    let known = registry::names();
+    JsError::new(&format!("there is no widget `{name}`; there are {known}"))
+}
+
+/// A widget, running on a canvas or not.
+#[wasm_bindgen]
+pub struct Widget {
+    shared: Rc<Shared>,
+    runner: eframe::WebRunner,
+    /// The values that the host knows of.
+    told: RefCell<Vec<f64>>,
+}
+
+#[wasm_bindgen]
+impl Widget {
+    /// A fresh widget of that name, not running yet.
+    ///
+    /// # Errors
+    /// Where there is no such widget.
+    #[wasm_bindgen(constructor)]
+    pub fn new(name: &str) -> Result<Self, JsError> {
+        let shell = registry::make(name).ok_or_else(|| unknown_widget(name))?;
+        let told = current_values(&shell);
+        let shared = Shared {
+            shell: RefCell::new(shell),
+            ctx: RefCell::new(None),
+            theme: Cell::new(Theme::Light),
+            frames: Cell::new(0),
+            dragging: Cell::new(false),
+            cancelled: Cell::new(false),
+        };
+        Ok(Self {
+            shared: Rc::new(shared),
+            runner: eframe::WebRunner::new(),
+            told: RefCell::new(told),
+        })
+    }
+
+    /// Runs the widget on a canvas. Once per object: a stopped widget is made anew.
+    ///
+    /// # Errors
+    /// Where the browser gives no WebGL.
+    pub async fn start(&self, canvas: web_sys::HtmlCanvasElement) -> Result<(), JsValue> {
+        let shared = Rc::clone(&self.shared);
+        let create: eframe::AppCreator<'static> =
+            Box::new(move |creation| Ok(Box::new(WidgetApp::new(&creation.egui_ctx, shared))));
+        self.runner
+            .start(canvas, web_options(&self.shared), create)
+            .await
+    }
+
+    /// Stops for good and gives back what it took from the page.
+    pub fn destroy(&self) {
+        self.runner.destroy();
+        *self.shared.ctx.borrow_mut() = None;
+    }
+
+    /// Whether the code panicked; then nothing but [`Widget::panic_message`] may be called.
+    #[wasm_bindgen(js_name = hasPanicked)]
+    pub fn has_panicked(&self) -> bool {
+        self.runner.has_panicked()
+    }
+
+    /// What the panic said, with its call stack.
+    #[wasm_bindgen(js_name = panicMessage)]
+    pub fn panic_message(&self) -> Option<String> {
+        let summary = self.runner.panic_summary()?;
+        Some(format!("{}\n\n{}", summary.message(), summary.callstack()))
+    }
+
+    /// Panics on purpose, so that a host's recovery can be tested.
+    ///
+    /// # Panics
+    /// Always.
+    #[wasm_bindgen(js_name = crashForTest)]
+    pub fn crash_for_test(&self) {
+        panic!("crashed on purpose, to test the recovery");
+    }
+
+    /// The value of a parameter as a number.
+    ///
+    /// # Errors
+    /// Where the widget has no such parameter.
+    pub fn number(&self, id: &str) -> Result<f64, JsError> {
+        Ok(self.find(id)?.1)
+    }
+
+    /// The value of a parameter as a link writes it.
+    ///
+    /// # Errors
+    /// Where the widget has no such parameter.
+    pub fn text(&self, id: &str) -> Result<String, JsError> {
+        let (spec, value) = self.find(id)?;
+        Ok(spec.to_text(value))
+    }
+
+    /// Sets a parameter from what a link or an attribute says.
+    ///
+    /// # Errors
+    /// A sentence that names what would be right; the old value stands.
+    pub fn set(&self, id: &str, text: &str) -> Result<(), JsError> {
+        let (spec, _) = self.find(id)?;
+        let value = spec.parse(text)?;
+        self.shared.shell.borrow_mut().model_mut().set(id, value)?;
+        self.shared.request_repaint();
+        Ok(())
+    }
+
+    /// Presses a button or a preset.
+    ///
+    /// # Errors
+    /// Where the widget has no such button.
+    pub fn press(&self, id: &str) -> Result<(), JsError> {
+        self.shared.shell.borrow_mut().model_mut().press(id)?;
+        self.shared.request_repaint();
+        Ok(())
+    }
+
+    /// Every value as JSON, each as a link writes it.
+    pub fn values(&self) -> String {
+        state::values(self.shared.shell.borrow().model()).to_string()
+    }
+
+    /// The parameters that changed since the last call: `[["heading", "60"], …]`.
+    #[wasm_bindgen(js_name = takeChanges)]
+    pub fn take_changes(&self) -> String {
+        let shell = self.shared.shell.borrow();
+        let now = current_values(&shell);
+        let told = self.told.replace(now);
+        let changed: Vec<_> = shell
+            .model()
+            .values()
+            .iter()
+            .zip(&told)
+            .filter(|((_, value), old)| value.to_bits() != old.to_bits())
+            .map(|((spec, value), _)| json!([spec.id, spec.to_text(value)]))
+            .collect();
+        Value::Array(changed).to_string()
+    }
+
+    /// The result as JSON: standing, verdict, sentence, facts.
+    pub fn outcome(&self) -> String {
+        state::outcome(&self.shared.shell.borrow().model().outcome()).to_string()
+    }
+
+    /// A text that stands for the picture.
+    pub fn summary(&self) -> String {
+        self.shared.shell.borrow().model().summary()
+    }
+
+    /// The timeline as JSON, or `null`.
+    pub fn timeline(&self) -> String {
+        state::timeline(self.shared.shell.borrow().model().timeline().as_ref()).to_string()
+    }
+
+    /// Every table as JSON with its CSV.
+    pub fn tables(&self) -> String {
+        state::tables(&self.shared.shell.borrow().model().tables()).to_string()
+    }
+
+    /// `light` or `dark`; anything else is light.
+    #[wasm_bindgen(js_name = setTheme)]
+    pub fn set_theme(&self, name: &str) {
+        let theme = theme_of(name);
+        self.shared.theme.set(theme);
+        self.shared.shell.borrow_mut().set_theme(theme);
+        if let Some(ctx) = &*self.shared.ctx.borrow() {
+            apply_theme(ctx, theme);
+        }
+        self.shared.request_repaint();
+    }
+
+    /// Whether animations run.
+    #[wasm_bindgen(js_name = setReducedMotion)]
+    pub fn set_reduced_motion(&self, reduced: bool) {
+        self.shared.shell.borrow_mut().set_motion(if reduced {
+            Motion::Reduced
+        } else {
+            Motion::Full
+        });
+    }
+
+    /// Draws the focus ring round that control, or round none.
+    #[wasm_bindgen(js_name = setFocus)]
+    pub fn set_focus(&self, id: Option<String>) {
+        self.shared.shell.borrow_mut().set_focus(id.as_deref());
+        self.shared.request_repaint();
+    }
+
+    /// Whether something that drags lies at that point of the canvas (CSS pixels).
+    #[wasm_bindgen(js_name = dragsAt)]
+    pub fn drags_at(&self, x: f32, y: f32) -> bool {
+        self.shared.drags_at(egui::pos2(x, y))
+    }
+
+    /// Where a control stands on the canvas: left, top, width, height in CSS pixels.
+    #[wasm_bindgen(js_name = controlBox)]
+    pub fn control_box(&self, id: &str) -> Option<Vec<f32>> {
+        let rect = self.shared.shell.borrow().control_rect(id)?;
+        Some(vec![rect.left(), rect.top(), rect.width(), rect.height()])
+    }
+
+    /// Where a point of a panel (units of its axes) lies on the canvas (CSS pixels).
+    #[wasm_bindgen(js_name = panelToScreen)]
+    pub fn panel_to_screen(&self, panel: &str, x: f64, y: f64) -> Option<Vec<f32>> {
+        let shell = self.shared.shell.borrow();
+        Some(shell.panel_to_screen(panel, [x, y])?.to_vec())
+    }
+
+    /// Ends every drag, because its touch was cancelled.
+    #[wasm_bindgen(js_name = releaseDrags)]
+    pub fn release_drags(&self) {
+        self.shared.cancelled.set(true);
+        self.shared.request_repaint();
+    }
+
+    /// Whether a text field of the widget is being typed into.
+    #[wasm_bindgen(js_name = wantsKeyboard)]
+    pub fn wants_keyboard(&self) -> bool {
+        let ctx = self.shared.ctx.borrow();
+        ctx.as_ref()
+            .is_some_and(egui::Context::egui_wants_keyboard_input)
+    }
+
+    /// Height in CSS pixels that the widget needs at the width of its last frame.
+    #[wasm_bindgen(js_name = contentHeight)]
+    pub fn content_height(&self) -> f32 {
+        self.shared.shell.borrow().content_height()
+    }
+
+    /// Whether another frame is wanted: something plays, moves or is still being computed.
+    #[wasm_bindgen(js_name = wantsFrame)]
+    pub fn wants_frame(&self) -> bool {
+        let ctx = self.shared.ctx.borrow();
+        self.shared.shell.borrow().is_busy()
+            || ctx
+                .as_ref()
+                .is_some_and(egui::Context::has_requested_repaint)
+    }
+
+    /// Asks for one more frame.
+    #[wasm_bindgen(js_name = requestFrame)]
+    pub fn request_frame(&self) {
+        self.shared.request_repaint();
+    }
+
+    /// Frames laid out since the start.
+    pub fn frames(&self) -> u32 {
+        self.shared.frames.get()
+    }
+
+    /// Does all the work that fills in piece by piece: for a picture of the finished state.
+    pub fn finish(&self) {
+        let mut shell = self.shared.shell.borrow_mut();
+        while shell.model_mut().work() == Activity::Busy {}
+    }
+
+    /// The picture as SVG, for print and for pages where the widget cannot run.
+    pub fn picture(&self, width_px: f32, theme: &str) -> String {
+        self.shared
+            .shell
+            .borrow()
+            .picture_svg(width_px, theme_of(theme))
+    }
+
+    fn find(&self, id: &str) -> Result<(&'static ParamSpec, f64), ParamError> {
+        let shell = self.shared.shell.borrow();
+        let spec = shell.model().spec();
+        shell
+            .model()
+            .values()
+            .find(id)
+            .ok_or_else(|| ParamError::UnknownParam {
+                widget: spec.id,
+                id: id.to_owned(),
+                known: spec
+                    .params
+                    .iter()
+                    .map(|param| param.id)
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            })
+    }
+}
+
+fn current_values(shell: &Shell) -> Vec<f64> {
+    shell
+        .model()
+        .values()
+        .iter()
+        .map(|(_, value)| value)
+        .collect()
+}
+
+fn theme_of(name: &str) -> Theme {
+    match name {
+        "dark" => Theme::Dark,
+        _ => Theme::Light,
+    }
+}

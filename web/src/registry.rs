@@ -1,0 +1,45 @@
+//! Every widget there is, in the order of the chapter.
+
+use kit::shell::Shell;
+
+/// How a widget is made.
+pub type Maker = fn() -> Shell;
+
+/// The widgets with their names.
+pub const WIDGETS: [(&str, Maker); 4] = [
+    ("w16.1", w16_1_basin_explorer::widget),
+    ("w16.2", w16_2_full_lap::widget),
+    ("w16.3", w16_3_cost_terraces::widget),
+    ("w16.4", w16_4_control_room::widget),
+];
+
+/// A fresh widget of that name.
+#[must_use]
+pub fn make(name: &str) -> Option<Shell> {
+    let (_, maker) = WIDGETS.iter().find(|(known, _)| *known == name)?;
+    Some(maker())
+}
+
+/// The names, for messages: `w16.1, w16.2, …`.
+#[must_use]
+pub fn names() -> String {
+    WIDGETS.map(|(name, _)| name).join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_widget_is_registered_under_its_own_name() {
+        for (name, maker) in WIDGETS {
+            assert_eq!(maker().model().spec().id, name);
+        }
+    }
+
+    #[test]
+    fn an_unknown_name_gives_none() {
+        assert!(make("w16.9").is_none());
+        assert!(names().contains("w16.4"));
+    }
+}

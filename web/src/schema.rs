@@ -1,0 +1,129 @@
+//! What never changes about a widget, as JSON: title, words, parameters, buttons, presets.
+//!
+//! The native controls beside the canvas, the checks of links and attributes, the types of the
+//! custom element and the tables in the docs all come from this text.
+
+use kit::model::Model;
+use kit::param::{ParamKind, ParamSpec};
+use serde_json::{Value, json};
+
+/// The schema of one widget; needs a fresh model for the words that describe its start.
+#[must_use]
+pub fn widget(model: &dyn Model) -> Value {
+    let spec = model.spec();
+    let buttons = spec
+        .buttons
+        .iter()
+        .map(|button| json!({ "id": button.id, "label": button.label, "help": button.help }));
+    let presets = spec
+        .presets
+        .iter()
+        .map(|preset| json!({ "id": preset.id, "label": preset.label, "help": preset.help }));
+    json!({
+        "id": spec.id,
+        "title": spec.title,
+        "misconception": spec.misconception,
+        "notice": spec.notice,
+        "params": spec.params.iter().map(param).collect::<Vec<_>>(),
+        "buttons": buttons.collect::<Vec<_>>(),
+        "presets": presets.collect::<Vec<_>>(),
+        "summary": model.summary(),
+    })
+}
+
+fn param(spec: &ParamSpec) -> Value {
+    let (min, max) = spec.range();
+    let (kind, options) = match spec.kind {
+        ParamKind::Slider { .. } => ("slider", None),
+        ParamKind::Timeline { .. } => ("timeline", None),
+        ParamKind::Seed { .. } => ("seed", None),
+        ParamKind::Choice { options } => ("choice", Some(options)),
+        ParamKind::Switch => ("switch", None),
+    };
+    let options = options.unwrap_or_default().iter();
+    let options: Vec<_> = options
+        .map(|choice| json!({ "id": choice.id, "label": choice.label }))
+        .collect();
+    json!({
+        "id": spec.id,
+        "label": spec.label,
+        "unit": spec.unit,
+        "kind": kind,
+        "min": min,
+        "max": max,
+        "step": spec.step(),
+        "decimals": spec.decimals(),
+        "default": spec.default,
+        "options": options,
+        "help": spec.help,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::WIDGETS;
+    use std::collections::HashSet;
+
+    /// Names that an HTML element already has: an attribute or property of that name would break it.
+    const TAKEN: [&str; 24] = [
+        "name",
+        "id",
+        "class",
+        "style",
+        "title",
+        "hidden",
+        "slot",
+        "lang",
+        "dir",
+        "role",
+        "part",
+        "value",
+        "theme",
+        "linked",
+        "autostart",
+        "src",
+        "draggable",
+        "translate",
+        "inert",
+        "popover",
+        "nonce",
+        "width",
+        "height",
+        "children",
+    ];
+
+    #[test]
+    fn every_name_can_be_an_attribute_and_is_free() {
+        for (name, maker) in WIDGETS {
+            let mut seen = HashSet::new();
+            for param in maker().model().spec().params {
+                let id = param.id;
+                let fits = id.starts_with(|c: char| c.is_ascii_lowercase())
+                    && id.chars().all(|c| {
+                        c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_'
+                    });
+                assert!(fits, "{name}: `{id}` is no attribute name");
+                assert!(!TAKEN.contains(&id), "{name}: `{id}` has a meaning already");
+                assert!(seen.insert(id), "{name}: `{id}` is there twice");
+            }
+        }
+    }
+
+    #[test]
+    fn every_control_says_what_it_does() {
+        for (name, maker) in WIDGETS {
+            let shell = maker();
+            let schema = widget(shell.model());
+            for list in ["params", "buttons", "presets"] {
+                for item in schema[list].as_array().unwrap() {
+                    for word in ["id", "label", "help"] {
+                        let text = item[word].as_str().unwrap();
+                        assert!(!text.is_empty(), "{name}: {item} has no {word}");
+                    }
+                }
+            }
+            assert!(schema["summary"].as_str().unwrap().len() > 40, "{name}");
+        }
+    }
+}

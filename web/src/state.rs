@@ -1,0 +1,163 @@
+//! What changes about a widget, as JSON: values, outcome, timeline, tables.
+
+use kit::model::{Model, Outcome, Standing, Table, Timeline};
+use serde_json::{Map, Value, json};
+
+/// Every parameter as a link writes it: `{"heading": "60", "variant": "point-to-plane"}`.
+#[must_use]
+pub fn values(model: &dyn Model) -> Value {
+    let pairs = model.values().iter();
+    Value::Object(
+        pairs
+            .map(|(spec, value)| (spec.id.to_owned(), Value::String(spec.to_text(value))))
+            .collect(),
+    )
+}
+
+/// All of it after each preset, a line each: what native code and wasm must agree on to the bit.
+#[must_use]
+pub fn after_each_preset(maker: fn() -> kit::shell::Shell) -> String {
+    let presets = maker().model().spec().presets;
+    let mut lines = String::new();
+    for preset in presets {
+        let mut shell = maker();
+        let model = shell.model_mut();
+        let pressed = model.press(preset.id).is_ok();
+        let line = json!({
+            "preset": preset.id,
+            "pressed": pressed,
+            "values": values(model),
+            "outcome": outcome(&model.outcome()),
+            "timeline": timeline(model.timeline().as_ref()),
+            "tables": tables(&model.tables()),
+        });
+        lines.push_str(&line.to_string());
+        lines.push('\n');
+    }
+    lines
+}
+
+/// The result: a sentence, and the numbers by name.
+#[must_use]
+pub fn outcome(outcome: &Outcome) -> Value {
+    let facts: Map<_, _> = outcome
+        .facts
+        .iter()
+        // What is not finite becomes null: JSON has no word for it.
+        .map(|fact| (fact.id.to_owned(), json!(fact.value)))
+        .collect();
+    json!({
+        "standing": standing(outcome.standing),
+        "verdict": outcome.verdict,
+        "sentence": outcome.sentence,
+        "facts": facts,
+    })
+}
+
+/// The run that can be scrubbed, or null.
+#[must_use]
+pub fn timeline(timeline: Option<&Timeline>) -> Value {
+    let Some(timeline) = timeline else {
+        return Value::Null;
+    };
+    let marks: Vec<_> = timeline
+        .marks
+        .iter()
+        .map(|mark| json!({ "at": mark.at, "label": mark.label, "standing": standing(mark.standing) }))
+        .collect();
+    json!({
+        "param": timeline.param,
+        "last": timeline.last,
+        "playing": timeline.playing,
+        "marks": marks,
+    })
+}
+
+/// Every table as a CSV file: `[{"id", "title", "csv"}]`.
+#[must_use]
+pub fn tables(tables: &[Table]) -> Value {
+    let files = tables
+        .iter()
+        .map(|table| json!({ "id": table.id, "title": table.title, "csv": csv(table) }));
+    Value::Array(files.collect())
+}
+
+/// A table by RFC 4180: fields quoted where they must be, lines end in CR LF.
+fn csv(table: &Table) -> String {
+    let mut text = String::new();
+    for row in std::iter::once(&table.columns).chain(&table.rows) {
+        let fields: Vec<_> = row.iter().map(|field| csv_field(field)).collect();
+        text.push_str(&fields.join(","));
+        text.push_str("\r\n");
+    }
+    text
+}
+
+fn csv_field(field: &str) -> String {
+    if field.contains(['"', ',', '\n', '\r']) {
+        format!("\"{}\"", field.replace('"', "\"\""))
+    } else {
+        field.to_owned()
+    }
+}
+
+fn standing(standing: Standing) -> &'static str {
+    match standing {
+        Standing::Good => "good",
+        Standing::Bad => "bad",
+        Standing::Neutral => "neutral",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::WIDGETS;
+    use kit::model::TablePlace;
+
+    #[test]
+    fn values_as_text_read_back_to_the_same_state() {
+        for (name, maker) in WIDGETS {
+            let shell = maker();
+            let model = shell.model();
+            let json = values(model);
+            for (spec, value) in model.values().iter() {
+                let text = json[spec.id].as_str().unwrap();
+                assert_eq!(spec.parse(text), Ok(value), "{name}: {}", spec.id);
+            }
+        }
+    }
+
+    #[test]
+    fn every_preset_can_be_pressed() {
+        for (name, maker) in WIDGETS {
+            let lines = after_each_preset(maker);
+            assert!(lines.lines().count() >= 2, "{name} has hardly any presets");
+            assert!(!lines.contains("\"pressed\":false"), "{name}: {lines}");
+        }
+    }
+
+    #[test]
+    fn a_field_with_a_comma_or_a_quote_stays_one_field() {
+        let table = Table {
+            id: "t",
+            title: String::new(),
+            columns: vec!["x (m), world".to_owned(), "note".to_owned()],
+            rows: vec![vec!["1.5".to_owned(), "the \"quarter turn\"".to_owned()]],
+            place: TablePlace::ExportOnly,
+        };
+        let expected = "\"x (m), world\",note\r\n1.5,\"the \"\"quarter turn\"\"\"\r\n";
+        assert_eq!(csv(&table), expected);
+    }
+
+    #[test]
+    fn every_table_is_rectangular() {
+        for (name, maker) in WIDGETS {
+            for table in maker().model().tables() {
+                for row in &table.rows {
+                    assert_eq!(row.len(), table.columns.len(), "{name}: {}", table.id);
+                }
+            }
+        }
+    }
+}

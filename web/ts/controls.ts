@@ -1,0 +1,211 @@
+// The parallel DOM: every control that the canvas shows, again as a native one with name, value,
+// unit and help. It has the keyboard focus; the canvas shows the ring. A control is seen on its own
+// line under the picture while it has the focus, and by a screen reader always.
+
+import type { Timeline } from './instance';
+import type { ButtonSpec, ParamSpec, WidgetSpec } from './schema';
+import { toLabel } from './values';
+
+export interface ControlHost {
+  set(id: string, text: string): void;
+  press(id: string): void;
+  focus(id: string | undefined): void;
+}
+
+interface ParamControl {
+  spec: ParamSpec;
+  show(text: string): void;
+}
+
+export class Controls {
+  readonly element: HTMLElement;
+  readonly #params = new Map<string, ParamControl>();
+  readonly #ranges = new Map<string, HTMLInputElement>();
+  readonly #buttons = new Map<string, HTMLButtonElement>();
+  readonly #host: ControlHost;
+
+  constructor(widget: WidgetSpec, host: ControlHost) {
+    this.#host = host;
+    this.element = create('div', { class: 'controls', role: 'group' });
+    this.element.setAttribute('aria-label', `${widget.title}: controls`);
+    for (const button of widget.presets) this.element.append(this.#button(button, 'try'));
+    for (const param of widget.params) this.element.append(this.#param(param));
+    for (const button of widget.buttons) this.element.append(this.#button(button, 'do'));
+    this.element.addEventListener('focusin', (event) => {
+      host.focus((event.target as HTMLElement).dataset['control']);
+    });
+    this.element.addEventListener('focusout', (event) => {
+      const next = event.relatedTarget;
+      if (!(next instanceof Node) || !this.element.contains(next)) host.focus(undefined);
+    });
+  }
+
+  /** Shows values that changed elsewhere. */
+  show(values: Iterable<[string, string]>): void {
+    for (const [id, text] of values) this.#params.get(id)?.show(text);
+  }
+
+  /** Shows how long the run is and whether it plays. */
+  showTimeline(timeline: Timeline | null): void {
+    const play = this.#buttons.get('play');
+    if (timeline === null) return;
+    play?.setAttribute('aria-pressed', String(timeline.playing));
+    const range = this.#ranges.get(timeline.param);
+    if (range !== undefined) range.max = String(timeline.last);
+  }
+
+  #param(spec: ParamSpec): HTMLElement {
+    const row = create('div', { class: 'control' });
+    const name = create('label', { class: 'name' });
+    name.textContent = spec.label;
+    const help = create('span', { class: 'help' });
+    help.textContent = spec.help;
+    help.id = `help-${spec.id}`;
+    const [inputs, show] = this.#inputs(spec);
+    const [first] = inputs;
+    if (first !== undefined) {
+      first.id = `control-${spec.id}`;
+      name.htmlFor = first.id;
+    }
+    for (const input of inputs) {
+      input.dataset['control'] = spec.id;
+      input.setAttribute('aria-describedby', help.id);
+    }
+    row.append(name, ...inputs, unitOf(spec), help);
+    this.#params.set(spec.id, { spec, show });
+    return row;
+  }
+
+  #inputs(spec: ParamSpec): [HTMLElement[], (text: string) => void] {
+    switch (spec.kind) {
+      case 'choice': {
+        const select = create('select');
+        for (const option of spec.options) {
+          const item = create('option', { value: option.id });
+          item.textContent = option.label;
+          select.append(item);
+        }
+        select.addEventListener('change', () => this.#host.set(spec.id, select.value));
+        return [[select], (text) => (select.value = text)];
+      }
+      case 'switch': {
+        const box = create('input', { type: 'checkbox', role: 'switch' });
+        box.addEventListener('change', () => this.#host.set(spec.id, box.checked ? 'on' : 'off'));
+        return [[box], (text) => (box.checked = text === 'on')];
+      }
+      case 'seed': {
+        const field = this.#numberField(spec);
+        return [[field], (text) => showUnlessTyping(field, text)];
+      }
+      default: {
+        const range = this.#range(spec);
+        const field = this.#numberField(spec);
+        field.setAttribute('aria-label', `${spec.label}, number`);
+        const show = (text: string): void => {
+          range.value = text;
+          range.setAttribute('aria-valuetext', toLabel(spec, text));
+          showUnlessTyping(field, text);
+        };
+        return [[range, field], show];
+      }
+    }
+  }
+
+  #range(spec: ParamSpec): HTMLInputElement {
+    const { min, max } = spec;
+    // Any step: the field shows what is set elsewhere, such as fine steps, as it is.
+    const range = create('input', { type: 'range', min: `${min}`, max: `${max}`, step: 'any' });
+    range.addEventListener('input', () => {
+      const steps = Math.round((Number(range.value) - min) / spec.step);
+      this.#host.set(spec.id, tidy(min + steps * spec.step));
+    });
+    range.addEventListener('keydown', (event) => {
+      const now = Number(range.value);
+      const last = Number(range.max);
+      const step = event.shiftKey && spec.kind === 'slider' ? spec.step / 10 : spec.step;
+      const next = afterKey(event.key, now, { min, max: last, step });
+      if (next === undefined) return;
+      event.preventDefault();
+      this.#host.set(spec.id, tidy(next));
+    });
+    this.#ranges.set(spec.id, range);
+    return range;
+  }
+
+  #numberField(spec: ParamSpec): HTMLInputElement {
+    const { min, max } = spec;
+    const step = spec.kind === 'slider' ? 'any' : '1';
+    const field = create('input', { type: 'number', min: `${min}`, max: `${max}`, step });
+    field.addEventListener('change', () => this.#host.set(spec.id, field.value));
+    return field;
+  }
+
+  #button(spec: ButtonSpec, kind: 'try' | 'do'): HTMLElement {
+    const row = create('div', { class: 'control' });
+    const button = create('button', { type: 'button' });
+    button.textContent = kind === 'try' ? `Try: ${spec.label}` : spec.label;
+    button.dataset['control'] = spec.id;
+    const help = create('span', { class: 'help' });
+    help.id = `help-${kind}-${spec.id}`;
+    help.textContent = spec.help;
+    button.setAttribute('aria-describedby', help.id);
+    if (spec.id === 'play') button.setAttribute('aria-pressed', 'false');
+    button.addEventListener('click', () => this.#host.press(spec.id));
+    this.#buttons.set(spec.id, button);
+    row.append(button, help);
+    return row;
+  }
+}
+
+/** What an arrow key makes of a value; undefined for keys that are not ours. */
+function afterKey(
+  key: string,
+  now: number,
+  { min, max, step }: { min: number; max: number; step: number },
+): number | undefined {
+  const clamp = (value: number): number => Math.min(Math.max(value, min), max);
+  switch (key) {
+    case 'ArrowRight':
+    case 'ArrowUp':
+      return clamp(now + step);
+    case 'ArrowLeft':
+    case 'ArrowDown':
+      return clamp(now - step);
+    case 'PageUp':
+      return clamp(now + 10 * step);
+    case 'PageDown':
+      return clamp(now - 10 * step);
+    case 'Home':
+      return min;
+    case 'End':
+      return max;
+    default:
+      return undefined;
+  }
+}
+
+/** Ten digits: 0.1 + 0.2 is 0.3 to a reader. */
+function tidy(value: number): string {
+  return String(Number(value.toPrecision(10)));
+}
+
+function showUnlessTyping(field: HTMLInputElement, text: string): void {
+  // A value that comes in while the reader types would take the text away.
+  const root = field.getRootNode() as ShadowRoot | Document;
+  if (root.activeElement !== field || Number(field.value) !== Number(text)) field.value = text;
+}
+
+function unitOf(spec: ParamSpec): HTMLElement {
+  const unit = create('span', { class: 'unit' });
+  unit.textContent = spec.unit;
+  return unit;
+}
+
+export function create<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Record<string, string> = {},
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  return element;
+}

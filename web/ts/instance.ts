@@ -1,0 +1,112 @@
+// One instance of the module: its own memory, its own widget. What happens in it, a panic too,
+// stays in it. An instance is never repaired: it is thrown away and made anew from its values.
+
+import { createGlue, type Widget } from '../pkg/glue.js';
+import { FrameGate } from './frames';
+import { loadModule } from './module';
+
+export interface Outcome {
+  standing: 'good' | 'bad' | 'neutral';
+  verdict: string;
+  sentence: string;
+  facts: Record<string, number | null>;
+}
+
+export interface TimelineMark {
+  at: number;
+  label: string;
+  standing: Outcome['standing'];
+}
+
+export interface Timeline {
+  param: string;
+  last: number;
+  playing: boolean;
+  marks: TimelineMark[];
+}
+
+export interface CsvFile {
+  id: string;
+  title: string;
+  csv: string;
+}
+
+/** The widget's code panicked: the instance is of no more use. */
+export class CrashError extends Error {
+  constructor(readonly details: string) {
+    super('the widget stopped because of an error in its program');
+  }
+}
+
+export class Instance {
+  readonly frames: FrameGate;
+  readonly #widget: Widget;
+
+  private constructor(widget: Widget, frames: FrameGate) {
+    this.#widget = widget;
+    this.frames = frames;
+  }
+
+  static async create(name: string, progress: (share: number) => void): Promise<Instance> {
+    const module = await loadModule(progress);
+    const frames = new FrameGate();
+    const glue = createGlue(frames);
+    await glue({ module_or_path: module });
+    return new Instance(new glue.Widget(name), frames);
+  }
+
+  /** Calls into the widget; a panic comes out as a CrashError. */
+  use<T>(call: (widget: Widget) => T): T {
+    try {
+      return call(this.#widget);
+    } catch (error) {
+      throw this.crash() ?? error;
+    }
+  }
+
+  /** The panic, if there was one. */
+  crash(): CrashError | undefined {
+    try {
+      if (!this.#widget.hasPanicked()) return undefined;
+      return new CrashError(this.#widget.panicMessage() ?? '');
+    } catch (error) {
+      return new CrashError(String(error));
+    }
+  }
+
+  async start(canvas: HTMLCanvasElement): Promise<void> {
+    try {
+      await this.#widget.start(canvas);
+    } catch (error) {
+      throw this.crash() ?? error;
+    }
+  }
+
+  /** Gives everything back: listeners, frames, memory. */
+  dispose(): void {
+    this.frames.close();
+    try {
+      this.#widget.destroy();
+      this.#widget.free();
+    } catch {
+      // After a panic nothing can be freed; the collector takes the whole memory.
+    }
+  }
+
+  outcome(): Outcome {
+    return JSON.parse(this.use((widget) => widget.outcome())) as Outcome;
+  }
+
+  timeline(): Timeline | null {
+    return JSON.parse(this.use((widget) => widget.timeline())) as Timeline | null;
+  }
+
+  tables(): CsvFile[] {
+    return JSON.parse(this.use((widget) => widget.tables())) as CsvFile[];
+  }
+
+  /** Parameters that changed since the last call, as `[id, text]`. */
+  takeChanges(): [string, string][] {
+    return JSON.parse(this.use((widget) => widget.takeChanges())) as [string, string][];
+  }
+}

@@ -1,0 +1,15 @@
+// Defines <slam-widget>. Loading this module is all that a page has to do.
+
+import { SlamWidget } from './element';
+import './properties';
+import { installLinks } from './page-links';
+
+export type { Outcome, Timeline, TimelineMark, CsvFile } from './instance';
+export type { Value } from './values';
+export { SlamWidget };
+export { widgets } from './schema';
+
+if (customElements.get('slam-widget') === undefined) {
+  customElements.define('slam-widget', SlamWidget);
+  installLinks();
+}

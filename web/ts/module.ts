@@ -1,0 +1,85 @@
+// The one compiled module of the page. Every widget is an instance of it with a memory of its own.
+
+/** Set by the build: the wasm file's name holds a hash of its content. */
+declare const WASM_FILE: string;
+
+export class LoadError extends Error {}
+
+type Listener = (share: number) => void;
+
+let compiled: Promise<WebAssembly.Module> | undefined;
+let share = 0;
+const listeners = new Set<Listener>();
+
+/** Compiles the module, once for the page; `progress` hears the share that has arrived, 0 to 1. */
+export function loadModule(progress: Listener): Promise<WebAssembly.Module> {
+  listeners.add(progress);
+  progress(share);
+  compiled ??= compile().catch((error: unknown) => {
+    // The next attempt starts afresh.
+    compiled = undefined;
+    share = 0;
+    throw error;
+  });
+  return compiled.finally(() => listeners.delete(progress));
+}
+
+async function compile(): Promise<WebAssembly.Module> {
+  if (typeof WebAssembly !== 'object') {
+    throw new LoadError('this browser has no WebAssembly');
+  }
+  const url = new URL(WASM_FILE, import.meta.url);
+  let response: Response;
+  try {
+    response = await fetch(url);
+  } catch {
+    throw new LoadError('the program could not be fetched');
+  }
+  if (!response.ok || response.body === null) {
+    throw new LoadError(`the program could not be fetched (${response.status})`);
+  }
+  const counted = new Response(count(response.body, expectedLength(response)), {
+    // Whatever type the server gave: what is no wasm is refused by its first bytes.
+    headers: { 'Content-Type': 'application/wasm' },
+  });
+  try {
+    return await WebAssembly.compileStreaming(counted);
+  } catch (error) {
+    if (error instanceof EvalError || String(error).includes('Content Security Policy')) {
+      throw new LoadError("the page's security policy lacks 'wasm-unsafe-eval'");
+    }
+    throw new LoadError('the program arrived incomplete or is too new for this browser');
+  }
+}
+
+function expectedLength(response: Response): number {
+  // With a content encoding the header counts other bytes than those that arrive here.
+  const encoded = response.headers.get('Content-Encoding') !== null;
+  return encoded ? 0 : Number(response.headers.get('Content-Length') ?? 0);
+}
+
+function count(body: ReadableStream<Uint8Array>, expected: number): ReadableStream<Uint8Array> {
+  let arrived = 0;
+  return body.pipeThrough(
+    new TransformStream<Uint8Array, Uint8Array>({
+      transform(chunk, controller) {
+        arrived += chunk.byteLength;
+        share = expected > 0 ? Math.min(arrived / expected, 1) : arrived / (arrived + 1e6);
+        for (const listener of listeners) listener(share);
+        controller.enqueue(chunk);
+      },
+    }),
+  );
+}
+
+let webgl2: boolean | undefined;
+
+/** Whether the browser draws with WebGL 2; asked once, the context is given back. */
+export function hasWebGl2(): boolean {
+  if (webgl2 === undefined) {
+    const context = document.createElement('canvas').getContext('webgl2');
+    webgl2 = context !== null;
+    context?.getExtension('WEBGL_lose_context')?.loseContext();
+  }
+  return webgl2;
+}

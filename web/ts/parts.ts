@@ -1,0 +1,52 @@
+// The element's shadow tree: picture and canvas above, notes, controls and tools below.
+
+import { create } from './controls';
+import { copyText } from './export';
+import { STYLE } from './style';
+
+/** What stands in the shadow of the element. */
+export interface Parts {
+  frame: HTMLElement;
+  stage: HTMLElement;
+  picture: HTMLImageElement;
+  progress: HTMLProgressElement;
+  note: HTMLElement;
+  bar: HTMLElement;
+  summary: HTMLElement;
+  live: HTMLElement;
+  status: HTMLElement;
+}
+
+/** Puts the empty parts into a shadow root. */
+export function build(shadow: ShadowRoot): Parts {
+  const style = create('style');
+  style.textContent = STYLE;
+  const frame = create('section', { class: 'frame', part: 'frame' });
+  const stage = create('div', { class: 'stage' });
+  const picture = create('img', { class: 'picture', alt: '' });
+  const progress = create('progress', { max: '1', hidden: '', 'aria-label': 'Loading the widget' });
+  const note = create('div', { class: 'note-box', role: 'status' });
+  const bar = create('div', { class: 'bar' });
+  const summary = create('p', { class: 'hidden' });
+  const live = create('p', { class: 'hidden', role: 'status', 'aria-live': 'polite' });
+  const status = create('span', { class: 'status', role: 'status' });
+  note.classList.add('note');
+  stage.append(picture, progress);
+  frame.append(stage, note, summary, bar, live);
+  shadow.append(style, frame);
+  return { frame, stage, picture, progress, note, bar, summary, live, status };
+}
+
+/** What a reader can copy into a report of a crash. */
+export function crashDetails(text: string): HTMLElement {
+  const element = create('details');
+  const heading = create('summary');
+  heading.textContent = 'Details for a report';
+  const body = create('pre');
+  body.textContent = text;
+  const copy = create('button', { type: 'button' });
+  copy.textContent = 'Copy the details';
+  copy.addEventListener('click', () => void copyText(text));
+  element.append(heading, body, copy);
+  return element;
+}

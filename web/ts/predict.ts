@@ -1,0 +1,182 @@
+// <slam-predict>: the reader commits to an answer, and only then sees what happens.
+//
+//   <slam-predict widget="w16.1" state="heading=60&dx=0&dy=0">
+//     <p>Where does registration end from 60° off?</p>
+//     <ul><li data-choice="right minimum">at the truth</li>
+//         <li data-choice="quarter turn">a quarter turn off</li></ul>
+//     <p data-why>The walls of an almost square room fit after a quarter turn, too.</p>
+//   </slam-predict>
+//
+// A choice is compared with the verdict of the widget. With `fact="rmse_m" tolerance="0.02"` the
+// reader types a number, which is compared with that fact of the outcome.
+
+// @ts-expect-error: stays a file of its own beside this one.
+import './slam-widget.js';
+import type { SlamWidget } from './element';
+import type { Outcome } from './instance';
+
+interface Verdict {
+  prediction: string;
+  result: string;
+  correct: boolean;
+  /** Prediction minus result, for numbers. */
+  gap: number | null;
+}
+
+const STYLE = `
+:host { display: block; border: 1px solid currentColor; border-radius: 6px; padding: 0.75rem 1rem; }
+fieldset { border: 0; margin: 0.5rem 0; padding: 0; }
+label { display: block; padding: 0.25rem 0; }
+label:has(input[type='radio']) { display: flex; gap: 0.5rem; }
+input[type='radio'] { flex: none; width: 1.25rem; height: 1.25rem; margin: 0.2em 0 0; }
+input[type='number'], button { font: inherit; min-height: 2rem; padding: 0.1rem 0.6rem; }
+.answer:not(:empty) { border-top: 1px solid currentColor; margin-top: 0.75rem; }
+`;
+
+export class SlamPredict extends HTMLElement {
+  #form: HTMLFormElement | undefined;
+  #answer: HTMLElement | undefined;
+
+  connectedCallback(): void {
+    if (this.#form !== undefined) return;
+    const shadow = this.attachShadow({ mode: 'open' });
+    const style = document.createElement('style');
+    style.textContent = STYLE;
+    this.#form = this.#makeForm();
+    this.#answer = document.createElement('div');
+    this.#answer.className = 'answer';
+    this.#answer.setAttribute('role', 'status');
+    // The explanation belongs below the answer, wherever the page wrote it.
+    const why = document.createElement('slot');
+    why.name = 'why';
+    shadow.append(style, document.createElement('slot'), this.#form, this.#answer, why);
+    for (const hidden of this.querySelectorAll<HTMLElement>('[data-why]')) {
+      hidden.slot = 'why';
+      hidden.hidden = true;
+    }
+    for (const list of this.querySelectorAll<HTMLElement>(':has(> [data-choice])')) list.hidden = true;
+  }
+
+  #makeForm(): HTMLFormElement {
+    const form = document.createElement('form');
+    const fields = document.createElement('fieldset');
+    const legend = document.createElement('legend');
+    legend.textContent = 'Your prediction';
+    fields.append(legend);
+    const fact = this.getAttribute('fact');
+    if (fact === null) {
+      const choices = this.querySelectorAll<HTMLElement>('[data-choice]');
+      for (const choice of choices) fields.append(radio(choice));
+    } else {
+      fields.append(numberField(this.getAttribute('unit') ?? ''));
+    }
+    const commit = document.createElement('button');
+    commit.textContent = 'Commit and see';
+    form.append(fields, commit);
+    form.addEventListener('submit', (event) => {
+      event.preventDefault();
+      const prediction = new FormData(form).get('prediction');
+      if (typeof prediction === 'string' && prediction !== '') void this.#check(prediction);
+    });
+    return form;
+  }
+
+  async #check(prediction: string): Promise<void> {
+    const name = this.getAttribute('widget') ?? '';
+    const widget = document.querySelector<SlamWidget>(`slam-widget[name="${CSS.escape(name)}"]`);
+    if (widget === null || this.#form === undefined) {
+      this.#say([`There is no widget ${name} on this page.`]);
+      return;
+    }
+    for (const field of this.#form.querySelectorAll('input, button')) {
+      field.setAttribute('disabled', '');
+    }
+    await widget.press('defaults');
+    for (const [id, text] of new URLSearchParams(this.getAttribute('state') ?? '')) widget.set(id, text);
+    const { outcome } = widget;
+    if (outcome === undefined) {
+      this.#say(['The widget cannot run here.']);
+      return;
+    }
+    const verdict = this.#judge(prediction, outcome);
+    this.#show(verdict, outcome, widget);
+    this.dispatchEvent(
+      new CustomEvent('slam-predict', { detail: { widget: name, ...verdict }, bubbles: true, composed: true }),
+    );
+  }
+
+  #judge(prediction: string, outcome: Outcome): Verdict {
+    const fact = this.getAttribute('fact');
+    if (fact === null) {
+      return { prediction, result: outcome.verdict, correct: prediction === outcome.verdict, gap: null };
+    }
+    const result = outcome.facts[fact] ?? NaN;
+    const gap = Number(prediction) - result;
+    const tolerance = Number(this.getAttribute('tolerance') ?? 0);
+    return { prediction, result: String(result), correct: Math.abs(gap) <= tolerance, gap };
+  }
+
+  #show(verdict: Verdict, outcome: Outcome, widget: SlamWidget): void {
+    const unit = this.getAttribute('unit') ?? '';
+    const gap = verdict.gap === null ? '' : ` You are off by ${Math.abs(verdict.gap).toPrecision(2)}${unit}.`;
+    const judged = verdict.correct ? 'You were right.' : `You said ${verdict.prediction}${unit}.${gap}`;
+    this.#say([`${judged} ${outcome.sentence}`]);
+    for (const why of this.querySelectorAll<HTMLElement>('[data-why]')) why.hidden = false;
+    // The widget may stand pages away: the reader decides when to leave the answer.
+    const show = button('Show it in the widget', () => widget.scrollIntoView({ block: 'start' }));
+    const again = button('Predict again', () => this.#reset());
+    this.#answer?.append(show, ' ', again);
+  }
+
+  #reset(): void {
+    this.#answer?.replaceChildren();
+    this.#form?.reset();
+    for (const field of this.#form?.querySelectorAll('input, button') ?? []) {
+      field.removeAttribute('disabled');
+    }
+    for (const why of this.querySelectorAll<HTMLElement>('[data-why]')) why.hidden = true;
+  }
+
+  #say(sentences: string[]): void {
+    this.#answer?.replaceChildren(
+      ...sentences.map((sentence) => {
+        const line = document.createElement('p');
+        line.textContent = sentence;
+        return line;
+      }),
+    );
+  }
+}
+
+function button(text: string, press: () => void): HTMLButtonElement {
+  const made = document.createElement('button');
+  made.textContent = text;
+  made.addEventListener('click', press);
+  return made;
+}
+
+function radio(choice: HTMLElement): HTMLLabelElement {
+  const label = document.createElement('label');
+  const input = document.createElement('input');
+  input.type = 'radio';
+  input.name = 'prediction';
+  input.required = true;
+  input.value = choice.dataset['choice'] ?? '';
+  label.append(input, ` ${choice.textContent ?? ''}`);
+  return label;
+}
+
+function numberField(unit: string): HTMLLabelElement {
+  const label = document.createElement('label');
+  const input = document.createElement('input');
+  input.type = 'number';
+  input.name = 'prediction';
+  input.step = 'any';
+  input.required = true;
+  label.append('A number: ', input, ` ${unit}`);
+  return label;
+}
+
+if (customElements.get('slam-predict') === undefined) {
+  customElements.define('slam-predict', SlamPredict);
+}

@@ -1,0 +1,54 @@
+// What the widgets say of themselves, written by the core's own code at build time.
+
+import schemas from '../pkg/schema.json';
+
+export interface OptionSpec {
+  id: string;
+  label: string;
+}
+
+export interface ParamSpec {
+  id: string;
+  label: string;
+  unit: string;
+  kind: 'slider' | 'timeline' | 'seed' | 'choice' | 'switch';
+  min: number;
+  max: number;
+  step: number;
+  decimals: number;
+  default: number;
+  options: OptionSpec[];
+  help: string;
+}
+
+export interface ButtonSpec {
+  id: string;
+  label: string;
+  help: string;
+}
+
+export interface WidgetSpec {
+  id: string;
+  title: string;
+  misconception: string;
+  notice: string[];
+  params: ParamSpec[];
+  buttons: ButtonSpec[];
+  presets: ButtonSpec[];
+  summary: string;
+}
+
+export const widgets = schemas as WidgetSpec[];
+
+export function findWidget(name: string): WidgetSpec | undefined {
+  return widgets.find((widget) => widget.id === name);
+}
+
+export function findParam(widget: WidgetSpec, id: string): ParamSpec | undefined {
+  return widget.params.find((param) => param.id === id);
+}
+
+/** Every parameter name of every widget, each once. */
+export function allParamIds(): string[] {
+  return [...new Set(widgets.flatMap((widget) => widget.params.map((param) => param.id)))];
+}

@@ -1,0 +1,47 @@
+// The element's own look. Everything inside is laid out here; the page sets width and margins.
+
+export const STYLE = `
+:host { display: block; position: relative; color-scheme: light; }
+:host([hidden]) { display: none; }
+.frame { --paper: #fff; --ink: #1f2937; --soft: #4b5563; --line: #d7dbe1; --accent: #1d4ed8;
+  background: var(--paper); color: var(--ink); font: 0.875rem/1.4 system-ui, sans-serif;
+  border: 1px solid var(--line); border-radius: 6px; }
+.frame.dark { --paper: #14181f; --ink: #e5e7eb; --soft: #b6bdc9; --line: #374151; --accent: #93c5fd;
+  color-scheme: dark; }
+.stage { position: relative; overflow: hidden; border-radius: 6px 6px 0 0; min-height: 12rem; }
+.stage.live { min-height: 0; }
+.picture { display: block; width: 100%; height: auto; }
+canvas { display: block; width: 100%; touch-action: pan-y pinch-zoom; outline: none; }
+.stage.waiting canvas { position: absolute; inset: 0; visibility: hidden; }
+.stage.live .picture { display: none; }
+progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; accent-color: var(--accent); }
+.note { margin: 0; padding: 0.5rem 0.75rem; border-top: 1px solid var(--line); overflow-wrap: anywhere; }
+.note pre { max-height: 10rem; overflow: auto; white-space: pre-wrap; font-size: 0.75rem; }
+.note:empty { display: none; }
+.bar { position: relative; background: var(--paper);
+  border-top: 1px solid var(--line); border-radius: 0 0 6px 6px; min-height: 2.75rem; }
+/* While a control has the focus its line stays on the screen, whatever part of the picture is. */
+.bar:has(.control:focus-within) { position: sticky; bottom: 0; z-index: 1; }
+.tools { display: flex; flex-wrap: wrap; gap: 0.5rem; padding: 0.4rem 0.75rem; align-items: center; }
+button, select, input[type='number'] { font: inherit; color: inherit; background: var(--paper);
+  border: 1px solid var(--soft); border-radius: 4px; min-height: 1.75rem; padding: 0.1rem 0.6rem; }
+button { cursor: pointer; }
+button:hover { border-color: var(--accent); }
+:focus-visible { outline: 3px solid var(--accent); outline-offset: 2px; }
+input[type='number'] { width: 8rem; }
+input[type='range'] { flex: 1 1 8rem; min-width: 6rem; min-height: 1.75rem; accent-color: var(--accent); }
+input[type='checkbox'] { width: 1.5rem; height: 1.5rem; accent-color: var(--accent); }
+.control:not(:focus-within), .hidden { position: absolute; width: 1px; height: 1px; margin: -1px;
+  overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
+.control:focus-within { display: flex; flex-wrap: wrap; gap: 0.25rem 0.75rem; align-items: center;
+  padding: 0.4rem 0.75rem; border-bottom: 1px solid var(--line); }
+.name { font-weight: 600; }
+.help { flex-basis: 100%; color: var(--soft); font-size: 0.8125rem; }
+.status { color: var(--soft); }
+@media print {
+  .bar, progress, .note { display: none; }
+  .stage canvas { display: none; }
+  .stage .picture, .stage.live .picture { display: block; }
+  .frame { --paper: #fff; --ink: #1f2937; border-color: #999; break-inside: avoid; }
+}
+`;

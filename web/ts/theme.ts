@@ -1,0 +1,65 @@
+// Light or dark, as the page around has it, and every change of it.
+
+export type Theme = 'light' | 'dark';
+
+/** Class names by which frequent page generators say it: Tailwind, Quarto, mdBook, Sphinx. */
+const DARK_CLASSES = ['dark', 'dark-mode', 'quarto-dark', 'theme-dark', 'coal', 'navy', 'ayu'];
+const LIGHT_CLASSES = ['light', 'light-mode', 'quarto-light', 'theme-light', 'rust'];
+const ATTRIBUTES = ['data-theme', 'data-bs-theme', 'data-color-mode', 'data-md-color-scheme'];
+
+const systemDark = globalThis.matchMedia?.('(prefers-color-scheme: dark)');
+const listeners = new Set<() => void>();
+
+/** The theme at an element: its own, else that of the nearest ancestor, else the system's. */
+export function themeOf(element: Element): Theme {
+  for (let at: Element | null = element; at !== null; at = parentOf(at)) {
+    const said = at === element ? named(at.getAttribute('theme')) : saidBy(at);
+    if (said !== undefined) return said;
+  }
+  return systemDark?.matches === true ? 'dark' : 'light';
+}
+
+/** Calls back whenever the theme may have changed; returns what ends it. */
+export function watchTheme(callback: () => void): () => void {
+  if (listeners.size === 0) {
+    for (const root of [document.documentElement, document.body]) {
+      observer.observe(root, { attributes: true, attributeFilter: ['class', ...ATTRIBUTES] });
+    }
+    systemDark?.addEventListener('change', tell);
+  }
+  listeners.add(callback);
+  return () => {
+    listeners.delete(callback);
+    if (listeners.size > 0) return;
+    observer.disconnect();
+    systemDark?.removeEventListener('change', tell);
+  };
+}
+
+function tell(): void {
+  for (const listener of listeners) listener();
+}
+
+const observer: MutationObserver =
+  typeof MutationObserver === 'function' ? new MutationObserver(tell) : (undefined as never);
+
+function parentOf(element: Element): Element | null {
+  if (element.parentElement !== null) return element.parentElement;
+  const root = element.getRootNode();
+  return root instanceof ShadowRoot ? root.host : null;
+}
+
+function saidBy(element: Element): Theme | undefined {
+  for (const attribute of ATTRIBUTES) {
+    const said = named(element.getAttribute(attribute));
+    if (said !== undefined) return said;
+  }
+  if (DARK_CLASSES.some((name) => element.classList.contains(name))) return 'dark';
+  if (LIGHT_CLASSES.some((name) => element.classList.contains(name))) return 'light';
+  return undefined;
+}
+
+function named(word: string | null): Theme | undefined {
+  if (word === 'dark' || word === 'slate') return 'dark';
+  return word === 'light' || word === 'default' ? 'light' : undefined;
+}

@@ -1,0 +1,72 @@
+// Values as links, attributes and messages write them. The rules are those of the core
+// (`ParamSpec::parse`), so that a link can be checked before any wasm is loaded; a test compares
+// the two on the same texts.
+
+import type { ParamSpec } from './schema';
+
+/** A value for JavaScript: a number, the name of an option, or on and off. */
+export type Value = number | string | boolean;
+
+export type Parsed = { ok: true; text: string } | { ok: false; problem: string };
+
+const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
+
+/** Checks what a reader, a link or a program gave. */
+export function parseValue(spec: ParamSpec, given: unknown): Parsed {
+  const text = String(given).trim();
+  const refuse = (expected: string): Parsed => ({
+    ok: false,
+    problem: `\`${spec.id}\` takes ${expected}, not \`${shorten(text)}\``,
+  });
+  switch (spec.kind) {
+    case 'choice':
+      return spec.options.some((option) => option.id === text)
+        ? { ok: true, text }
+        : refuse(spec.options.map((option) => option.id).join(' or '));
+    case 'switch':
+      if (['on', '1', 'true'].includes(text)) return { ok: true, text: 'on' };
+      if (['off', '0', 'false'].includes(text)) return { ok: true, text: 'off' };
+      return refuse('on or off');
+    default: {
+      if (!NUMBER.test(text)) return refuse('a number');
+      const value = Number(text);
+      const slack = 1e-6 * spec.step;
+      if (!Number.isFinite(value) || value < spec.min - slack || value > spec.max + slack) {
+        return refuse(`${spec.min} to ${spec.max}`);
+      }
+      const kept = Math.min(Math.max(value, spec.min), spec.max);
+      return { ok: true, text: String(spec.kind === 'slider' ? kept : Math.round(kept)) };
+    }
+  }
+}
+
+/** The default as a link writes it. */
+export function defaultText(spec: ParamSpec): string {
+  if (spec.kind === 'choice') return spec.options[spec.default]?.id ?? '';
+  if (spec.kind === 'switch') return spec.default === 0 ? 'off' : 'on';
+  return String(spec.default);
+}
+
+/** The value for JavaScript. */
+export function toValue(spec: ParamSpec, text: string): Value {
+  if (spec.kind === 'choice') return text;
+  if (spec.kind === 'switch') return text === 'on';
+  return Number(text);
+}
+
+/** The value in words, with its unit: `60°`, `0.70 m`. */
+export function toLabel(spec: ParamSpec, text: string): string {
+  if (spec.kind === 'choice') {
+    return spec.options.find((option) => option.id === text)?.label ?? text;
+  }
+  if (spec.kind === 'switch') return text;
+  const value = Number(text);
+  const onStep = Math.abs(value - Number(value.toFixed(spec.decimals))) < 1e-9;
+  const number = value.toFixed(onStep ? spec.decimals : spec.decimals + 1);
+  return spec.unit === '' || spec.unit === '°' ? number + spec.unit : `${number} ${spec.unit}`;
+}
+
+/** Texts from outside are shown, but not at any length. */
+export function shorten(text: string): string {
+  return text.length > 60 ? `${text.slice(0, 60)}…` : text;
+}
