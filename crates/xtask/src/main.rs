@@ -1,0 +1,45 @@
+//! The project's commands: `cargo xtask serve`, `build`, `test`, `bench`.
+//!
+//! Everything that a step needs is checked first and installed where cargo, npm or apt can do it;
+//! what cannot be installed is named in one line, with the way to get it. Tools go to
+//! `target/tools`, never to the user's home.
+
+mod args;
+mod bench;
+mod http;
+mod run;
+mod serve;
+mod site;
+mod suite;
+mod tools;
+
+use std::process::ExitCode;
+
+use args::Command;
+
+fn main() -> ExitCode {
+    let command = match args::parse(std::env::args().skip(1)) {
+        Ok(command) => command,
+        Err(message) => {
+            eprintln!("{message}\n\n{}", args::USAGE);
+            return ExitCode::from(2);
+        }
+    };
+    let result = match command {
+        Command::Help => {
+            println!("{}", args::USAGE);
+            Ok(())
+        }
+        Command::Build => site::build(site::Speed::SmallAndFast),
+        Command::Serve { port, speed } => serve::serve(port, speed),
+        Command::Test => suite::test(),
+        Command::Bench { json } => bench::bench(json.as_deref()),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("\nxtask: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! The finished site: wasm, element, page, pictures, all in `dist/`.
+
+use std::path::Path;
+
+use crate::run::{Failure, program, root, step};
+use crate::tools;
+
+/// What the compiler aims at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Speed {
+    /// Profile `web-dev`: compiles in a fraction of the time, for trying things out.
+    QuickToCompile,
+    /// Profile `web`: what is published.
+    SmallAndFast,
+}
+
+impl Speed {
+    fn profile(self) -> &'static str {
+        match self {
+            Self::QuickToCompile => "web-dev",
+            Self::SmallAndFast => "web",
+        }
+    }
+}
+
+/// Builds `dist/`.
+///
+/// # Errors
+/// The first step that fails, in one line.
+pub fn build(speed: Speed) -> Result<(), Failure> {
+    tools::ensure_build_tools()?;
+    compile_wasm(speed)?;
+    let dist = root().join("dist");
+    step(
+        "Bundling the element and drawing the static pictures",
+        program("node")
+            .arg("web/build.mjs")
+            .arg(&dist)
+            .arg(speed.profile()),
+    )?;
+    step(
+        "Rendering the page",
+        program("node").arg("web/page/build.mjs").arg(&dist),
+    )?;
+    step(
+        "Adding still pictures for readers without script",
+        program("node").arg("web/fallback.mjs").arg(&dist),
+    )?;
+    report(&dist);
+    Ok(())
+}
+
+fn compile_wasm(speed: Speed) -> Result<(), Failure> {
+    // `no-modules`: one function that holds the whole glue, so that the element can make as many
+    // instances as there are widgets. No wasm-opt: see web/Cargo.toml.
+    step(
+        "Compiling the widgets to WebAssembly (the first time takes minutes)",
+        program("wasm-pack")
+            .args(["build", "web", "--target", "no-modules", "--no-opt"])
+            .args(["--no-pack", "--mode", "no-install"])
+            .args(["--out-dir", "pkg", "--out-name", "slam_web"])
+            .args(["--profile", speed.profile()])
+            .env("PATH", tools::path_with_tools()),
+    )
+}
+
+fn report(dist: &Path) {
+    let shown = dist.strip_prefix(root()).unwrap_or(dist);
+    println!("The site is in {}/", shown.display());
+}

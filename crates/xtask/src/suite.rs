@@ -1,0 +1,75 @@
+//! `cargo xtask test`: every check there is, cheapest first.
+
+use std::path::PathBuf;
+use std::{fs, io};
+
+use crate::bench;
+use crate::run::{Failure, cargo, program, root, show};
+use crate::site::{self, Speed};
+use crate::tools;
+
+/// Runs every check and stops at the first that fails.
+///
+/// # Errors
+/// The check that failed.
+pub fn test() -> Result<(), Failure> {
+    show("Format", cargo().args(["fmt", "--check"]))?;
+    show(
+        "Lints",
+        cargo().args(["clippy", "--all-targets", "--quiet", "--", "-D", "warnings"]),
+    )?;
+    show("Native tests", cargo().args(["test", "--quiet"]))?;
+    bench::check_counts()?;
+    // Before minutes of compiling for the web.
+    let chromium = tools::ensure_chromium()?;
+    site::build(Speed::SmallAndFast)?;
+    let web = root().join("web");
+    show(
+        "Types of the element",
+        program(tools::npm())
+            .args(["run", "--silent", "check"])
+            .current_dir(web),
+    )?;
+    show(
+        "WebAssembly tests in Node",
+        program("node")
+            .arg("--test")
+            .args(test_files("tests/wasm")?),
+    )?;
+    let browser = root().join("tests/browser");
+    tools::ensure_node_modules(&browser)?;
+    show(
+        "Browser tests",
+        program("node")
+            // The files share one machine: frame counts mean nothing when others run beside them.
+            .args(["--test", "--test-concurrency=1"])
+            .args(test_files("tests/browser")?)
+            .env("CHROMIUM", chromium),
+    )
+}
+
+/// The test files of a folder by name: what `node --test` makes of a folder differs by version.
+fn test_files(folder: &str) -> Result<Vec<PathBuf>, Failure> {
+    let failed = |error: io::Error| Failure::new(format!("{folder}: {error}"));
+    let mut files = Vec::new();
+    for entry in fs::read_dir(root().join(folder)).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if path.to_string_lossy().ends_with(".test.mjs") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_test_files_are_found_and_the_helpers_left_out() {
+        let files = test_files("tests/browser").unwrap();
+        assert!(files.iter().any(|file| file.ends_with("manners.test.mjs")));
+        assert!(!files.iter().any(|file| file.ends_with("harness.mjs")));
+    }
+}

@@ -1,0 +1,187 @@
+//! What the build needs besides cargo: found, or installed, or named in one line.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::run::{Failure, cargo, program, root, step};
+
+/// Pinned: the glue that wasm-bindgen writes belongs to the crate of the very same version.
+const WASM_BINDGEN: &str = "0.2.130";
+const WASM_PACK: &str = "0.15.1";
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// Makes sure that everything that builds the site is there.
+///
+/// # Errors
+/// One line that says what is missing and how to get it.
+pub fn ensure_build_tools() -> Result<(), Failure> {
+    ensure_target()?;
+    ensure_node()?;
+    // Both install without their lock file: that of wasm-bindgen does not resolve any more.
+    ensure_cargo_tool("wasm-bindgen", "wasm-bindgen-cli", WASM_BINDGEN)?;
+    ensure_cargo_tool("wasm-pack", "wasm-pack", WASM_PACK)?;
+    ensure_node_modules(&root().join("web"))
+}
+
+/// The PATH with our own tools first, so that wasm-pack finds our wasm-bindgen.
+pub fn path_with_tools() -> std::ffi::OsString {
+    let inherited = env::var_os("PATH").unwrap_or_default();
+    let paths = std::iter::once(tools().join("bin")).chain(env::split_paths(&inherited));
+    env::join_paths(paths).unwrap_or(inherited)
+}
+
+/// Where cargo puts the tools.
+pub fn tools() -> PathBuf {
+    root().join("target/tools")
+}
+
+fn ensure_target() -> Result<(), Failure> {
+    let sysroot = output(program("rustc").args(["--print", "sysroot"]))
+        .ok_or_else(|| Failure::new("rustc is missing: install it from https://rustup.rs"))?;
+    if Path::new(&sysroot)
+        .join("lib/rustlib")
+        .join(TARGET)
+        .exists()
+    {
+        return Ok(());
+    }
+    step(
+        "Installing the wasm target",
+        program("rustup").args(["target", "add", TARGET]),
+    )
+    .map_err(|failure| {
+        Failure::new(format!(
+            "{failure}\nThe Rust target {TARGET} is missing: `rustup target add {TARGET}`"
+        ))
+    })
+}
+
+fn ensure_node() -> Result<(), Failure> {
+    let version = output(program("node").arg("--version")).ok_or_else(|| {
+        Failure::new("Node is missing: install version 20 or later from https://nodejs.org")
+    })?;
+    let major = version
+        .trim_start_matches('v')
+        .split('.')
+        .next()
+        .and_then(|major| major.parse::<u32>().ok());
+    match major {
+        Some(major) if major >= 20 => Ok(()),
+        _ => Err(Failure::new(format!(
+            "Node {version} is too old: install version 20 or later from https://nodejs.org"
+        ))),
+    }
+}
+
+fn ensure_cargo_tool(name: &str, package: &str, version: &str) -> Result<(), Failure> {
+    let installed = tools()
+        .join("bin")
+        .join(format!("{name}{}", env::consts::EXE_SUFFIX));
+    for candidate in [installed.as_path(), Path::new(name)] {
+        if has_version(candidate, version) {
+            return Ok(());
+        }
+    }
+    step(
+        &format!("Installing {name} {version} into target/tools (once, about two minutes)"),
+        cargo()
+            .args(["install", package, "--version", version, "--root"])
+            .arg(tools())
+            // It runs for seconds and compiles for minutes: less optimization pays.
+            .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1")
+            .env("CARGO_PROFILE_RELEASE_LTO", "off")
+            .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16")
+            .env_remove("CARGO_TARGET_DIR"),
+    )
+}
+
+fn has_version(tool: &Path, version: &str) -> bool {
+    output(program(tool).arg("--version"))
+        .is_some_and(|line| line.split_whitespace().any(|word| word == version))
+}
+
+/// `npm ci` where the lock file is newer than what it installed.
+pub fn ensure_node_modules(folder: &Path) -> Result<(), Failure> {
+    let modified = |path: PathBuf| fs::metadata(path).and_then(|meta| meta.modified()).ok();
+    let wanted = modified(folder.join("package-lock.json"));
+    let installed = modified(folder.join("node_modules/.package-lock.json"));
+    if installed.is_some() && installed >= wanted {
+        return Ok(());
+    }
+    let name = folder.strip_prefix(root()).unwrap_or(folder);
+    step(
+        &format!("Installing the npm packages of {}", name.display()),
+        program(npm())
+            .args(["ci", "--no-audit", "--no-fund"])
+            .current_dir(folder),
+    )
+}
+
+/// npm is a script on Windows, which must be named in full.
+pub fn npm() -> &'static str {
+    if cfg!(windows) { "npm.cmd" } else { "npm" }
+}
+
+/// A Chromium for the browser tests; installed through apt-get as root on Debian.
+///
+/// # Errors
+/// One line on how to get it.
+pub fn ensure_chromium() -> Result<PathBuf, Failure> {
+    if let Some(path) = find_chromium() {
+        return Ok(path);
+    }
+    let is_root = output(program("id").arg("-u")).as_deref() == Some("0");
+    if is_root && output(program("apt-get").arg("--version")).is_some() {
+        step(
+            "Updating the package lists",
+            program("apt-get").arg("update"),
+        )?;
+        step(
+            "Installing Chromium (apt-get, once)",
+            program("apt-get").args([
+                "install",
+                "--yes",
+                "--no-install-recommends",
+                "chromium",
+                "fonts-dejavu-core",
+            ]),
+        )?;
+        if let Some(path) = find_chromium() {
+            return Ok(path);
+        }
+    }
+    Err(Failure::new(
+        "the browser tests need Chromium: `sudo apt-get install chromium`, \
+         or set CHROMIUM to the path of a Chromium or Chrome",
+    ))
+}
+
+fn find_chromium() -> Option<PathBuf> {
+    if let Some(path) = env::var_os("CHROMIUM").map(PathBuf::from) {
+        return path.exists().then_some(path);
+    }
+    let names = [
+        "chromium",
+        "chromium-browser",
+        "google-chrome-stable",
+        "google-chrome",
+    ];
+    let inherited = env::var_os("PATH").unwrap_or_default();
+    let on_path = env::split_paths(&inherited)
+        .flat_map(|folder| names.map(|name| folder.join(name)))
+        .find(|path| path.is_file());
+    let in_applications = || {
+        let path = "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome";
+        Some(PathBuf::from(path)).filter(|path| path.exists())
+    };
+    on_path.or_else(in_applications)
+}
+
+/// The trimmed standard output of a program that succeeds.
+fn output(command: &mut Command) -> Option<String> {
+    let output = command.output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| text.trim().to_owned())
+}
