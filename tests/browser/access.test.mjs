@@ -1,0 +1,202 @@
+// For everyone: the native controls beside the canvas, by keyboard alone and for a screen reader.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, describe, it } from 'node:test';
+import * as h from './harness.mjs';
+
+const AXE = readFileSync(new URL('./node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
+
+let browser;
+before(async () => (browser = await h.launch()));
+after(() => browser.close());
+
+async function on(name, test, options) {
+  const body = `<main><h1>A page</h1><slam-widget name="${name}"></slam-widget></main>`;
+  const server = await h.serve({ pages: { '/t.html': h.bare(body) } });
+  const tab = await h.open(browser, `${server.url}/t.html`, options);
+  try {
+    await h.ready(tab);
+    await test(tab);
+    assert.deepEqual(tab.troubles, []);
+  } finally {
+    await tab.context().close();
+    await server.close();
+  }
+}
+
+const value = (tab, id) => tab.evaluate((name) => document.querySelector('slam-widget').get(name), id);
+const focused = (tab) =>
+  tab.evaluate(() => {
+    const active = document.activeElement?.shadowRoot?.activeElement;
+    if (!(active instanceof HTMLElement)) return null;
+    const box = active.getBoundingClientRect();
+    return {
+      control: active.dataset.control ?? null,
+      tag: active.tagName.toLowerCase(),
+      type: active.getAttribute('type'),
+      seen: box.width > 8 && box.height > 8 && box.bottom <= innerHeight + 1 && box.top >= -1,
+    };
+  });
+
+/** Whether the control on the canvas that stands for the focused one can be seen. */
+function ringInSight(tab, control) {
+  return tab.evaluate((id) => {
+    const widget = document.querySelector('slam-widget');
+    const [, top, , height] = widget.controlBox(id);
+    const canvas = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
+    const bar = widget.shadowRoot.querySelector('.bar').getBoundingClientRect();
+    return canvas.top + top >= -1 && canvas.top + top + height <= bar.top + 1;
+  }, control);
+}
+
+for (const widget of h.schema) {
+  describe(widget.id, () => {
+    it('gives every control to the keyboard, in reading order and in sight', async () => {
+      await on(widget.id, async (tab) => {
+        const stops = [];
+        for (let presses = 0; presses < 150; presses += 1) {
+          await tab.keyboard.press('Tab');
+          const stop = await focused(tab);
+          if (stop === null) break;
+          assert.ok(stop.seen, `${JSON.stringify(stop)} is out of sight`);
+          if (stop.control !== null) assert.ok(await ringInSight(tab, stop.control), `the ring of ${stop.control} is out of sight`);
+          stops.push(stop.control);
+        }
+        const order = [...new Set(stops.filter((control) => control !== null))];
+        const ids = (list) => list.map((item) => item.id);
+        const expected = [...ids(widget.presets), ...ids(widget.params), ...ids(widget.buttons)];
+        assert.deepEqual(order, expected);
+      });
+    });
+
+    it('changes every parameter by keys alone, with fine steps under Shift', async () => {
+      await on(widget.id, async (tab) => {
+        for (const param of widget.params) {
+          // The extremes of other parameters may leave a run without a single step.
+          await tab.evaluate(() => document.querySelector('slam-widget').press('defaults'));
+          const control = tab.locator(`slam-widget #control-${param.id}`);
+          await control.focus();
+          const before = await value(tab, param.id);
+          if (param.kind === 'switch') {
+            await tab.keyboard.press('Space');
+            assert.equal(await value(tab, param.id), !before, param.id);
+          } else if (param.kind === 'choice') {
+            const other = param.options.find((option) => option.id !== before);
+            await control.selectOption(other.id);
+            assert.equal(await value(tab, param.id), other.id);
+          } else if (param.kind === 'seed') {
+            await control.fill('11');
+            await tab.keyboard.press('Enter');
+            assert.equal(await value(tab, param.id), 11);
+          } else {
+            await tab.keyboard.press('Home');
+            assert.equal(await value(tab, param.id), param.min, `${param.id} at its start`);
+            await tab.keyboard.press('ArrowRight');
+            const stepped = await value(tab, param.id);
+            assert.ok(Math.abs(stepped - param.min - param.step) < 1e-9, `${param.id}: ${stepped}`);
+            if (param.kind === 'slider') {
+              await tab.keyboard.press('Shift+ArrowRight');
+              const fine = (await value(tab, param.id)) - stepped;
+              assert.ok(Math.abs(fine - param.step / 10) < 1e-9, `${param.id}: fine step ${fine}`);
+            }
+          }
+        }
+      });
+    });
+
+    it('presses every button and preset by keys', async () => {
+      await on(widget.id, async (tab) => {
+        for (const button of [...widget.presets, ...widget.buttons]) {
+          const control = tab.locator(`slam-widget button[data-control="${button.id}"]`);
+          await control.focus();
+          await tab.keyboard.press('Enter');
+          assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').state), 'running');
+        }
+        await tab.locator('slam-widget button[data-control="defaults"]').press('Enter');
+        const state = await tab.evaluate(() => document.querySelector('slam-widget').query);
+        assert.equal(state, `?w=${widget.id.slice(1)}`);
+      });
+    });
+
+    it('names every control with role, value and unit in the accessibility tree', async () => {
+      await on(widget.id, async (tab) => {
+        const session = await tab.context().newCDPSession(tab);
+        const { nodes } = await session.send('Accessibility.getFullAXTree');
+        const named = nodes
+          .filter((node) => !node.ignored)
+          .map((node) => ({
+            role: node.role?.value,
+            name: node.name?.value ?? '',
+            description: node.description?.value ?? '',
+          }));
+        const find = (role, name) => named.find((node) => node.role === role && node.name === name);
+        for (const param of widget.params) {
+          const role = { slider: 'slider', timeline: 'slider', seed: 'spinbutton', choice: 'combobox', switch: 'switch' }[param.kind];
+          const node = find(role, param.label);
+          assert.ok(node, `no ${role} named ${param.label}`);
+          assert.equal(node.description, param.help);
+          if (param.kind !== 'slider') continue;
+          const said = await tab.locator(`slam-widget #control-${param.id}`).getAttribute('aria-valuetext');
+          assert.ok(said.endsWith(param.unit) && /\d/.test(said), `${param.label}: ${said}`);
+        }
+        for (const button of widget.buttons) assert.ok(find('button', button.label), button.label);
+        assert.ok(find('image', widget.title), 'the canvas has no name');
+      });
+    });
+
+    it('satisfies axe-core in light and dark', async () => {
+      for (const colorScheme of ['light', 'dark']) {
+        await on(widget.id, async (tab) => {
+          await tab.evaluate(AXE);
+          const { violations } = await tab.evaluate(() =>
+            axe.run(document, { runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'] }));
+          assert.deepEqual(violations.map((found) => [found.id, found.nodes.map((node) => node.html)]), []);
+        }, { colorScheme });
+      }
+    });
+
+    it('says outcomes in words once they settle, and sums the picture up', async () => {
+      await on(widget.id, async (tab) => {
+        const live = tab.locator('slam-widget [aria-live="polite"]');
+        assert.equal(await live.textContent(), '');
+        const preset = widget.presets[0].id;
+        await tab.evaluate((id) => document.querySelector('slam-widget').press(id), preset);
+        const slider = widget.params.find((param) => param.kind === 'slider');
+        await tab.evaluate(([id, to]) => document.querySelector('slam-widget').set(id, to), [slider.id, slider.max]);
+        await tab.waitForFunction(() => {
+          const widget = document.querySelector('slam-widget');
+          const said = widget.shadowRoot.querySelector('[aria-live="polite"]').textContent;
+          return said.length > 15 && said === widget.outcome.sentence;
+        });
+        const summary = await tab.evaluate(() => document.querySelector('slam-widget').summary);
+        assert.ok(summary.length > 40);
+      });
+    });
+  });
+}
+
+describe('the focus ring', () => {
+  it('shows on the canvas at the control that has the focus, and goes with it', async () => {
+    await on('w16.2', async (tab) => {
+      const look = () => tab.evaluate(async () => {
+        const widget = document.querySelector('slam-widget');
+        const picture = await widget.snapshot();
+        const copy = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
+        copy.drawImage(picture, 0, 0);
+        const { data } = copy.getImageData(0, 0, picture.width, picture.height);
+        let sum = 0;
+        for (let at = 0; at < data.length; at += 4) sum = (sum * 31 + data[at] + data[at + 1] * 7) >>> 0;
+        return sum;
+      });
+      await h.moreFrames(tab, 3);
+      const plain = await look();
+      await tab.locator('slam-widget #control-noise').focus();
+      await h.moreFrames(tab, 2);
+      assert.notEqual(await look(), plain);
+      await tab.evaluate(() => document.activeElement.blur());
+      await h.moreFrames(tab, 2);
+      assert.equal(await look(), plain);
+    });
+  });
+});

@@ -1,0 +1,169 @@
+// The companion chapter itself: dist/index.html as a reader gets it.
+
+import assert from 'node:assert/strict';
+import { createRequire } from 'node:module';
+import { readFileSync } from 'node:fs';
+import { after, before, describe, it } from 'node:test';
+import * as h from './harness.mjs';
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+/** What the chapter adds to the element's policy are fonts, its own. */
+const POLICY = `${h.STRICT_POLICY}; font-src 'self'`;
+
+let browser;
+let server;
+before(async () => {
+  browser = await h.launch();
+  server = await h.serve({ policy: POLICY });
+});
+after(async () => {
+  await browser.close();
+  await server.close();
+});
+
+async function reading(test, options = {}) {
+  const tab = await h.open(browser, `${server.url}/index.html`, options);
+  try {
+    await test(tab);
+    assert.deepEqual(tab.troubles, []);
+  } finally {
+    await tab.context().close();
+  }
+}
+
+const widget = (id) => `slam-widget[name="${id}"]`;
+/** Runs in the page. */
+const isSeen = (css) => {
+  const { top, bottom } = document.querySelector(css).getBoundingClientRect();
+  return bottom > 0 && top < innerHeight;
+};
+const background = (tab) => tab.evaluate(() => getComputedStyle(document.body).backgroundColor);
+
+describe('the chapter', () => {
+  it('holds the four widgets and starts each when it comes near', async () => {
+    await reading(async (tab) => {
+      for (const id of ['w16.1', 'w16.3', 'w16.2', 'w16.4']) {
+        await tab.locator(widget(id)).scrollIntoViewIfNeeded();
+        await h.ready(tab, widget(id));
+      }
+    });
+  });
+
+  it('has every formula as MathML and as text, and none left as source', async () => {
+    await reading(async (tab) => {
+      const counts = await tab.evaluate(() => ({
+        sources: document.querySelectorAll('tex').length,
+        drawn: document.querySelectorAll('.katex-html').length,
+        read: document.querySelectorAll('.katex-mathml math').length,
+        failed: document.querySelectorAll('.katex-error').length,
+      }));
+      assert.deepEqual({ ...counts, drawn: 0, read: 0 }, { sources: 0, drawn: 0, read: 0, failed: 0 });
+      assert.ok(counts.drawn > 30);
+      assert.equal(counts.read, counts.drawn);
+      await tab.evaluate(() => document.fonts.ready);
+      assert.ok(await tab.evaluate(() => document.fonts.check('16px KaTeX_Main')));
+    });
+  });
+
+  it('sets a widget by a number in the text and brings it into view', async () => {
+    await reading(async (tab) => {
+      await tab.locator('a.slam-link', { hasText: '75°' }).click();
+      await tab.waitForFunction((css) => document.querySelector(css).get('heading') === 75, widget('w16.1'));
+      await h.ready(tab, widget('w16.1'));
+      const verdict = await tab.evaluate((css) => document.querySelector(css).outcome.verdict, widget('w16.1'));
+      assert.equal(verdict, 'quarter turn');
+    });
+  });
+
+  it('asks first and answers afterwards', async () => {
+    await reading(async (tab) => {
+      const question = tab.locator('#exercise-5 slam-predict');
+      const why = question.locator('[data-why]');
+      await question.scrollIntoViewIfNeeded();
+      await tab.waitForFunction(() => customElements.get('slam-predict') !== undefined);
+      assert.equal(await why.isVisible(), false);
+      await question.locator('input').fill('0.2');
+      await question.locator('button').first().click();
+      await why.waitFor({ state: 'visible' });
+      const said = await question.evaluate((element) => element.shadowRoot.querySelector('.answer').textContent);
+      assert.match(said, /You said 0.2 m/);
+      assert.ok(await tab.evaluate(isSeen, '#exercise-5 slam-predict'), 'the page stays at the answer');
+      await question.getByRole('button', { name: 'Show it in the widget' }).click();
+      await tab.waitForFunction(isSeen, widget('w16.1'));
+    });
+  });
+
+  for (const [choice, shade] of [
+    ['light', 'rgb(255, 255, 255)'],
+    ['dark', 'rgb(20, 24, 31)'],
+  ]) {
+    it(`goes ${choice} by its button, against the system, and its widgets follow`, async () => {
+      const colorScheme = choice === 'light' ? 'dark' : 'light';
+      await reading(async (tab) => {
+        assert.notEqual(await background(tab), shade);
+        await tab.click(`[data-theme-choice="${choice}"]`);
+        assert.equal(await background(tab), shade);
+        await tab.locator(widget('w16.1')).scrollIntoViewIfNeeded();
+        await h.ready(tab, widget('w16.1'));
+        const isDark = await tab.evaluate(
+          (css) => document.querySelector(css).shadowRoot.querySelector('.frame').classList.contains('dark'),
+          widget('w16.1'),
+        );
+        assert.equal(isDark, choice === 'dark');
+        await tab.click('[data-theme-choice="auto"]');
+        assert.notEqual(await background(tab), shade);
+      }, { colorScheme });
+    });
+  }
+
+  it('fits a phone: nothing is wider than the screen', async () => {
+    await reading(async (tab) => {
+      for (const id of ['w16.1', 'w16.3', 'w16.2', 'w16.4']) {
+        await tab.locator(widget(id)).scrollIntoViewIfNeeded();
+        await h.ready(tab, widget(id));
+      }
+      const width = await tab.evaluate(() => document.documentElement.scrollWidth);
+      assert.equal(width, 390);
+      const tables = await tab.evaluate(() =>
+        [...document.querySelectorAll('.scroll')].map((box) => box.scrollWidth - box.clientWidth));
+      assert.deepEqual(tables, [0, 0, 0], 'no table has to be scrolled to be read');
+    }, { viewport: { width: 390, height: 800 } });
+  });
+
+  for (const colorScheme of ['light', 'dark']) {
+    it(`breaks no rule of accessibility that axe knows, ${colorScheme}`, async () => {
+      const tab = await h.open(browser, `${server.url}/index.html`, { colorScheme, bypassCSP: true });
+      await tab.locator('#exercise-5 slam-predict').scrollIntoViewIfNeeded();
+      await tab.addScriptTag({ content: AXE });
+      const { violations } = await tab.evaluate(() => axe.run(document));
+      const found = violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`);
+      assert.deepEqual(found, []);
+      await tab.context().close();
+    });
+  }
+
+  it('shows pictures and says why where scripts do not run', async () => {
+    await reading(async (tab) => {
+      for (const id of ['w16.1', 'w16.2', 'w16.3', 'w16.4']) {
+        const picture = tab.locator(`${widget(id)} img`);
+        await picture.scrollIntoViewIfNeeded();
+        assert.ok(await picture.evaluate((image) => image.decode().then(() => image.naturalWidth > 100)), id);
+        assert.ok((await picture.getAttribute('alt')).length > 80, id);
+      }
+      const drawn = await (await tab.request.get(`${server.url}/pictures/w16.1-light.svg`)).text();
+      assert.doesNotMatch(drawn, /% done/, 'the picture is of a finished map');
+      assert.equal(await tab.locator('.theme').isVisible(), false);
+      assert.match(await tab.locator(widget('w16.1')).innerText(), /needs JavaScript/);
+    }, { javaScriptEnabled: false });
+  });
+
+  it('prints its text and pictures without the buttons', async () => {
+    await reading(async (tab) => {
+      await tab.emulateMedia({ media: 'print' });
+      assert.equal(await tab.locator('.theme').isVisible(), false);
+      assert.equal(await tab.locator('.contents').isVisible(), false);
+      assert.ok(await tab.locator('h1').isVisible());
+      assert.ok((await tab.pdf({ format: 'A4' })).length > 100_000);
+    });
+  });
+});

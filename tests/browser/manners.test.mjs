@@ -1,0 +1,360 @@
+// What stock eframe does to a page around it, and this element must not. Each test fails on
+// eframe's own defaults (measured on 0.37).
+
+import assert from 'node:assert/strict';
+import { after, before, describe, it } from 'node:test';
+import * as h from './harness.mjs';
+
+const TALL = '<p style="height: 3000px">Much text.</p>';
+const ONE = '<slam-widget name="w16.1"></slam-widget>';
+/** A widget that computes everything at once: w16.1 goes on filling its map for a while. */
+const CALM = '<slam-widget name="w16.2"></slam-widget>';
+
+let browser;
+before(async () => (browser = await h.launch()));
+after(() => browser.close());
+
+async function on(body, test, { options, head, troubles = true } = {}) {
+  const server = await h.serve({ pages: { '/t.html': h.bare(body, head) } });
+  const tab = await h.open(browser, `${server.url}/t.html`, options);
+  try {
+    await test(tab);
+    if (troubles) assert.deepEqual(tab.troubles, []);
+  } finally {
+    await tab.context().close();
+    await server.close();
+  }
+}
+
+const canvasBox = (tab) => tab.locator('slam-widget canvas').first().boundingBox();
+const scrolled = (tab) => tab.evaluate(() => window.scrollY);
+
+describe('focus', () => {
+  it('stays where it was while a widget starts, without so much as a blur', async () => {
+    const head = '<script>window.blurs = 0;</script>';
+    const body = `<input id="typing" autofocus onblur="blurs++">${ONE}`;
+    await on(body, async (tab) => {
+      await tab.focus('#typing');
+      await h.ready(tab);
+      assert.equal(await tab.evaluate(() => document.activeElement.id), 'typing');
+      assert.equal(await tab.evaluate(() => blurs), 0);
+    }, { head });
+  });
+
+  it('passes through with Tab, in both directions', async () => {
+    await on(`<button id="before">a</button>${ONE}<button id="after">b</button>`, async (tab) => {
+      await h.ready(tab);
+      await tab.focus('#before');
+      const stops = await tabUntil(tab, 'Tab', 'after');
+      assert.ok(stops > 5, `${stops} stops within the widget`);
+      assert.equal(await tabUntil(tab, 'Shift+Tab', 'before'), stops);
+    });
+  });
+
+  it('leaves the canvas with Tab after a click into it', async () => {
+    await on(`${ONE}<button id="after">b</button>`, async (tab) => {
+      await h.ready(tab);
+      const box = await canvasBox(tab);
+      await tab.mouse.click(box.x + box.width / 2, box.y + 5);
+      await tabUntil(tab, 'Tab', 'after');
+    });
+  });
+
+  it('leaves the arrow keys and the space bar to the page after a click', async () => {
+    await on(ONE + TALL, async (tab) => {
+      await h.ready(tab);
+      const box = await canvasBox(tab);
+      await tab.mouse.click(box.x + box.width / 2, box.y + 5);
+      await tab.keyboard.press('Space');
+      await tab.waitForFunction(() => window.scrollY > 50);
+    });
+  });
+});
+
+describe('scrolling', () => {
+  it('by wheel over the canvas moves the page', async () => {
+    await on(ONE + TALL, async (tab) => {
+      await h.ready(tab);
+      const box = await canvasBox(tab);
+      await tab.mouse.move(box.x + box.width / 3, box.y + 200);
+      await tab.mouse.wheel(0, 300);
+      await tab.waitForFunction(() => window.scrollY > 200);
+    });
+  });
+
+  it('with ctrl held zooms the view and leaves the page', async () => {
+    await on(ONE + TALL, async (tab) => {
+      await h.ready(tab);
+      const prevented = await tab.evaluate(() => {
+        const { shadowRoot } = document.querySelector('slam-widget');
+        const event = new WheelEvent('wheel', { deltaY: -50, ctrlKey: true, cancelable: true, bubbles: true });
+        shadowRoot.querySelector('canvas').dispatchEvent(event);
+        return event.defaultPrevented;
+      });
+      assert.ok(prevented);
+      assert.equal(await scrolled(tab), 0);
+    });
+  });
+
+  it('by touch over the canvas moves the page', async () => {
+    await on(ONE + TALL, async (tab) => {
+      await h.ready(tab);
+      const [x, y] = await restingSpot(tab);
+      await swipe(tab, [x, y], [x, y - 250]);
+      await tab.waitForFunction(() => window.scrollY > 100);
+    }, { options: { hasTouch: true } });
+  });
+});
+
+describe('touch', () => {
+  it('that starts on something that drags drags it, and the page stays', async () => {
+    await on(ONE + TALL, async (tab) => {
+      await h.ready(tab);
+      const [x, y] = await draggingSpot(tab);
+      const before = await tab.evaluate(() => document.querySelector('slam-widget').query);
+      await swipe(tab, [x, y], [x + 60, y - 60]);
+      await tab.waitForFunction((old) => document.querySelector('slam-widget').query !== old, before);
+      assert.equal(await scrolled(tab), 0);
+    }, { options: { hasTouch: true } });
+  });
+
+  it('that is cancelled leaves no drag behind', async () => {
+    await on(ONE + TALL, async (tab) => {
+      await h.ready(tab);
+      const [x, y] = await draggingSpot(tab);
+      const session = await tab.context().newCDPSession(tab);
+      const touch = (type, points) =>
+        session.send('Input.dispatchTouchEvent', { type, touchPoints: points });
+      await touch('touchStart', [{ x, y }]);
+      await touch('touchMove', [{ x: x + 15, y }]);
+      await touch('touchCancel', []);
+      await h.moreFrames(tab, 3);
+      const before = await tab.evaluate(() => document.querySelector('slam-widget').query);
+      await tab.mouse.move(x + 90, y + 40, { steps: 4 });
+      await h.moreFrames(tab, 3);
+      assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').query), before);
+    }, { options: { hasTouch: true } });
+  });
+});
+
+describe('frames', () => {
+  it('are not drawn, nor even asked for, while nothing changes', async () => {
+    await on(CALM, async (tab) => {
+      await h.ready(tab);
+      await quiet(tab);
+      const drawn = await tab.evaluate(() => document.querySelector('slam-widget').frames);
+      assert.equal(await h.countFrames(tab, 1500), 0);
+      assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').frames), drawn);
+    });
+  });
+
+  it('are drawn while something plays, and stop when it is scrolled out of view', async () => {
+    await on(CALM + TALL, async (tab) => {
+      await h.ready(tab);
+      await quiet(tab);
+      await tab.evaluate(() => document.querySelector('slam-widget').press('play'));
+      const before = await tab.evaluate(() => document.querySelector('slam-widget').frames);
+      await tab.waitForFunction(
+        (old) => document.querySelector('slam-widget').frames > old + 5, before);
+      // Out of view, but near enough to go on living.
+      await tab.evaluate(() => {
+        const { height } = document.querySelector('slam-widget').getBoundingClientRect();
+        window.scrollTo(0, height + 100);
+      });
+      await quiet(tab);
+      const there = await tab.evaluate(() => document.querySelector('slam-widget').frames);
+      assert.equal(await h.countFrames(tab, 1000), 0);
+      assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').frames), there);
+    });
+  });
+});
+
+describe('contexts', () => {
+  it('are given back far away: twenty widgets on a page all run when they are seen', async () => {
+    const many = Array.from({ length: 20 }, (_, i) =>
+      `<slam-widget name="${h.schema[i % h.schema.length].id}" id="w${i}"></slam-widget><div style="height:700px"></div>`).join('');
+    await on(many, async (tab) => {
+      for (let i = 0; i < 20; i += 1) {
+        await tab.evaluate((n) => document.querySelector(`#w${n}`).scrollIntoView(), i);
+        await h.ready(tab, `#w${i}`);
+      }
+      const running = await tab.evaluate(() =>
+        [...document.querySelectorAll('slam-widget')].filter((widget) => widget.state === 'running').length);
+      assert.ok(running <= 8, `${running} run at the end`);
+      await tab.evaluate(() => document.querySelector('#w0').scrollIntoView());
+      await h.ready(tab, '#w0');
+    });
+  });
+
+  it('that are lost are made anew with the state as it was', async () => {
+    await on(ONE, async (tab) => {
+      await h.ready(tab);
+      await tab.evaluate(() => {
+        const widget = document.querySelector('slam-widget');
+        widget.heading = 77;
+        window.oldCanvas = widget.shadowRoot.querySelector('canvas');
+        oldCanvas.getContext('webgl2').getExtension('WEBGL_lose_context').loseContext();
+      });
+      await tab.waitForFunction(() => {
+        const now = document.querySelector('slam-widget').shadowRoot.querySelector('.stage.live canvas');
+        return now !== null && now !== oldCanvas;
+      });
+      assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').heading), 77);
+      assert.ok((await h.paintedShare(tab)).share > 0.03);
+      tab.troubles = tab.troubles.filter((text) => !text.includes('CONTEXT_LOST'));
+    });
+  });
+});
+
+describe('a panic', () => {
+  it('stays in its widget, says so, and a restart keeps the parameters', async () => {
+    const two = '<slam-widget name="w16.1" id="a"></slam-widget><slam-widget name="w16.1" id="b"></slam-widget>';
+    await on(two, async (tab) => {
+      await h.ready(tab, '#a');
+      await tab.evaluate(() => document.querySelector('#b').scrollIntoView());
+      await h.ready(tab, '#b');
+      await tab.evaluate(() => {
+        window.errors = [];
+        document.addEventListener('slam-error', (event) => errors.push(event.detail));
+        const widget = document.querySelector('#a');
+        widget.heading = 61;
+        widget.crashForTest();
+      });
+      const note = tab.locator('#a .failure');
+      assert.match(await note.innerText(), /stopped because of an error in its program/);
+      assert.match(await note.locator('pre').textContent(), /crashed on purpose/);
+      assert.equal((await tab.evaluate(() => errors))[0].kind, 'crash');
+      // The other one goes on.
+      await tab.evaluate(() => (document.querySelector('#b').heading = 5));
+      const frames = await tab.evaluate(() => document.querySelector('#b').frames);
+      await tab.waitForFunction((old) => document.querySelector('#b').frames > old, frames);
+      await tab.evaluate(() => document.querySelector('#a').scrollIntoView());
+      await tab.getByRole('button', { name: 'Restart with these settings' }).click();
+      await h.ready(tab, '#a');
+      assert.equal(await tab.evaluate(() => document.querySelector('#a').heading), 61);
+    }, { troubles: false });
+  });
+});
+
+describe('looks', () => {
+  it('follow the page from light to dark and back', async () => {
+    await on(ONE, async (tab) => {
+      await h.ready(tab);
+      // The page hears of a changed media query with its next frame, so the picture is asked again.
+      const turns = (isDark) => tab.waitForFunction(async (wanted) => {
+        const picture = await document.querySelector('slam-widget').snapshot();
+        const copy = new OffscreenCanvas(1, 1).getContext('2d');
+        copy.drawImage(picture, 0, 0);
+        const [paper] = copy.getImageData(0, 0, 1, 1).data;
+        return wanted ? paper < 100 : paper > 200;
+      }, isDark);
+      await turns(false);
+      for (const [change, isDark] of [
+        ['document.documentElement.classList.add("dark")', true],
+        ['document.documentElement.classList.remove("dark")', false],
+        ['document.documentElement.dataset.theme = "dark"', true],
+        ['document.documentElement.dataset.theme = "light"', false],
+      ]) {
+        await tab.evaluate(change);
+        await turns(isDark);
+      }
+      await tab.evaluate(() => delete document.documentElement.dataset.theme);
+      await tab.emulateMedia({ colorScheme: 'dark' });
+      await turns(true);
+    });
+  });
+
+  it('stay sharp at any pixel ratio', async () => {
+    for (const deviceScaleFactor of [1, 1.5, 3]) {
+      await on(ONE, async (tab) => {
+        await h.ready(tab);
+        const ratio = await tab.evaluate(() => {
+          const canvas = document.querySelector('slam-widget').shadowRoot.querySelector('canvas');
+          return canvas.width / canvas.clientWidth;
+        });
+        assert.ok(Math.abs(ratio - deviceScaleFactor) < 0.01, `${ratio} for ${deviceScaleFactor}`);
+      }, { options: { deviceScaleFactor, viewport: { width: 700, height: 700 } } });
+    }
+  });
+
+  it('follow the width without a resize loop', async () => {
+    await on(CALM, async (tab) => {
+      await h.ready(tab);
+      for (const width of [1400, 500, 390, 900]) {
+        await tab.setViewportSize({ width, height: 800 });
+        await quiet(tab);
+        const [canvas, host] = await tab.evaluate(() => {
+          const widget = document.querySelector('slam-widget');
+          return [widget.shadowRoot.querySelector('canvas').clientWidth, widget.clientWidth];
+        });
+        assert.ok(host - canvas <= 2 && host - canvas >= 0, `${canvas} in ${host}`);
+      }
+    });
+  });
+
+  it('move nothing by themselves where the reader asked for that', async () => {
+    await on(CALM, async (tab) => {
+      await h.ready(tab);
+      await quiet(tab);
+      assert.equal(await h.countFrames(tab, 500), 0);
+    }, { options: { reducedMotion: 'reduce' } });
+  });
+});
+
+/** Presses a key until the element with that id has the focus; gives up after 120 stops. */
+async function tabUntil(tab, key, id) {
+  for (let stops = 0; stops < 120; stops += 1) {
+    await tab.keyboard.press(key);
+    if ((await tab.evaluate(() => document.activeElement.id)) === id) return stops;
+  }
+  return assert.fail(`${key} never reaches #${id}`);
+}
+
+/** Waits until no frame has been asked for during a second. */
+async function quiet(tab) {
+  for (let tries = 0; tries < 30; tries += 1) {
+    if ((await h.countFrames(tab, 1000)) === 0) return;
+  }
+  assert.fail('frames are asked for again and again');
+}
+
+/** A point of the canvas on which nothing drags. */
+function restingSpot(tab) {
+  return spot(tab, false);
+}
+
+/** A point of the canvas on which something drags. */
+function draggingSpot(tab) {
+  return spot(tab, true);
+}
+
+async function spot(tab, drags) {
+  const at = await tab.evaluate((wanted) => {
+    const widget = document.querySelector('slam-widget');
+    const box = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
+    const bottom = Math.min(box.height, innerHeight - box.top) - 60;
+    for (let y = wanted ? 10 : bottom; y > 5 && y <= bottom; y += wanted ? 6 : -6) {
+      for (let x = 100; x < box.width - 100; x += 6) {
+        const around = [[0, 0], [8, 0], [-8, 0], [0, 8], [0, -8]].map(([dx, dy]) => widget.dragsAt(x + dx, y + dy));
+        if (wanted ? around[0] : around.every((drag) => !drag)) return [box.left + x, box.top + y];
+      }
+    }
+    return null;
+  }, drags);
+  assert.ok(at !== null, drags ? 'nothing drags' : 'everything drags');
+  return at;
+}
+
+async function swipe(tab, from, to) {
+  const session = await tab.context().newCDPSession(tab);
+  const touch = (type, points) => session.send('Input.dispatchTouchEvent', { type, touchPoints: points });
+  await touch('touchStart', [{ x: from[0], y: from[1] }]);
+  for (let step = 1; step <= 8; step += 1) {
+    const share = step / 8;
+    await touch('touchMove', [{
+      x: from[0] + (to[0] - from[0]) * share,
+      y: from[1] + (to[1] - from[1]) * share,
+    }]);
+  }
+  await touch('touchEnd', []);
+}

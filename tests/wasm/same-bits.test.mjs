@@ -1,0 +1,48 @@
+// The wasm that readers get computes the same bits as the native build that the other tests check.
+
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { describe, it } from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+const ROOT = fileURLToPath(new URL('../../', import.meta.url));
+const { createGlue } = await import('../../web/pkg/glue.js');
+const wasm = createGlue({ request: () => 0, cancel: () => {}, deviceSize: () => [] });
+wasm.initSync({ module: readFileSync(`${ROOT}web/pkg/slam_web_bg.wasm`) });
+const schema = JSON.parse(wasm.widgetSchemas());
+
+/** The output of a native program of the workspace. */
+function native(program, ...words) {
+  const cargo = ['run', '--quiet', '--package', program === 'states' ? 'slam_web' : 'slam2d_cli'];
+  return execFileSync('cargo', [...cargo, '--bin', program, '--', ...words], {
+    cwd: ROOT,
+    encoding: 'utf8',
+    maxBuffer: 1 << 28,
+  });
+}
+
+describe('a lap', () => {
+  for (const [seed, noise] of [[12648430, 1], [6, 1], [1, 0.25], [2, 2], [4, 4]]) {
+    it(`of seed ${seed} at noise ×${noise} has the same digest of all poses`, () => {
+      const lap = JSON.parse(native('slam2d', 'lap', '--seed', `${seed}`, '--noise', `${noise}`, '--json'));
+      assert.match(lap.digest, /^[0-9a-f]{16}$/);
+      assert.equal(wasm.lapDigest(seed, noise), lap.digest);
+    });
+  }
+
+  it('of another seed has another digest', () => {
+    assert.notEqual(wasm.lapDigest(1, 1), wasm.lapDigest(2, 1));
+  });
+});
+
+describe('every widget', () => {
+  for (const { id } of schema) {
+    it(`${id} says the same after each preset`, () => {
+      const lines = wasm.afterEachPreset(id).split('\n');
+      const expected = native('states', id).split('\n');
+      assert.equal(lines.length, expected.length);
+      lines.forEach((line, at) => assert.equal(line, expected[at]));
+    });
+  }
+});
