@@ -4,6 +4,7 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import * as h from './harness.mjs';
+import { cloudSpot, sliderRail } from './spots.mjs';
 
 let browser;
 before(async () => (browser = await h.launch()));
@@ -23,22 +24,6 @@ async function on(name, test, attributes = '') {
   }
 }
 
-/** The first slider of the controls beside the picture: a point of its rail, and its length. */
-async function firstSlider(tab) {
-  const found = await tab.evaluate(() => {
-    const widget = document.querySelector('#here');
-    const box = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
-    const left = box.width - 290;
-    for (let y = 60; y < box.height; y += 4) {
-      const along = [20, 80, 140, 200, 260].map((dx) => widget.dragsAt(left + dx, y));
-      if (along.every(Boolean)) return { x: box.left + left, y: box.top + y + 6 };
-    }
-    return null;
-  });
-  assert.ok(found !== null, 'no slider beside the picture');
-  return found;
-}
-
 /** What a widget that never ran before says in the same state. */
 function freshOutcome(tab) {
   return tab.evaluate(async () => {
@@ -55,59 +40,103 @@ function freshOutcome(tab) {
   });
 }
 
+/** Keeps what the widget shows, in the page, under a name. */
+function keepPicture(tab, name) {
+  return tab.evaluate(async (key) => {
+    const picture = await document.querySelector('#here').snapshot();
+    const copy = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
+    copy.drawImage(picture, 0, 0);
+    (window.kept ??= {})[key] = copy.getImageData(0, 0, picture.width, picture.height);
+  }, name);
+}
+
+/** The share of colour values in which two kept pictures differ. */
+function difference(tab, one, other) {
+  return tab.evaluate(([a, b]) => {
+    if (kept[a].width !== kept[b].width || kept[a].height !== kept[b].height) return 1;
+    return kept[a].data.filter((value, at) => value !== kept[b].data[at]).length / kept[a].data.length;
+  }, [one, other]);
+}
+
 for (const [name, parameter] of [['w16.2', 'noise'], ['w16.3', 'tau'], ['w16.1', 'heading']]) {
   describe(`${name} while ${parameter} is dragged`, () => {
-    it('shows the result of the last value, recomputed on every move', async () => {
+    it('has the result of the last value after every move', async () => {
       await on(name, async (tab) => {
         await tab.evaluate(() => {
           window.changes = [];
-          document.addEventListener('slam-change', (event) => changes.push(event.detail.parameter));
+          document.addEventListener('slam-change', ({ detail }) => changes.push(detail));
         });
-        const { x, y } = await firstSlider(tab);
-        await tab.mouse.move(x + 60, y);
+        const { x, y, width } = await sliderRail(tab, parameter);
+        await tab.mouse.move(x + 0.1 * width, y);
         await tab.mouse.down();
-        const seen = new Set();
-        for (let dx = 80; dx <= 240; dx += 40) {
-          await tab.mouse.move(x + dx, y, { steps: 2 });
-          await h.moreFrames(tab, 2);
-          seen.add(await tab.evaluate((id) => document.querySelector('#here').get(id), parameter));
-          const shown = await tab.evaluate(() => document.querySelector('#here').outcome);
-          assert.deepEqual(shown, await freshOutcome(tab));
+        await h.moreFrames(tab, 2);
+        for (const share of [0.2, 0.3, 0.4, 0.5]) {
+          const before = await tab.evaluate(() => changes.length);
+          await tab.mouse.move(x + share * width, y);
+          await tab.waitForFunction((count) => changes.length > count, before);
+          const { last, value, shown } = await tab.evaluate((id) => ({
+            last: changes.at(-1),
+            value: document.querySelector('#here').get(id),
+            shown: document.querySelector('#here').outcome,
+          }), parameter);
+          const fresh = await freshOutcome(tab);
+          assert.equal(last.parameter, parameter);
+          assert.equal(last.value, value);
+          assert.deepEqual(last.outcome, fresh);
+          assert.deepEqual(shown, fresh);
         }
         await tab.mouse.up();
-        assert.ok(seen.size >= 4, `the slider took ${[...seen]}`);
-        const changes = await tab.evaluate(() => changes);
-        assert.ok(changes.length >= 4 && changes.every((id) => id === parameter), changes.join(', '));
+      });
+    });
+
+    it('shows the picture of a widget that starts there', async () => {
+      await on(name, async (tab) => {
+        const { x, y, width } = await sliderRail(tab, parameter);
+        await h.quiet(tab);
+        await keepPicture(tab, 'start');
+        await tab.mouse.move(x + 0.1 * width, y);
+        await tab.mouse.down();
+        await tab.mouse.move(x + 0.5 * width, y, { steps: 5 });
+        await tab.mouse.up();
+        await tab.mouse.move(2, 2);
+        await h.quiet(tab);
+        await keepPicture(tab, 'dragged');
+        await tab.evaluate(() => {
+          const old = document.querySelector('#here');
+          const fresh = old.cloneNode();
+          fresh.value = old.value;
+          old.replaceWith(fresh);
+        });
+        await h.ready(tab);
+        await h.quiet(tab);
+        await keepPicture(tab, 'fresh');
+        const moved = await difference(tab, 'start', 'fresh');
+        assert.ok(moved > 0.005, `only ${moved} of the picture depends on it`);
+        assert.equal(await difference(tab, 'dragged', 'fresh'), 0);
       });
     });
   });
 }
 
 describe('w16.1', () => {
-  it('moves the cloud that is dragged', async () => {
+  it('moves the cloud with the pointer, metre by metre', async () => {
     await on('w16.1', async (tab) => {
-      const { dx, dy } = await tab.evaluate(() => document.querySelector('#here').value);
-      const at = await tab.evaluate(() => {
-        const widget = document.querySelector('#here');
-        const box = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
-        // Over the picture, which lies left of the controls and right under the presets.
-        for (let y = 120; y < 600; y += 5) {
-          for (let x = 40; x < box.width * 0.35; x += 5) {
-            // A finger reaches further than the mouse: take a spot from its middle.
-            const around = [[0, 0], [12, 0], [-12, 0], [0, 12], [0, -12]];
-            if (around.every(([dx, dy]) => widget.dragsAt(x + dx, y + dy))) return [box.left + x, box.top + y];
-          }
-        }
-        return null;
-      });
-      assert.ok(at !== null, 'nothing in the picture drags');
-      await tab.mouse.move(at[0], at[1]);
+      const value = () => tab.evaluate(() => document.querySelector('#here').value);
+      const [left, top] = await cloudSpot(tab);
+      await tab.mouse.move(left, top);
       await tab.mouse.down();
-      await tab.mouse.move(at[0] + 25, at[1] + 20, { steps: 4 });
+      // Taking hold of the cloud shows where registration left it: that is the new start.
+      await h.moreFrames(tab, 3);
+      const taken = await value();
+      await tab.mouse.move(left + 25, top + 20, { steps: 4 });
       await tab.mouse.up();
-      await h.moreFrames(tab, 2);
-      const moved = await tab.evaluate(() => document.querySelector('#here').value);
-      assert.ok(moved.dx !== dx || moved.dy !== dy || moved.heading !== 25, JSON.stringify(moved));
+      await h.moreFrames(tab, 3);
+      const moved = await value();
+      const [zero, east] = [await h.pointOf(tab, 'sweeps', 0, 0, '#here'), await h.pointOf(tab, 'sweeps', 1, 0, '#here')];
+      const pxPerM = east[0] - zero[0];
+      assert.ok(Math.abs(moved.dx - taken.dx - 25 / pxPerM) < 0.02, `${taken.dx} to ${moved.dx}`);
+      assert.ok(Math.abs(moved.dy - taken.dy + 20 / pxPerM) < 0.02, `${taken.dy} to ${moved.dy}`);
+      assert.equal(moved.heading, taken.heading);
       assert.deepEqual(await tab.evaluate(() => document.querySelector('#here').outcome), await freshOutcome(tab));
     });
   });

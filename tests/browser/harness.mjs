@@ -151,6 +151,14 @@ export async function countFrames(page, milliseconds) {
   }, milliseconds);
 }
 
+/** Waits until no frame has been asked for during a second. */
+export async function quiet(page) {
+  for (let tries = 0; tries < 60; tries += 1) {
+    if ((await countFrames(page, 1000)) === 0) return;
+  }
+  throw new Error('frames are asked for again and again');
+}
+
 /** The share of pixels of a widget that are not its commonest colour. */
 export async function paintedShare(page, selector = 'slam-widget') {
   return page.evaluate(async (css) => {

@@ -4,6 +4,7 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import * as h from './harness.mjs';
+import { canvasBox, draggingSpot, restingSpot } from './spots.mjs';
 
 const TALL = '<p style="height: 3000px">Much text.</p>';
 const ONE = '<slam-widget name="w16.1"></slam-widget>';
@@ -26,7 +27,6 @@ async function on(body, test, { options, head, troubles = true } = {}) {
   }
 }
 
-const canvasBox = (tab) => tab.locator('slam-widget canvas').first().boundingBox();
 const scrolled = (tab) => tab.evaluate(() => window.scrollY);
 
 describe('focus', () => {
@@ -141,7 +141,7 @@ describe('frames', () => {
   it('are not drawn, nor even asked for, while nothing changes', async () => {
     await on(CALM, async (tab) => {
       await h.ready(tab);
-      await quiet(tab);
+      await h.quiet(tab);
       const drawn = await tab.evaluate(() => document.querySelector('slam-widget').frames);
       assert.equal(await h.countFrames(tab, 1500), 0);
       assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').frames), drawn);
@@ -151,7 +151,7 @@ describe('frames', () => {
   it('are drawn while something plays, and stop when it is scrolled out of view', async () => {
     await on(CALM + TALL, async (tab) => {
       await h.ready(tab);
-      await quiet(tab);
+      await h.quiet(tab);
       await tab.evaluate(() => document.querySelector('slam-widget').press('play'));
       const before = await tab.evaluate(() => document.querySelector('slam-widget').frames);
       await tab.waitForFunction(
@@ -161,7 +161,7 @@ describe('frames', () => {
         const { height } = document.querySelector('slam-widget').getBoundingClientRect();
         window.scrollTo(0, height + 100);
       });
-      await quiet(tab);
+      await h.quiet(tab);
       const there = await tab.evaluate(() => document.querySelector('slam-widget').frames);
       assert.equal(await h.countFrames(tab, 1000), 0);
       assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').frames), there);
@@ -282,7 +282,7 @@ describe('looks', () => {
       await h.ready(tab);
       for (const width of [1400, 500, 390, 900]) {
         await tab.setViewportSize({ width, height: 800 });
-        await quiet(tab);
+        await h.quiet(tab);
         const [canvas, host] = await tab.evaluate(() => {
           const widget = document.querySelector('slam-widget');
           return [widget.shadowRoot.querySelector('canvas').clientWidth, widget.clientWidth];
@@ -295,7 +295,7 @@ describe('looks', () => {
   it('move nothing by themselves where the reader asked for that', async () => {
     await on(CALM, async (tab) => {
       await h.ready(tab);
-      await quiet(tab);
+      await h.quiet(tab);
       assert.equal(await h.countFrames(tab, 500), 0);
     }, { options: { reducedMotion: 'reduce' } });
   });
@@ -308,41 +308,6 @@ async function tabUntil(tab, key, id) {
     if ((await tab.evaluate(() => document.activeElement.id)) === id) return stops;
   }
   return assert.fail(`${key} never reaches #${id}`);
-}
-
-/** Waits until no frame has been asked for during a second. */
-async function quiet(tab) {
-  for (let tries = 0; tries < 30; tries += 1) {
-    if ((await h.countFrames(tab, 1000)) === 0) return;
-  }
-  assert.fail('frames are asked for again and again');
-}
-
-/** A point of the canvas on which nothing drags. */
-function restingSpot(tab) {
-  return spot(tab, false);
-}
-
-/** A point of the canvas on which something drags. */
-function draggingSpot(tab) {
-  return spot(tab, true);
-}
-
-async function spot(tab, drags) {
-  const at = await tab.evaluate((wanted) => {
-    const widget = document.querySelector('slam-widget');
-    const box = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
-    const bottom = Math.min(box.height, innerHeight - box.top) - 60;
-    for (let y = wanted ? 10 : bottom; y > 5 && y <= bottom; y += wanted ? 6 : -6) {
-      for (let x = 100; x < box.width - 100; x += 6) {
-        const around = [[0, 0], [8, 0], [-8, 0], [0, 8], [0, -8]].map(([dx, dy]) => widget.dragsAt(x + dx, y + dy));
-        if (wanted ? around[0] : around.every((drag) => !drag)) return [box.left + x, box.top + y];
-      }
-    }
-    return null;
-  }, drags);
-  assert.ok(at !== null, drags ? 'nothing drags' : 'everything drags');
-  return at;
 }
 
 async function swipe(tab, from, to) {

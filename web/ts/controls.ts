@@ -2,6 +2,7 @@
 // unit and help. It has the keyboard focus; the canvas shows the ring. A control is seen on its own
 // line under the picture while it has the focus, and by a screen reader always.
 
+import { create } from './dom';
 import type { Timeline } from './instance';
 import type { ButtonSpec, ParamSpec, WidgetSpec } from './schema';
 import { toLabel } from './values';
@@ -199,13 +200,4 @@ function unitOf(spec: ParamSpec): HTMLElement {
   const unit = create('span', { class: 'unit' });
   unit.textContent = spec.unit;
   return unit;
-}
-
-export function create<K extends keyof HTMLElementTagNameMap>(
-  tag: K,
-  attributes: Record<string, string> = {},
-): HTMLElementTagNameMap[K] {
-  const element = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  return element;
 }

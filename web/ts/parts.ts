@@ -1,7 +1,8 @@
 // The element's shadow tree: picture and canvas above, notes, controls and tools below.
 
-import { create } from './controls';
+import { create } from './dom';
 import { copyText } from './export';
+import { CrashError } from './instance';
 import { STYLE } from './style';
 
 /** What stands in the shadow of the element. */
@@ -37,8 +38,24 @@ export function build(shadow: ShadowRoot): Parts {
   return { frame, stage, picture, progress, note, bar, summary, live, status };
 }
 
+/** What went wrong, in one sentence, and a way to go on. */
+export function failureBox(error: unknown, onAgain: () => void): HTMLElement {
+  const isCrash = error instanceof CrashError;
+  const box = create('div', { class: 'failure' });
+  const sentence = create('p');
+  const again = create('button', { type: 'button' });
+  const reason = error instanceof Error ? error.message : String(error);
+  sentence.textContent = isCrash
+    ? 'This widget stopped because of an error in its program. Your settings are kept.'
+    : `The interactive widget cannot run here: ${reason}. The picture shows its start.`;
+  again.textContent = isCrash ? 'Restart with these settings' : 'Try again';
+  again.addEventListener('click', onAgain);
+  box.append(sentence, ...(isCrash ? [crashDetails(error.details)] : []), again);
+  return box;
+}
+
 /** What a reader can copy into a report of a crash. */
-export function crashDetails(text: string): HTMLElement {
+function crashDetails(text: string): HTMLElement {
   const element = create('details');
   const heading = create('summary');
   heading.textContent = 'Details for a report';

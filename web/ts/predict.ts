@@ -84,25 +84,24 @@ export class SlamPredict extends HTMLElement {
   async #check(prediction: string): Promise<void> {
     const name = this.getAttribute('widget') ?? '';
     const widget = document.querySelector<SlamWidget>(`slam-widget[name="${CSS.escape(name)}"]`);
-    if (widget === null || this.#form === undefined) {
+    if (widget === null) {
       this.#say([`There is no widget ${name} on this page.`]);
       return;
     }
-    for (const field of this.#form.querySelectorAll('input, button')) {
-      field.setAttribute('disabled', '');
+    this.#lock(true);
+    try {
+      const outcome = await outcomeAt(widget, this.getAttribute('state') ?? '');
+      const verdict = this.#judge(prediction, outcome);
+      this.#show(verdict, outcome, widget);
+      const detail = { widget: name, ...verdict };
+      this.dispatchEvent(new CustomEvent('slam-predict', { detail, bubbles: true, composed: true }));
+    } catch (error) {
+      const reason = error instanceof Error ? error.message : String(error);
+      this.#say([`Your answer could not be checked: ${reason}.`]);
+      this.#answer?.append(button('Predict again', () => this.#reset()));
     }
-    await widget.press('defaults');
-    for (const [id, text] of new URLSearchParams(this.getAttribute('state') ?? '')) widget.set(id, text);
-    const { outcome } = widget;
-    if (outcome === undefined) {
-      this.#say(['The widget cannot run here.']);
-      return;
-    }
-    const verdict = this.#judge(prediction, outcome);
-    this.#show(verdict, outcome, widget);
-    this.dispatchEvent(
-      new CustomEvent('slam-predict', { detail: { widget: name, ...verdict }, bubbles: true, composed: true }),
-    );
+    // Whoever committed to an answer gets the explanation, even where no widget runs.
+    this.#showWhy(true);
   }
 
   #judge(prediction: string, outcome: Outcome): Verdict {
@@ -110,7 +109,8 @@ export class SlamPredict extends HTMLElement {
     if (fact === null) {
       return { prediction, result: outcome.verdict, correct: prediction === outcome.verdict, gap: null };
     }
-    const result = outcome.facts[fact] ?? NaN;
+    const result = outcome.facts[fact] ?? undefined;
+    if (result === undefined) throw new RangeError(`the widget tells no number \`${fact}\` here`);
     const gap = Number(prediction) - result;
     const tolerance = Number(this.getAttribute('tolerance') ?? 0);
     return { prediction, result: String(result), correct: Math.abs(gap) <= tolerance, gap };
@@ -121,7 +121,6 @@ export class SlamPredict extends HTMLElement {
     const gap = verdict.gap === null ? '' : ` You are off by ${Math.abs(verdict.gap).toPrecision(2)}${unit}.`;
     const judged = verdict.correct ? 'You were right.' : `You said ${verdict.prediction}${unit}.${gap}`;
     this.#say([`${judged} ${outcome.sentence}`]);
-    for (const why of this.querySelectorAll<HTMLElement>('[data-why]')) why.hidden = false;
     // The widget may stand pages away: the reader decides when to leave the answer.
     const show = button('Show it in the widget', () => widget.scrollIntoView({ block: 'start' }));
     const again = button('Predict again', () => this.#reset());
@@ -131,10 +130,18 @@ export class SlamPredict extends HTMLElement {
   #reset(): void {
     this.#answer?.replaceChildren();
     this.#form?.reset();
-    for (const field of this.#form?.querySelectorAll('input, button') ?? []) {
-      field.removeAttribute('disabled');
-    }
-    for (const why of this.querySelectorAll<HTMLElement>('[data-why]')) why.hidden = true;
+    this.#lock(false);
+    this.#showWhy(false);
+  }
+
+  /** An answer given cannot be changed while its result is shown. */
+  #lock(isLocked: boolean): void {
+    const fields = this.#form?.querySelectorAll<HTMLInputElement | HTMLButtonElement>('input, button');
+    for (const field of fields ?? []) field.disabled = isLocked;
+  }
+
+  #showWhy(isShown: boolean): void {
+    for (const why of this.querySelectorAll<HTMLElement>('[data-why]')) why.hidden = !isShown;
   }
 
   #say(sentences: string[]): void {
@@ -146,6 +153,15 @@ export class SlamPredict extends HTMLElement {
       }),
     );
   }
+}
+
+/** What comes out of a state, the rest at its defaults; fails where the widget cannot run. */
+async function outcomeAt(widget: SlamWidget, state: string): Promise<Outcome> {
+  await widget.press('defaults');
+  for (const [id, text] of new URLSearchParams(state)) widget.set(id, text);
+  const { outcome } = widget;
+  if (outcome === undefined) throw new Error('the widget cannot run here');
+  return outcome;
 }
 
 function button(text: string, press: () => void): HTMLButtonElement {

@@ -1,0 +1,70 @@
+// Where to put the pointer on a widget: it is asked what drags where, nobody counts pixels.
+
+import assert from 'node:assert/strict';
+
+/** The place of the canvas on the screen. */
+export function canvasBox(tab, css = 'slam-widget') {
+  return tab.locator(`${css} canvas`).first().boundingBox();
+}
+
+/** A point of the canvas on which nothing drags, nor near it. */
+export function restingSpot(tab, css = 'slam-widget') {
+  return spot(tab, css, false);
+}
+
+/** A point of the canvas on which something drags. */
+export function draggingSpot(tab, css = 'slam-widget') {
+  return spot(tab, css, true);
+}
+
+async function spot(tab, css, drags) {
+  const at = await tab.evaluate(([name, wanted]) => {
+    const widget = document.querySelector(name);
+    const box = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
+    const bottom = Math.min(box.height, innerHeight - box.top) - 60;
+    for (let y = wanted ? 10 : bottom; y > 5 && y <= bottom; y += wanted ? 6 : -6) {
+      for (let x = 100; x < box.width - 100; x += 6) {
+        const around = [[0, 0], [8, 0], [-8, 0], [0, 8], [0, -8]].map(([dx, dy]) => widget.dragsAt(x + dx, y + dy));
+        if (wanted ? around[0] : around.every((drag) => !drag)) return [box.left + x, box.top + y];
+      }
+    }
+    return null;
+  }, [css, drags]);
+  assert.ok(at !== null, drags ? 'nothing drags' : 'everything drags');
+  return at;
+}
+
+/** A point of the rail of a slider beside the picture, found by its parameter. */
+export async function sliderRail(tab, parameter, css = 'slam-widget') {
+  const found = await tab.evaluate(([name, id]) => {
+    const widget = document.querySelector(name);
+    const canvas = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
+    const [left, top, width, height] = widget.controlBox(id);
+    for (let y = top; y < top + height; y += 2) {
+      const along = [0.1, 0.3, 0.5].map((share) => widget.dragsAt(left + share * width, y));
+      if (along.every(Boolean)) return { x: canvas.left + left, y: canvas.top + y + 4, width };
+    }
+    return null;
+  }, [css, parameter]);
+  assert.ok(found !== null, `no slider for ${parameter}`);
+  return found;
+}
+
+/** A point of the picture of w16.1 where the cloud can be taken. */
+export async function cloudSpot(tab, css = 'slam-widget') {
+  const at = await tab.evaluate((name) => {
+    const widget = document.querySelector(name);
+    const box = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
+    // Over the picture, which lies left of the controls and right under the presets.
+    for (let y = 120; y < 600; y += 5) {
+      for (let x = 40; x < box.width * 0.35; x += 5) {
+        // A finger reaches further than the mouse: take a spot from its middle.
+        const around = [[0, 0], [12, 0], [-12, 0], [0, 12], [0, -12]];
+        if (around.every(([dx, dy]) => widget.dragsAt(x + dx, y + dy))) return [box.left + x, box.top + y];
+      }
+    }
+    return null;
+  }, css);
+  assert.ok(at !== null, 'nothing in the picture drags');
+  return at;
+}

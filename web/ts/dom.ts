@@ -1,0 +1,34 @@
+// Small helpers on the document.
+
+export function create<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Record<string, string> = {},
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  return element;
+}
+
+/** Listens until the returned function is called. */
+export function listen(target: EventTarget, type: string, callback: () => void): () => void {
+  target.addEventListener(type, callback);
+  return () => target.removeEventListener(type, callback);
+}
+
+/** Scrolls until a box (left, top, width, height) inside of an element is seen above a bar. */
+export function reveal(
+  inside: HTMLElement,
+  [left, top, width, height]: readonly [number, number, number, number],
+  barHeight: number,
+): void {
+  const at = inside.getBoundingClientRect().top + top;
+  if (at >= 0 && at + height <= window.innerHeight - barHeight) return;
+  const marker = create('span');
+  marker.style.position = 'absolute';
+  for (const [side, value] of Object.entries({ left, top, width, height })) {
+    marker.style.setProperty(side, `${value}px`);
+  }
+  inside.append(marker);
+  marker.scrollIntoView({ block: 'center', inline: 'nearest' });
+  marker.remove();
+}

@@ -1,0 +1,244 @@
+// The life of what draws a widget: an instance of the module and the canvas it runs on.
+//
+// Both exist while the widget is near the screen. They are never repaired, but made anew by one
+// path: after scrolling back, after a panic, after a lost context. The host keeps the values.
+
+import type { Widget } from '../pkg/glue.js';
+import { CrashError, Instance } from './instance';
+import { hasWebGl2, LoadError } from './module';
+import type { Parts } from './parts';
+import { Stage } from './stage';
+import type { Visibility } from './visibility';
+
+/** Live contexts at most; browsers drop the oldest beyond sixteen. */
+const MAX_RUNNING = 8;
+
+const running = new Set<Life>();
+
+export interface LifeHost {
+  /** The widget to draw; undefined where the page names none. */
+  readonly widget: { id: string; title: string } | undefined;
+  /** Gives a fresh instance everything that the host keeps. */
+  prepare(widget: Widget): void;
+  /** The first frame stands on the canvas, so many milliseconds after its start. */
+  live(milliseconds: number): void;
+  /** A frame was drawn; the canvas holds it until the end of this task. */
+  drew(canvas: HTMLCanvasElement): void;
+  /** The instance is about to go: the last moment to keep a picture. */
+  leaving(): void;
+  /** Nothing runs any more until the host calls `restart`. */
+  failed(error: unknown): void;
+}
+
+export class Life implements Visibility {
+  readonly #parts: Parts;
+  readonly #host: LifeHost;
+  #instance: Instance | undefined;
+  #creating: Promise<Instance> | undefined;
+  #stage: Stage | undefined;
+  #isNear = false;
+  #isFar = false;
+  #isInView = false;
+  #hasFailed = false;
+  /** Rises with every end: what started before it knows that it comes too late. */
+  #generation = 0;
+
+  constructor(parts: Parts, host: LifeHost) {
+    this.#parts = parts;
+    this.#host = host;
+  }
+
+  /** Whether a canvas stands on the page. */
+  get isRunning(): boolean {
+    return this.#stage !== undefined;
+  }
+
+  /** Whether there is an instance, with a canvas or not. */
+  get hasInstance(): boolean {
+    return this.#instance !== undefined;
+  }
+
+  /** Asks the widget; undefined where there is none, and where the question made it panic. */
+  ask<T>(question: (widget: Widget, instance: Instance) => T): T | undefined {
+    const instance = this.#instance;
+    if (instance === undefined) return undefined;
+    try {
+      return instance.use((widget) => question(widget, instance));
+    } catch (error) {
+      if (!(error instanceof CrashError)) throw error;
+      this.fail(error);
+      return undefined;
+    }
+  }
+
+  /** An instance, made now where there is none. */
+  ensureInstance(): Promise<Instance> {
+    const { widget } = this.#host;
+    if (widget === undefined) return Promise.reject(new LoadError('there is no such widget'));
+    this.#creating ??= this.#create(widget.id);
+    return this.#creating;
+  }
+
+  near(isNear: boolean): void {
+    this.#isNear = isNear;
+    this.#runOrSuspend();
+  }
+
+  far(isFar: boolean): void {
+    this.#isFar = isFar;
+    this.#runOrSuspend();
+  }
+
+  /** Draws only while it is seen; the first frames are drawn even before. */
+  inView(isInView: boolean): void {
+    this.#isInView = isInView;
+    this.#openOrClose();
+  }
+
+  /** Starts anew where the widget is near the screen; a failure is forgotten. */
+  restart(): void {
+    this.#hasFailed = false;
+    if (this.#isNear) void this.#run();
+  }
+
+  /** The element left its page. */
+  leave(): void {
+    this.#isNear = false;
+    this.#isInView = false;
+    this.suspend();
+  }
+
+  /** Draws; does nothing where it draws already, or failed. */
+  async #run(): Promise<void> {
+    const { stage } = this.#parts;
+    const { widget } = this.#host;
+    if (this.isRunning || this.#hasFailed || widget === undefined) return;
+    if (stage.classList.contains('waiting')) return;
+    const generation = this.#generation;
+    try {
+      if (!hasWebGl2()) throw new LoadError('this browser draws no WebGL 2');
+      stage.classList.add('waiting');
+      const instance = await this.ensureInstance();
+      if (generation !== this.#generation) return;
+      makeRoom(this);
+      const started = await Stage.start(stage, instance, widget.title, () => this.#replace());
+      if (generation !== this.#generation) started.dispose();
+      else this.#begin(instance, started);
+    } catch (error) {
+      if (generation === this.#generation) this.fail(error);
+    }
+  }
+
+  /** Gives context and memory back. */
+  suspend(): void {
+    this.#generation += 1;
+    running.delete(this);
+    if (this.#stage !== undefined) this.#host.leaving();
+    this.#stage?.dispose();
+    this.#stage = undefined;
+    this.#instance?.dispose();
+    this.#instance = undefined;
+    this.#creating = undefined;
+    this.#parts.stage.classList.remove('live', 'waiting');
+    this.#parts.progress.hidden = true;
+  }
+
+  /** Asks for a frame. */
+  wake(): void {
+    this.ask((widget) => widget.requestFrame());
+    this.#instance?.frames.wake();
+  }
+
+  /** Ends the instance where it panicked unnoticed, between two frames. */
+  checkCrash(): void {
+    const crash = this.#instance?.crash();
+    if (crash !== undefined) this.fail(crash);
+  }
+
+  /** Ends everything and tells the host, once. */
+  fail(error: unknown): void {
+    if (this.#hasFailed) return;
+    this.#hasFailed = true;
+    if (error instanceof CrashError) {
+      // A crashed instance cannot draw its picture any more, nor free its memory.
+      this.#instance?.frames.close();
+      this.#instance = undefined;
+    }
+    this.suspend();
+    this.#host.failed(error);
+  }
+
+  async #create(name: string): Promise<Instance> {
+    const generation = this.#generation;
+    const { progress } = this.#parts;
+    progress.hidden = false;
+    const instance = await Instance.create(name, (share) => (progress.value = share));
+    if (generation !== this.#generation) {
+      instance.dispose();
+      throw new LoadError('the widget was taken away while it loaded');
+    }
+    this.#instance = instance;
+    instance.use((widget) => this.#host.prepare(widget));
+    instance.takeChanges();
+    return instance;
+  }
+
+  #begin(instance: Instance, stage: Stage): void {
+    const startedAt = performance.now();
+    this.#stage = stage;
+    instance.frames.afterFrame = () => this.#afterFrame(instance, stage, startedAt);
+    instance.frames.onCrash = (error) => this.fail(instance.crash() ?? error);
+    instance.frames.open();
+  }
+
+  /** The observers tell one after the other, and while a window changes not always the truth. */
+  #runOrSuspend(): void {
+    if (this.#isNear) void this.#run();
+    else if (this.#isFar) this.suspend();
+  }
+
+  /** The context was lost: everything anew. */
+  #replace(): void {
+    this.suspend();
+    if (this.#isNear) void this.#run();
+  }
+
+  #openOrClose(): void {
+    if (this.#stage === undefined) return;
+    if (this.#isInView) this.#instance?.frames.open();
+    else if (this.#parts.stage.classList.contains('live')) this.#instance?.frames.close();
+  }
+
+  /** Says whether another frame is wanted. */
+  #afterFrame(instance: Instance, { canvas }: Stage, startedAt: number): boolean {
+    const crash = instance.crash();
+    if (crash !== undefined) throw crash;
+    const height = Math.ceil(instance.use((widget) => widget.contentHeight()));
+    const fits = Math.abs(height - canvas.clientHeight) <= 1;
+    if (!fits && height > 0) canvas.style.height = `${height}px`;
+    else if (!this.#parts.stage.classList.contains('live')) this.#showLive(startedAt);
+    this.#host.drew(canvas);
+    // A new height asks for a frame at that height, however slow the machine is.
+    return !fits || instance.use((widget) => widget.wantsFrame());
+  }
+
+  #showLive(startedAt: number): void {
+    this.#parts.progress.hidden = true;
+    this.#parts.stage.classList.replace('waiting', 'live');
+    running.add(this);
+    this.#openOrClose();
+    this.#host.live(performance.now() - startedAt);
+  }
+
+  /** Whether any of it can be seen. */
+  get isOnScreen(): boolean {
+    const box = this.#parts.frame.getBoundingClientRect();
+    return box.bottom > 0 && box.top < window.innerHeight;
+  }
+}
+
+/** Suspends widgets out of view while too many run. */
+function makeRoom(newcomer: Life): void {
+  const resting = [...running].filter((life) => life !== newcomer && !life.isOnScreen);
+  while (running.size >= MAX_RUNNING && resting.length > 0) resting.shift()?.suspend();
+}
