@@ -70,6 +70,7 @@ export interface SlamWidgetProperties {
 }
 
 export declare class SlamWidget extends HTMLElement {
+  name: WidgetName;
   /** The whole state; setting takes some of it, as an object or as JSON text. */
   get value(): Record<string, Value>;
   set value(state: Record<string, Value> | string);
@@ -82,6 +83,8 @@ export declare class SlamWidget extends HTMLElement {
   readonly summary: string;
   /** The state as the query of a link: `?w=16.1&heading=60`. */
   readonly query: string;
+  /** A link to this page, or to the widget on a page of its own, in the present state. */
+  readonly link: string;
   tables(): Promise<CsvFile[]>;
   /** What the canvas shows, pixel by pixel; waits until the widget runs and draws. */
   snapshot(): Promise<ImageBitmap>;
@@ -92,6 +95,8 @@ export declare class SlamWidget extends HTMLElement {
   controlBox(control: string): [number, number, number, number] | null;
   /** Where a point of a panel lies on the canvas, in CSS pixels; null where it is not shown. */
   panelToScreen(panel: string, x: number, y: number): [number, number] | null;
+  /** Zooms every map, or moves the part that is seen. */
+  look(way: 'in' | 'out' | 'left' | 'right' | 'up' | 'down' | 'whole'): void;
   suspend(): void;
   addEventListener<K extends keyof SlamWidgetEvents>(
     type: K,

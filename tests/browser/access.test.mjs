@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, describe, it } from 'node:test';
 import * as h from './harness.mjs';
+import { canvasBox } from './spots.mjs';
 
 const AXE = readFileSync(new URL('./node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
 
@@ -23,6 +24,13 @@ async function on(name, test, options) {
     await tab.context().close();
     await server.close();
   }
+}
+
+/** Types over what stands in the field that has the focus. */
+async function type(tab, text) {
+  await tab.keyboard.press('ControlOrMeta+a');
+  await tab.keyboard.type(text);
+  await tab.keyboard.press('Enter');
 }
 
 const value = (tab, id) => tab.evaluate((name) => document.querySelector('slam-widget').get(name), id);
@@ -82,12 +90,12 @@ for (const widget of h.schema) {
             await tab.keyboard.press('Space');
             assert.equal(await value(tab, param.id), !before, param.id);
           } else if (param.kind === 'choice') {
-            const other = param.options.find((option) => option.id !== before);
-            await control.selectOption(other.id);
-            assert.equal(await value(tab, param.id), other.id);
+            const now = param.options.findIndex((option) => option.id === before);
+            const isLast = now === param.options.length - 1;
+            await tab.keyboard.press(isLast ? 'ArrowUp' : 'ArrowDown');
+            assert.equal(await value(tab, param.id), param.options[isLast ? now - 1 : now + 1].id);
           } else if (param.kind === 'seed') {
-            await control.fill('11');
-            await tab.keyboard.press('Enter');
+            await type(tab, '11');
             assert.equal(await value(tab, param.id), 11);
           } else {
             await tab.keyboard.press('Home');
@@ -100,6 +108,11 @@ for (const widget of h.schema) {
               const fine = (await value(tab, param.id)) - stepped;
               assert.ok(Math.abs(fine - param.step / 10) < 1e-9, `${param.id}: fine step ${fine}`);
             }
+            // The number field is the next stop.
+            await tab.keyboard.press('Tab');
+            const typed = param.min + 2 * param.step;
+            await type(tab, String(Number(typed.toPrecision(10))));
+            assert.ok(Math.abs((await value(tab, param.id)) - typed) < 1e-9, `${param.id} typed`);
           }
         }
       });
@@ -108,14 +121,51 @@ for (const widget of h.schema) {
     it('presses every button and preset by keys', async () => {
       await on(widget.id, async (tab) => {
         for (const button of [...widget.presets, ...widget.buttons]) {
-          const control = tab.locator(`slam-widget button[data-control="${button.id}"]`);
-          await control.focus();
+          // What a press does is told by a widget that is not drawn, and so does not play on.
+          const expected = await tab.evaluate(async (id) => {
+            const fresh = document.createElement('slam-widget');
+            fresh.name = document.querySelector('slam-widget').name;
+            await fresh.press(id);
+            const { query, timeline } = fresh;
+            return { query, playing: timeline?.playing ?? false };
+          }, button.id);
+          await tab.evaluate(() => document.querySelector('slam-widget').press('defaults'));
+          await tab.evaluate(() => {
+            window.after = undefined;
+            const widget = document.querySelector('slam-widget');
+            // Heard before the next frame can play on.
+            widget.shadowRoot.addEventListener('click', () => {
+              queueMicrotask(() => queueMicrotask(() => {
+                const { query, timeline } = widget;
+                window.after = { query, playing: timeline?.playing ?? false };
+              }));
+            }, { once: true });
+          });
+          await tab.locator(`slam-widget button[data-control="${button.id}"]`).focus();
           await tab.keyboard.press('Enter');
-          assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').state), 'running');
+          await tab.waitForFunction(() => window.after !== undefined);
+          assert.deepEqual(await tab.evaluate(() => after), expected, button.id);
         }
         await tab.locator('slam-widget button[data-control="defaults"]').press('Enter');
         const state = await tab.evaluate(() => document.querySelector('slam-widget').query);
         assert.equal(state, `?w=${widget.id.slice(1)}`);
+      });
+    });
+
+    it('keeps its keys from the page, and leaves it all others', async () => {
+      await on(widget.id, async (tab) => {
+        await tab.evaluate(() => {
+          window.heard = [];
+          document.addEventListener('keydown', (event) => heard.push(event.key));
+        });
+        const slider = widget.params.find((param) => param.kind === 'slider');
+        await tab.locator(`slam-widget #control-${slider.id}`).focus();
+        await tab.keyboard.press('ArrowRight');
+        await tab.keyboard.press('Escape');
+        const box = await canvasBox(tab);
+        await tab.mouse.click(box.x + box.width / 2, box.y + 5);
+        await tab.keyboard.press('ArrowLeft');
+        assert.deepEqual(await tab.evaluate(() => heard), ['Escape', 'ArrowLeft']);
       });
     });
 
@@ -160,8 +210,6 @@ for (const widget of h.schema) {
       await on(widget.id, async (tab) => {
         const live = tab.locator('slam-widget [aria-live="polite"]');
         assert.equal(await live.textContent(), '');
-        const preset = widget.presets[0].id;
-        await tab.evaluate((id) => document.querySelector('slam-widget').press(id), preset);
         const slider = widget.params.find((param) => param.kind === 'slider');
         await tab.evaluate(([id, to]) => document.querySelector('slam-widget').set(id, to), [slider.id, slider.max]);
         await tab.waitForFunction(() => {
@@ -169,8 +217,12 @@ for (const widget of h.schema) {
           const said = widget.shadowRoot.querySelector('[aria-live="polite"]').textContent;
           return said.length > 15 && said === widget.outcome.sentence;
         });
-        const summary = await tab.evaluate(() => document.querySelector('slam-widget').summary);
+        const [summary, written] = await tab.evaluate(() => {
+          const widget = document.querySelector('slam-widget');
+          return [widget.summary, widget.shadowRoot.querySelector('.summary').textContent];
+        });
         assert.ok(summary.length > 40);
+        assert.equal(written, summary);
       });
     });
   });
@@ -189,13 +241,13 @@ describe('the focus ring', () => {
         for (let at = 0; at < data.length; at += 4) sum = (sum * 31 + data[at] + data[at + 1] * 7) >>> 0;
         return sum;
       });
-      await h.moreFrames(tab, 3);
+      await h.quiet(tab);
       const plain = await look();
       await tab.locator('slam-widget #control-noise').focus();
-      await h.moreFrames(tab, 2);
+      await h.quiet(tab);
       assert.notEqual(await look(), plain);
       await tab.evaluate(() => document.activeElement.blur());
-      await h.moreFrames(tab, 2);
+      await h.quiet(tab);
       assert.equal(await look(), plain);
     });
   });

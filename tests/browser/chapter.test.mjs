@@ -5,6 +5,7 @@ import { createRequire } from 'node:module';
 import { readFileSync } from 'node:fs';
 import { after, before, describe, it } from 'node:test';
 import * as h from './harness.mjs';
+import { cloudSpot, restingSpot, sliderRail } from './spots.mjs';
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 /** What the chapter adds to the element's policy are fonts, its own. */
@@ -40,11 +41,75 @@ const isSeen = (css) => {
 const background = (tab) => tab.evaluate(() => getComputedStyle(document.body).backgroundColor);
 
 describe('the chapter', () => {
-  it('holds the four widgets and starts each when it comes near', async () => {
+  it('holds the four widgets, starts each when it comes near, and paints it', async () => {
     await reading(async (tab) => {
-      for (const id of ['w16.1', 'w16.3', 'w16.2', 'w16.4']) {
+      const order = ['w16.1', 'w16.3', 'w16.2', 'w16.4'];
+      const states = () => tab.evaluate(
+        (ids) => ids.map((id) => document.querySelector(`slam-widget[name="${id}"]`).state), order);
+      for (const [place, id] of order.entries()) {
+        // Those further down have not begun.
+        const later = order.length - place - 1;
+        assert.deepEqual((await states()).slice(place + 1), Array(later).fill('resting'));
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
         await h.ready(tab, widget(id));
+        assert.ok((await h.paintedShare(tab, widget(id))).share > 0.03, id);
+      }
+    });
+  });
+
+  it('lets its widgets be dragged, scrolled over and passed by Tab', async () => {
+    await reading(async (tab) => {
+      const css = widget('w16.1');
+      await tab.locator(css).scrollIntoViewIfNeeded();
+      await h.ready(tab, css);
+      await tab.evaluate((name) => document.querySelector(name).scrollIntoView(), css);
+      const value = () => tab.evaluate((name) => document.querySelector(name).value, css);
+      const before = await value();
+
+      const { x, y, width } = await sliderRail(tab, 'heading', css);
+      await tab.mouse.click(x + 0.2 * width, y);
+      await tab.waitForFunction(([name, old]) => document.querySelector(name).heading !== old, [css, before.heading]);
+      const turned = await value();
+      assert.equal(turned.dx, before.dx);
+
+      const [left, top] = await cloudSpot(tab, css);
+      await tab.mouse.move(left, top);
+      await tab.mouse.down();
+      await tab.mouse.move(left + 30, top - 15, { steps: 3 });
+      await tab.mouse.up();
+      await tab.waitForFunction(([name, old]) => document.querySelector(name).dx !== old, [css, turned.dx]);
+      await tab.waitForURL(/dx=/);
+
+      const scrolled = () => tab.evaluate(() => window.scrollY);
+      const from = await scrolled();
+      const [restX, restY] = await restingSpot(tab, css);
+      await tab.mouse.move(restX, restY);
+      await tab.mouse.wheel(0, 240);
+      await tab.waitForFunction((old) => window.scrollY > old + 200, from);
+
+      await tab.evaluate((name) => document.querySelector(name).shadowRoot.querySelector('button').focus(), css);
+      const isInside = () => tab.evaluate((name) => document.activeElement.matches(name), css);
+      let presses = 0;
+      while ((await isInside()) && presses < 100) {
+        await tab.keyboard.press('Tab');
+        presses += 1;
+      }
+      assert.ok(presses > 20 && presses < 100, `${presses} presses through the widget`);
+    });
+  });
+
+  it('gives a widget the width that the window has', async () => {
+    await reading(async (tab) => {
+      const css = widget('w16.2');
+      await tab.locator(css).scrollIntoViewIfNeeded();
+      await h.ready(tab, css);
+      for (const width of [700, 390, 1100]) {
+        await tab.setViewportSize({ width, height: 800 });
+        await tab.waitForFunction((name) => {
+          const host = document.querySelector(name);
+          const inside = host.shadowRoot.querySelector('canvas').clientWidth;
+          return host.clientWidth - inside >= 0 && host.clientWidth - inside <= 2;
+        }, css);
       }
     });
   });
@@ -135,7 +200,8 @@ describe('the chapter', () => {
       const tab = await h.open(browser, `${server.url}/index.html`, { colorScheme, bypassCSP: true });
       await tab.locator('#exercise-5 slam-predict').scrollIntoViewIfNeeded();
       await tab.addScriptTag({ content: AXE });
-      const { violations } = await tab.evaluate(() => axe.run(document));
+      const { violations } = await tab.evaluate(() =>
+        axe.run(document, { rules: { 'target-size': { enabled: true } } }));
       const found = violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`);
       assert.deepEqual(found, []);
       await tab.context().close();

@@ -1,6 +1,7 @@
 // The element on a page: it paints, takes values in every way, and tells what happens.
 
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { after, before, describe, it } from 'node:test';
 import * as h from './harness.mjs';
 
@@ -121,6 +122,81 @@ describe('values', () => {
     }, { url: '?w=99' });
   });
 
+  it('that were set before the element was defined, or connected, are taken', async () => {
+    const body = `<slam-widget name="w16.1" id="early"></slam-widget>
+      <script>document.querySelector('#early').heading = 61;</script>`;
+    await on(body, async (tab) => {
+      assert.equal(await tab.evaluate(() => document.querySelector('#early').value.heading), 61);
+      const [before, after] = await tab.evaluate(() => {
+        const made = document.createElement('slam-widget');
+        made.name = 'w16.1';
+        made.heading = 62;
+        const unconnected = made.heading;
+        document.body.append(made);
+        return [unconnected, made.heading];
+      });
+      assert.deepEqual([before, after], [62, 62]);
+    });
+  });
+
+  it('stay when the element moves within its page', async () => {
+    await on('<div id="a"><slam-widget name="w16.1"></slam-widget></div><div id="b"></div>', async (tab) => {
+      await h.ready(tab);
+      await tab.evaluate(() => {
+        const widget = document.querySelector('slam-widget');
+        widget.heading = 63;
+        document.querySelector('#b').append(widget);
+      });
+      await h.ready(tab);
+      assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').heading), 63);
+    });
+  });
+
+  it('that are refused are named once, and the note goes when they are right', async () => {
+    await on('<slam-widget name="w16.1"></slam-widget>', async (tab) => {
+      await h.ready(tab);
+      const field = tab.getByRole('spinbutton', { name: 'Heading' });
+      const note = () => tab.locator('slam-widget .note').innerText();
+      for (const typed of ['999', '-999']) {
+        await field.focus();
+        await tab.keyboard.press('ControlOrMeta+a');
+        await tab.keyboard.type(typed);
+        await tab.keyboard.press('Enter');
+        assert.equal(await note(), `\`heading\` takes -180 to 180, not \`${typed}\`. It stays at 25°.`);
+        assert.equal(await field.getAttribute('aria-invalid'), 'true');
+        assert.equal(await field.inputValue(), typed, 'what was typed is not lost');
+      }
+      await tab.keyboard.press('ControlOrMeta+a');
+      await tab.keyboard.type('12');
+      await tab.keyboard.press('Enter');
+      assert.equal(await note(), '');
+      assert.equal(await field.getAttribute('aria-invalid'), 'false');
+    });
+  });
+
+  it('beyond the end of a run come back as its end', async () => {
+    await on('<slam-widget name="w16.2"></slam-widget>', async (tab) => {
+      await h.ready(tab);
+      const [set, last, shown] = await tab.evaluate(() => {
+        const widget = document.querySelector('slam-widget');
+        widget.t = widget.timeline.last;
+        const range = widget.shadowRoot.querySelector('#control-t');
+        return [widget.t, widget.timeline.last, [Number(range.value), Number(range.max)]];
+      });
+      assert.equal(set, last);
+      assert.deepEqual(shown, [last, last]);
+    });
+  });
+
+  it('of the page itself stay in its address', async () => {
+    await on('<slam-widget name="w16.1" linked></slam-widget>', async (tab) => {
+      await h.ready(tab);
+      await tab.evaluate(() => (document.querySelector('slam-widget').heading = 20));
+      await tab.waitForURL(/heading=20/);
+      assert.equal(new URL(tab.url()).searchParams.get('id'), '12');
+    }, { url: '?id=12' });
+  });
+
   it('in an unknown widget name the widgets there are', async () => {
     await on('<slam-widget name="w99"></slam-widget>', async (tab) => {
       const note = await tab.evaluate(
@@ -166,12 +242,32 @@ describe('exports', () => {
         tab.getByRole('button', { name: 'Save picture' }).click(),
       ]);
       assert.equal(picture.suggestedFilename(), 'w16.1.png');
+      const bytes = readFileSync(await picture.path());
+      assert.equal(bytes.subarray(1, 4).toString(), 'PNG');
+      const canvas = await tab.evaluate(() => {
+        const { width, height } = document.querySelector('slam-widget').shadowRoot.querySelector('canvas');
+        return [width, height];
+      });
+      assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], canvas);
       const [data] = await Promise.all([
         tab.waitForEvent('download'),
         tab.getByRole('button', { name: 'Save data' }).click(),
       ]);
       assert.match(data.suggestedFilename(), /^w16\.1-.*\.csv$/);
     });
+  });
+
+  it('copy a link that opens the widget in the same state', async () => {
+    await on('<slam-widget name="w16.1" heading="60"></slam-widget>', async (tab) => {
+      await h.ready(tab);
+      await tab.getByRole('button', { name: 'Copy link' }).click();
+      await tab.getByText('The link is copied.').waitFor();
+      const link = await tab.evaluate(() => navigator.clipboard.readText());
+      assert.match(link, /\/embed\.html\?w=16\.1&heading=60$/);
+      await tab.goto(link);
+      await h.ready(tab);
+      assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').heading), 60);
+    }, { options: { permissions: ['clipboard-read', 'clipboard-write'] } });
   });
 
   it('print the picture of the present state in place of the canvas', async () => {
@@ -182,10 +278,11 @@ describe('exports', () => {
       const shown = await tab.evaluate(() => {
         const { shadowRoot } = document.querySelector('slam-widget');
         const display = (css) => getComputedStyle(shadowRoot.querySelector(css)).display;
+        const picture = shadowRoot.querySelector('.picture');
         return { canvas: display('canvas'), picture: display('.picture'),
-          source: shadowRoot.querySelector('.picture').src.slice(0, 19) };
+          source: picture.src.slice(0, 19), isDrawn: picture.complete && picture.naturalWidth > 300 };
       });
-      assert.deepEqual(shown, { canvas: 'none', picture: 'block', source: 'data:image/svg+xml;' });
+      assert.deepEqual(shown, { canvas: 'none', picture: 'block', source: 'data:image/svg+xml;', isDrawn: true });
     });
   });
 });

@@ -52,7 +52,12 @@ export async function serve({ pages = {}, policy, answer } = {}) {
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
   return {
     url: `http://localhost:${server.address().port}`,
-    close: () => new Promise((resolve) => server.close(resolve)),
+    close: () => {
+      const closed = new Promise((resolve) => server.close(resolve));
+      // A response that was held back on purpose must not hold the test as well.
+      server.closeAllConnections();
+      return closed;
+    },
   };
 }
 
@@ -68,6 +73,8 @@ export function launch(extra = []) {
       '--disable-background-networking',
       '--disable-component-update',
       '--disable-sync',
+      // A scroll that is animated needs frames, and software GL may owe them for long.
+      '--disable-smooth-scrolling',
       '--js-flags=--expose-gc',
       ...extra,
     ],
@@ -113,7 +120,7 @@ export async function moreFrames(page, count, selector = 'slam-widget') {
   await page.waitForFunction(
     ([css, goal]) => {
       const widget = document.querySelector(css);
-      void widget.snapshot();
+      void widget.snapshot().then((picture) => picture.close());
       return widget.frames >= goal;
     },
     [selector, before + count],

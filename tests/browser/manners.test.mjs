@@ -138,15 +138,17 @@ describe('touch', () => {
 });
 
 describe('frames', () => {
-  it('are not drawn, nor even asked for, while nothing changes', async () => {
-    await on(CALM, async (tab) => {
-      await h.ready(tab);
-      await h.quiet(tab);
-      const drawn = await tab.evaluate(() => document.querySelector('slam-widget').frames);
-      assert.equal(await h.countFrames(tab, 1500), 0);
-      assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').frames), drawn);
+  for (const { id } of h.schema) {
+    it(`of ${id} are not drawn, nor even asked for, while nothing changes`, async () => {
+      await on(`<slam-widget name="${id}"></slam-widget>`, async (tab) => {
+        await h.ready(tab);
+        await h.quiet(tab);
+        const drawn = await tab.evaluate(() => document.querySelector('slam-widget').frames);
+        assert.equal(await h.countFrames(tab, 1500), 0);
+        assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').frames), drawn);
+      });
     });
-  });
+  }
 
   it('are drawn while something plays, and stop when it is scrolled out of view', async () => {
     await on(CALM + TALL, async (tab) => {

@@ -7,6 +7,7 @@ use kit::model::{Activity, Motion};
 use kit::palette::Theme;
 use kit::param::{ParamError, ParamSpec};
 use kit::shell::Shell;
+use kit::zoom::Look;
 use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
 
@@ -243,6 +244,19 @@ impl Widget {
     pub fn set_focus(&self, id: Option<String>) {
         self.shared.shell.borrow_mut().set_focus(id.as_deref());
         self.shared.request_repaint();
+    }
+
+    /// Zooms every map or moves its zoomed part: `in`, `out`, `left`, `right`, `up`, `down`, `whole`.
+    ///
+    /// # Errors
+    /// Where there is no such way.
+    pub fn look(&self, way: &str) -> Result<(), JsError> {
+        let known = || Look::NAMES.map(|(name, _)| name).join(", ");
+        let look = Look::named(way)
+            .ok_or_else(|| JsError::new(&format!("one looks {}, not `{way}`", known())))?;
+        self.shared.shell.borrow_mut().look(look);
+        self.shared.request_repaint();
+        Ok(())
     }
 
     /// Whether something that drags lies at that point of the canvas (CSS pixels).

@@ -8,7 +8,8 @@ import type { ButtonSpec, ParamSpec, WidgetSpec } from './schema';
 import { toLabel } from './values';
 
 export interface ControlHost {
-  set(id: string, text: string): void;
+  /** Returns what was wrong. */
+  set(id: string, text: string): string | undefined;
   press(id: string): void;
   focus(id: string | undefined): void;
 }
@@ -21,6 +22,7 @@ interface ParamControl {
 export class Controls {
   readonly element: HTMLElement;
   readonly #params = new Map<string, ParamControl>();
+  readonly #texts = new Map<string, string>();
   readonly #ranges = new Map<string, HTMLInputElement>();
   readonly #buttons = new Map<string, HTMLButtonElement>();
   readonly #host: ControlHost;
@@ -43,7 +45,10 @@ export class Controls {
 
   /** Shows values that changed elsewhere. */
   show(values: Iterable<[string, string]>): void {
-    for (const [id, text] of values) this.#params.get(id)?.show(text);
+    for (const [id, text] of values) {
+      this.#texts.set(id, text);
+      this.#params.get(id)?.show(text);
+    }
   }
 
   /** Shows how long the run is and whether it plays. */
@@ -52,7 +57,11 @@ export class Controls {
     if (timeline === null) return;
     play?.setAttribute('aria-pressed', String(timeline.playing));
     const range = this.#ranges.get(timeline.param);
-    if (range !== undefined) range.max = String(timeline.last);
+    if (range === undefined) return;
+    range.max = String(timeline.last);
+    // A run can be shorter than the moment that was asked for: it shows its end.
+    const asked = Number(this.#texts.get(timeline.param));
+    this.#params.get(timeline.param)?.show(String(Math.min(asked, timeline.last)));
   }
 
   #param(spec: ParamSpec): HTMLElement {
@@ -137,7 +146,10 @@ export class Controls {
     const { min, max } = spec;
     const step = spec.kind === 'slider' ? 'any' : '1';
     const field = create('input', { type: 'number', min: `${min}`, max: `${max}`, step });
-    field.addEventListener('change', () => this.#host.set(spec.id, field.value));
+    field.addEventListener('change', () => {
+      const problem = this.#host.set(spec.id, field.value);
+      field.setAttribute('aria-invalid', String(problem !== undefined));
+    });
     return field;
   }
 
@@ -193,7 +205,9 @@ function tidy(value: number): string {
 function showUnlessTyping(field: HTMLInputElement, text: string): void {
   // A value that comes in while the reader types would take the text away.
   const root = field.getRootNode() as ShadowRoot | Document;
-  if (root.activeElement !== field || Number(field.value) !== Number(text)) field.value = text;
+  if (root.activeElement === field && Number(field.value) === Number(text)) return;
+  field.value = text;
+  field.setAttribute('aria-invalid', 'false');
 }
 
 function unitOf(spec: ParamSpec): HTMLElement {

@@ -15,6 +15,13 @@ export function listen(target: EventTarget, type: string, callback: () => void):
   return () => target.removeEventListener(type, callback);
 }
 
+/** Keeps keys from the page: slides and chapters turn on arrows, whatever has the focus. */
+export function keepKeys(element: HTMLElement): void {
+  element.addEventListener('keydown', (event) => {
+    if (event.key !== 'Tab' && event.key !== 'Escape') event.stopPropagation();
+  });
+}
+
 /** Scrolls until a box (left, top, width, height) inside of an element is seen above a bar. */
 export function reveal(
   inside: HTMLElement,
@@ -31,4 +38,14 @@ export function reveal(
   inside.append(marker);
   marker.scrollIntoView({ block: 'center', inline: 'nearest' });
   marker.remove();
+}
+
+/** Properties that were set before an element was defined hide those of its class: sets them anew. */
+export function upgradeProperties(element: HTMLElement): void {
+  const early = element as unknown as Record<string, unknown>;
+  for (const [key, value] of Object.entries(early)) {
+    if (!(key in Object.getPrototypeOf(element))) continue;
+    delete early[key];
+    early[key] = value;
+  }
 }

@@ -4,15 +4,20 @@
 // place of the widget on the screen (life.ts).
 
 import { Controls } from './controls';
-import { create, listen, reveal } from './dom';
+import { listen, reveal, upgradeProperties } from './dom';
 import { takeAwayBar } from './export';
 import { CrashError, type CsvFile, type Outcome, type Timeline } from './instance';
 import { Life, type LifeHost } from './life';
-import { readQuery, writeQuery } from './links';
+import { LoadError } from './module';
+import { readQuery, withState } from './links';
+import { lookBar, type Way } from './look';
+import { Notes } from './notes';
 import { build, failureBox, type Parts } from './parts';
+import { Pictures } from './pictures';
 import { findParam, findWidget, widgets, type WidgetSpec } from './schema';
+import { State } from './state';
 import { themeOf, watchTheme, type Theme } from './theme';
-import { defaultText, parseValue, toValue, type Value } from './values';
+import { defaultText, type Value } from './values';
 import { unwatchVisibility, watchVisibility } from './visibility';
 
 /** After the last change, before the result is told: not every frame of a drag is news. */
@@ -24,26 +29,29 @@ export class SlamWidget extends HTMLElement {
   static readonly observedAttributes: string[] = ['name', 'theme'];
 
   readonly #parts: Parts;
+  readonly #notes: Notes;
+  readonly #pictures: Pictures;
   readonly #life: Life;
-  #spec: WidgetSpec | undefined;
-  #values = new Map<string, string>();
+  #state: State | undefined;
   #controls: Controls | undefined;
   #lastOutcome: Outcome | undefined;
   #resultTimer: ReturnType<typeof setTimeout> | undefined;
   #unwatch: (() => void)[] = [];
-  #wantPicture: ((picture: ImageBitmap) => void)[] = [];
 
   constructor() {
     super();
     this.#parts = build(this.attachShadow({ mode: 'open' }));
+    this.#notes = new Notes(this.#parts.note);
+    this.#pictures = new Pictures(this.#parts.picture);
     this.#life = new Life(this.#parts, this.#lifeHost());
   }
 
   connectedCallback(): void {
     // What moves within its page, or was set up before, keeps its state.
-    if (this.#spec === undefined) this.#setUp();
+    if (this.#state === undefined) this.#setUp();
+    upgradeProperties(this);
     this.#unwatch = [
-      watchTheme(() => this.#showTheme()),
+      watchTheme(this, () => this.#showTheme()),
       listen(window, 'error', () => this.#life.checkCrash()),
       listen(window, 'beforeprint', () => this.#drawPicture('light')),
       listen(window, 'resize', () => this.#life.wake()),
@@ -65,7 +73,7 @@ export class SlamWidget extends HTMLElement {
 
   attributeChangedCallback(name: string, old: string | null, value: string | null): void {
     // Before the set-up there is nothing to change: it reads all attributes.
-    if (this.#spec === undefined && !this.isConnected) return;
+    if (this.#state === undefined && !this.isConnected) return;
     if (name === 'name') {
       if (old === value) return;
       this.#life.suspend();
@@ -74,20 +82,25 @@ export class SlamWidget extends HTMLElement {
     } else if (name === 'theme') {
       this.#showTheme();
     } else {
-      const spec = this.#spec && findParam(this.#spec, name);
+      const spec = this.#state && findParam(this.#state.spec, name);
       if (spec !== undefined) this.#tryToSet(name, value ?? defaultText(spec));
     }
   }
 
   // ---- for programs -------------------------------------------------------------------------
 
+  /** Which widget: `w16.1`. */
+  get name(): string {
+    return this.getAttribute('name') ?? '';
+  }
+
+  set name(name: string) {
+    this.setAttribute('name', name);
+  }
+
   /** The whole state as JSON; setting takes an object or its text, all of it or some. */
   get value(): Record<string, Value> {
-    const spec = this.#spec;
-    if (spec === undefined) return {};
-    return Object.fromEntries(
-      spec.params.map((param) => [param.id, toValue(param, this.#text(param.id))]),
-    );
+    return this.#state?.toJSON() ?? {};
   }
 
   set value(given: Record<string, Value> | string) {
@@ -100,8 +113,7 @@ export class SlamWidget extends HTMLElement {
 
   /** One parameter; undefined where this widget has none of that name. */
   get(id: string): Value | undefined {
-    const spec = this.#spec && findParam(this.#spec, id);
-    return spec && toValue(spec, this.#text(id));
+    return this.#state?.value(id);
   }
 
   /** Sets one parameter; throws a RangeError that names what would be right. */
@@ -132,12 +144,20 @@ export class SlamWidget extends HTMLElement {
 
   /** The text that stands for the picture. */
   get summary(): string {
-    return this.#life.ask((widget) => widget.summary()) ?? this.#spec?.summary ?? '';
+    return this.#life.ask((widget) => widget.summary()) ?? this.#state?.spec.summary ?? '';
   }
 
   /** The state as the query of a link. */
   get query(): string {
-    return this.#spec === undefined ? '' : writeQuery(this.#spec, this.#values);
+    return this.#state?.query ?? '';
+  }
+
+  /** The page, where it takes the state from its address; else the widget on a page of its own. */
+  get link(): string {
+    const isLinked = this.hasAttribute('linked');
+    const link = new URL(isLinked ? location.href : new URL('embed.html', import.meta.url));
+    link.search = this.#stateIn(link.search);
+    return link.href;
   }
 
   /** Every plot and table as CSV. */
@@ -148,10 +168,10 @@ export class SlamWidget extends HTMLElement {
 
   /** What the canvas shows, pixel by pixel; waits until the widget runs and draws. */
   snapshot(): Promise<ImageBitmap> {
-    return new Promise((resolve) => {
-      this.#wantPicture.push(resolve);
-      this.#life.wake();
-    });
+    if (this.#life.hasFailed) return Promise.reject(new LoadError('the widget does not run'));
+    const picture = this.#pictures.nextFrame();
+    this.#life.wake();
+    return picture;
   }
 
   /** `running` while it has a canvas. */
@@ -181,6 +201,12 @@ export class SlamWidget extends HTMLElement {
     return at === undefined ? null : [at[0] ?? 0, at[1] ?? 0];
   }
 
+  /** Zooms every map, or moves the part that is seen. */
+  look(way: Way): void {
+    this.#life.ask((widget) => widget.look(way));
+    this.#life.wake();
+  }
+
   /** Panics in the widget on purpose, for tests of a page's recovery. */
   crashForTest(): void {
     this.#life.ask((widget) => widget.crashForTest());
@@ -195,27 +221,25 @@ export class SlamWidget extends HTMLElement {
 
   #setUp(): void {
     const parts = this.#parts;
-    const name = this.getAttribute('name') ?? '';
-    const spec = findWidget(name);
-    this.#spec = spec;
-    this.#values.clear();
+    const spec = findWidget(this.name);
+    this.#state = spec && new State(spec);
     this.#lastOutcome = undefined;
-    parts.note.replaceChildren();
+    this.#notes.clear();
+    this.#pictures.clear(spec?.summary ?? '');
     parts.bar.replaceChildren();
     if (spec === undefined) {
       const known = widgets.map((widget) => widget.id).join(', ');
-      this.#tell('name', `There is no widget \`${name.slice(0, 60)}\`; there are ${known}.`);
+      this.#tell('name', `There is no widget \`${this.name.slice(0, 60)}\`; there are ${known}.`);
       return;
     }
-    this.#values = new Map(spec.params.map((param) => [param.id, defaultText(param)]));
     this.#controls = new Controls(spec, {
       set: (id, text) => this.#tryToSet(id, text),
       press: (id) => void this.press(id).catch((error: unknown) => this.#life.fail(error)),
       focus: (id) => this.#showFocus(id),
     });
-    parts.bar.append(this.#controls.element, takeAwayBar(this, spec.id, parts.status));
+    const look = lookBar((way) => this.look(way));
+    parts.bar.append(this.#controls.element, look, takeAwayBar(this, spec.id, parts.status));
     parts.frame.setAttribute('aria-label', `Widget ${spec.id.replace(/^w/, '')}: ${spec.title}`);
-    parts.picture.alt = spec.summary;
     parts.summary.textContent = spec.summary;
     this.#showTheme();
     for (const param of spec.params) {
@@ -223,7 +247,7 @@ export class SlamWidget extends HTMLElement {
       if (text !== null) this.#tryToSet(param.id, text);
     }
     if (this.hasAttribute('linked')) this.#readAddress(spec);
-    this.#controls.show(this.#values);
+    this.#controls.show(this.#state?.texts ?? []);
   }
 
   #readAddress(spec: WidgetSpec): void {
@@ -243,25 +267,25 @@ export class SlamWidget extends HTMLElement {
   // ---- running ------------------------------------------------------------------------------
 
   #lifeHost(): LifeHost {
-    const spec = (): WidgetSpec | undefined => this.#spec;
     return {
-      get widget() {
-        return spec();
-      },
+      widget: () => this.#state?.spec,
       prepare: (widget) => {
-        for (const [id, text] of this.#values) widget.set(id, text);
+        const state = this.#state;
+        for (const [id, text] of state?.texts ?? []) widget.set(id, text);
+        // The model may keep less than was asked for: no moment after the end of its run.
+        for (const id of state?.texts.keys() ?? []) state?.keep(id, widget.text(id));
+        this.#controls?.show(state?.texts ?? []);
         widget.setTheme(themeOf(this));
         widget.setReducedMotion(reducedMotion?.matches === true);
       },
       live: (milliseconds) => {
         this.#controls?.showTimeline(this.timeline);
         this.#lastOutcome = this.outcome;
+        this.#parts.summary.textContent = this.summary;
         this.#emit('slam-ready', { value: this.value, ms: milliseconds });
       },
       drew: (canvas) => {
-        for (const resolve of this.#wantPicture.splice(0)) {
-          void createImageBitmap(canvas).then(resolve);
-        }
+        this.#pictures.handOut(canvas);
         this.#sync();
       },
       leaving: () => this.#drawPicture(themeOf(this)),
@@ -273,16 +297,30 @@ export class SlamWidget extends HTMLElement {
   #sync(): void {
     const changes = this.#takeChanges();
     if (changes.length === 0) return;
-    for (const [id, text] of changes) this.#values.set(id, text);
+    this.#announcePassed(changes);
     this.#told(changes);
+  }
+
+  /** A run that plays settles only at its end; what it passes is told on the way. */
+  #announcePassed(changes: Iterable<[string, string]>): void {
+    const { timeline } = this;
+    if (timeline?.playing !== true) return;
+    const before = Number(this.#state?.text(timeline.param));
+    const now = Number(new Map(changes).get(timeline.param) ?? before);
+    const passed = timeline.marks.filter(({ at }) => before < at && at <= now);
+    if (passed.length > 0) this.#parts.live.textContent = passed.map(({ label }) => label).join('; ');
   }
 
   #takeChanges(): [string, string][] {
     return this.#life.ask((_, instance) => instance.takeChanges()) ?? [];
   }
 
-  /** Tells controls and page of changes. */
-  #told(changes: [string, string][]): void {
+  /** Keeps changes, and tells controls and page of them. */
+  #told(changes: Iterable<[string, string]>): void {
+    for (const [id, text] of changes) {
+      this.#state?.keep(id, text);
+      this.#notes.settle(id);
+    }
     this.#controls?.show(changes);
     this.#controls?.showTimeline(this.timeline);
     const outcome = this.outcome;
@@ -300,46 +338,44 @@ export class SlamWidget extends HTMLElement {
       this.#parts.live.textContent = outcome.sentence;
       this.#emit('slam-result', { value: this.value, outcome });
     }
-    if (this.hasAttribute('linked')) this.#writeAddress();
+    if (this.hasAttribute('linked')) history.replaceState(history.state, '', this.link);
   }
 
   // ---- values -------------------------------------------------------------------------------
 
-  #text(id: string): string {
-    return this.#values.get(id) ?? '';
-  }
-
   /** Sets a parameter; returns what was wrong. */
   #set(id: string, given: unknown): string | undefined {
-    if (this.#spec === undefined) this.#setUp();
-    const widget = this.#spec;
-    if (widget === undefined) return 'there is no such widget';
-    const spec = findParam(widget, id);
-    if (spec === undefined) {
-      const known = widget.params.map((param) => param.id).join(', ');
-      return `${widget.id} has no parameter \`${id.slice(0, 60)}\`; it has ${known}`;
-    }
-    const parsed = parseValue(spec, given);
+    if (this.#state === undefined) this.#setUp();
+    const state = this.#state;
+    if (state === undefined) return 'there is no such widget';
+    const parsed = state.parse(id, given);
     if (!parsed.ok) return parsed.problem;
-    if (this.#values.get(id) === parsed.text) return undefined;
-    this.#values.set(id, parsed.text);
-    this.#life.ask((running) => running.set(id, parsed.text));
-    const also = this.#takeChanges();
-    for (const [other, text] of also) this.#values.set(other, text);
-    this.#told([[id, parsed.text], ...also.filter(([other]) => other !== id)]);
+    if (state.text(id) === parsed.text) return undefined;
+    const kept = this.#life.ask((running) => {
+      running.set(id, parsed.text);
+      return running.text(id);
+    });
+    this.#told(new Map([[id, kept ?? parsed.text], ...this.#takeChanges()]));
     this.#life.wake();
     return undefined;
   }
 
-  #tryToSet(id: string, given: unknown): void {
+  /** Sets what came from outside; what was wrong is said, and returned. */
+  #tryToSet(id: string, given: unknown): string | undefined {
     const problem = this.#set(id, given);
-    if (problem !== undefined) this.#tell('value', `${problem}. The default stands.`);
+    if (problem === undefined) {
+      this.#notes.settle(id);
+      return undefined;
+    }
+    const label = this.#state?.label(id);
+    const stands = label === undefined ? '' : ` It stays at ${label}.`;
+    this.#tell('value', `${problem}.${stands}`, id);
+    return problem;
   }
 
-  #writeAddress(): void {
-    const address = new URL(location.href);
-    address.search = this.query;
-    history.replaceState(history.state, '', address);
+  /** A query of the page with the widget's state in place of the old one. */
+  #stateIn(search: string): string {
+    return this.#state === undefined ? search : withState(search, this.#state.spec, this.query);
   }
 
   // ---- looks --------------------------------------------------------------------------------
@@ -349,7 +385,8 @@ export class SlamWidget extends HTMLElement {
     this.#parts.frame.classList.toggle('dark', theme === 'dark');
     this.#life.ask((widget) => widget.setTheme(theme));
     this.#life.wake();
-    if (!this.#life.hasInstance) this.#showStaticPicture(theme);
+    const spec = this.#state?.spec;
+    if (!this.#life.hasInstance && spec !== undefined) this.#pictures.showStart(spec.id, theme);
   }
 
   #showMotion(): void {
@@ -366,47 +403,36 @@ export class SlamWidget extends HTMLElement {
     if (box !== null) reveal(stage, box, bar.offsetHeight);
   }
 
-  /** The picture that the build drew: the state at the start. */
-  #showStaticPicture(theme: Theme): void {
-    const { picture } = this.#parts;
-    if (this.#spec === undefined) return;
-    // A picture of the state that the reader left is better.
-    if (picture.src.startsWith('data:')) return;
-    picture.src = new URL(`pictures/${this.#spec.id}-${theme}.svg`, import.meta.url).href;
-  }
-
   /** The picture of the state of now, drawn by the widget itself. */
   #drawPicture(theme: Theme): void {
-    const { picture } = this.#parts;
     const width = Math.max(this.clientWidth, 320);
     const svg = this.#life.ask((widget) => widget.picture(width, theme));
-    if (svg === undefined) return;
-    picture.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
-    picture.alt = this.summary;
+    if (svg !== undefined) this.#pictures.showDrawn(svg, this.summary);
   }
 
   // ---- trouble ------------------------------------------------------------------------------
 
   #showFailure(error: unknown): void {
     const box = failureBox(error, () => {
+      // The button goes: the focus stays in the widget.
+      this.#parts.frame.focus({ preventScroll: true });
       box.remove();
       this.#life.restart();
     });
     this.#parts.note.append(box);
     const message = error instanceof Error ? error.message : String(error);
+    this.#pictures.refuse(new LoadError(message));
     this.#emit('slam-error', { kind: error instanceof CrashError ? 'crash' : 'load', message });
   }
 
-  /** Names something that was wrong with what came from outside; as text, never as HTML. */
-  #tell(kind: string, message: string): void {
-    const line = create('p');
-    line.textContent = message;
-    this.#parts.note.append(line);
+  /** Names something that was wrong with what came from outside. */
+  #tell(kind: string, message: string, subject?: string): void {
+    this.#notes.say(message, subject);
     this.#emit('slam-error', { kind, message });
   }
 
   #emit(type: string, detail: Record<string, unknown>): void {
-    const name = this.#spec?.id ?? this.getAttribute('name');
+    const name = this.#state?.spec.id ?? this.getAttribute('name');
     this.dispatchEvent(
       new CustomEvent(type, { detail: { name, ...detail }, bubbles: true, composed: true }),
     );

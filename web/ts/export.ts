@@ -5,38 +5,32 @@ import type { CsvFile } from './instance';
 
 /** What can be taken from: a widget. */
 interface Source extends HTMLElement {
-  readonly query: string;
+  /** The page, or a page of its own, with the widget in its present state. */
+  readonly link: string;
   snapshot(): Promise<ImageBitmap>;
   tables(): Promise<CsvFile[]>;
 }
 
-/** The buttons for it; `status` says what became of the link. */
+/** The buttons for it; `status` says what became of the link, and what cannot be had. */
 export function takeAwayBar(source: Source, name: string, status: HTMLElement): HTMLElement {
   const bar = create('div', { class: 'tools', role: 'group', 'aria-label': 'Take away' });
   const button = (label: string, press: () => Promise<void>): HTMLElement => {
     const element = create('button', { type: 'button' });
     element.textContent = label;
-    element.addEventListener('click', () => void press());
+    element.addEventListener('click', () => {
+      press().catch((error: Error) => (status.textContent = `${label} failed: ${error.message}.`));
+    });
     return element;
   };
   bar.append(
     button('Save picture', async () => savePng(await source.snapshot(), name)),
     button('Save data', async () => saveCsv(await source.tables(), name)),
     button('Copy link', async () => {
-      const link = linkTo(source);
-      status.textContent = (await copyText(link)) ? 'The link is copied.' : link;
+      status.textContent = (await copyText(source.link)) ? 'The link is copied.' : source.link;
     }),
     status,
   );
   return bar;
-}
-
-/** This page, where it takes the state from its address; else the widget on a page of its own. */
-function linkTo(source: Source): string {
-  const isLinked = source.hasAttribute('linked');
-  const link = new URL(isLinked ? location.href : new URL('embed.html', import.meta.url));
-  link.search = source.query;
-  return link.href;
 }
 
 async function savePng(picture: ImageBitmap, name: string): Promise<void> {

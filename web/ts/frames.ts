@@ -5,6 +5,8 @@ type Callback = (time: number) => void;
 
 /** How long after an event egui may still want frames: hover delays and fades end by then. */
 const SETTLE_MS = 900;
+/** So many frames follow an event however slow they are: one to take it in, two to settle. */
+const SETTLE_FRAMES = 3;
 
 export class FrameGate {
   /** Called after each frame that ran; says whether another one is wanted at once. */
@@ -15,12 +17,16 @@ export class FrameGate {
   #waiting: Callback | undefined;
   #scheduled = 0;
   #awakeUntil = 0;
+  #owed = 0;
   #open = false;
+  #isInFrame = false;
 
   /** The glue calls this in place of `window.requestAnimationFrame`. */
   request(callback: Callback): number {
     this.#waiting = callback;
-    this.#schedule();
+    // At the end of a frame it always asks; at any other time it has a reason, such as a new size.
+    if (this.#isInFrame) this.#schedule();
+    else this.wake();
     return 1;
   }
 
@@ -63,11 +69,12 @@ export class FrameGate {
   /** Something happened: draw for a moment. */
   wake(): void {
     this.#awakeUntil = performance.now() + SETTLE_MS;
+    this.#owed = SETTLE_FRAMES;
     this.#schedule();
   }
 
   #schedule(): void {
-    const wanted = this.#open && performance.now() < this.#awakeUntil;
+    const wanted = this.#open && (this.#owed > 0 || performance.now() < this.#awakeUntil);
     if (!wanted || this.#waiting === undefined || this.#scheduled !== 0) return;
     this.#scheduled = requestAnimationFrame((time) => this.#run(time));
   }
@@ -82,12 +89,16 @@ export class FrameGate {
     const callback = this.#waiting;
     this.#waiting = undefined;
     if (callback === undefined) return;
+    this.#owed = Math.max(this.#owed - 1, 0);
+    this.#isInFrame = true;
     try {
       // The glue asks for the next frame in here.
       callback(time);
       if (this.afterFrame()) this.wake();
     } catch (error) {
       this.onCrash(error);
+    } finally {
+      this.#isInFrame = false;
     }
   }
 }

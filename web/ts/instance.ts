@@ -3,7 +3,7 @@
 
 import { createGlue, type Widget } from '../pkg/glue.js';
 import { FrameGate } from './frames';
-import { loadModule } from './module';
+import { forgetModule, LoadError, loadModule } from './module';
 
 export interface Outcome {
   standing: 'good' | 'bad' | 'neutral';
@@ -51,7 +51,13 @@ export class Instance {
     const module = await loadModule(progress);
     const frames = new FrameGate();
     const glue = createGlue(frames);
-    await glue({ module_or_path: module });
+    try {
+      await glue({ module_or_path: module });
+    } catch {
+      // A whole module, but not the one that this script was built with.
+      forgetModule();
+      throw new LoadError('the program does not fit the rest of the page; one of them is an old copy');
+    }
     return new Instance(new glue.Widget(name), frames);
   }
 

@@ -17,7 +17,7 @@ const running = new Set<Life>();
 
 export interface LifeHost {
   /** The widget to draw; undefined where the page names none. */
-  readonly widget: { id: string; title: string } | undefined;
+  widget(): { id: string; title: string } | undefined;
   /** Gives a fresh instance everything that the host keeps. */
   prepare(widget: Widget): void;
   /** The first frame stands on the canvas, so many milliseconds after its start. */
@@ -58,6 +58,11 @@ export class Life implements Visibility {
     return this.#instance !== undefined;
   }
 
+  /** Whether nothing runs until a restart. */
+  get hasFailed(): boolean {
+    return this.#hasFailed;
+  }
+
   /** Asks the widget; undefined where there is none, and where the question made it panic. */
   ask<T>(question: (widget: Widget, instance: Instance) => T): T | undefined {
     const instance = this.#instance;
@@ -73,7 +78,7 @@ export class Life implements Visibility {
 
   /** An instance, made now where there is none. */
   ensureInstance(): Promise<Instance> {
-    const { widget } = this.#host;
+    const widget = this.#host.widget();
     if (widget === undefined) return Promise.reject(new LoadError('there is no such widget'));
     this.#creating ??= this.#create(widget.id);
     return this.#creating;
@@ -111,7 +116,7 @@ export class Life implements Visibility {
   /** Draws; does nothing where it draws already, or failed. */
   async #run(): Promise<void> {
     const { stage } = this.#parts;
-    const { widget } = this.#host;
+    const widget = this.#host.widget();
     if (this.isRunning || this.#hasFailed || widget === undefined) return;
     if (stage.classList.contains('waiting')) return;
     const generation = this.#generation;

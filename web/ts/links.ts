@@ -36,6 +36,14 @@ export function readQuery(query: string): LinkedState | { problems: string[] } |
   return { widget, values, problems };
 }
 
+/** The query of a page whose widget is in that state; what belongs to the page itself stays. */
+export function withState(search: string, widget: WidgetSpec, state: string): string {
+  const query = new URLSearchParams(search);
+  for (const id of ['w', ...widget.params.map((param) => param.id)]) query.delete(id);
+  for (const [id, text] of new URLSearchParams(state)) query.set(id, text);
+  return `?${query.toString()}`;
+}
+
 /** Writes a query with every parameter that is not at its default. */
 export function writeQuery(widget: WidgetSpec, values: ReadonlyMap<string, string>): string {
   const query = new URLSearchParams({ w: widget.id.replace(/^w/, '') });

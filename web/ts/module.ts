@@ -9,6 +9,8 @@ type Listener = (share: number) => void;
 
 let compiled: Promise<WebAssembly.Module> | undefined;
 let share = 0;
+/** Whether the last attempt was in vain: a broken copy may sit in a cache. */
+let isRetry = false;
 const listeners = new Set<Listener>();
 
 /** Compiles the module, once for the page; `progress` hears the share that has arrived, 0 to 1. */
@@ -16,12 +18,17 @@ export function loadModule(progress: Listener): Promise<WebAssembly.Module> {
   listeners.add(progress);
   progress(share);
   compiled ??= compile().catch((error: unknown) => {
-    // The next attempt starts afresh.
-    compiled = undefined;
-    share = 0;
+    forgetModule();
     throw error;
   });
   return compiled.finally(() => listeners.delete(progress));
+}
+
+/** The next attempt fetches afresh, past every cache. */
+export function forgetModule(): void {
+  compiled = undefined;
+  share = 0;
+  isRetry = true;
 }
 
 async function compile(): Promise<WebAssembly.Module> {
@@ -31,7 +38,7 @@ async function compile(): Promise<WebAssembly.Module> {
   const url = new URL(WASM_FILE, import.meta.url);
   let response: Response;
   try {
-    response = await fetch(url);
+    response = await fetch(url, { cache: isRetry ? 'reload' : 'default' });
   } catch {
     throw new LoadError('the program could not be fetched');
   }

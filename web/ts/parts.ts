@@ -1,6 +1,6 @@
 // The element's shadow tree: picture and canvas above, notes, controls and tools below.
 
-import { create } from './dom';
+import { create, keepKeys } from './dom';
 import { copyText } from './export';
 import { CrashError } from './instance';
 import { STYLE } from './style';
@@ -22,16 +22,17 @@ export interface Parts {
 export function build(shadow: ShadowRoot): Parts {
   const style = create('style');
   style.textContent = STYLE;
-  const frame = create('section', { class: 'frame', part: 'frame' });
+  const frame = create('section', { class: 'frame', part: 'frame', tabindex: '-1' });
   const stage = create('div', { class: 'stage' });
   const picture = create('img', { class: 'picture', alt: '' });
   const progress = create('progress', { max: '1', hidden: '', 'aria-label': 'Loading the widget' });
   const note = create('div', { class: 'note-box', role: 'status' });
   const bar = create('div', { class: 'bar' });
-  const summary = create('p', { class: 'hidden' });
+  const summary = create('p', { class: 'summary hidden' });
   const live = create('p', { class: 'hidden', role: 'status', 'aria-live': 'polite' });
   const status = create('span', { class: 'status', role: 'status' });
   note.classList.add('note');
+  keepKeys(bar);
   stage.append(picture, progress);
   frame.append(stage, note, summary, bar, live);
   shadow.append(style, frame);

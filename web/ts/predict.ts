@@ -12,6 +12,7 @@
 
 // @ts-expect-error: stays a file of its own beside this one.
 import './slam-widget.js';
+import { keepKeys } from './dom';
 import type { SlamWidget } from './element';
 import type { Outcome } from './instance';
 
@@ -30,6 +31,7 @@ label { display: block; padding: 0.25rem 0; }
 label:has(input[type='radio']) { display: flex; gap: 0.5rem; }
 input[type='radio'] { flex: none; width: 1.25rem; height: 1.25rem; margin: 0.2em 0 0; }
 input[type='number'], button { font: inherit; min-height: 2rem; padding: 0.1rem 0.6rem; }
+.answer { outline: none; }
 .answer:not(:empty) { border-top: 1px solid currentColor; margin-top: 0.75rem; }
 `;
 
@@ -46,6 +48,8 @@ export class SlamPredict extends HTMLElement {
     this.#answer = document.createElement('div');
     this.#answer.className = 'answer';
     this.#answer.setAttribute('role', 'status');
+    this.#answer.tabIndex = -1;
+    keepKeys(this.#form);
     // The explanation belongs below the answer, wherever the page wrote it.
     const why = document.createElement('slot');
     why.name = 'why';
@@ -102,6 +106,8 @@ export class SlamPredict extends HTMLElement {
     }
     // Whoever committed to an answer gets the explanation, even where no widget runs.
     this.#showWhy(true);
+    // The button that had the focus is disabled now.
+    this.#answer?.focus({ preventScroll: true });
   }
 
   #judge(prediction: string, outcome: Outcome): Verdict {
@@ -132,6 +138,7 @@ export class SlamPredict extends HTMLElement {
     this.#form?.reset();
     this.#lock(false);
     this.#showWhy(false);
+    this.#form?.querySelector('input')?.focus();
   }
 
   /** An answer given cannot be changed while its result is shown. */

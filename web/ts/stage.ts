@@ -101,6 +101,10 @@ export class Stage {
     const typing =
       this.#instance.crash() === undefined &&
       this.#instance.use((widget) => widget.wantsKeyboard());
-    if (event.key === 'Tab' || !typing) event.stopImmediatePropagation();
+    if (event.key !== 'Tab' && typing) return;
+    event.stopImmediatePropagation();
+    // The page's own shortcuts still hear it: the next slide, the search field.
+    const { host } = this.#element.getRootNode() as ShadowRoot;
+    if (!host.dispatchEvent(new KeyboardEvent(event.type, event))) event.preventDefault();
   }
 }

@@ -5,7 +5,7 @@ export const STYLE = `
 :host([hidden]) { display: none; }
 .frame { --paper: #fff; --ink: #1f2937; --soft: #4b5563; --line: #d7dbe1; --accent: #1d4ed8;
   background: var(--paper); color: var(--ink); font: 0.875rem/1.4 system-ui, sans-serif;
-  border: 1px solid var(--line); border-radius: 6px; }
+  border: 1px solid var(--line); border-radius: 6px; outline: none; }
 .frame.dark { --paper: #14181f; --ink: #e5e7eb; --soft: #b6bdc9; --line: #374151; --accent: #93c5fd;
   color-scheme: dark; }
 .stage { position: relative; overflow: hidden; border-radius: 6px 6px 0 0; min-height: 12rem; }
@@ -27,7 +27,7 @@ button, select, input[type='number'] { font: inherit; color: inherit; background
   border: 1px solid var(--soft); border-radius: 4px; min-height: 1.75rem; padding: 0.1rem 0.6rem; }
 button { cursor: pointer; }
 button:hover { border-color: var(--accent); }
-:focus-visible { outline: 3px solid var(--accent); outline-offset: 2px; }
+:focus-visible:not(.frame) { outline: 3px solid var(--accent); outline-offset: 2px; }
 input[type='number'] { width: 8rem; }
 input[type='range'] { flex: 1 1 8rem; min-width: 6rem; min-height: 1.75rem; accent-color: var(--accent); }
 input[type='checkbox'] { width: 1.5rem; height: 1.5rem; accent-color: var(--accent); }

@@ -6,6 +6,8 @@ export type Theme = 'light' | 'dark';
 const DARK_CLASSES = ['dark', 'dark-mode', 'quarto-dark', 'theme-dark', 'coal', 'navy', 'ayu'];
 const LIGHT_CLASSES = ['light', 'light-mode', 'quarto-light', 'theme-light', 'rust'];
 const ATTRIBUTES = ['data-theme', 'data-bs-theme', 'data-color-mode', 'data-md-color-scheme'];
+/** JupyterLab says on its body whether its theme is a light one. */
+const JUPYTER_IS_LIGHT = 'data-jp-theme-light';
 
 const systemDark = globalThis.matchMedia?.('(prefers-color-scheme: dark)');
 const listeners = new Set<() => void>();
@@ -19,14 +21,13 @@ export function themeOf(element: Element): Theme {
   return systemDark?.matches === true ? 'dark' : 'light';
 }
 
-/** Calls back whenever the theme may have changed; returns what ends it. */
-export function watchTheme(callback: () => void): () => void {
-  if (listeners.size === 0) {
-    for (const root of [document.documentElement, document.body]) {
-      observer.observe(root, { attributes: true, attributeFilter: ['class', ...ATTRIBUTES] });
-    }
-    systemDark?.addEventListener('change', tell);
+/** Calls back whenever the theme at an element may have changed; returns what ends it. */
+export function watchTheme(element: Element, callback: () => void): () => void {
+  const attributeFilter = ['class', ...ATTRIBUTES, JUPYTER_IS_LIGHT];
+  for (let at = parentOf(element); at !== null; at = parentOf(at)) {
+    observer.observe(at, { attributes: true, attributeFilter });
   }
+  if (listeners.size === 0) systemDark?.addEventListener('change', tell);
   listeners.add(callback);
   return () => {
     listeners.delete(callback);
@@ -54,6 +55,8 @@ function saidBy(element: Element): Theme | undefined {
     const said = named(element.getAttribute(attribute));
     if (said !== undefined) return said;
   }
+  const jupyterIsLight = element.getAttribute(JUPYTER_IS_LIGHT);
+  if (jupyterIsLight !== null) return jupyterIsLight === 'false' ? 'dark' : 'light';
   if (DARK_CLASSES.some((name) => element.classList.contains(name))) return 'dark';
   if (LIGHT_CLASSES.some((name) => element.classList.contains(name))) return 'light';
   return undefined;

@@ -26,6 +26,7 @@ pub mod svg;
 pub mod ticks;
 pub mod transform;
 pub mod view;
+pub mod zoom;
 
 pub mod controls;
 #[cfg(not(target_arch = "wasm32"))]

@@ -1,25 +1,23 @@
 //! The pointer over the panels: take hold, drag, hover, zoom, pan.
 
-use std::collections::HashMap;
-
 use egui::{CursorIcon, Response, Sense, Ui};
 
 use crate::hot::Hot;
 use crate::model::{Handle, Model};
-use crate::scene::{Aspect, Bounds, Layer, Panel};
+use crate::scene::{Layer, Panel};
 use crate::transform::Transform;
+use crate::zoom::Zoom;
 
 /// A mouse takes hold of what lies within that many pixels.
 pub const MOUSE_REACH_PX: f64 = 14.0;
 /// A finger takes hold of what lies within that many pixels.
 pub const TOUCH_REACH_PX: f64 = 24.0;
-/// How far a map zooms in.
-const MOST_ZOOM: f64 = 40.0;
 
 /// What the pointer is doing, and how far each map is zoomed in.
 #[derive(Clone, Debug, Default)]
 pub struct Pointer {
-    windows: HashMap<&'static str, Bounds>,
+    /// How far each map is zoomed in.
+    pub zoom: Zoom,
     held: Option<Held>,
     hovered: Option<(&'static str, [f64; 2])>,
 }
@@ -44,26 +42,6 @@ pub enum Touched {
 }
 
 impl Pointer {
-    /// What a panel shows: everything, or the part that it is zoomed to.
-    #[must_use]
-    pub fn window(&self, panel: &Panel) -> Bounds {
-        self.windows
-            .get(panel.id)
-            .copied()
-            .unwrap_or_else(|| panel.bounds())
-    }
-
-    /// Whether a panel is zoomed in.
-    #[must_use]
-    pub fn is_zoomed(&self, panel: &str) -> bool {
-        self.windows.contains_key(panel)
-    }
-
-    /// Shows all of a panel again.
-    pub fn reset_zoom(&mut self, panel: &str) {
-        self.windows.remove(panel);
-    }
-
     /// Lets go of everything.
     pub fn release(&mut self) {
         self.held = None;
@@ -84,10 +62,10 @@ impl Pointer {
             egui::vec2(plot.width, plot.height),
         );
         let response = ui.interact(rect, ui.scope_id().with(panel.id), Sense::click_and_drag());
-        if self.is_zoomed(panel.id) {
+        if self.zoom.is_zoomed(panel.id) {
             hot.drag(&response);
         }
-        self.zoom(ui, &response, panel, to);
+        self.wheel(ui, &response, panel, to);
         let pressed = self.press(ui, &response, panel, to, model);
         let hovered = self.hover(ui, &response, panel, to, model);
         if pressed == Touched::Yes || hovered == Touched::Yes {
@@ -124,7 +102,7 @@ impl Pointer {
         if just_pressed {
             self.held = match model.grab(panel.id, at, reach(to, touch)) {
                 Some(handle) => Some(Held::Thing(handle)),
-                None if self.is_zoomed(panel.id) => Some(Held::Map {
+                None if self.zoom.is_zoomed(panel.id) => Some(Held::Map {
                     panel: panel.id,
                     spot: at,
                 }),
@@ -140,8 +118,7 @@ impl Pointer {
             Some(Held::Map { panel: held, spot }) if held == panel.id => {
                 ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
                 let shift = [spot[0] - at[0], spot[1] - at[1]];
-                let window = moved_within(self.window(panel), shift, &panel.bounds());
-                self.windows.insert(panel.id, window);
+                self.zoom.shift(panel, shift);
                 Touched::No
             }
             _ => Touched::No,
@@ -177,33 +154,15 @@ impl Pointer {
         Touched::Yes
     }
 
-    fn zoom(&mut self, ui: &Ui, response: &Response, panel: &Panel, to: &Transform) {
-        if panel.aspect != Aspect::Equal {
-            return;
-        }
+    /// Ctrl and the wheel zoom at the pointer, a double click shows all again.
+    fn wheel(&mut self, ui: &Ui, response: &Response, panel: &Panel, to: &Transform) {
         if response.double_clicked() {
-            self.reset_zoom(panel.id);
+            self.zoom.reset(panel.id);
         }
         let factor = f64::from(ui.input(egui::InputState::zoom_delta));
-        let Some(pos) = response.hover_pos().filter(|_| factor != 1.0) else {
-            return;
-        };
-        let full = panel.bounds();
-        let shown = self.window(panel);
-        let width = (shown.size()[0] / factor).max(full.size()[0] / MOST_ZOOM);
-        if width >= full.size()[0] {
-            self.reset_zoom(panel.id);
-            return;
+        if let Some(pos) = response.hover_pos().filter(|_| factor != 1.0) {
+            self.zoom.by(panel, factor, to.from_px([pos.x, pos.y]));
         }
-        // The spot under the pointer stays where it is.
-        let spot = to.from_px([pos.x, pos.y]);
-        let kept = width / shown.size()[0];
-        let window = Bounds {
-            min: core::array::from_fn(|i| spot[i] + (shown.min[i] - spot[i]) * kept),
-            max: core::array::from_fn(|i| spot[i] + (shown.max[i] - spot[i]) * kept),
-        };
-        self.windows
-            .insert(panel.id, moved_within(window, [0.0; 2], &full));
     }
 
     fn panel_held(&self) -> Option<&'static str> {
@@ -233,37 +192,4 @@ fn handle_label(panel: &Panel, to: &Transform, at: [f64; 2]) -> Option<&'static 
         } if (0..2).all(|i| (place[i] - at[i]).abs() <= reach[i]) => Some(*label),
         _ => None,
     })
-}
-
-/// A window moved by `shift`, and back as far as needed to stay within `full`.
-fn moved_within(window: Bounds, shift: [f64; 2], full: &Bounds) -> Bounds {
-    let size = window.size();
-    let min: [f64; 2] = core::array::from_fn(|i| {
-        let most = (full.max[i] - size[i]).max(full.min[i]);
-        (window.min[i] + shift[i]).clamp(full.min[i], most)
-    });
-    Bounds {
-        min,
-        max: core::array::from_fn(|i| min[i] + size[i]),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_zoomed_map_cannot_be_pushed_off_the_paper() {
-        let full = Bounds {
-            min: [0.0, 0.0],
-            max: [12.0, 9.0],
-        };
-        let window = Bounds {
-            min: [1.0, 1.0],
-            max: [5.0, 4.0],
-        };
-        let moved = moved_within(window, [100.0, -100.0], &full);
-        assert_eq!(moved.min, [8.0, 0.0]);
-        assert_eq!(moved.size(), window.size());
-    }
 }

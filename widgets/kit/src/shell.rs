@@ -18,6 +18,7 @@ use crate::style;
 use crate::svg::picture_svg;
 use crate::transform::Transform;
 use crate::view::View;
+use crate::zoom::Look;
 
 /// From this width on, controls and readouts stand beside the panels.
 const WIDE: f32 = 820.0;
@@ -144,6 +145,13 @@ impl Shell {
     /// Rings the control that has the focus outside of egui.
     pub fn set_focus(&mut self, id: Option<&str>) {
         self.focus = id.map(str::to_owned);
+    }
+
+    /// Looks at every map in another way: what ctrl and the wheel do, without a pointer.
+    pub fn look(&mut self, look: Look) {
+        for panel in &self.shown.scene.panels {
+            self.pointer.zoom.look(panel, look);
+        }
     }
 
     /// Whether something that follows a pressed pointer lies there: a touch that starts elsewhere

@@ -71,18 +71,18 @@ impl Shell {
             let Some(panel) = find(&self.shown.scene, placed.panel) else {
                 continue;
             };
-            let window = self.pointer.window(panel);
+            let window = self.pointer.zoom.window(panel);
             let to = draw::transform(panel, &placed.layout, origin, &window);
             let effect = self
                 .pointer
                 .panel(ui, panel, &to, self.model.as_mut(), &mut self.hot);
             touched |= effect == Touched::Yes;
-            if self.pointer.is_zoomed(panel.id) {
+            if self.pointer.zoom.is_zoomed(panel.id) {
                 let size = vec2(96.0, style::TARGET);
                 let corner = pos2(origin[0] + placed.layout.size[0] - size.x, origin[1]);
                 let button = egui::Button::new("Reset zoom");
                 if ui.put(Rect::from_min_size(corner, size), button).clicked() {
-                    self.pointer.reset_zoom(panel.id);
+                    self.pointer.zoom.reset(panel.id);
                 }
             }
             out.push(Reserved {
@@ -111,7 +111,7 @@ impl Shell {
             let Some(panel) = find(&self.shown.scene, placed.panel) else {
                 continue;
             };
-            let window = self.pointer.window(panel);
+            let window = self.pointer.zoom.window(panel);
             let [width, height] = placed.layout.size;
             let whole = Rect::from_min_size(pos2(origin[0], origin[1]), vec2(width, height));
             if !ui.is_rect_visible(whole) {

@@ -1,0 +1,34 @@
+// What a widget has to say about what came from outside: lines of text under the picture.
+
+import { create } from './dom';
+
+export class Notes {
+  readonly #box: HTMLElement;
+  readonly #lines = new Map<string, HTMLElement>();
+
+  constructor(box: HTMLElement) {
+    this.#box = box;
+  }
+
+  /** Says something; about one subject only the latest stands. As text, never as HTML. */
+  say(message: string, subject?: string): void {
+    const line = create('p');
+    line.textContent = message;
+    if (subject !== undefined) {
+      this.settle(subject);
+      this.#lines.set(subject, line);
+    }
+    this.#box.append(line);
+  }
+
+  /** What was wrong with a subject is right now. */
+  settle(subject: string): void {
+    this.#lines.get(subject)?.remove();
+    this.#lines.delete(subject);
+  }
+
+  clear(): void {
+    this.#lines.clear();
+    this.#box.replaceChildren();
+  }
+}

@@ -1,0 +1,60 @@
+// The values of one widget: checked where they come in, and always all of them.
+
+import { writeQuery } from './links';
+import { findParam, type WidgetSpec } from './schema';
+import { defaultText, parseValue, toLabel, toValue, type Parsed, type Value } from './values';
+
+export class State {
+  readonly spec: WidgetSpec;
+  readonly #texts: Map<string, string>;
+
+  constructor(spec: WidgetSpec) {
+    this.spec = spec;
+    this.#texts = new Map(spec.params.map((param) => [param.id, defaultText(param)]));
+  }
+
+  /** Every value as a link writes it. */
+  get texts(): ReadonlyMap<string, string> {
+    return this.#texts;
+  }
+
+  text(id: string): string {
+    return this.#texts.get(id) ?? '';
+  }
+
+  /** For JavaScript; undefined where the widget has no such parameter. */
+  value(id: string): Value | undefined {
+    const spec = findParam(this.spec, id);
+    return spec && toValue(spec, this.text(id));
+  }
+
+  /** The value in words with its unit. */
+  label(id: string): string | undefined {
+    const spec = findParam(this.spec, id);
+    return spec && toLabel(spec, this.text(id));
+  }
+
+  toJSON(): Record<string, Value> {
+    const { params } = this.spec;
+    return Object.fromEntries(params.map((spec) => [spec.id, toValue(spec, this.text(spec.id))]));
+  }
+
+  /** The state as the query of a link. */
+  get query(): string {
+    return writeQuery(this.spec, this.#texts);
+  }
+
+  /** Checks what came from outside; keeps nothing. */
+  parse(id: string, given: unknown): Parsed {
+    const spec = findParam(this.spec, id);
+    if (spec !== undefined) return parseValue(spec, given);
+    const known = this.spec.params.map((param) => param.id).join(', ');
+    const problem = `${this.spec.id} has no parameter \`${id.slice(0, 60)}\`; it has ${known}`;
+    return { ok: false, problem };
+  }
+
+  /** Keeps a text that was checked. */
+  keep(id: string, text: string): void {
+    this.#texts.set(id, text);
+  }
+}
