@@ -1,5 +1,8 @@
 //! Play, step, reset, speed: seconds in, positions on a timeline out.
+//!
+//! Reduced motion is handled here, once: under it a run never plays, its end shows at once.
 
+use crate::model::Motion;
 use crate::param::{Choice, ParamKind, ParamSpec};
 
 /// The speed of the playback, a parameter that every widget with a timeline lists.
@@ -46,6 +49,7 @@ pub fn speed_factor(value: f64) -> f64 {
 pub struct Playback {
     playing: bool,
     part: f64,
+    motion: Motion,
 }
 
 impl Playback {
@@ -55,8 +59,18 @@ impl Playback {
         self.playing
     }
 
-    /// Runs from here, or from the start where the end is reached; returns the position.
+    /// How much may move by itself.
+    #[must_use]
+    pub fn motion(&self) -> Motion {
+        self.motion
+    }
+
+    /// Runs from here, or from the start where the end is reached, or stops where it ran; returns
+    /// the position. Under [`Motion::Reduced`] that is the end, and nothing runs.
     pub fn toggle(&mut self, position: f64, last: f64) -> f64 {
+        if self.motion == Motion::Reduced {
+            return last;
+        }
         self.playing = !self.playing;
         self.part = 0.0;
         if self.playing && position >= last {
@@ -68,7 +82,19 @@ impl Playback {
 
     /// Stops where it is.
     pub fn pause(&mut self) {
-        *self = Self::default();
+        self.playing = false;
+        self.part = 0.0;
+    }
+
+    /// Sets how much may move by itself; returns the position to go to, `last`, where that ends a
+    /// run.
+    pub fn set_motion(&mut self, motion: Motion, last: f64) -> Option<f64> {
+        self.motion = motion;
+        let ends = motion == Motion::Reduced && self.playing;
+        ends.then(|| {
+            self.pause();
+            last
+        })
     }
 
     /// The position after `elapsed_s` at `steps_per_s`; stops at `last`.
@@ -114,5 +140,29 @@ mod tests {
         let mut playback = Playback::default();
         playback.toggle(0.0, 1000.0);
         assert!(playback.advance(0.0, 1000.0, 3600.0, 8.0) <= 2.0);
+    }
+
+    #[test]
+    fn with_reduced_motion_play_is_at_the_end_at_once_and_asks_for_no_frame() {
+        let mut playback = Playback::default();
+        assert_eq!(playback.set_motion(Motion::Reduced, 10.0), None);
+        for position in [0.0, 4.0, 10.0] {
+            assert_eq!(playback.toggle(position, 10.0), 10.0);
+            assert!(!playback.is_playing());
+        }
+        // Pausing, as every preset does, must not bring the motion back.
+        playback.pause();
+        assert_eq!(playback.motion(), Motion::Reduced);
+    }
+
+    #[test]
+    fn asking_for_reduced_motion_ends_a_run_and_moves_nothing_else() {
+        let mut playback = Playback::default();
+        playback.toggle(3.0, 10.0);
+        assert_eq!(playback.set_motion(Motion::Reduced, 10.0), Some(10.0));
+        assert!(!playback.is_playing());
+        assert_eq!(playback.set_motion(Motion::Full, 10.0), None);
+        assert_eq!(playback.toggle(3.0, 10.0), 3.0, "it plays again from here");
+        assert!(playback.is_playing());
     }
 }

@@ -41,7 +41,6 @@ const STEPS_PER_S: f64 = 6.0;
 pub struct BasinExplorer {
     values: Values,
     playback: Playback,
-    motion: Motion,
     scene: BasinScene,
     workspace: IcpWorkspace,
     run: Run,
@@ -79,7 +78,6 @@ impl BasinExplorer {
             },
             other: outcome,
             playback: Playback::default(),
-            motion: Motion::default(),
             values,
             scene,
             workspace,
@@ -189,9 +187,6 @@ impl Model for BasinExplorer {
         let last = self.last() as f64;
         let here = self.iteration() as f64;
         match id {
-            "play" if self.motion == Motion::Reduced => {
-                self.store("iteration", last);
-            }
             "play" => {
                 let from = self.playback.toggle(here, last);
                 self.store("iteration", from);
@@ -282,10 +277,8 @@ impl Model for BasinExplorer {
     }
 
     fn set_motion(&mut self, motion: Motion) {
-        self.motion = motion;
-        if motion == Motion::Reduced && self.playback.is_playing() {
-            self.playback.pause();
-            self.store("iteration", self.last() as f64);
+        if let Some(end) = self.playback.set_motion(motion, self.last() as f64) {
+            self.store("iteration", end);
         }
     }
 }

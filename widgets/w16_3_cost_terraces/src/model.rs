@@ -34,7 +34,6 @@ pub struct CostTerraces {
     values: Values,
     terrains: Terrains,
     playback: Playback,
-    motion: Motion,
     hover_m: Option<[f64; 2]>,
 }
 
@@ -53,7 +52,6 @@ impl CostTerraces {
             terrains: Terrains::new(Settings::read(&values)),
             values,
             playback: Playback::default(),
-            motion: Motion::default(),
             hover_m: None,
         }
     }
@@ -91,20 +89,11 @@ impl CostTerraces {
 
     fn drop_balls(&mut self) {
         self.playback.pause();
-        match self.motion {
-            Motion::Full => {
-                let start = self.playback.toggle(0.0, self.last_step() as f64);
-                self.go_to(start);
-            }
-            Motion::Reduced => self.go_to(f64::INFINITY),
-        }
+        let start = self.playback.toggle(0.0, self.last_step() as f64);
+        self.go_to(start);
     }
 
     fn play(&mut self) {
-        if self.motion == Motion::Reduced {
-            self.go_to(f64::INFINITY);
-            return;
-        }
         let start = self
             .playback
             .toggle(self.step() as f64, self.last_step() as f64);
@@ -238,10 +227,8 @@ impl Model for CostTerraces {
     }
 
     fn set_motion(&mut self, motion: Motion) {
-        self.motion = motion;
-        if motion == Motion::Reduced && self.playback.is_playing() {
-            self.playback.pause();
-            self.go_to(f64::INFINITY);
+        if let Some(end) = self.playback.set_motion(motion, self.last_step() as f64) {
+            self.go_to(end);
         }
     }
 }
