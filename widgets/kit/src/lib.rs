@@ -1,7 +1,7 @@
 //! What the widgets share.
 //!
 //! The half without egui is what a widget's `model.rs` speaks: [`param`], [`spec`], [`model`],
-//! [`scene`], [`chart`], [`playback`], [`palette`]. Nothing in it may use the other half: the models are
+//! [`scene`], [`chart`], [`playback`], [`run`], [`palette`]. Nothing in it may use the other half: the models are
 //! tested headless.
 //!
 //! The other half draws. [`draw`] puts a scene on any [`surface::Surface`], of which there are
@@ -14,6 +14,7 @@ pub mod model;
 pub mod palette;
 pub mod param;
 pub mod playback;
+pub mod run;
 pub mod scene;
 pub mod spec;
 
