@@ -132,6 +132,29 @@ impl Pen {
     }
 }
 
+/// Reach of a text's halo beyond its letters, in pixels.
+pub const HALO_WIDTH: f32 = 1.5;
+/// Where copies of a text stand that together make its halo.
+const HALO: [[f32; 2]; 8] = [
+    [1.0, 0.0],
+    [0.7, 0.7],
+    [0.0, 1.0],
+    [-0.7, 0.7],
+    [-1.0, 0.0],
+    [-0.7, -0.7],
+    [0.0, -1.0],
+    [0.7, -0.7],
+];
+
+/// The colours of a text over data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Haloed {
+    /// Of the letters.
+    pub ink: Rgb,
+    /// Around them.
+    pub halo: Rgb,
+}
+
 /// Measures text; apart from drawing, because layout comes first.
 pub trait Measure {
     /// Width of a text on one line.
@@ -160,6 +183,15 @@ pub trait Surface: Measure {
 
     /// A text on one line.
     fn text(&mut self, at: Px, align: Align, text: &str, size: TextSize, color: Rgb);
+
+    /// A text over data: a halo keeps it readable on whatever lies below.
+    fn haloed_text(&mut self, at: Px, align: Align, text: &str, size: TextSize, colors: Haloed) {
+        for [x, y] in HALO {
+            let beside = [at[0] + HALO_WIDTH * x, at[1] + HALO_WIDTH * y];
+            self.text(beside, align, text, size, colors.halo);
+        }
+        self.text(at, align, text, size, colors.ink);
+    }
 
     /// The nearest coordinate at which a thin line is sharp.
     fn snap(&self, coordinate: f32) -> f32;

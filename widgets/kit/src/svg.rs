@@ -8,7 +8,7 @@ use crate::model::Model;
 use crate::palette::{self, Rgb, Theme, tone};
 use crate::picture::picture;
 use crate::scene::{Raster, Tone};
-use crate::surface::{Align, Measure, Pen, Px, PxRect, Surface, TextSize};
+use crate::surface::{Align, HALO_WIDTH, Haloed, Measure, Pen, Px, PxRect, Surface, TextSize};
 use crate::view::View;
 
 /// The picture of a widget as it is now: title, panels, verdict and numbers.
@@ -82,6 +82,22 @@ impl SvgSurface {
         if !outline.is_empty() {
             let _ = write!(self.body, "<path {look} d=\"{outline}\"/>");
         }
+    }
+
+    fn words(&mut self, [x, y]: Px, align: Align, text: &str, size: TextSize, look: &str) {
+        let anchor = match align {
+            Align::Left => "start",
+            Align::Center => "middle",
+            Align::Right => "end",
+        };
+        let px = size.px();
+        // The middle of the small letters lies a third of the size above the base line.
+        let base = y + 0.35 * px;
+        self.element(format_args!(
+            "<text x=\"{x:.1}\" y=\"{base:.1}\" font-size=\"{px}\" text-anchor=\"{anchor}\" \
+             {look}>{}</text>",
+            escape(text)
+        ));
     }
 }
 
@@ -191,21 +207,20 @@ impl Surface for SvgSurface {
         ));
     }
 
-    fn text(&mut self, [x, y]: Px, align: Align, text: &str, size: TextSize, color: Rgb) {
-        let anchor = match align {
-            Align::Left => "start",
-            Align::Center => "middle",
-            Align::Right => "end",
-        };
-        let px = size.px();
-        // The middle of the small letters lies a third of the size above the base line.
-        let base = y + 0.35 * px;
-        self.element(format_args!(
-            "<text x=\"{x:.1}\" y=\"{base:.1}\" font-size=\"{px}\" text-anchor=\"{anchor}\" \
-             fill=\"{}\">{}</text>",
-            css(color),
-            escape(text)
-        ));
+    fn text(&mut self, at: Px, align: Align, text: &str, size: TextSize, color: Rgb) {
+        self.words(at, align, text, size, &format!("fill=\"{}\"", css(color)));
+    }
+
+    fn haloed_text(&mut self, at: Px, align: Align, text: &str, size: TextSize, colors: Haloed) {
+        // A stroke of its own below the letters: not every reader of SVG knows paint-order.
+        let halo = css(colors.halo);
+        let width = 2.0 * HALO_WIDTH;
+        let look = format!(
+            "fill=\"{halo}\" stroke=\"{halo}\" stroke-width=\"{width}\" \
+             stroke-linejoin=\"round\" aria-hidden=\"true\""
+        );
+        self.words(at, align, text, size, &look);
+        self.text(at, align, text, size, colors.ink);
     }
 
     fn snap(&self, coordinate: f32) -> f32 {

@@ -3,7 +3,7 @@
 use super::marks::mark;
 use crate::palette::{Rgb, Theme, readable_on, tone};
 use crate::scene::{Layer, Mark, Stroke, Tone};
-use crate::surface::{Align, Pen, Px, Surface, TextSize};
+use crate::surface::{Align, Haloed, Pen, Px, Surface, TextSize};
 use crate::transform::Transform;
 
 /// Radius of a handle's ring in pixels: a target of 24 pixels across.
@@ -101,8 +101,7 @@ pub fn layer(surface: &mut dyn Surface, layer: &Layer, to: &Transform, theme: Th
             tone: meaning,
         } => {
             if is_finite(at) {
-                let color = text_color(theme, *meaning);
-                surface.text(to.to_px(*at), Align::Center, text, TextSize::Small, color);
+                words(surface, to.to_px(*at), text, *meaning, theme);
             }
         }
     }
@@ -115,11 +114,16 @@ fn handle(surface: &mut dyn Surface, at: Px, color: Rgb, theme: Theme) {
     mark(surface, at, Mark::Dot, 3.5, color);
 }
 
-/// Words in the colour of a class lie on that class's area: black or white, whichever reads.
-fn text_color(theme: Theme, meaning: Tone) -> Rgb {
-    match meaning {
-        Tone::Class(_) => readable_on(tone(theme, meaning)),
-        _ => tone(theme, meaning),
+/// Words over data: black or white on the area of their class, otherwise with a halo of paper.
+fn words(surface: &mut dyn Surface, at: Px, text: &str, meaning: Tone, theme: Theme) {
+    let ink = tone(theme, meaning);
+    if let Tone::Class(_) = meaning {
+        let ink = readable_on(ink);
+        surface.text(at, Align::Center, text, TextSize::Small, ink);
+    } else {
+        let halo = tone(theme, Tone::Paper);
+        let colors = Haloed { ink, halo };
+        surface.haloed_text(at, Align::Center, text, TextSize::Small, colors);
     }
 }
 
