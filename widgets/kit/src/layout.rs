@@ -13,7 +13,7 @@
 //!
 //! Names stand above and below the plot, never rotated: they are read, not deciphered.
 
-use crate::scene::{Axis, LegendEntry, Panel};
+use crate::scene::{Axis, LegendEntry, Panel, Stroke};
 use crate::surface::{Measure, PxRect, TextSize};
 use crate::ticks::{Scale, Ticks};
 
@@ -26,7 +26,9 @@ pub const TICK: f32 = 8.0;
 /// Room between legend entries.
 const LEGEND_GAP: f32 = 14.0;
 /// Width of a legend's swatch with the room beside it.
-pub const SWATCH: f32 = 28.0;
+const SWATCH: f32 = 28.0;
+/// The same for a broken line with a mark: two dashes fit on either side of the mark.
+const BROKEN_SWATCH: f32 = 54.0;
 /// Space between blocks.
 const GAP: f32 = 4.0;
 
@@ -200,5 +202,14 @@ fn tick_label_width(axis: &Axis, measure: &mut dyn Measure) -> f32 {
 }
 
 fn legend_width(entry: &LegendEntry, measure: &mut dyn Measure) -> f32 {
-    SWATCH + measure.text_width(&entry.label, TextSize::Small)
+    swatch(entry) + measure.text_width(&entry.label, TextSize::Small)
+}
+
+/// Width of an entry's swatch with the room beside it.
+#[must_use]
+pub fn swatch(entry: &LegendEntry) -> f32 {
+    match (entry.mark, entry.stroke) {
+        (Some(_), Some(Stroke::Dashed | Stroke::Dotted)) => BROKEN_SWATCH,
+        _ => SWATCH,
+    }
 }

@@ -62,3 +62,33 @@ fn a_letter_on_the_area_of_its_class_needs_no_halo() {
     let svg = svg_of(vec![label("Q", Tone::Class(1))], Vec::new(), Theme::Light);
     assert_eq!(writings(&svg, "Q").len(), 1);
 }
+
+#[test]
+fn two_dashes_show_on_either_side_of_a_legends_mark() {
+    let truth = LegendEntry::marked_line("truth", Tone::Truth, Mark::Plus, Stroke::Dashed);
+    let svg = svg_of(Vec::new(), vec![truth], Theme::Light);
+    let dashed = svg
+        .split("<path ")
+        .find(|path| path.contains("dasharray=\"6 4\""));
+    let outline = dashed.and_then(|path| path.split("d=\"").nth(1)).unwrap();
+    let outline = &outline[..outline.find('"').unwrap()];
+    let sides: Vec<[f32; 2]> = outline
+        .split('M')
+        .skip(1)
+        .map(|side| {
+            let ends = side.split('L').map(|at| at.split(' ').next().unwrap());
+            let ends: Vec<f32> = ends.map(|x| x.parse().unwrap()).collect();
+            [ends[0], ends[1]]
+        })
+        .collect();
+    let [[left, to_mark], [right, from_mark]] = sides[..] else {
+        panic!("not one line on each side of the mark: {outline}");
+    };
+    // Two dashes of 6 with a gap of 4 between them.
+    assert!(
+        to_mark - left >= 16.0 && right - from_mark >= 16.0,
+        "{outline}"
+    );
+    // The mark reaches 5 to either side of the middle.
+    assert!(from_mark - to_mark >= 10.0, "{outline}");
+}

@@ -1,15 +1,17 @@
 //! What surrounds a panel's layers: paper, grid, ticks, names, colour bar, legend.
 
 use super::marks::mark;
-use crate::layout::{PanelLayout, SWATCH, TICK, x_ticks, y_ticks};
+use crate::layout::{PanelLayout, TICK, swatch, x_ticks, y_ticks};
 use crate::palette::{Theme, level_color, mix, tone};
-use crate::scene::{ColorBar, LegendEntry, Mark, Panel, Tone};
+use crate::scene::{ColorBar, LegendEntry, Mark, Panel, Stroke, Tone};
 use crate::surface::{Align, Pen, Px, PxRect, Surface, TextSize};
 use crate::ticks::signed;
 use crate::transform::Transform;
 
 /// Width of the colour bar.
 const BAR_WIDTH: f32 = 120.0;
+/// Radius of a mark in a legend.
+const MARK_RADIUS: f32 = 5.0;
 
 /// Paper and grid.
 pub fn back(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: Theme) {
@@ -162,18 +164,28 @@ fn color_bar(surface: &mut dyn Surface, bar: &ColorBar, at: Px, theme: Theme) {
 fn legend_entry(surface: &mut dyn Surface, entry: &LegendEntry, at: Px, theme: Theme) {
     let color = tone(theme, entry.tone);
     let [x, y] = at;
+    let swatch = swatch(entry);
+    let (left, right) = (x + 1.0, x + swatch - 8.0);
+    let middle = [0.5 * (left + right), y];
     if let Some(stroke) = entry.stroke {
         let pen = Pen {
             color,
             width: 2.0,
             stroke,
         };
-        surface.line(&[[x + 1.0, y], [x + SWATCH - 8.0, y]], pen);
+        match (entry.mark, stroke) {
+            // The mark would hide the dashes that meet it, so they come from both ends towards it.
+            (Some(_), Stroke::Dashed | Stroke::Dotted) => {
+                let beside = MARK_RADIUS + 1.0;
+                surface.line(&[[left, y], [middle[0] - beside, y]], pen);
+                surface.line(&[[right, y], [middle[0] + beside, y]], pen);
+            }
+            _ => surface.line(&[[left, y], [right, y]], pen),
+        }
     }
-    let middle = [x + 0.5 * (SWATCH - 7.0), y];
     match entry.mark {
         Some(Mark::Dot) => mark(surface, middle, Mark::Dot, 3.0, color),
-        Some(shape) => mark(surface, middle, shape, 5.0, color),
+        Some(shape) => mark(surface, middle, shape, MARK_RADIUS, color),
         // Neither mark nor line: an area, such as the class of a raster's cells.
         None if entry.stroke.is_none() => {
             surface.rect(PxRect::new(x + 3.0, y - 6.0, 15.0, 12.0), color);
@@ -182,7 +194,7 @@ fn legend_entry(surface: &mut dyn Surface, entry: &LegendEntry, at: Px, theme: T
     }
     let ink = tone(theme, Tone::Ink);
     surface.text(
-        [x + SWATCH - 4.0, y],
+        [x + swatch - 4.0, y],
         Align::Left,
         &entry.label,
         TextSize::Small,
