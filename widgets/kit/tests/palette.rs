@@ -107,6 +107,26 @@ fn the_measure_tells_red_from_green_only_where_the_eye_does() {
 }
 
 #[test]
+fn every_meaning_has_its_own_colour_in_each_theme() {
+    for (theme, colors) in [
+        (
+            Theme::Light,
+            [0x3b82f6, 0xea580c, 0x166534, 0x581c87, 0x6b7280],
+        ),
+        (
+            Theme::Dark,
+            [0x3b82f6, 0xf97316, 0x86efac, 0xf0abfc, 0x94a3b8],
+        ),
+    ] {
+        for (meaning, color) in MEANINGS.into_iter().zip(colors) {
+            let [r, g, b] = tone(theme, meaning);
+            let found = u32::from_be_bytes([0, r, g, b]);
+            assert_eq!(found, color, "{theme:?} {meaning:?} is #{found:06x}");
+        }
+    }
+}
+
+#[test]
 fn the_five_meanings_stay_apart() {
     for theme in THEMES {
         assert_apart(&MEANINGS.map(|meaning| tone(theme, meaning)), "meanings");
