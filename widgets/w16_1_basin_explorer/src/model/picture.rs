@@ -48,8 +48,8 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
                 })
                 .collect(),
             stroke: Stroke::Solid,
-            tone: Tone::Truth,
-            width_px: 1.0,
+            tone: Tone::Ink,
+            width_px: 0.75,
         },
         Layer::Line {
             points: outline(&scene.source().transformed(&scene.truth())),
@@ -129,7 +129,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
                 None,
                 Some(Stroke::Dashed),
             ),
-            entry("pairs", Tone::Truth, None, Some(Stroke::Solid)),
+            entry("pairs", Tone::Ink, None, Some(Stroke::Solid)),
         ],
         color_bar: None,
     }

@@ -16,8 +16,8 @@ pub fn panel(terrains: &Terrains, moment: Moment) -> Panel {
         Layer::Segments {
             segments: terrains.pairs_at(moment.probe_m),
             stroke: Stroke::Solid,
-            tone: Tone::Faint,
-            width_px: 1.0,
+            tone: Tone::Ink,
+            width_px: 0.75,
         },
         Layer::points(
             terrains.map_points_m().to_vec(),
@@ -52,7 +52,7 @@ pub fn panel(terrains: &Terrains, moment: Moment) -> Panel {
             LegendEntry::mark("map", Tone::Measurement, Mark::Cross),
             LegendEntry::mark("sweep at the drop", Tone::Prior, Mark::Circle),
             LegendEntry::mark("sweep at ICP's ball", Tone::Posterior, Mark::Square),
-            LegendEntry::line("pair", Tone::Faint, Stroke::Solid),
+            LegendEntry::line("pairs", Tone::Ink, Stroke::Solid),
         ],
         color_bar: None,
     }
