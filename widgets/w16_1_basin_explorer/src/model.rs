@@ -244,7 +244,9 @@ impl Model for BasinExplorer {
 
     fn timeline(&self) -> Option<Timeline> {
         let last = self.last() as f64;
-        let (standing, verdict) = report::verdict(&self.run.outcome);
+        let minimum = self.run.outcome.minimum;
+        let standing = report::standing(minimum);
+        let name = minimum.name();
         Some(Timeline {
             param: "iteration",
             last,
@@ -252,8 +254,8 @@ impl Model for BasinExplorer {
             marks: vec![TimelineMark {
                 at: last,
                 label: match standing {
-                    Standing::Good => format!("ends in the {verdict}"),
-                    _ => format!("ends wrong: {verdict}"),
+                    Standing::Good => format!("ends in the {name}"),
+                    _ => format!("ends wrong: {name}"),
                 },
                 standing,
             }],

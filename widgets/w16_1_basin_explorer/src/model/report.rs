@@ -10,30 +10,34 @@ use super::BasinExplorer;
 use super::basins::{COLUMNS, ROWS};
 use super::settings::{other_variant, variant, variant_name};
 
-/// The right place with a heading this far off is not the right answer, degrees.
-const HEADING_LIMIT_DEG: f64 = 10.0;
+/// At the right place, a heading this far off is worth a sentence, degrees.
+const WORTH_SAYING_DEG: f64 = 10.0;
 
-/// Whether the run ended well, and where.
-pub fn verdict(outcome: &BasinOutcome) -> (Standing, &'static str) {
-    match outcome.minimum {
-        // The chapter counts the position alone as success; a reader would not.
-        Minimum::Right if outcome.error_deg.abs() > HEADING_LIMIT_DEG => {
-            (Standing::Bad, "right place, wrong heading")
-        }
-        Minimum::Right => (Standing::Good, Minimum::Right.name()),
-        other => (Standing::Bad, other.name()),
+/// How the minimum is judged that a run reached: the same that colours its cell of a basin map.
+pub fn standing(minimum: Minimum) -> Standing {
+    match minimum {
+        Minimum::Right => Standing::Good,
+        _ => Standing::Bad,
+    }
+}
+
+/// What the verdict leaves out: the chapter counts the position alone.
+fn caveat(end: &BasinOutcome) -> &'static str {
+    if end.minimum == Minimum::Right && end.error_deg.abs() > WORTH_SAYING_DEG {
+        " The verdict counts the place alone: the heading is not home."
+    } else {
+        ""
     }
 }
 
 pub fn outcome(explorer: &BasinExplorer) -> Outcome {
     let end = &explorer.run.outcome;
-    let (standing, name) = verdict(end);
     Outcome {
-        standing,
-        verdict: name.to_owned(),
+        standing: standing(end.minimum),
+        verdict: end.minimum.name().to_owned(),
         sentence: format!(
             "From {:.0}° off, {} ends {:.2} m and {:.1}° from the truth: rmse {:.3} m over {} \
-             pairs; it {} {}.",
+             pairs; it {} {}.{}",
             explorer.values.get("heading"),
             variant_name(variant(&explorer.values)),
             end.error_m,
@@ -42,6 +46,7 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
             end.inliers,
             stop_words(&end.stop),
             iterations(end.iterations),
+            caveat(end),
         ),
         facts: vec![
             Fact::new("error_m", "position error", end.error_m, "m", 3),
@@ -78,7 +83,7 @@ pub fn variants(explorer: &BasinExplorer) -> Table {
     let row = |variant: IcpVariant, end: &BasinOutcome| {
         vec![
             variant_name(variant).to_owned(),
-            verdict(end).1.to_owned(),
+            end.minimum.name().to_owned(),
             format!("{:.3}", end.error_m),
             signed(end.error_deg, 1),
             format!("{:.3}", end.rmse),
