@@ -1,7 +1,7 @@
 //! What the widget claims, asked of its model without a picture.
 
 use kit::model::{Activity, Model, Motion, Standing, apply_preset};
-use kit::scene::{Layer, Raster};
+use kit::scene::{Layer, Raster, Tone};
 use w16_3_cost_terraces::model::CostTerraces;
 
 fn fact(model: &dyn Model, id: &str) -> f64 {
@@ -106,8 +106,52 @@ fn across_the_corridor_both_balls_settle_on_the_wrong_wall() {
 fn a_wider_ndt_cell_brings_home_a_ball_that_the_usual_cell_loses() {
     let mut model = preset("wide-hill");
     assert_eq!(model.outcome().verdict, "ICP sticks");
+    let drop_m = 0.7_f64.hypot(0.7);
+    assert!(fact(&model, "icp_rest_m") > drop_m, "ICP's rolls away");
     model.set("ndt-cell", 0.55).unwrap();
     assert!(fact(&model, "ndt_rest_m") > 0.12, "{:?}", model.outcome());
+}
+
+#[test]
+fn with_the_widest_tau_no_point_is_without_a_pair() {
+    let model = preset("wide-tau");
+    let panels = model.scene().panels;
+    let sweep = panels.iter().find(|panel| panel.id == "sweep").unwrap();
+    let count = |of: fn(&Layer) -> Option<usize>| sweep.layers.iter().find_map(of).unwrap();
+    let pairs = count(|layer| match layer {
+        Layer::Segments { segments, .. } => Some(segments.len()),
+        _ => None,
+    });
+    let points = count(|layer| match layer {
+        Layer::Points { points, tone, .. } if *tone == Tone::Prior => Some(points.len()),
+        _ => None,
+    });
+    assert_eq!(pairs, points);
+}
+
+#[test]
+fn a_slices_title_names_the_row_that_it_shows() {
+    // 49 samples over 2.6 m lie 5.4 cm apart: none lies at 0.3 m.
+    let model = with(&[("probe-x", 0.3), ("probe-y", -0.3)]);
+    let panels = model.scene().panels;
+    let tables = model.tables();
+    let maps = tables.iter().find(|table| table.id == "maps").unwrap();
+    for (id, title, fixed, value) in [
+        ("icp-x", "Along x at Δy = −0.325 m", 1, 2),
+        ("icp-y", "Along y at Δx = 0.325 m", 0, 2),
+        ("ndt-x", "Along x at Δy = −0.325 m", 1, 3),
+    ] {
+        let panel = panels.iter().find(|panel| panel.id == id).unwrap();
+        assert_eq!(panel.title, title);
+        let shift = if fixed == 1 { "-0.3250" } else { "0.3250" };
+        let line = maps.rows.iter().filter(|row| row[fixed] == shift);
+        let heights: Vec<f64> = line.map(|row| row[value].parse().unwrap()).collect();
+        let curve = panel.layers.iter().find_map(|layer| match layer {
+            Layer::Line { points, .. } => Some(points.iter().map(|at| at[1])),
+            _ => None,
+        });
+        assert_eq!(curve.unwrap().collect::<Vec<_>>(), heights, "{id}");
+    }
 }
 
 #[test]

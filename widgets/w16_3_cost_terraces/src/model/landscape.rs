@@ -177,6 +177,11 @@ impl Landscape {
         &self.heights
     }
 
+    /// The shift of the sample nearest to one along an axis, m.
+    pub fn sample_near(&self, shift: f64) -> f64 {
+        shift_m(self.cells(), nearest(self.cells(), shift))
+    }
+
     /// `(Δx, height)` of every cell in the row nearest to `y`.
     pub fn row(&self, y: f64) -> Vec<[f64; 2]> {
         let cells = self.cells();

@@ -173,7 +173,7 @@ const PRESETS: &[Preset] = &[
     Preset {
         id: "wide-hill",
         label: "Widen the NDT cell to 0.8 m",
-        help: "NDT's ball comes home from where ICP's slides into the corner.",
+        help: "NDT's ball comes home from where ICP's rolls farther away.",
         set: &[("ndt-cell", 0.8), ("probe-x", -0.7), ("probe-y", 0.7)],
         then: &["drop"],
     },

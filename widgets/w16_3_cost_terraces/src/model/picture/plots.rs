@@ -23,13 +23,13 @@ pub enum Measure {
 /// Direction of a slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
-    /// East, at the cross hair's Δy.
+    /// East, in the row of samples nearest to the cross hair.
     X,
-    /// North, at the cross hair's Δx.
+    /// North, in the column of samples nearest to the cross hair.
     Y,
 }
 
-/// One landscape along a line through the cross hair.
+/// One landscape along the line of samples nearest to the cross hair; the title says which line.
 pub fn slice(terrains: &Terrains, moment: Moment, measure: Measure, along: Along) -> Panel {
     let (landscape, sign, name) = match measure {
         Measure::Icp => (&terrains.icp, 1.0, "ICP cost (m²)"),
@@ -38,11 +38,11 @@ pub fn slice(terrains: &Terrains, moment: Moment, measure: Measure, along: Along
     let [x, y] = moment.probe_m;
     let (title, label, here, heights) = match along {
         Along::X => {
-            let title = format!("Along x at Δy = {} m", signed(y, 2));
+            let title = format!("Along x at Δy = {} m", signed(landscape.sample_near(y), 3));
             (title, "Δx (m)", x, landscape.row(y))
         }
         Along::Y => {
-            let title = format!("Along y at Δx = {} m", signed(x, 2));
+            let title = format!("Along y at Δx = {} m", signed(landscape.sample_near(x), 3));
             (title, "Δy (m)", y, landscape.column(x))
         }
     };
