@@ -12,6 +12,8 @@ mod config;
 mod digest;
 mod drive;
 mod front_end;
+mod loop_error;
+mod loop_words;
 mod record;
 mod replay;
 mod report;
@@ -21,14 +23,14 @@ use std::sync::Arc;
 
 use pr_geom::SE2;
 
-pub use config::{CANONICAL_SEED, DriveConfig, LoopClosure, SlamConfig, ThresholdConfig};
+pub use config::{
+    CANONICAL_SEED, DriveConfig, LAP_TICKS, LoopClosure, SlamConfig, ThresholdConfig,
+};
 pub use digest::lap_digest;
 pub use drive::{Drive, DriveTick, Sweep};
 pub use front_end::{FrontEnd, Registration, WindowSweep};
-pub use record::{
-    Epoch, FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LapRecord, LapSummary, LapTrace,
-    RecordedEdge,
-};
+pub use loop_error::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopError, LoopJudgement};
+pub use record::{Epoch, LapRecord, LapSummary, LapTrace, RecordedEdge};
 pub use replay::RegistrationView;
 pub use report::{Change, Keyframe, LoopAttempt, LoopEffect, SlamReport, TickMetrics};
 pub use runner::LapRunner;

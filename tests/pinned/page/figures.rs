@@ -15,10 +15,7 @@ use ch16_slam2d::icp::{
 };
 use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::ndt::{NdtConfig, NdtMap, NdtResult, ndt_align};
-use ch16_slam2d::slam::{
-    FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LapRecord, LapRunner, LapTrace, LoopAttempt,
-    SlamConfig,
-};
+use ch16_slam2d::slam::{LapRecord, LapRunner, LapTrace, LoopAttempt, SlamConfig};
 use ch16_slam2d::terrain::{
     Ball, BallConfig, Objective, SceneKind, Terrain, TerrainProbe, TerrainScene, TerrainSettings,
 };
@@ -534,29 +531,17 @@ fn loop_attempt(attempt: &LoopAttempt, lap: &LapTrace, what: &str) -> Option<f64
         "max_shift" => attempt.effect?.max_shift_m,
         "rms_before" => attempt.effect?.keyframe_rms_m.before,
         "rms_after" => attempt.effect?.keyframe_rms_m.after,
-        "error_m" => closure_error(attempt, lap).0,
-        "error_deg" => closure_error(attempt, lap).1,
+        "error_m" => lap.loop_error(attempt).position_m,
+        "error_deg" => lap.loop_error(attempt).heading_deg,
         _ => return None,
     })
 }
 
 /// Attempts that the gate alone turned away although they were right.
 fn right_refused(lap: &LapTrace) -> f64 {
-    let is_right = |attempt: &&LoopAttempt| {
-        let (error_m, error_deg) = closure_error(attempt, lap);
-        error_m <= FALSE_LOOP_DISTANCE_M && error_deg <= FALSE_LOOP_TURN_DEG
-    };
+    let is_right = |attempt: &&LoopAttempt| !lap.loop_error(attempt).is_false();
     let refused = lap
         .loop_attempts()
         .filter(|attempt| !attempt.verification.gate.passes());
     refused.filter(is_right).count() as f64
-}
-
-/// How far a registration of two keyframes is from their true relative pose: m and degrees.
-fn closure_error(attempt: &LoopAttempt, lap: &LapTrace) -> (f64, f64) {
-    let verification = &attempt.verification;
-    let truth_of = |node: usize| lap.keyframes[node].truth;
-    let truth = truth_of(verification.candidate.node).between(&truth_of(verification.from_node));
-    let error = truth.between(&verification.registered).log();
-    (error.xy().norm(), error.z.to_degrees().abs())
 }

@@ -255,10 +255,11 @@ impl Model for FullLap {
     }
 
     fn timeline(&self) -> Option<Timeline> {
+        let lap = self.runs.graph.lap();
         let mark = |attempt: &LoopAttempt| TimelineMark {
             at: attempt.tick as f64,
-            label: say::mark(attempt),
-            standing: say::standing(&self.runs, attempt),
+            label: lap.loop_headline(attempt),
+            standing: say::standing(lap.judge(attempt)),
         };
         Some(Timeline {
             param: "t",

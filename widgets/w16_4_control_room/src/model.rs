@@ -222,16 +222,16 @@ impl Model for ControlRoom {
 
     fn outcome(&self) -> Outcome {
         let event = self.loop_event();
-        let verdict = match self.now().and_then(|report| report.loop_attempt) {
-            Some(attempt) if attempt.accepted() => "loop accepted",
-            Some(_) => "loop rejected",
-            None if self.tick() == self.record.ticks() => "run finished",
-            None => "on the way",
+        let attempt = self.now().and_then(|report| report.loop_attempt.as_ref());
+        let verdict = match attempt {
+            Some(attempt) => self.record.lap.judge(attempt).to_string(),
+            None if self.tick() == self.record.ticks() => "run finished".to_owned(),
+            None => "on the way".to_owned(),
         };
         let sentence = event.map_or_else(|| self.tick_sentence(), |event| event.text.clone());
         Outcome {
             standing: event.map_or(Standing::Neutral, |event| event.standing),
-            verdict: verdict.to_owned(),
+            verdict,
             sentence,
             facts: self.facts(),
         }

@@ -8,6 +8,10 @@ use crate::loops::{LoopConfig, MapConfig, TrustConfig};
 /// The seed of the canonical run.
 pub const CANONICAL_SEED: u32 = 0x00C0_FFEE;
 
+/// Ticks of the chapter's lap: the driver steers by the true pose, so that neither noise nor seed
+/// changes them. Another start, driver or duration of a tick does.
+pub const LAP_TICKS: usize = 129;
+
 /// Whether the back end looks for loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LoopClosure {

@@ -187,6 +187,7 @@ impl Sensor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::slam::{CANONICAL_SEED, LAP_TICKS};
 
     #[test]
     fn other_noise_on_the_same_drive_gives_the_bits_of_a_new_simulation() {
@@ -198,6 +199,18 @@ mod tests {
                 ..DriveConfig::default()
             });
             assert_eq!(drive, fresh);
+        }
+    }
+
+    #[test]
+    fn neither_noise_nor_seed_changes_the_number_of_ticks() {
+        for (seed, noise_factor) in [(CANONICAL_SEED, 1.0), (0, 0.25), (6, 4.0), (u32::MAX, 4.0)] {
+            let drive = Drive::simulate(&DriveConfig {
+                seed,
+                noise_factor,
+                ..DriveConfig::default()
+            });
+            assert_eq!(drive.ticks().len(), LAP_TICKS, "seed {seed}");
         }
     }
 

@@ -15,12 +15,6 @@ use crate::metrics::position_error_m;
 /// Keyframes at the end of the lap whose error range the results table shows.
 const LAST_KEYFRAMES: usize = 9;
 
-/// A loop farther than this from the true relative pose of its nodes is false, m.
-pub const FALSE_LOOP_DISTANCE_M: f64 = 0.3;
-
-/// A loop turned farther than this from the true relative pose of its nodes is false, degrees.
-pub const FALSE_LOOP_TURN_DEG: f64 = 5.0;
-
 /// An edge of the graph with the tick in which it was added.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordedEdge {
@@ -129,22 +123,6 @@ impl LapTrace {
         self.reports
             .iter()
             .filter_map(|report| report.loop_attempt.as_ref())
-    }
-
-    /// The loops that were closed although they are false: farther than
-    /// [`FALSE_LOOP_DISTANCE_M`] or [`FALSE_LOOP_TURN_DEG`] from the simulated truth.
-    pub fn false_acceptances(&self) -> impl Iterator<Item = &LoopAttempt> {
-        self.loop_attempts()
-            .filter(|attempt| attempt.accepted() && self.is_false(attempt))
-    }
-
-    fn is_false(&self, attempt: &LoopAttempt) -> bool {
-        let found = &attempt.verification;
-        let truth_of = |node: usize| self.keyframes[node].truth;
-        let truth = truth_of(found.candidate.node).between(&truth_of(found.from_node));
-        let error = truth.between(&found.registered);
-        position_error_m(&error, &SE2::identity()) > FALSE_LOOP_DISTANCE_M
-            || error.theta().abs().to_degrees() > FALSE_LOOP_TURN_DEG
     }
 
     /// Poses before and after the loop that was closed in `tick`; none where none was.
@@ -323,24 +301,5 @@ impl LapRecord {
     #[must_use]
     pub fn ticks(&self) -> usize {
         self.drive.ticks().len()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::slam::LapRunner;
-
-    #[test]
-    fn a_loop_is_false_by_distance_or_by_turn() {
-        let lap = LapRunner::new().run(&SlamConfig::default()).lap;
-        assert_eq!(lap.false_acceptances().count(), 0);
-        let tick = lap.loop_attempts().next().unwrap().tick;
-        for offset in [SE2::translation(0.6, 0.0), SE2::new(0.0, 0.0, 0.2)] {
-            let mut wrong = lap.clone();
-            let attempt = wrong.reports[tick - 1].loop_attempt.as_mut().unwrap();
-            attempt.verification.registered = attempt.verification.registered * offset;
-            assert_eq!(wrong.false_acceptances().count(), 1);
-        }
     }
 }

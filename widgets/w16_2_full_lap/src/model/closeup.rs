@@ -61,7 +61,12 @@ fn of_loop(runs: &Runs, attempt: &LoopAttempt) -> Panel {
     layers.extend(gates.iter().filter_map(GateShown::layer));
     layers.extend([
         pose(SE2::identity(), Mark::Circle, Tone::Prior, 7.0),
-        pose(runs.loop_truth(attempt), Mark::Plus, Tone::Truth, 8.0),
+        pose(
+            runs.graph.lap().loop_truth(attempt),
+            Mark::Plus,
+            Tone::Truth,
+            8.0,
+        ),
         pose(predicted, Mark::Triangle, Tone::Prediction, 7.0),
     ]);
     if attempt.accepted() {

@@ -6,7 +6,6 @@ use pr_geom::{SE2, math};
 use pr_sim::World;
 
 use super::moment::Moment;
-use super::say::mark;
 
 /// Room around the Apartment, m.
 const MARGIN_M: f64 = 0.4;
@@ -168,7 +167,7 @@ fn attempt_now(moment: &Moment) -> Vec<Layer> {
     let top = arc[arc.len() / 2];
     let mut layers = vec![Layer::Text {
         at: [top[0], top[1] + 0.35],
-        text: mark(attempt),
+        text: moment.runs.graph.lap().loop_headline(attempt),
         tone: Tone::Ink,
     }];
     if !attempt.accepted() {

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use ch16_slam2d::loops::{GateModel, LoopConfig};
-use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::slam::{
     Drive, LapRecord, LapRunner, LapSummary, LoopAttempt, LoopClosure, SlamConfig,
 };
@@ -59,15 +58,6 @@ pub struct Results {
     pub front_end: LapSummary,
     /// The pose graph with its loops.
     pub graph: LapSummary,
-}
-
-/// How far a loop's measurement is from the truth.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LoopError {
-    /// Distance in metres.
-    pub position_m: f64,
-    /// Turn in degrees, not negative.
-    pub heading_deg: f64,
 }
 
 impl Runs {
@@ -164,24 +154,6 @@ impl Runs {
             .iter()
             .position(|tick| tick.reached == Some(0));
         turn.is_some_and(|turn| tick > turn)
-    }
-
-    /// The true pose of an attempt's new node in the frame of its old node.
-    pub fn loop_truth(&self, attempt: &LoopAttempt) -> SE2 {
-        let truth = |node| self.truth(self.graph.keyframe_tick(node));
-        let loop_ = &attempt.verification;
-        truth(loop_.candidate.node).between(&truth(loop_.from_node))
-    }
-
-    /// How far the measurement of an attempt is from the truth.
-    pub fn loop_error(&self, attempt: &LoopAttempt) -> LoopError {
-        let error = self
-            .loop_truth(attempt)
-            .between(&attempt.verification.registered);
-        LoopError {
-            position_m: position_error_m(&error, &SE2::identity()),
-            heading_deg: error.theta().abs().to_degrees(),
-        }
     }
 
     /// The results table.

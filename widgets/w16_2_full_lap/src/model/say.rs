@@ -1,7 +1,7 @@
 //! The result in words and numbers.
 
-use ch16_slam2d::loops::{GateModel, LoopRejection, LoopVerification};
-use ch16_slam2d::slam::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopAttempt, LoopEffect};
+use ch16_slam2d::loops::GateModel;
+use ch16_slam2d::slam::{LoopAttempt, LoopEffect, LoopJudgement};
 use kit::model::{Fact, Outcome, Standing};
 
 use super::runs::Runs;
@@ -10,20 +10,6 @@ use super::runs::Runs;
 pub fn ends(attempt: &LoopAttempt) -> String {
     let loop_ = &attempt.verification;
     format!("{} to {}", loop_.from_node, loop_.candidate.node)
-}
-
-/// `loop 29 to 7 accepted`: the name of a mark on the timeline.
-pub fn mark(attempt: &LoopAttempt) -> String {
-    format!("loop {} {}", ends(attempt), verdict(attempt))
-}
-
-/// `accepted` or `rejected`.
-pub fn verdict(attempt: &LoopAttempt) -> &'static str {
-    if attempt.accepted() {
-        "accepted"
-    } else {
-        "rejected"
-    }
 }
 
 /// `path` or `exact`.
@@ -35,64 +21,39 @@ pub fn model_name(model: GateModel) -> &'static str {
 }
 
 /// Good is an accepted loop that is right, bad an accepted one that is wrong.
-pub fn standing(runs: &Runs, attempt: &LoopAttempt) -> Standing {
-    let error = runs.loop_error(attempt);
-    let wrong = error.position_m > FALSE_LOOP_DISTANCE_M || error.heading_deg > FALSE_LOOP_TURN_DEG;
-    match (attempt.accepted(), wrong) {
-        (false, _) => Standing::Neutral,
-        (true, false) => Standing::Good,
-        (true, true) => Standing::Bad,
+pub fn standing(judgement: LoopJudgement) -> Standing {
+    match judgement {
+        LoopJudgement::Right => Standing::Good,
+        LoopJudgement::FalseAcceptance => Standing::Bad,
+        LoopJudgement::Rejected => Standing::Neutral,
     }
-}
-
-/// What happened in an attempt: candidate, χ² against the gate, and what came of it.
-pub fn attempt_sentence(attempt: &LoopAttempt) -> String {
-    let loop_ = &attempt.verification;
-    let head = mark(attempt);
-    let gate = gate_words(loop_);
-    match (&attempt.effect, loop_.rejection) {
-        (Some(effect), _) => {
-            format!("{head}, {gate}, history moved {:.2} m", effect.max_shift_m)
-        }
-        (None, Some(LoopRejection::PoorFit { rmse_m, max_rmse_m })) => format!(
-            "{head}: {gate}, but the sweep fits to {rmse_m:.3} m only, {max_rmse_m:.2} m is asked"
-        ),
-        (
-            None,
-            Some(LoopRejection::FewInliers {
-                inliers,
-                min_inliers,
-            }),
-        ) => format!("{head}: {gate}, but only {inliers} pairs of {min_inliers}"),
-        (None, _) => format!("{head}: {gate}"),
-    }
-}
-
-fn gate_words(loop_: &LoopVerification) -> String {
-    let gate = &loop_.gate;
-    let side = if gate.passes() { "below" } else { "above" };
-    format!("chi-squared {:.2} {side} {:.3}", gate.chi2, gate.gate_chi2)
 }
 
 /// The result at a tick: of the loop where one is tried in it, of the estimates where none is.
 pub fn outcome(runs: &Runs, tick: usize) -> Outcome {
+    let lap = runs.graph.lap();
     let (standing, verdict, sentence) = match runs.graph.attempt_at(tick) {
         Some(attempt) => {
-            let verdict = match (attempt.accepted(), standing(runs, attempt)) {
-                (true, Standing::Bad) => "wrong loop accepted",
-                (true, _) => "loop accepted",
-                (false, _) => "loop rejected",
-            };
-            (standing(runs, attempt), verdict, attempt_sentence(attempt))
+            let judgement = lap.judge(attempt);
+            let verdict = judgement.to_string();
+            (standing(judgement), verdict, lap.loop_sentence(attempt))
         }
-        None if tick == runs.ticks() => (Standing::Neutral, "lap finished", lap_sentence(runs)),
-        None => (Standing::Neutral, "on the way", tick_sentence(runs, tick)),
+        None if tick == runs.ticks() => (
+            Standing::Neutral,
+            "lap finished".to_owned(),
+            lap_sentence(runs),
+        ),
+        None => (
+            Standing::Neutral,
+            "on the way".to_owned(),
+            tick_sentence(runs, tick),
+        ),
     };
     let mut facts = moment_facts(runs, tick);
     facts.extend(loop_facts(runs, tick));
     Outcome {
         standing,
-        verdict: verdict.to_owned(),
+        verdict,
         sentence,
         facts,
     }
@@ -177,6 +138,7 @@ fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
         let effect = attempt.and_then(|attempt| attempt.effect.as_ref());
         effect.map_or(f64::NAN, read)
     };
+    let error = |attempt: &LoopAttempt| runs.graph.lap().loop_error(attempt);
     let chi2 = of(&|attempt| attempt.verification.gate.chi2);
     let path = of(&|attempt| runs.gates(attempt).path.test.chi2);
     let exact = of(&|attempt| runs.gates(attempt).exact.test.chi2);
@@ -194,7 +156,14 @@ fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
         Fact::metres(
             "loop_error_m",
             "last loop: off the truth",
-            of(&|attempt| runs.loop_error(attempt).position_m),
+            of(&|attempt| error(attempt).position_m),
+        ),
+        Fact::new(
+            "loop_turn_deg",
+            "last loop: turned off the truth",
+            of(&|attempt| error(attempt).heading_deg),
+            "°",
+            1,
         ),
         Fact::metres(
             "shift_m",
@@ -227,7 +196,7 @@ pub fn summary(runs: &Runs, tick: usize) -> String {
         .attempts()
         .iter()
         .filter(|attempt| attempt.tick <= tick)
-        .map(attempt_sentence)
+        .map(|attempt| runs.graph.lap().loop_sentence(attempt))
         .collect();
     let loops = if loops.is_empty() {
         "No loop was tried so far".to_owned()

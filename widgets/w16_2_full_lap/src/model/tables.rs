@@ -121,7 +121,7 @@ fn loop_attempts(runs: &Runs) -> Table {
     let row = |attempt: &LoopAttempt| {
         let loop_ = &attempt.verification;
         let gates = runs.gates(attempt);
-        let error = runs.loop_error(attempt);
+        let error = runs.graph.lap().loop_error(attempt);
         let effect =
             |of: fn(&LoopEffect) -> f64| exact(attempt.effect.as_ref().map_or(f64::NAN, of));
         vec![

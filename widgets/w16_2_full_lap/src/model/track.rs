@@ -35,6 +35,11 @@ impl Track {
         }
     }
 
+    /// The lap as the core recorded it.
+    pub fn lap(&self) -> &LapTrace {
+        &self.trace
+    }
+
     /// The rows of the results table.
     pub fn summary(&self) -> &LapSummary {
         &self.trace.summary

@@ -123,7 +123,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "The typical error over the keyframes hardly changes, and the largest even grows a little: the corridor comes out almost a metre too short, and no loop sees that.",
         "A loop moves poses that the robot left long ago. A filter that keeps only the newest pose could not.",
         "A small χ² alone does not pass: the sweep must also fit the old walls to 0.16 m, with at least 25 pairs.",
-        "The exact gate adds up what the edges say of themselves, and knows the truth no better. Over seeds 1 to 50 at four times the noise the chapter's closes 78 loops, 3 of them wrong; the exact one closes 123, 7 of them wrong.",
+        "The exact gate adds up what the edges say of themselves, and knows the truth no better. Over seeds 1 to 50 at four times the noise the chapter's closes 78 loops, 3 of them wrong; the exact one closes 123, 7 of them wrong. Wrong is more than 0.3 m or 5° off the truth.",
     ],
     params: PARAMS,
     buttons: &[PLAY, STEP, RESET, BEFORE, AT, AFTER, NEXT, DEFAULTS],

@@ -1,7 +1,6 @@
 //! What happened, tick by tick, in words.
 
-use ch16_slam2d::loops::LoopRejection;
-use ch16_slam2d::slam::{LapRecord, LoopAttempt};
+use ch16_slam2d::slam::{LapRecord, LapTrace, LoopAttempt, LoopJudgement};
 use kit::model::{Standing, TimelineMark};
 
 /// One line of the log.
@@ -9,7 +8,7 @@ use kit::model::{Standing, TimelineMark};
 pub struct Event {
     /// When.
     pub tick: usize,
-    /// In which part of the system: `front end`, `back end`, `map`.
+    /// In which part of the system: `driver`, `front end`, `back end`, `map`.
     pub part: &'static str,
     /// What.
     pub text: String,
@@ -49,7 +48,7 @@ pub fn events(record: &LapRecord) -> Vec<Event> {
             say("back end", format!("keyframe {node}"));
         }
         if let Some(attempt) = &report.loop_attempt {
-            events.extend(loop_events(attempt));
+            events.extend(loop_events(&record.lap, attempt));
         }
     }
     events
@@ -67,10 +66,8 @@ pub fn marks(events: &[Event]) -> Vec<TimelineMark> {
         .collect()
 }
 
-fn loop_events(attempt: &LoopAttempt) -> Vec<Event> {
-    let tested = &attempt.verification;
-    let name = format!("loop {} to {}", tested.from_node, tested.candidate.node);
-    let gate = &tested.gate;
+/// The test of a loop, and the grid that an accepted one leads to.
+fn loop_events(lap: &LapTrace, attempt: &LoopAttempt) -> Vec<Event> {
     let event = |part, text, standing, marked| Event {
         tick: attempt.tick,
         part,
@@ -78,37 +75,21 @@ fn loop_events(attempt: &LoopAttempt) -> Vec<Event> {
         standing,
         marked,
     };
-    let Some(effect) = &attempt.effect else {
-        let why = match tested.rejection {
-            Some(LoopRejection::PoorFit { rmse_m, max_rmse_m }) => {
-                format!("rmse {rmse_m:.3} m above {max_rmse_m:.3} m")
-            }
-            Some(LoopRejection::FewInliers {
-                inliers,
-                min_inliers,
-            }) => format!("{inliers} pairs, fewer than {min_inliers}"),
-            Some(LoopRejection::OutsideGate(_)) | None => {
-                format!("chi-squared {:.2} above {:.3}", gate.chi2, gate.gate_chi2)
-            }
-        };
-        let text = format!("{name} rejected: {why}");
-        return vec![event("back end", text, Standing::Neutral, true)];
-    };
-    vec![
-        event(
-            "back end",
-            format!(
-                "{name} accepted, chi-squared {:.2} below {:.3}, history moved {:.2} m",
-                gate.chi2, gate.gate_chi2, effect.max_shift_m
-            ),
-            Standing::Good,
-            true,
-        ),
-        event(
-            "map",
-            format!("grid drawn again from {} keyframes", tested.from_node + 1),
-            Standing::Neutral,
-            false,
-        ),
-    ]
+    let standing = standing(lap.judge(attempt));
+    let tested = event("back end", lap.loop_sentence(attempt), standing, true);
+    if !attempt.accepted() {
+        return vec![tested];
+    }
+    let keyframes = attempt.verification.from_node + 1;
+    let drawn = format!("grid drawn again from {keyframes} keyframes");
+    vec![tested, event("map", drawn, Standing::Neutral, false)]
+}
+
+/// Good is an accepted loop that is right, bad an accepted one that is wrong.
+fn standing(judgement: LoopJudgement) -> Standing {
+    match judgement {
+        LoopJudgement::Right => Standing::Good,
+        LoopJudgement::FalseAcceptance => Standing::Bad,
+        LoopJudgement::Rejected => Standing::Neutral,
+    }
 }

@@ -1,7 +1,7 @@
 //! Both gates of every loop: their verdicts, their regions, and what each lets through.
 
 use ch16_slam2d::loops::LoopVerification;
-use kit::model::Standing;
+use ch16_slam2d::slam::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopJudgement};
 use kit::scene::Stroke;
 
 use super::*;
@@ -106,7 +106,8 @@ fn the_exact_gate_lets_the_locked_out_loops_in() {
     model.press("let-in").unwrap();
     let attempts = model.runs.graph.attempts();
     assert_eq!(attempts.len(), 3);
-    let right = |attempt| say::standing(&model.runs, attempt) == Standing::Good;
+    let lap = model.runs.graph.lap();
+    let right = |attempt| lap.judge(attempt) == LoopJudgement::Right;
     assert!(attempts.iter().all(right));
     let first = &attempts[0];
     assert_eq!(first.tick, model.tick());
@@ -130,15 +131,16 @@ fn the_exact_gate_closes_more_loops_wrong_ones_among_them() {
         for (gate_model, [all, wrong]) in (0_u8..).zip(&mut closed) {
             model.set("gate-model", f64::from(gate_model)).unwrap();
             for attempt in model.runs.graph.attempts() {
-                let standing = say::standing(&model.runs, attempt);
+                let judgement = model.runs.graph.lap().judge(attempt);
                 *all += usize::from(attempt.accepted());
-                *wrong += usize::from(standing == Standing::Bad);
+                *wrong += usize::from(judgement == LoopJudgement::FalseAcceptance);
             }
         }
     }
     let [[path, path_wrong], [exact, exact_wrong]] = closed;
     let note = format!(
-        "closes {path} loops, {path_wrong} of them wrong; the exact one closes {exact}, {exact_wrong} of them wrong"
+        "closes {path} loops, {path_wrong} of them wrong; the exact one closes {exact}, {exact_wrong} of them wrong. \
+         Wrong is more than {FALSE_LOOP_DISTANCE_M} m or {FALSE_LOOP_TURN_DEG}° off the truth."
     );
     assert!(
         SPEC.notice.iter().any(|words| words.contains(&note)),

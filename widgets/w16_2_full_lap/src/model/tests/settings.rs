@@ -1,6 +1,7 @@
 //! What settings and presets do to the lap.
 
 use ch16_slam2d::loops::LoopRejection;
+use kit::model::Standing;
 
 use super::*;
 
@@ -73,6 +74,30 @@ fn without_loops_the_graph_is_the_front_end() {
 }
 
 #[test]
+fn a_wrong_loop_is_called_wrong_wherever_it_is_named() {
+    // In the reference laps, too: within every gate, and more than 0.3 m off the truth.
+    let model = at(&[("seed", 6.0), ("noise", 2.0), ("t", 92.0)]);
+    let outcome = model.outcome();
+    assert_eq!(outcome.standing, Standing::Bad);
+    assert_eq!(outcome.verdict, "wrong loop accepted");
+    assert_eq!(
+        outcome.sentence,
+        "wrong loop 29 to 7 accepted, chi-squared 4.93 below 7.815, history moved 0.32 m: \
+         its measurement is 0.36 m and 1.7° off the truth"
+    );
+    assert!(fact(&model, "loop_error_m") > 0.3);
+    let mark = &model.timeline().unwrap().marks[0];
+    assert_eq!(mark.standing, Standing::Bad);
+    assert_eq!(mark.label, "wrong loop 29 to 7 accepted");
+    let Scene { panels } = model.scene();
+    let named = panels[0]
+        .layers
+        .iter()
+        .any(|layer| matches!(layer, Layer::Text { text, .. } if *text == mark.label));
+    assert!(named, "the map names it alike");
+}
+
+#[test]
 fn seed_6_has_a_loop_that_passes_the_gate_and_is_turned_away_all_the_same() {
     let mut model = FullLap::new();
     model.press("rejected").unwrap();
@@ -125,11 +150,8 @@ fn the_locked_out_preset_turns_away_three_right_loops_by_the_gate_alone() {
     let attempts = model.runs.graph.attempts();
     assert_eq!(attempts.len(), 3);
     for attempt in attempts {
-        let error = model.runs.loop_error(attempt);
-        assert!(
-            error.position_m < 0.3 && error.heading_deg < 5.0,
-            "{error:?}"
-        );
+        let error = model.runs.graph.lap().loop_error(attempt);
+        assert!(!error.is_false(), "{error:?}");
         let rejection = attempt.verification.rejection;
         assert!(matches!(rejection, Some(LoopRejection::OutsideGate(_))));
     }
