@@ -46,7 +46,7 @@ fn apartment() -> Vec<Layer> {
     let mut layers = vec![Layer::Segments {
         segments: walls.collect(),
         stroke: Stroke::Solid,
-        tone: Tone::Truth,
+        tone: Tone::Ink,
         width_px: 1.0,
     }];
     // In the middle of a room, where no sweep has points.
@@ -56,7 +56,7 @@ fn apartment() -> Vec<Layer> {
             0.5 * (room.bounds.min.y + room.bounds.max.y),
         ],
         text: room.name.to_owned(),
-        tone: Tone::Truth,
+        tone: Tone::Ink,
     }));
     layers
 }
@@ -206,6 +206,7 @@ fn robots(moment: &Moment) -> [Layer; 4] {
 
 fn legend() -> Vec<LegendEntry> {
     vec![
+        LegendEntry::line("walls", Tone::Ink, Stroke::Solid),
         LegendEntry::marked_line("truth", Tone::Truth, Mark::Plus, Stroke::Dashed),
         LegendEntry::marked_line("odometry", Tone::Prediction, Mark::Triangle, Stroke::Solid),
         LegendEntry::marked_line(
