@@ -1,7 +1,9 @@
 //! Opens the widget as a desktop window.
 
-use std::error::Error;
-
-fn main() -> Result<(), Box<dyn Error>> {
+#[cfg(not(target_arch = "wasm32"))]
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(kit::desktop::run(w16_4_control_room::widget())?)
 }
+
+#[cfg(target_arch = "wasm32")]
+fn main() {}
