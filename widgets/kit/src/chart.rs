@@ -1,5 +1,6 @@
 //! Plots of values over a timeline: one sample a step, a mark at the step shown.
 
+use crate::model::Handle;
 use crate::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
 /// A line of samples, one a step from 0, with its name in the legend.
@@ -91,6 +92,23 @@ impl TimeChart<'_> {
             width_px: 2.0,
         }
     }
+}
+
+/// Takes hold of the line at the step shown where a press at `at` lies within `reach` of it.
+#[must_use]
+pub fn grab_now(panel: &'static str, now: f64, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+    let from_line = at[0] - now;
+    (from_line.abs() <= reach[0]).then_some(Handle {
+        panel,
+        id: "now",
+        offset: [from_line, 0.0],
+    })
+}
+
+/// The step that the line is dragged to, from 0; the timeline may end before it.
+#[must_use]
+pub fn dragged_to(handle: Handle, at: [f64; 2]) -> f64 {
+    (at[0] - handle.offset[0]).round().max(0.0)
 }
 
 /// An axis from 0 to a little above the highest value.

@@ -251,6 +251,18 @@ pub fn apply_preset(model: &mut dyn Model, preset: &Preset) -> Result<(), ParamE
     Ok(())
 }
 
+/// Presses the preset of that name, the last resort of a [`Model::press`].
+///
+/// # Errors
+/// [`ParamError::UnknownButton`] where there is none; nothing changes then.
+pub fn press_preset(model: &mut dyn Model, id: &str) -> Result<(), ParamError> {
+    let spec = model.spec();
+    match spec.presets.iter().find(|preset| preset.id == id) {
+        Some(preset) => apply_preset(model, preset),
+        None => Err(unknown_button(spec, id)),
+    }
+}
+
 /// The error for a button that a widget does not have.
 #[must_use]
 pub fn unknown_button(spec: &WidgetSpec, id: &str) -> ParamError {

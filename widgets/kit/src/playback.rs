@@ -4,6 +4,7 @@
 
 use crate::model::Motion;
 use crate::param::{Choice, ParamKind, ParamSpec};
+use crate::spec::{PLAY, RESET, STEP};
 
 /// The speed of the playback, a parameter that every widget with a timeline lists.
 pub const SPEED: ParamSpec = ParamSpec {
@@ -63,6 +64,23 @@ impl Playback {
     #[must_use]
     pub fn motion(&self) -> Motion {
         self.motion
+    }
+
+    /// Presses a button of the transport, [`PLAY`], [`STEP`] or [`RESET`]: returns the position
+    /// that it leads to, or nothing for any other button.
+    pub fn press(&mut self, button: &str, position: f64, last: f64) -> Option<f64> {
+        if button == PLAY.id {
+            return Some(self.toggle(position, last));
+        }
+        let target = if button == STEP.id {
+            (position + 1.0).min(last)
+        } else if button == RESET.id {
+            0.0
+        } else {
+            return None;
+        };
+        self.pause();
+        Some(target)
     }
 
     /// Runs from here, or from the start where the end is reached, or stops where it ran; returns
@@ -133,6 +151,23 @@ mod tests {
         // Ten steps at five a second are two seconds of sixty frames.
         assert!((119..=121).contains(&frames), "{frames} frames");
         assert_eq!(playback.toggle(position, 10.0), 0.0);
+    }
+
+    #[test]
+    fn stepping_and_resetting_stop_the_run_and_stay_on_the_timeline() {
+        let mut playback = Playback::default();
+        for (button, from, to) in [
+            ("step", 3.0, 4.0),
+            ("step", 10.0, 10.0),
+            ("reset", 7.0, 0.0),
+        ] {
+            playback.toggle(from, 20.0);
+            assert_eq!(playback.press(button, from, 10.0), Some(to), "{button}");
+            assert!(!playback.is_playing(), "{button}");
+        }
+        assert_eq!(playback.press("play", 3.0, 10.0), Some(3.0));
+        assert_eq!(playback.press("defaults", 3.0, 10.0), None);
+        assert!(playback.is_playing(), "another button does not stop it");
     }
 
     #[test]
