@@ -17,16 +17,16 @@ mod words;
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::slam::{LoopAttempt, LoopClosure};
+use kit::chart::{dragged_to, grab_now};
 use kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, apply_preset,
-    unknown_button,
+    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
 use kit::param::{Changed, ParamError, Values};
 use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
-use kit::spec::{DEFAULTS, PLAY, RESET, STEP, WidgetSpec};
+use kit::spec::WidgetSpec;
 
-pub use words::{AFTER, AT, BEFORE, NEXT, SPEC};
+pub use words::SPEC;
 
 use moment::Moment;
 use runs::{LapSettings, Results, Runs};
@@ -42,7 +42,6 @@ pub struct FullLap {
     canonical: Results,
     playback: Playback,
     transition: Option<Transition>,
-    motion: Motion,
 }
 
 impl Default for FullLap {
@@ -63,7 +62,6 @@ impl FullLap {
             runs,
             playback: Playback::default(),
             transition: None,
-            motion: Motion::default(),
         }
     }
 
@@ -90,7 +88,8 @@ impl FullLap {
             .graph
             .attempt_at(self.tick())
             .is_some_and(LoopAttempt::accepted);
-        self.transition = (closed && self.motion == Motion::Full).then(Transition::default);
+        self.transition =
+            (closed && self.playback.motion() == Motion::Full).then(Transition::default);
     }
 
     fn press_loop_button(&mut self, offset: isize) {
@@ -188,32 +187,20 @@ impl Model for FullLap {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        if id == PLAY.id {
-            let now = self.values.get("t");
-            let position = self.playback.toggle(now, self.last());
+        let now = self.values.get("t");
+        if let Some(position) = self.playback.press(id, now, self.last()) {
             if position != now {
                 self.go_to(position as usize);
             }
-        } else if id == STEP.id {
-            self.playback.pause();
-            self.go_to(self.tick() + 1);
-        } else if id == RESET.id {
-            self.playback.pause();
-            self.go_to(0);
-        } else if id == BEFORE.id {
-            self.press_loop_button(-1);
-        } else if id == AT.id {
-            self.press_loop_button(0);
-        } else if id == AFTER.id {
-            self.press_loop_button(1);
-        } else if id == NEXT.id {
-            self.next_loop();
-        } else if id == DEFAULTS.id {
-            self.back_to_defaults();
-        } else if let Some(preset) = SPEC.presets.iter().find(|preset| preset.id == id) {
-            apply_preset(self, preset)?;
-        } else {
-            return Err(unknown_button(&SPEC, id));
+            return Ok(());
+        }
+        match id {
+            "before" => self.press_loop_button(-1),
+            "at" => self.press_loop_button(0),
+            "after" => self.press_loop_button(1),
+            "next" => self.next_loop(),
+            "defaults" => self.back_to_defaults(),
+            _ => return press_preset(self, id),
         }
         Ok(())
     }
@@ -282,23 +269,20 @@ impl Model for FullLap {
     /// The line at the moment shown, in every plot over time.
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
         let panel = *plots::OVER_TIME.iter().find(|id| **id == panel)?;
-        let from_line = at[0] - self.values.get("t");
-        (from_line.abs() <= reach[0]).then_some(Handle {
-            panel,
-            id: "now",
-            offset: [from_line, 0.0],
-        })
+        grab_now(panel, self.values.get("t"), at, reach)
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
-        let tick = (at[0] - handle.offset[0]).round().max(0.0) as usize;
+        let tick = dragged_to(handle, at) as usize;
         if tick != self.tick() {
             self.go_to(tick);
         }
     }
 
     fn set_motion(&mut self, motion: Motion) {
-        self.motion = motion;
+        if let Some(end) = self.playback.set_motion(motion, self.last()) {
+            self.go_to(end as usize);
+        }
         if motion == Motion::Reduced {
             self.transition = None;
         }

@@ -1,48 +1,22 @@
 //! What the widget says of itself: its words, parameters, buttons and presets.
 
 use ch16_slam2d::chi_squared::CHAPTER_QUANTILE;
+use ch16_slam2d::slam;
 use kit::param::{Choice, ParamKind, ParamSpec};
 use kit::playback::SPEED;
+use kit::run::{LOOPS, NOISE, seed};
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
-/// Seed of the chapter's run.
-pub const CANONICAL_SEED: f64 = ch16_slam2d::slam::CANONICAL_SEED as f64;
-
-/// Ticks of a lap: the driver steers by the true pose, so noise and seed do not change them.
-pub const LAP_TICKS: f64 = 129.0;
+/// Ticks of a lap.
+pub const LAP_TICKS: f64 = slam::LAP_TICKS as f64;
 
 /// Where the widget starts: the tick of the canonical run's first loop.
 const FIRST_LOOP_TICK: f64 = 92.0;
 
 const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        id: "noise",
-        label: "odometry noise ×",
-        unit: "",
-        kind: ParamKind::Slider {
-            min: 0.25,
-            max: 4.0,
-            step: 0.05,
-        },
-        default: 1.0,
-        help: "Multiplies the variances of the wheel odometry: 1 is the chapter's robot.",
-    },
-    ParamSpec {
-        id: "loops",
-        label: "loop closure",
-        unit: "",
-        kind: ParamKind::Switch,
-        default: 1.0,
-        help: "Whether a keyframe near an old one is matched against it.",
-    },
-    ParamSpec {
-        id: "seed",
-        label: "seed",
-        unit: "",
-        kind: ParamKind::SEED,
-        default: CANONICAL_SEED,
-        help: "Another seed is another lap with the same robot; 12648430 is the chapter's.",
-    },
+    NOISE,
+    LOOPS,
+    seed(slam::CANONICAL_SEED),
     ParamSpec {
         id: "gate",
         label: "gate quantile",
@@ -86,28 +60,28 @@ const PARAMS: &[ParamSpec] = &[
 ];
 
 /// One tick before the loop.
-pub const BEFORE: ButtonSpec = ButtonSpec {
+const BEFORE: ButtonSpec = ButtonSpec {
     id: "before",
     label: "Before the loop",
     help: "One tick before the loop is tried.",
 };
 
 /// The tick of the loop, with its animation.
-pub const AT: ButtonSpec = ButtonSpec {
+const AT: ButtonSpec = ButtonSpec {
     id: "at",
     label: "At the loop",
     help: "The tick of the loop: watch the history move.",
 };
 
 /// One tick after the loop.
-pub const AFTER: ButtonSpec = ButtonSpec {
+const AFTER: ButtonSpec = ButtonSpec {
     id: "after",
     label: "After the loop",
     help: "One tick after the loop was tried.",
 };
 
 /// On to the next loop.
-pub const NEXT: ButtonSpec = ButtonSpec {
+const NEXT: ButtonSpec = ButtonSpec {
     id: "next",
     label: "Next loop",
     help: "On to the next loop; after the last one, to the first.",
@@ -145,7 +119,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "no-loops",
             label: "Switch the loops off",
-            help: "The front end alone: the same sweeps, and a map with double walls.",
+            help: "The front end alone: the same sweeps, and a map whose two passes end 0.24 m apart instead of 0.08 m.",
             set: &[("loops", 0.0), ("t", LAP_TICKS)],
             then: &[],
         },

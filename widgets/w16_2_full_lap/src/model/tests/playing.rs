@@ -145,3 +145,20 @@ fn the_line_at_the_moment_shown_can_be_dragged_in_every_plot_over_time() {
         assert_eq!(model.tick(), tick);
     }
 }
+
+#[test]
+fn with_reduced_motion_play_is_at_the_end_at_once() {
+    let mut model = at(&[("t", 20.0)]);
+    model.set_motion(Motion::Reduced);
+    model.press("play").unwrap();
+    assert_eq!(model.tick(), 129);
+    assert!(!model.timeline().unwrap().playing);
+    assert_eq!(model.advance(0.1), Activity::Idle);
+    // Asked for while it plays, it ends the run.
+    model.set_motion(Motion::Full);
+    model.press("play").unwrap();
+    assert_eq!(model.tick(), 0);
+    model.set_motion(Motion::Reduced);
+    assert_eq!(model.tick(), 129);
+    assert_eq!(model.advance(0.1), Activity::Idle);
+}

@@ -5,6 +5,12 @@ use kit::model::Standing;
 
 use super::*;
 
+/// The help of a preset says so.
+fn assert_promised(preset: &str, words: &str) {
+    let help = SPEC.presets.iter().find(|p| p.id == preset).unwrap().help;
+    assert!(help.contains(words), "`{help}` does not say `{words}`");
+}
+
 #[test]
 fn the_start_is_the_first_loop_of_the_canonical_run() {
     let model = FullLap::new();
@@ -71,6 +77,26 @@ fn without_loops_the_graph_is_the_front_end() {
     assert_eq!(results.graph, results.front_end);
     assert!(model.timeline().unwrap().marks.is_empty());
     assert!(model.runs.graph.attempt_near(50).is_none());
+}
+
+#[test]
+fn without_loops_the_two_passes_end_as_far_apart_as_the_preset_says() {
+    let mut model = at(&[("t", 129.0)]);
+    let together = fact(&model, "map_disagreement_m");
+    model.press("no-loops").unwrap();
+    let apart = fact(&model, "map_disagreement_m");
+    assert_promised(
+        "no-loops",
+        &format!("{apart:.2} m apart instead of {together:.2} m"),
+    );
+}
+
+#[test]
+fn the_first_loop_helps_the_robot_and_not_its_history() {
+    let mut model = FullLap::new();
+    model.press("first-loop").unwrap();
+    assert!(fact(&model, "graph_error_m") < fact(&model, "front_end_error_m"));
+    assert!(fact(&model, "rms_after_m") > fact(&model, "rms_before_m"));
 }
 
 #[test]
