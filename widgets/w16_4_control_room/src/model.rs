@@ -2,33 +2,32 @@
 //!
 //! A parameter of the run computes all of it again at once; the moment shown stays.
 
+mod grid;
 mod history;
 mod log;
 mod picture;
 mod words;
 
-use ch16_slam2d::graph::EdgeKind;
+use ch16_slam2d::icp::IcpSummary;
 use ch16_slam2d::slam::{LapRecord, LapRunner, RegistrationView, SlamConfig, SlamReport};
+use kit::chart::{dragged_to, grab_now};
 use kit::model::{
-    Activity, Fact, Model, Outcome, Standing, Table, Timeline, apply_preset, unknown_button,
+    Activity, Fact, Handle, Model, Motion, Outcome, Standing, Table, Timeline, press_preset,
 };
 use kit::param::{Changed, ParamError, Values};
 use kit::playback::{Playback, speed_factor};
-use kit::scene::{Raster, Scene};
-use kit::spec::{DEFAULTS, PLAY, RESET, STEP, WidgetSpec};
-use pr_grid::OccupancyGrid;
+use kit::scene::Scene;
+use kit::spec::WidgetSpec;
 use pr_sim::World;
 
-pub use words::{NEXT_EVENT, SPEC};
+pub use words::SPEC;
 
+use grid::GridView;
 use history::History;
 use log::Event;
 
 /// Ticks a second at speed 1: twice as fast as the robot.
 const TICKS_PER_S: f64 = 8.0;
-
-/// There is a keyframe at any tick, so no grid is drawn from none.
-const NOTHING_DRAWN: (usize, usize) = (0, 0);
 
 /// The control room.
 pub struct ControlRoom {
@@ -40,10 +39,7 @@ pub struct ControlRoom {
     events: Vec<Event>,
     /// The registration of the tick shown.
     registration: Option<RegistrationView>,
-    grid: OccupancyGrid,
-    /// What the grid was drawn from: keyframes, and loops closed before.
-    drawn: (usize, usize),
-    raster: Raster,
+    grid: GridView,
     playback: Playback,
 }
 
@@ -60,14 +56,11 @@ impl ControlRoom {
         let values = Values::defaults(SPEC.params);
         let mut runner = LapRunner::new();
         let record = runner.run(&config(&values));
-        let grid = record.occupancy_grid(0);
         let mut room = Self {
             history: History::new(&record),
             events: log::events(&record),
             registration: None,
-            raster: picture::raster(&grid, 0),
-            grid,
-            drawn: NOTHING_DRAWN,
+            grid: GridView::new(&record, 0),
             world: World::apartment(),
             playback: Playback::default(),
             values,
@@ -102,26 +95,21 @@ impl ControlRoom {
     fn show(&mut self) {
         let tick = self.tick();
         self.registration = self.record.registration(tick);
-        let source = (self.record.lap.node_count(tick), self.loops_closed());
-        if source != self.drawn {
-            self.drawn = source;
-            self.grid = self.record.occupancy_grid(tick);
-            self.raster = picture::raster(&self.grid, self.raster.revision + 1);
-        }
+        self.grid.show(&self.record, tick);
     }
 
     fn run_again(&mut self) {
         self.record = self.runner.run(&config(&self.values));
         self.history = History::new(&self.record);
         self.events = log::events(&self.record);
-        self.drawn = NOTHING_DRAWN;
+        self.grid.forget();
         self.go_to(self.values.get("t"));
     }
 
-    /// Loops closed up to the tick shown.
-    fn loops_closed(&self) -> usize {
-        let edges = self.record.lap.edges(self.tick()).iter();
-        edges.filter(|edge| edge.kind == EdgeKind::Loop).count()
+    fn back_to_defaults(&mut self) {
+        self.playback.pause();
+        self.values = Values::defaults(SPEC.params);
+        self.run_again();
     }
 
     fn next_event(&mut self) {
@@ -172,25 +160,15 @@ impl Model for ControlRoom {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        if id == PLAY.id {
-            let position = self.playback.toggle(self.values.get("t"), self.last());
+        let now = self.values.get("t");
+        if let Some(position) = self.playback.press(id, now, self.last()) {
             self.go_to(position);
-        } else if id == STEP.id {
-            self.playback.pause();
-            self.go_to(self.values.get("t") + 1.0);
-        } else if id == RESET.id {
-            self.playback.pause();
-            self.go_to(0.0);
-        } else if id == NEXT_EVENT.id {
-            self.next_event();
-        } else if id == DEFAULTS.id {
-            self.playback.pause();
-            self.values = Values::defaults(SPEC.params);
-            self.run_again();
-        } else if let Some(preset) = SPEC.presets.iter().find(|preset| preset.id == id) {
-            apply_preset(self, preset)?;
-        } else {
-            return Err(unknown_button(&SPEC, id));
+            return Ok(());
+        }
+        match id {
+            "next-event" => self.next_event(),
+            "defaults" => self.back_to_defaults(),
+            _ => return press_preset(self, id),
         }
         Ok(())
     }
@@ -212,7 +190,7 @@ impl Model for ControlRoom {
         let now = self.tick();
         Scene {
             panels: vec![
-                picture::map(&self.record, now, &self.raster, &self.world),
+                picture::map(&self.record, now, self.grid.raster(), &self.world),
                 picture::registration(&self.record, now, self.registration.as_ref()),
                 self.history.threshold_plot(now),
                 self.history.error_plot(now),
@@ -238,15 +216,9 @@ impl Model for ControlRoom {
     }
 
     fn summary(&self) -> String {
-        let grid = &self.grid;
         format!(
-            "Occupancy grid of {} cells, {} occupied and {} free, with a pose graph of {} nodes and \
-             {} loops over it. {} The newest sweep is paired with the local map by {} pairs.",
-            grid.columns() * grid.rows(),
-            grid.occupied_cells(),
-            grid.free_cells(),
-            self.record.lap.node_count(self.tick()),
-            self.loops_closed(),
+            "{} {} The newest sweep is paired with the local map by {} pairs.",
+            self.grid.words(),
             self.tick_sentence(),
             self.now().map_or(0, |r| r.registration.icp.inliers),
         )
@@ -271,6 +243,25 @@ impl Model for ControlRoom {
     fn shown_tables(&self) -> Vec<Table> {
         vec![history::event_table(&self.events, self.tick())]
     }
+
+    /// The line at the moment shown, in both plots over time.
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        let panel = *history::OVER_TIME.iter().find(|id| **id == panel)?;
+        grab_now(panel, self.values.get("t"), at, reach)
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        let tick = dragged_to(handle, at);
+        if tick != self.values.get("t") {
+            self.go_to(tick);
+        }
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        if let Some(end) = self.playback.set_motion(motion, self.last()) {
+            self.go_to(end);
+        }
+    }
 }
 
 impl ControlRoom {
@@ -291,38 +282,30 @@ impl ControlRoom {
     fn facts(&self) -> Vec<Fact> {
         let report = self.now();
         let of = |value: &dyn Fn(&SlamReport) -> f64| report.map_or(f64::NAN, value);
-        let keyframes = self.record.lap.node_count(self.tick()) as f64;
-        let loops = self.loops_closed() as f64;
+        // The start is known: nothing is off there.
+        let error = |value: &dyn Fn(&SlamReport) -> f64| report.map_or(0.0, value);
+        let icp = |value: fn(&IcpSummary) -> f64| of(&|r| value(&r.registration.icp));
         let disagreement = |r: &SlamReport| r.metrics.map_disagreement_m.unwrap_or(f64::NAN);
-        vec![
+        let mut facts = vec![
             Fact::metres("tau_m", "threshold τ", of(&|r| r.registration.tau_m)),
-            Fact::count("pairs", "pairs", of(&|r| r.registration.icp.inliers as f64)),
-            Fact::metres("rmse_m", "rmse", of(&|r| r.registration.icp.rmse)),
-            Fact::count(
-                "iterations",
-                "iterations",
-                of(&|r| r.registration.icp.iterations as f64),
-            ),
-            Fact::count("keyframes", "keyframes", keyframes),
-            // The grid is drawn again once for each loop.
-            Fact::count("loops", "loops closed, grids redrawn", loops),
-            Fact::count(
-                "occupied_cells",
-                "occupied cells",
-                self.grid.occupied_cells() as f64,
-            ),
-            Fact::count("free_cells", "free cells", self.grid.free_cells() as f64),
+            Fact::count("pairs", "pairs", icp(|icp| icp.inliers as f64)),
+            Fact::metres("rmse_m", "rmse", icp(|icp| icp.rmse)),
+            Fact::count("iterations", "iterations", icp(|icp| icp.iterations as f64)),
+        ];
+        facts.extend(self.grid.facts());
+        facts.extend([
             Fact::metres(
                 "estimate_error_m",
                 "estimate off by",
-                of(&|r| r.metrics.estimate_error_m),
+                error(&|r| r.metrics.estimate_error_m),
             ),
             Fact::metres(
                 "odometry_error_m",
                 "odometry off by",
-                of(&|r| r.metrics.odometry_error_m),
+                error(&|r| r.metrics.odometry_error_m),
             ),
             Fact::metres("map_disagreement_m", "map disagreement", of(&disagreement)),
-        ]
+        ]);
+        facts
     }
 }

@@ -1,8 +1,7 @@
 //! The control room driven headless; figures from `tests/reference/lap.json`.
 
-use kit::model::{Activity, Model as _, Standing};
-use kit::param::ParamKind;
-use kit::scene::Layer;
+use kit::model::{Activity, Model as _, Motion, Standing};
+use kit::scene::{Layer, Tone};
 use w16_4_control_room::model::{ControlRoom, SPEC};
 
 /// The run of the reference file with that seed, noise factor and loop closure.
@@ -120,6 +119,55 @@ fn scrubbing_back_shows_what_playing_showed() {
 }
 
 #[test]
+fn with_reduced_motion_play_is_at_the_end_at_once() {
+    let mut room = ControlRoom::new();
+    room.set_motion(Motion::Reduced);
+    for start in ["play", "watch"] {
+        room.set("t", 20.0).unwrap();
+        room.press(start).unwrap();
+        assert_eq!(room.values().get("t"), 129.0, "{start}");
+        assert!(!room.timeline().unwrap().playing, "{start}");
+        assert_eq!(room.advance(0.1), Activity::Idle, "{start}");
+    }
+    // Asked for while it plays, it ends the run.
+    room.set_motion(Motion::Full);
+    room.press("play").unwrap();
+    assert_eq!(room.values().get("t"), 0.0);
+    room.set_motion(Motion::Reduced);
+    assert_eq!(room.values().get("t"), 129.0);
+    assert_eq!(room.advance(0.1), Activity::Idle);
+}
+
+#[test]
+fn the_line_at_the_moment_shown_can_be_dragged_in_both_plots_over_time() {
+    let mut room = ControlRoom::new();
+    for panel in &room.scene().panels {
+        let grabbed = room.grab(panel.id, [61.0, 0.1], [3.0, 0.1]);
+        assert_eq!(grabbed.is_some(), panel.x.label == "tick", "{}", panel.id);
+    }
+    // Grabbed one tick beside the line: it does not jump by that tick.
+    let line = room.grab("tau", [61.0, 0.1], [3.0, 0.1]).unwrap();
+    for (to, tick) in [(71.0, 70.0), (-40.0, 0.0), (500.0, 129.0)] {
+        room.drag(line, [to, 0.0]);
+        assert_eq!(room.values().get("t"), tick);
+    }
+}
+
+#[test]
+fn the_start_shows_the_first_sweep_where_nothing_is_off_yet() {
+    let mut room = ControlRoom::new();
+    room.set("t", 0.0).unwrap();
+    assert_eq!(fact(&room, "estimate_error_m"), 0.0);
+    assert_eq!(fact(&room, "odometry_error_m"), 0.0);
+    assert!(fact(&room, "pairs").is_nan(), "nothing was registered");
+    let scene = room.scene();
+    let sweep = scene.panels[1].layers.iter().any(|layer| {
+        matches!(layer, Layer::Points { points, tone: Tone::Measurement, .. } if points.len() > 50)
+    });
+    assert!(sweep);
+}
+
+#[test]
 fn changing_the_run_keeps_the_moment() {
     let mut room = ControlRoom::new();
     room.set("t", 87.0).unwrap();
@@ -133,17 +181,14 @@ fn changing_the_run_keeps_the_moment() {
 }
 
 #[test]
-fn every_preset_and_button_does_what_it_names() {
+fn the_transport_steps_resets_and_restores() {
     let mut room = ControlRoom::new();
-    for button in SPEC.buttons {
-        room.press(button.id).unwrap();
+    room.set("noise", 2.0).unwrap();
+    for (button, tick) in [("step", 61.0), ("reset", 0.0), ("defaults", 60.0)] {
+        room.press(button).unwrap();
+        assert_eq!(room.values().get("t"), tick, "{button}");
     }
-    for preset in SPEC.presets {
-        room.press(preset.id).unwrap();
-        for (id, value) in preset.set {
-            assert_eq!(room.values().get(id), *value, "{}: {id}", preset.id);
-        }
-    }
+    assert_eq!(room.outcome(), ControlRoom::new().outcome());
     let refused = room.press("plya").unwrap_err().to_string();
     assert!(refused.contains("next-event"), "{refused}");
 }
@@ -161,13 +206,15 @@ fn a_bad_value_is_refused_and_nothing_changes() {
 }
 
 #[test]
-fn a_link_past_the_end_of_the_lap_shows_the_end() {
+fn every_lap_ends_where_the_timeline_does() {
     let mut room = ControlRoom::new();
-    let ParamKind::Timeline { max } = SPEC.params.iter().find(|spec| spec.id == "t").unwrap().kind
-    else {
-        panic!("t is the timeline");
-    };
-    room.set("t", max).unwrap();
-    assert_eq!(room.values().get("t"), 129.0);
-    assert_eq!(room.outcome().verdict, "run finished");
+    let spec = SPEC.params.iter().find(|spec| spec.id == "t").unwrap();
+    let (_, last) = spec.range();
+    for (seed, noise) in [(0.0, 0.25), (6.0, 2.0), (4_294_967_295.0, 4.0)] {
+        room.set("seed", seed).unwrap();
+        room.set("noise", noise).unwrap();
+        assert_eq!(room.timeline().unwrap().last, last, "seed {seed}");
+        room.set("t", last).unwrap();
+        assert_eq!(room.outcome().verdict, "run finished");
+    }
 }

@@ -7,6 +7,9 @@ use kit::scene::{Mark, Panel, Tone};
 
 use super::log::Event;
 
+/// The panels whose horizontal axis is the time.
+pub const OVER_TIME: [&str; 2] = ["tau", "errors"];
+
 /// Events that the table beside the picture shows.
 const SHOWN_EVENTS: usize = 8;
 

@@ -1,47 +1,14 @@
 //! The two pictures: the map with its graph, and the registration of the newest sweep.
 
-use std::sync::Arc;
-
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::slam::{LapRecord, RegistrationView};
-use kit::scene::{
-    Aspect, Axis, Bounds, Cell, Layer, LegendEntry, Mark, Panel, Raster, Stroke, Tone, Weight,
-};
-use pr_geom::{SE2, math};
-use pr_grid::OccupancyGrid;
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Raster, Stroke, Tone, Weight};
+use pr_geom::SE2;
 use pr_sim::World;
 
 /// Half the side of the close-up, in metres.
 const CLOSE_UP_M: f64 = 4.0;
-
-/// The grid as a raster of occupancies.
-pub fn raster(grid: &OccupancyGrid, revision: u64) -> Raster {
-    let config = grid.config();
-    let (min, cell_m) = (config.min_m, config.cell_m);
-    let cells: Arc<[Cell]> = grid.log_odds().iter().map(|l| occupancy(*l)).collect();
-    Raster {
-        bounds: Bounds {
-            min: [min.x, min.y],
-            max: [
-                min.x + cell_m * grid.columns() as f64,
-                min.y + cell_m * grid.rows() as f64,
-            ],
-        },
-        columns: grid.columns(),
-        rows: grid.rows(),
-        cells,
-        revision,
-    }
-}
-
-/// Probability of occupancy, `1 − 1/(1 + e^l)`; a log odds of 0 means that nothing was seen.
-fn occupancy(log_odds: f64) -> Cell {
-    if log_odds == 0.0 {
-        return Cell::Unknown;
-    }
-    Cell::Occupancy((1.0 - 1.0 / (1.0 + math::exp(log_odds))) as f32)
-}
 
 /// The map at a tick: grid, graph, truth and robot.
 pub fn map(record: &LapRecord, tick: usize, raster: &Raster, world: &World) -> Panel {
@@ -89,9 +56,14 @@ pub fn map(record: &LapRecord, tick: usize, raster: &Raster, world: &World) -> P
 
 /// A tick's registration: local map, the sweep where the wheels put it and where ICP put it.
 ///
-/// A loop that is closed in the same tick moves the estimate afterwards.
+/// At the start there is nothing to register on: the first sweep stands at the known pose. A loop
+/// that is closed in the same tick moves the estimate afterwards.
 pub fn registration(record: &LapRecord, tick: usize, view: Option<&RegistrationView>) -> Panel {
-    let center = view.map_or_else(|| record.drive.truth(0), |view| view.icp.pose);
+    let start = record.drive.truth(0);
+    let (center, layers) = match view {
+        Some(view) => (view.icp.pose, registration_layers(record, tick, view)),
+        None => (start, first_sweep(record, &start)),
+    };
     Panel {
         id: "registration",
         title: "Registration of this sweep".to_owned(),
@@ -99,15 +71,24 @@ pub fn registration(record: &LapRecord, tick: usize, view: Option<&RegistrationV
         aspect: Aspect::Equal,
         x: Axis::new("x (m)", center.x() - CLOSE_UP_M, center.x() + CLOSE_UP_M),
         y: Axis::new("y (m)", center.y() - CLOSE_UP_M, center.y() + CLOSE_UP_M),
-        layers: view.map_or_else(Vec::new, |view| registration_layers(record, tick, view)),
+        layers,
         legend: vec![
             LegendEntry::mark("local map, last six sweeps", Tone::Prior, Mark::Circle),
             LegendEntry::mark("sweep as predicted", Tone::Prediction, Mark::Triangle),
             LegendEntry::mark("sweep as registered", Tone::Measurement, Mark::Cross),
+            LegendEntry::line("pairs", Tone::Ink, Stroke::Solid),
             LegendEntry::mark("robot", Tone::Posterior, Mark::Square),
         ],
         color_bar: None,
     }
+}
+
+fn first_sweep(record: &LapRecord, start: &SE2) -> Vec<Layer> {
+    let sweep = record.drive.sweep(0).cloud.transformed(start);
+    vec![
+        Layer::points(positions(&sweep), Mark::Cross, Tone::Measurement, 3.0),
+        robot(start, Mark::Square, Tone::Posterior),
+    ]
 }
 
 fn registration_layers(record: &LapRecord, tick: usize, view: &RegistrationView) -> Vec<Layer> {

@@ -1,47 +1,23 @@
 //! What the widget says of itself: its words, parameters, buttons and presets.
 
-use ch16_slam2d::slam::CANONICAL_SEED;
+use ch16_slam2d::slam;
 use kit::param::{ParamKind, ParamSpec};
 use kit::playback::SPEED;
+use kit::run::{LOOPS, NOISE, seed};
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
-/// The longest run that a link may point into; a lap of the Apartment takes 129 ticks.
-const MAX_TICKS: f64 = 2000.0;
+/// Ticks of a lap.
+const LAP_TICKS: f64 = slam::LAP_TICKS as f64;
 
 const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        id: "noise",
-        label: "odometry noise ×",
-        unit: "",
-        kind: ParamKind::Slider {
-            min: 0.25,
-            max: 4.0,
-            step: 0.05,
-        },
-        default: 1.0,
-        help: "Multiplies the variances of the wheel odometry: 1 is the chapter's robot.",
-    },
-    ParamSpec {
-        id: "loops",
-        label: "loop closure",
-        unit: "",
-        kind: ParamKind::Switch,
-        default: 1.0,
-        help: "Whether the back end looks for loops.",
-    },
-    ParamSpec {
-        id: "seed",
-        label: "seed",
-        unit: "",
-        kind: ParamKind::SEED,
-        default: CANONICAL_SEED as f64,
-        help: "Another seed is another lap with the same robot; 12648430 is the chapter's.",
-    },
+    NOISE,
+    LOOPS,
+    seed(slam::CANONICAL_SEED),
     ParamSpec {
         id: "t",
         label: "tick",
         unit: "",
-        kind: ParamKind::Timeline { max: MAX_TICKS },
+        kind: ParamKind::Timeline { max: LAP_TICKS },
         default: 60.0,
         help: "The moment shown; a tick is a quarter of a second, and the marks are loops.",
     },
@@ -49,7 +25,7 @@ const PARAMS: &[ParamSpec] = &[
 ];
 
 /// On to the next event of the log.
-pub const NEXT_EVENT: ButtonSpec = ButtonSpec {
+const NEXT_EVENT: ButtonSpec = ButtonSpec {
     id: "next-event",
     label: "Next event",
     help: "On to the next keyframe, loop test or way point; after the last one, to the first.",
@@ -64,7 +40,8 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "The front end works at every tick: it predicts by odometry and corrects by one registration. The threshold τ follows how wrong the predictions were.",
         "The back end works only at keyframes, and its big moment is a loop: then old poses move.",
         "The grid stores no poses. After an accepted loop it is thrown away and drawn again from every keyframe's sweep.",
-        "Walls blur where two passes disagree, and sharpen when a loop brings them together.",
+        "A cell takes the ink of these words where it is likely occupied, and the colour of the paper where it is likely free. Of the tinted rest nothing was seen.",
+        "Walls blur where two passes disagree. At the first loop they sharpen: the cells that are more than 90 % likely to be occupied go from 110 to 156.",
     ],
     params: PARAMS,
     buttons: &[PLAY, STEP, RESET, NEXT_EVENT, DEFAULTS],
@@ -72,36 +49,43 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "watch",
             label: "Watch the whole run",
-            help: "From the first sweep to the last loop.",
+            help: "From the first sweep to the end of the lap, over three loops.",
             set: &[("t", 0.0)],
             then: &["play"],
         },
         Preset {
             id: "blurred",
             label: "Just before the first loop",
-            help: "The corridor has been mapped twice, and the two passes do not agree.",
+            help: "The corridor has been mapped twice, and the two passes disagree by 0.12 m.",
             set: &[("t", 91.0)],
             then: &[],
         },
         Preset {
             id: "rebuilt",
             label: "The grid drawn again",
-            help: "One loop later the same sweeps give sharper walls.",
+            help: "One tick and one loop later the passes disagree by 0.08 m, and the walls are sharper.",
             set: &[("t", 92.0)],
             then: &[],
         },
         Preset {
             id: "noisy",
             label: "Four times the noise",
-            help: "The threshold τ opens up: predictions are worse, so pairs are looked for farther away.",
+            help: "The threshold τ opens up from 0.77 m to 1.51 m: predictions are worse, so pairs are looked for farther away.",
             set: &[("noise", 4.0), ("t", 60.0)],
             then: &[],
         },
         Preset {
+            id: "wrong-loop",
+            label: "A wrong loop gets in",
+            help: "Seed 6 at twice the noise: the first loop passes every test, and is 0.36 m off. Only the truth tells, and no robot knows it.",
+            set: &[("seed", 6.0), ("noise", 2.0), ("t", 92.0)],
+            then: &[],
+        },
+        Preset {
             id: "open",
-            label: "No back end",
-            help: "Without loops nothing ever moves a pose again, and the walls stay double.",
-            set: &[("loops", 0.0), ("t", 129.0)],
+            label: "No loops",
+            help: "Without loops nothing ever moves a pose again. The two passes end 0.24 m apart instead of 0.08 m, and 104 cells are surely occupied instead of 175.",
+            set: &[("loops", 0.0), ("t", LAP_TICKS)],
             then: &[],
         },
     ],

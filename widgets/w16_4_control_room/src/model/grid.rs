@@ -1,0 +1,135 @@
+//! The occupancy grid of the tick shown, drawn again only where its keyframes changed.
+
+use std::sync::Arc;
+
+use ch16_slam2d::graph::EdgeKind;
+use ch16_slam2d::slam::LapRecord;
+use kit::model::Fact;
+use kit::scene::{Bounds, Cell, Raster};
+use pr_geom::math;
+use pr_grid::OccupancyGrid;
+
+/// A cell is surely occupied above these odds: nine to one are a probability of 0.9.
+const SURE_ODDS: f64 = 9.0;
+
+/// The grid of one tick, with its picture.
+pub struct GridView {
+    grid: OccupancyGrid,
+    raster: Raster,
+    source: Source,
+}
+
+/// What a grid is drawn from: within one run it tells all grids apart.
+#[derive(Clone, Copy, PartialEq)]
+struct Source {
+    keyframes: usize,
+    loops: usize,
+}
+
+impl Source {
+    /// There is a keyframe at any tick, so no grid is drawn from none.
+    const NOTHING: Self = Self {
+        keyframes: 0,
+        loops: 0,
+    };
+
+    fn of(record: &LapRecord, tick: usize) -> Self {
+        let edges = record.lap.edges(tick).iter();
+        Self {
+            keyframes: record.lap.node_count(tick),
+            loops: edges.filter(|edge| edge.kind == EdgeKind::Loop).count(),
+        }
+    }
+}
+
+impl GridView {
+    /// The grid of a tick.
+    pub fn new(record: &LapRecord, tick: usize) -> Self {
+        let grid = record.occupancy_grid(tick);
+        Self {
+            raster: raster(&grid, 0),
+            source: Source::of(record, tick),
+            grid,
+        }
+    }
+
+    /// Goes to another tick of the run.
+    pub fn show(&mut self, record: &LapRecord, tick: usize) {
+        let source = Source::of(record, tick);
+        if source != self.source {
+            self.source = source;
+            self.grid = record.occupancy_grid(tick);
+            self.raster = raster(&self.grid, self.raster.revision + 1);
+        }
+    }
+
+    /// The run is another one: what is drawn holds for no tick of it.
+    pub fn forget(&mut self) {
+        self.source = Source::NOTHING;
+    }
+
+    /// The picture.
+    pub fn raster(&self) -> &Raster {
+        &self.raster
+    }
+
+    /// The numbers.
+    pub fn facts(&self) -> [Fact; 5] {
+        let count = |id, label, cells: usize| Fact::count(id, label, cells as f64);
+        let grid = &self.grid;
+        [
+            count("keyframes", "keyframes", self.source.keyframes),
+            count("loops", "loops closed, grids redrawn", self.source.loops),
+            count("occupied_cells", "occupied cells", grid.occupied_cells()),
+            count("sure_cells", "occupied, over 90 % sure", self.sure_cells()),
+            count("free_cells", "free cells", grid.free_cells()),
+        ]
+    }
+
+    /// The grid in words.
+    pub fn words(&self) -> String {
+        format!(
+            "Occupancy grid of {} cells, {} occupied and {} free, with a pose graph of {} nodes \
+             and {} loops over it.",
+            self.grid.columns() * self.grid.rows(),
+            self.grid.occupied_cells(),
+            self.grid.free_cells(),
+            self.source.keyframes,
+            self.source.loops,
+        )
+    }
+
+    fn sure_cells(&self) -> usize {
+        let sure = math::ln(SURE_ODDS);
+        let log_odds = self.grid.log_odds().iter();
+        log_odds.filter(|l| **l > sure).count()
+    }
+}
+
+/// The grid as a raster of occupancies.
+fn raster(grid: &OccupancyGrid, revision: u64) -> Raster {
+    let config = grid.config();
+    let (min, cell_m) = (config.min_m, config.cell_m);
+    let cells: Arc<[Cell]> = grid.log_odds().iter().map(|l| occupancy(*l)).collect();
+    Raster {
+        bounds: Bounds {
+            min: [min.x, min.y],
+            max: [
+                min.x + cell_m * grid.columns() as f64,
+                min.y + cell_m * grid.rows() as f64,
+            ],
+        },
+        columns: grid.columns(),
+        rows: grid.rows(),
+        cells,
+        revision,
+    }
+}
+
+/// Probability of occupancy, `1 − 1/(1 + e^l)`; a log odds of 0 means that nothing was seen.
+fn occupancy(log_odds: f64) -> Cell {
+    if log_odds == 0.0 {
+        return Cell::Unknown;
+    }
+    Cell::Occupancy((1.0 - 1.0 / (1.0 + math::exp(log_odds))) as f32)
+}
