@@ -219,9 +219,9 @@ fn merge(drafts: Vec<Draft>) -> Vec<Draft> {
                 .rows
                 .first()
                 .is_some_and(|&row| (draft.first..draft.first + draft.width).contains(&row));
-            let (height, width) = (draft.rows.len() as u32, draft.width + child.width);
-            let apart = work(child.width, child.rows.len() as u32) + work(draft.width, height);
-            if !is_child || work(width, height) > apart {
+            let (rows, width) = (draft.rows.len() as u32, draft.width + child.width);
+            let apart = work(child.width, child.rows.len() as u32) + work(draft.width, rows);
+            if !is_child || work(width, rows) > apart {
                 break;
             }
             draft.first = child.first;
@@ -236,11 +236,13 @@ fn merge(drafts: Vec<Draft>) -> Vec<Draft> {
 /// Estimated work of a front with `width` columns and `rows` rows below, in block products.
 ///
 /// A front costs a constant; every block of its update is written, read and added to the parent.
-fn work(width: u32, rows: u32) -> u32 {
-    const PER_FRONT: u32 = 8;
-    const PER_UPDATE_BLOCK: u32 = 2;
+fn work(width: u32, rows: u32) -> u64 {
+    const PER_FRONT: u64 = 8;
+    const PER_UPDATE_BLOCK: u64 = 2;
+    // 64 bits: the products of two thousand columns over two thousand rows pass 2³².
+    let (width, rows) = (u64::from(width), u64::from(rows));
     let update_blocks = rows * (rows + 1) / 2;
-    let panel_products: u32 = (0..width)
+    let panel_products: u64 = (0..width)
         .map(|done| (done + 1) * (width - done + rows))
         .sum();
     PER_FRONT + panel_products + update_blocks * (width + PER_UPDATE_BLOCK)
@@ -286,6 +288,16 @@ mod tests {
         let drafts = find_fundamental(&structure, &elimination_tree(&structure));
         assert_eq!(drafts.len(), 1);
         assert_eq!(drafts[0].width, 4);
+    }
+
+    #[test]
+    fn the_work_of_a_front_beyond_32_bits_is_counted_exactly() {
+        // n columns over n rows, n = 2000. The panel: Σ (k+1)(2n−k) over k < n, which is
+        // (2n+1)·n(n+1)/2 − n(n+1)(2n+1)/6 = n(n+1)(2n+1)/3. The update: n(n+1)/2 · (n+2).
+        let panel: u64 = 2000 * 2001 * 4001 / 3;
+        let update: u64 = 2000 * 2001 / 2 * 2002;
+        assert_eq!(work(2000, 2000), 8 + panel + update);
+        assert!(work(2000, 2000) > u64::from(u32::MAX));
     }
 
     #[test]
