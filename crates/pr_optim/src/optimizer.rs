@@ -152,7 +152,7 @@ impl Optimizer {
         let accepted = match settings.method {
             Method::GaussNewton => true,
             Method::LevenbergMarquardt { .. } => {
-                let (trial_cost, _) = self
+                let trial_cost = self
                     .equations
                     .cost_at(problem, &self.trial, settings.kernel);
                 self.update_damping((cost - trial_cost) / predicted_decrease)
@@ -298,7 +298,6 @@ impl Optimizer {
     pub fn cost_at(&mut self, problem: &Problem, poses: &[SE2]) -> f64 {
         self.equations
             .cost_at(problem, poses, self.settings.kernel)
-            .0
     }
 }
 

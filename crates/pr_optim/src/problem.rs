@@ -133,6 +133,15 @@ impl Problem {
     #[must_use]
     pub fn cost_and_chi2(&self, kernel: RobustKernel) -> (f64, f64) {
         let poses: Vec<_> = self.poses.iter().map(PreparedPose::new).collect();
+        self.cost_and_chi2_at(&poses, kernel)
+    }
+
+    /// The same at other poses, by index.
+    pub(crate) fn cost_and_chi2_at(
+        &self,
+        poses: &[PreparedPose],
+        kernel: RobustKernel,
+    ) -> (f64, f64) {
         let (mut cost, mut chi2) = (0.0, 0.0);
         for (factor, prepared) in self.factors.iter().zip(&self.prepared) {
             let squared_norm = prepared.squared_norm(&poses[factor.from], &poses[factor.to]);

@@ -39,9 +39,7 @@ impl NormalEquations {
         ridge: f64,
     ) {
         self.clear(structure, ridge);
-        self.poses.clear();
-        self.poses
-            .extend(problem.poses().iter().map(PreparedPose::new));
+        self.prepare(problem.poses());
         for ((factor, prepared), slot) in problem
             .factors()
             .iter()
@@ -63,23 +61,16 @@ impl NormalEquations {
         self.hold_fixed(problem, structure, ridge);
     }
 
-    /// `Σ ρ(eᵀΩe)` and `Σ eᵀΩe` at other poses of the same graph, without any block.
-    pub fn cost_at(
-        &mut self,
-        problem: &Problem,
-        poses: &[SE2],
-        kernel: RobustKernel,
-    ) -> (f64, f64) {
+    /// `Σ ρ(eᵀΩe)` at other poses of the same graph; the blocks stay as they are.
+    pub fn cost_at(&mut self, problem: &Problem, poses: &[SE2], kernel: RobustKernel) -> f64 {
+        self.prepare(poses);
+        problem.cost_and_chi2_at(&self.poses, kernel).0
+    }
+
+    /// Fills the workspace of poses with their sines and cosines.
+    fn prepare(&mut self, poses: &[SE2]) {
         self.poses.clear();
         self.poses.extend(poses.iter().map(PreparedPose::new));
-        let (mut cost, mut chi2) = (0.0, 0.0);
-        for (factor, prepared) in problem.factors().iter().zip(problem.prepared()) {
-            let squared_norm =
-                prepared.squared_norm(&self.poses[factor.from], &self.poses[factor.to]);
-            chi2 += squared_norm;
-            cost += kernel.cost(squared_norm);
-        }
-        (cost, chi2)
     }
 
     /// Empties the blocks; every diagonal entry becomes `ridge`.
@@ -127,7 +118,8 @@ impl NormalEquations {
         }
     }
 
-    fn hold_fixed(&mut self, problem: &Problem, structure: &Structure, ridge: f64) {
+    /// Gives every fixed node an identity block, plus `ridge`, and no gradient: it will not move.
+    pub(crate) fn hold_fixed(&mut self, problem: &Problem, structure: &Structure, ridge: f64) {
         let one = 1.0 + ridge;
         for (node, _) in problem
             .fixed()

@@ -174,16 +174,7 @@ fn solve_pairs(
         equations.gradient[3 * from + 1] -= cos * gy - sin * gx;
         equations.add_off_diagonal(slot, &[-ax, -ay, 0.0, -bx, -by, 0.0, 0.0, 0.0, 0.0]);
     }
-    for (node, _) in problem
-        .fixed()
-        .iter()
-        .enumerate()
-        .filter(|(_, fixed)| **fixed)
-    {
-        let position = structure.position_of[node] as usize;
-        equations.diagonal[position] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-        equations.gradient[3 * position..3 * position + 3].fill(0.0);
-    }
+    equations.hold_fixed(problem, structure, 0.0);
     linear.factorize(&equations, 0.0)?;
     let mut solution = equations.gradient;
     linear.solve(&mut solution);
