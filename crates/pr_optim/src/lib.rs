@@ -12,6 +12,7 @@
 //! input gives the same bits natively and in WebAssembly.
 
 pub mod block_cholesky;
+mod damping;
 mod dense_kernel;
 mod elimination;
 mod error;
@@ -27,6 +28,7 @@ pub mod ordering;
 mod problem;
 mod report;
 mod session;
+mod settings;
 pub mod structure;
 pub mod supernodes;
 pub mod system;
@@ -36,7 +38,8 @@ pub use factor::{Between, JacobianModel, Linearization, PreparedFactor, Prepared
 pub use kernel::RobustKernel;
 pub use linear::{Factorization, LinearSolver};
 pub use marginals::JointCovariance;
-pub use optimizer::{Method, Optimizer, Settings};
+pub use optimizer::Optimizer;
 pub use problem::Problem;
 pub use report::{Report, StepReport, StopReason};
 pub use session::{Outcome, SUSPICIOUS_TURN_RAD, Session, Start};
+pub use settings::{Method, Settings};

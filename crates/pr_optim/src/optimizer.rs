@@ -1,15 +1,19 @@
 //! Gauss–Newton and Levenberg–Marquardt over a [`Problem`], one iteration at a time.
 //!
-//! One iteration linearizes every factor, solves `(H + λ diag H) δ = −g` by sparse Cholesky
-//! factorization, and moves every free pose by `T ← T exp(δ)`. Gauss–Newton is λ = 0 and takes
-//! every step. Levenberg–Marquardt raises λ until the cost falls.
+//! One iteration linearizes every factor, solves `(H + λD) δ = −g` with `D = diag H` by sparse
+//! Cholesky factorization, and moves every free pose by `T ← T exp(δ)`. Gauss–Newton is λ = 0 and
+//! takes every step. Levenberg–Marquardt raises λ until the cost does not rise.
 //!
-//! Source: Nocedal & Wright, "Numerical Optimization", 2006, chapter 10; the damping schedule is
-//! that of Nielsen, "Damping parameter in Marquardt's method", 1999.
+//! The cost has no factor ½, so with `g = JᵀΩe` and `H = JᵀΩJ` its quadratic model is
+//! `cost + 2 gᵀδ + δᵀHδ`. The step has `δᵀHδ = −gᵀδ − λ δᵀDδ`. The model so promises a decrease of
+//! `−gᵀδ + λ δᵀDδ`, against which the damping schedule measures what a step won.
+//!
+//! Source: Nocedal & Wright, "Numerical Optimization", 2006, chapter 10.
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::{SE2, math};
 
+use crate::damping::{DAMPING_LIMIT, Damping};
 use crate::error::OptimizeError;
 use crate::factor::JacobianModel;
 use crate::kernel::RobustKernel;
@@ -17,65 +21,9 @@ use crate::linear::{Factorization, LinearSolver};
 use crate::marginals::JointCovariance;
 use crate::problem::Problem;
 use crate::report::{Report, StepReport, StopReason};
+use crate::settings::{Method, Settings};
 use crate::structure::Structure;
 use crate::system::NormalEquations;
-
-/// How a step is made from the linearized problem.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub enum Method {
-    /// Full steps, also where they raise the cost on the way.
-    #[default]
-    GaussNewton,
-    /// Damped steps; none that raises the cost is taken.
-    LevenbergMarquardt {
-        /// First damping, relative to the diagonal of H.
-        initial_damping: f64,
-    },
-}
-
-/// Largest damping that Levenberg–Marquardt tries before it gives up.
-const DAMPING_LIMIT: f64 = 1e12;
-
-/// What to solve with, and when to stop.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Gauss–Newton or Levenberg–Marquardt.
-    pub method: Method,
-    /// The chapter's Jacobians or the exact ones.
-    pub jacobians: JacobianModel,
-    /// Cost of a factor.
-    pub kernel: RobustKernel,
-    /// Largest number of linear systems solved.
-    pub max_iterations: usize,
-    /// Stop where the largest `‖(v_x, v_y)‖ + |ω|` over the nodes falls below this.
-    pub step_tolerance: f64,
-    /// Stop where less than this share of the cost is still to be won, by the estimate below;
-    /// 0 never stops.
-    ///
-    /// The model promises a decrease `p` with every step. Near the optimum the promises shrink by
-    /// the same factor or faster, so that about `p²/p'` is left after a step that promised `p`
-    /// where the one before promised `p'`. A step so needs no other to confirm that it was the last.
-    pub decrease_tolerance: f64,
-    /// Added to every diagonal entry of H.
-    pub ridge: f64,
-    /// Which sparse Cholesky factorization to use.
-    pub factorization: Factorization,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            method: Method::GaussNewton,
-            jacobians: JacobianModel::Chapter,
-            kernel: RobustKernel::None,
-            max_iterations: 25,
-            step_tolerance: 1e-6,
-            decrease_tolerance: 0.0,
-            ridge: 1e-9,
-            factorization: Factorization::Block,
-        }
-    }
-}
 
 /// A solver with its workspace, which is kept from one solve to the next.
 ///
@@ -88,8 +36,8 @@ pub struct Optimizer {
     equations: NormalEquations,
     delta: Vec<f64>,
     trial: Vec<SE2>,
-    damping: f64,
-    growth: f64,
+    schedule: Damping,
+    /// What the last accepted step promised, times `1 + λ`; 0 before the first.
     last_promise: f64,
 }
 
@@ -107,12 +55,19 @@ impl Optimizer {
 
     /// Forgets the damping of the last solve, not the analysis.
     pub fn restart(&mut self) {
-        self.damping = match self.settings.method {
-            Method::GaussNewton => 0.0,
-            Method::LevenbergMarquardt { initial_damping } => initial_damping,
+        self.schedule = match self.settings.method {
+            Method::GaussNewton => Damping::default(),
+            Method::LevenbergMarquardt { initial_damping } => Damping::new(initial_damping),
         };
-        self.growth = 2.0;
         self.last_promise = 0.0;
+    }
+
+    /// λ of the next step. Gauss–Newton has none, also where the last steps were damped ones.
+    fn damping(&self) -> f64 {
+        match self.settings.method {
+            Method::GaussNewton => 0.0,
+            Method::LevenbergMarquardt { .. } => self.schedule.value(),
+        }
     }
 
     /// One iteration: linearize, solve, move.
@@ -120,6 +75,7 @@ impl Optimizer {
     /// # Errors
     /// Where the normal equations are not positive definite or not finite; the poses stay.
     pub fn step(&mut self, problem: &mut Problem) -> Result<StepReport, OptimizeError> {
+        let damping = self.damping();
         let linear = analysed(&mut self.linear, problem, self.settings.factorization);
         let settings = &self.settings;
         self.equations.assemble(
@@ -133,12 +89,15 @@ impl Optimizer {
         if !cost.is_finite() {
             return Err(OptimizeError::NotFinite);
         }
-        linear.factorize(&self.equations, self.damping)?;
+        linear.factorize(&self.equations, damping)?;
         self.delta.clear();
         self.delta
             .extend(self.equations.gradient.iter().map(|g| -g));
         linear.solve(&mut self.delta);
-        let predicted_decrease = -dot(&self.equations.gradient, &self.delta);
+        let mut predicted_decrease = -dot(&self.equations.gradient, &self.delta);
+        if damping > 0.0 {
+            predicted_decrease += damping * self.equations.diagonal_square(&self.delta);
+        }
         let largest_step = move_poses(
             problem.poses(),
             linear.structure(),
@@ -148,14 +107,13 @@ impl Optimizer {
         if !largest_step.is_finite() {
             return Err(OptimizeError::NotFinite);
         }
-        let damping = self.damping;
         let accepted = match settings.method {
             Method::GaussNewton => true,
             Method::LevenbergMarquardt { .. } => {
                 let trial_cost = self
                     .equations
                     .cost_at(problem, &self.trial, settings.kernel);
-                self.update_damping((cost - trial_cost) / predicted_decrease)
+                self.schedule.update(cost - trial_cost, predicted_decrease)
             }
         };
         if accepted {
@@ -203,45 +161,44 @@ impl Optimizer {
     }
 
     fn stop_after(&mut self, step: &StepReport) -> Option<StopReason> {
+        let converged = if step.accepted {
+            self.convergence_at(step)
+        } else {
+            None
+        };
+        converged.or_else(|| {
+            let damping = self.damping();
+            (damping > DAMPING_LIMIT).then_some(StopReason::DampingLimit {
+                damping,
+                limit: DAMPING_LIMIT,
+            })
+        })
+    }
+
+    /// The convergence test that an accepted step meets, if there is one; see [`Settings`].
+    fn convergence_at(&mut self, step: &StepReport) -> Option<StopReason> {
         let settings = &self.settings;
-        let promise = step.predicted_decrease;
+        let undamped = 1.0 + step.damping;
+        let size = undamped * step.largest_step;
+        let promise = undamped * step.predicted_decrease;
         let before = core::mem::replace(&mut self.last_promise, promise);
         let remaining = if step.cost_before > 0.0 {
             promise * (promise / before).min(1.0) / step.cost_before
         } else {
             0.0
         };
-        if step.largest_step < settings.step_tolerance {
+        if size < settings.step_tolerance {
             Some(StopReason::SmallStep {
-                step: step.largest_step,
+                step: size,
                 tolerance: settings.step_tolerance,
             })
-        } else if step.accepted && remaining < settings.decrease_tolerance {
+        } else if remaining < settings.decrease_tolerance {
             Some(StopReason::SmallDecrease {
                 decrease: remaining,
                 tolerance: settings.decrease_tolerance,
             })
-        } else if self.damping > DAMPING_LIMIT {
-            Some(StopReason::DampingLimit {
-                damping: self.damping,
-                limit: DAMPING_LIMIT,
-            })
         } else {
             None
-        }
-    }
-
-    /// Nielsen's rule: a good step lowers the damping smoothly, each bad one raises it faster.
-    fn update_damping(&mut self, gain: f64) -> bool {
-        if gain > 0.0 {
-            let shortfall = 2.0 * gain - 1.0;
-            self.damping *= (1.0 - shortfall * shortfall * shortfall).max(1.0 / 3.0);
-            self.growth = 2.0;
-            true
-        } else {
-            self.damping *= self.growth;
-            self.growth *= 2.0;
-            false
         }
     }
 
@@ -296,8 +253,7 @@ impl Optimizer {
 
     /// `Σ ρ(eᵀΩe)` at other poses of the same graph.
     pub fn cost_at(&mut self, problem: &Problem, poses: &[SE2]) -> f64 {
-        self.equations
-            .cost_at(problem, poses, self.settings.kernel)
+        self.equations.cost_at(problem, poses, self.settings.kernel)
     }
 }
 

@@ -7,16 +7,16 @@ use crate::problem::Problem;
 /// Why [`run`](crate::Optimizer::run) returned, with the value that was measured and the threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StopReason {
-    /// The largest step of a node, `‖(v_x, v_y)‖ + |ω|`, fell below the tolerance.
+    /// An accepted step moved no node by as much as the tolerance, damping taken out.
     SmallStep {
-        /// Largest step over the nodes, metres and radians added.
+        /// Largest `‖(v_x, v_y)‖ + |ω|` over the nodes, metres and radians added, times `1 + λ`.
         step: f64,
         /// Threshold that it fell below.
         tolerance: f64,
     },
-    /// Less than this share of the cost is estimated to be left to win.
+    /// After an accepted step, less than this share of the cost is estimated to be left to win.
     SmallDecrease {
-        /// Estimated decrease over cost.
+        /// Estimated decrease over cost; see [`Settings::decrease_tolerance`](crate::Settings).
         decrease: f64,
         /// Threshold that it fell below.
         tolerance: f64,
@@ -35,7 +35,7 @@ pub enum StopReason {
     },
     /// Levenberg–Marquardt found no damping, up to this one, that lowers the cost.
     DampingLimit {
-        /// The last damping tried.
+        /// The damping of the step that was not tried any more.
         damping: f64,
         /// The largest damping allowed.
         limit: f64,
@@ -86,11 +86,13 @@ pub struct StepReport {
     pub cost_before: f64,
     /// Largest `‖(v_x, v_y)‖ + |ω|` over the nodes.
     pub largest_step: f64,
-    /// Decrease of the cost that the quadratic model promises, `−gᵀδ`.
+    /// Decrease of the cost that the quadratic model promises: `−gᵀδ + λ δᵀDδ` with `D = diag H`.
+    ///
+    /// The cost has no factor ½, and `g` is half of its derivative.
     pub predicted_decrease: f64,
-    /// Damping of the accepted step; 0 for Gauss–Newton.
+    /// Damping λ that the step was computed with; 0 for Gauss–Newton.
     pub damping: f64,
-    /// Whether the poses moved. Levenberg–Marquardt refuses a step that raises the cost.
+    /// Whether the step was taken. Levenberg–Marquardt refuses a step that raises the cost.
     pub accepted: bool,
 }
 

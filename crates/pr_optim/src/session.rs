@@ -12,9 +12,10 @@ use pr_geom::SE2;
 use crate::error::OptimizeError;
 use crate::init::{chordal, spanning_tree};
 use crate::kernel::RobustKernel;
-use crate::optimizer::{Method, Optimizer};
+use crate::optimizer::Optimizer;
 use crate::problem::Problem;
 use crate::report::{Report, StepReport, StopReason};
+use crate::settings::Method;
 
 /// A heading residual at a minimum that noise does not explain.
 ///

@@ -73,6 +73,17 @@ impl NormalEquations {
         self.poses.extend(poses.iter().map(PreparedPose::new));
     }
 
+    /// `vᵀDv` with the diagonal entries D of H, `vector` in elimination order.
+    pub(crate) fn diagonal_square(&self, vector: &[f64]) -> f64 {
+        self.diagonal
+            .iter()
+            .zip(vector.chunks_exact(3))
+            .map(|(block, v)| {
+                block[0] * v[0] * v[0] + block[4] * v[1] * v[1] + block[8] * v[2] * v[2]
+            })
+            .sum()
+    }
+
     /// Empties the blocks; every diagonal entry becomes `ridge`.
     pub(crate) fn clear(&mut self, structure: &Structure, ridge: f64) {
         let nodes = structure.node_count();
