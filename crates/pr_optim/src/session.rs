@@ -60,11 +60,14 @@ struct Attempt {
 }
 
 /// A solve that goes on step by step.
+///
+/// Dropped before [`finish`](Self::finish), it leaves the poses where the last step put them.
+/// Either way the optimizer has the method again that it came with.
 #[derive(Debug)]
 pub struct Session<'a> {
     optimizer: &'a mut Optimizer,
     problem: &'a mut Problem,
-    /// What the caller asked for; the optimizer's own method is restored at the end.
+    /// What the caller asked for. The last attempt solves with another; dropping restores it.
     method: Method,
     automatic: bool,
     start: Start,
@@ -143,10 +146,9 @@ impl<'a> Session<'a> {
             self.automatic = false;
             self.end_attempt(StopReason::IterationLimit { limit });
         }
-        self.optimizer.settings.method = self.method;
-        let converged = self.ended.iter().any(is_converged);
-        let best = self
-            .ended
+        let ended = core::mem::take(&mut self.ended);
+        let converged = ended.iter().any(is_converged);
+        let best = ended
             .into_iter()
             .filter(|attempt| is_converged(attempt) || !converged)
             .min_by(|a, b| a.report.cost.total_cmp(&b.report.cost))
@@ -244,6 +246,13 @@ impl<'a> Session<'a> {
             let residual = pr_geom::wrap_angle(turn - factor.measurement.theta());
             residual.abs() > SUSPICIOUS_TURN_RAD
         })
+    }
+}
+
+impl Drop for Session<'_> {
+    fn drop(&mut self) {
+        self.optimizer.settings.method = self.method;
+        self.optimizer.restart();
     }
 }
 

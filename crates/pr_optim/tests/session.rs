@@ -125,9 +125,8 @@ fn a_kernel_leaves_a_false_loop_behind_that_least_squares_follows() {
     assert!(error(RobustKernel::Dcs { phi: 1.0 }) < 0.01);
 }
 
-#[test]
-fn the_method_that_was_asked_for_is_there_after_the_fallback() {
-    // A measurement that contradicts the ring by half a turn: no minimum is to be trusted.
+/// A ring with a measurement that contradicts it by half a turn: no minimum is to be trusted.
+fn untrusted_ring() -> Problem {
     let mut problem = ring(1.0);
     problem.add_factor(Between {
         from: 0,
@@ -135,14 +134,38 @@ fn the_method_that_was_asked_for_is_there_after_the_fallback() {
         measurement: SE2::new(1.0, 0.0, 2.9),
         information: Matrix3::identity() * 100.0,
     });
-    let mut optimizer = Optimizer::new(Settings {
+    problem
+}
+
+fn stubborn() -> Optimizer {
+    Optimizer::new(Settings {
         jacobians: JacobianModel::Exact,
         max_iterations: 40,
         ..Settings::default()
-    });
+    })
+}
+
+#[test]
+fn the_method_that_was_asked_for_is_there_after_the_fallback() {
+    let mut problem = untrusted_ring();
+    let mut optimizer = stubborn();
     let session = Session::new(&mut optimizer, &mut problem, Start::Auto).unwrap();
     let outcome = session.run();
     assert_eq!(optimizer.settings.method, Method::GaussNewton);
     assert_eq!(problem.chi2(), outcome.report.chi2);
     assert!(outcome.total_iterations > outcome.report.iterations);
+}
+
+#[test]
+fn a_session_dropped_during_the_fallback_gives_the_method_back() {
+    let mut problem = untrusted_ring();
+    let mut optimizer = stubborn();
+    let mut session = Session::new(&mut optimizer, &mut problem, Start::Auto).unwrap();
+    while session.last_step().is_none_or(|step| step.damping == 0.0) {
+        assert!(session.step(), "the fallback takes damped steps");
+    }
+    drop(session);
+    assert_eq!(optimizer.settings.method, Method::GaussNewton);
+    let step = optimizer.step(&mut problem).unwrap();
+    assert_eq!(step.damping, 0.0);
 }
