@@ -291,6 +291,24 @@ impl PoseGraph {
         self.optimizer.marginals(&self.problem)
     }
 
+    /// Exact covariance of the relative pose at every edge, in the order in which they were added.
+    ///
+    /// The same as [`relative_covariance`](Self::relative_covariance) of its two nodes, but all from
+    /// one selected inverse of the factor.
+    ///
+    /// # Errors
+    /// Where the normal equations are not positive definite.
+    pub fn edge_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
+        let measured = self.optimizer.measured_covariances(&self.problem)?;
+        let poses = self.problem.poses();
+        let ends = self.problem.factors().iter();
+        Ok(measured
+            .iter()
+            .zip(ends)
+            .map(|(joint, factor)| joint.relative(&poses[factor.from], &poses[factor.to]))
+            .collect())
+    }
+
     fn take_poses(&mut self) {
         for (node, pose) in self.graph.node_weights_mut().zip(self.problem.poses()) {
             node.pose = *pose;

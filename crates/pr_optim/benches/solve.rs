@@ -128,6 +128,9 @@ fn parts_of_an_iteration(criterion: &mut Criterion) {
     group.bench_function("marginals", |bencher| {
         bencher.iter(|| linear.marginals(&problem))
     });
+    group.bench_function("joint_covariance", |bencher| {
+        bencher.iter(|| linear.joint_covariance(&problem, 100, black_box(3400)));
+    });
     group.finish();
 }
 

@@ -14,6 +14,8 @@ use crate::structure::Structure;
 use crate::supernodes::{Supernode, Supernodes, update_size};
 use crate::system::NormalEquations;
 
+mod solve;
+
 /// The factor `L` of `H = L Lᵀ`, with its symbolic analysis and workspace.
 #[derive(Clone, Debug)]
 pub struct BlockCholesky {
@@ -158,61 +160,6 @@ impl BlockCholesky {
         }
         Ok(())
     }
-
-    /// Overwrites `rhs`, in elimination order, with `H⁻¹ rhs`.
-    pub fn solve(&mut self, rhs: &mut [f64]) {
-        self.solve_lower(rhs);
-        self.solve_upper(rhs);
-    }
-
-    /// `x ← L⁻¹ x`, children first.
-    fn solve_lower(&mut self, x: &mut [f64]) {
-        for supernode in &self.supernodes.list {
-            let height = 3 * supernode.height();
-            let run = 3 * supernode.columns().start..3 * supernode.columns().end;
-            let local = &mut self.local[..height];
-            local[..run.len()].copy_from_slice(&x[run.clone()]);
-            local[run.len()..].fill(0.0);
-            let columns = self.values[supernode.panel()].chunks_exact(height);
-            let reciprocal = &self.reciprocal[run.clone()];
-            for (k, (column, reciprocal)) in columns.zip(reciprocal).enumerate() {
-                let value = local[k] * reciprocal;
-                local[k] = value;
-                for (sum, entry) in local[k + 1..].iter_mut().zip(&column[k + 1..]) {
-                    *sum -= value * entry;
-                }
-            }
-            x[run.clone()].copy_from_slice(&local[..run.len()]);
-            let rows = &self.supernodes.rows[supernode.rows()];
-            for (&row, values) in rows.iter().zip(local[run.len()..].chunks_exact(3)) {
-                let row = 3 * row as usize;
-                for (sum, value) in x[row..row + 3].iter_mut().zip(values) {
-                    *sum += value;
-                }
-            }
-        }
-    }
-
-    /// `x ← L⁻ᵀ x`, parents first.
-    fn solve_upper(&mut self, x: &mut [f64]) {
-        for supernode in self.supernodes.list.iter().rev() {
-            let height = 3 * supernode.height();
-            let run = 3 * supernode.columns().start..3 * supernode.columns().end;
-            let local = &mut self.local[..height];
-            local[..run.len()].copy_from_slice(&x[run.clone()]);
-            let rows = &self.supernodes.rows[supernode.rows()];
-            for (&row, values) in rows.iter().zip(local[run.len()..].chunks_exact_mut(3)) {
-                values.copy_from_slice(&x[3 * row as usize..3 * row as usize + 3]);
-            }
-            let columns = self.values[supernode.panel()].chunks_exact(height);
-            let reciprocal = &self.reciprocal[run.clone()];
-            for (k, (column, reciprocal)) in columns.zip(reciprocal).enumerate().rev() {
-                let sum = dot(&local[k + 1..], &column[k + 1..]);
-                local[k] = (local[k] - sum) * reciprocal;
-            }
-            x[run.clone()].copy_from_slice(&local[..run.len()]);
-        }
-    }
 }
 
 /// Fills a panel with the blocks of H.
@@ -332,21 +279,4 @@ fn form_update(update: &mut [f64], panel: &[f64], supernode: &Supernode) {
     for (column, columns) in update.chunks_exact_mut(3 * side).enumerate() {
         subtract_product::<true>(columns, side, panel, height, first_row + 3 * column);
     }
-}
-
-/// Inner product in four interleaved sums, which the machine adds side by side.
-#[inline]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (a_chunks, b_chunks) = (a.chunks_exact(4), b.chunks_exact(4));
-    let mut tail = 0.0;
-    for (a, b) in a_chunks.remainder().iter().zip(b_chunks.remainder()) {
-        tail += a * b;
-    }
-    let mut sums = [0.0; 4];
-    for (a, b) in a_chunks.zip(b_chunks) {
-        for k in 0..4 {
-            sums[k] += a[k] * b[k];
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + tail
 }

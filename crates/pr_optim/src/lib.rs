@@ -4,6 +4,7 @@
 //! `Σ ρ(eᵀΩe)` by Gauss–Newton or Levenberg–Marquardt, one [`step`](Optimizer::step) at a time or
 //! all the way with [`run`](Optimizer::run), and reports why it stopped. A [`Session`] chooses the
 //! first guess too, and another one where the first leads to a minimum that is not to be trusted.
+//! Covariances of poses come [from the factor](Optimizer::joint_covariance), exact to first order.
 //!
 //! The way of an iteration: [`Problem`] → [`structure`] (which 3×3 blocks there are, in the order
 //! of [`ordering`]) → [`system`] (their values) → [`block_cholesky`] on [`supernodes`] → step.
@@ -27,6 +28,7 @@ mod optimizer;
 pub mod ordering;
 mod problem;
 mod report;
+mod selected_inverse;
 mod session;
 mod settings;
 pub mod structure;

@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use crate::block_cholesky::BlockCholesky;
 use crate::error::OptimizeError;
 use crate::faer_cholesky::FaerCholesky;
-use crate::marginals::{JointCovariance, all_marginals, joint_covariance};
+use crate::marginals::{JointCovariance, all_marginals, all_measured, joint_covariance};
 use crate::ordering::minimum_degree;
 use crate::problem::Problem;
 use crate::structure::Structure;
@@ -21,7 +21,7 @@ pub enum Factorization {
     Faer,
 }
 
-/// The pattern of a graph with the factorization that belongs to it.
+/// The pattern of a graph with the factorization that belongs to it, kept while the graph stays.
 #[derive(Debug)]
 pub struct LinearSolver {
     structure: Structure,
@@ -35,7 +35,7 @@ enum Cholesky {
 }
 
 impl LinearSolver {
-    /// Orders and analyses the graph of `problem`.
+    /// Orders and analyses the graph of `problem`; poses and measured values do not matter.
     #[must_use]
     pub fn new(problem: &Problem, factorization: Factorization) -> Self {
         let structure = Structure::new(problem, minimum_degree(problem));
@@ -85,19 +85,22 @@ impl LinearSolver {
     /// Covariance blocks of two nodes from the last factor, which was made without damping.
     ///
     /// Right perturbations, tangent order x, y, θ. Zero for a fixed node.
+    /// `None` where the factorization is `faer`'s, which does not show its factor by blocks.
     pub fn joint_covariance(
         &mut self,
         problem: &Problem,
         first: usize,
         second: usize,
-    ) -> JointCovariance {
-        let cholesky = &mut self.cholesky;
-        joint_covariance(
-            &self.structure,
-            problem.fixed(),
-            [first, second],
-            |column| cholesky.solve(column),
-        )
+    ) -> Option<JointCovariance> {
+        match &mut self.cholesky {
+            Cholesky::Block(cholesky) => Some(joint_covariance(
+                &self.structure,
+                problem.fixed(),
+                cholesky,
+                [first, second],
+            )),
+            Cholesky::Faer(_) => None,
+        }
     }
 
     /// Covariance block of every node from the last factor, which was made without damping.
@@ -113,17 +116,22 @@ impl LinearSolver {
         }
     }
 
+    /// Covariance blocks of the two ends of every measurement, in the order of [`Problem::factors`].
+    ///
+    /// By the rules of [`joint_covariance`](Self::joint_covariance), all at once.
+    #[must_use]
+    pub fn measured_covariances(&self, problem: &Problem) -> Option<Vec<JointCovariance>> {
+        match &self.cholesky {
+            Cholesky::Block(cholesky) => Some(all_measured(&self.structure, problem, cholesky)),
+            Cholesky::Faer(_) => None,
+        }
+    }
+
     /// Overwrites `rhs`, in elimination order, with `H⁻¹ rhs`.
     pub fn solve(&mut self, rhs: &mut [f64]) {
-        self.cholesky.solve(rhs);
-    }
-}
-
-impl Cholesky {
-    fn solve(&mut self, rhs: &mut [f64]) {
-        match self {
-            Self::Block(cholesky) => cholesky.solve(rhs),
-            Self::Faer(cholesky) => cholesky.solve(rhs),
+        match &mut self.cholesky {
+            Cholesky::Block(cholesky) => cholesky.solve(rhs),
+            Cholesky::Faer(cholesky) => cholesky.solve(rhs),
         }
     }
 }

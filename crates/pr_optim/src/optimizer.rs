@@ -30,7 +30,7 @@ use crate::system::NormalEquations;
 /// Ordering and symbolic analysis are made again only where the graph itself has changed.
 #[derive(Debug, Default)]
 pub struct Optimizer {
-    /// May be changed between iterations.
+    /// May be changed between iterations; a damping begins anew with [`restart`](Self::restart).
     pub settings: Settings,
     linear: Option<LinearSolver>,
     equations: NormalEquations,
@@ -53,7 +53,7 @@ impl Optimizer {
         optimizer
     }
 
-    /// Forgets the damping of the last solve, not the analysis.
+    /// Forgets how the last solve went, its damping above all; the analysis is kept.
     pub fn restart(&mut self) {
         self.schedule = match self.settings.method {
             Method::GaussNewton => Damping::default(),
@@ -129,7 +129,7 @@ impl Optimizer {
         })
     }
 
-    /// Iterates until a stop rule of the settings is met.
+    /// Iterates from the present poses until a stop rule of the [`Settings`] is met.
     pub fn run(&mut self, problem: &mut Problem) -> Report {
         self.restart();
         let mut steps = Vec::new();
@@ -202,45 +202,60 @@ impl Optimizer {
         }
     }
 
-    /// The linear solver for the graph of `problem`, analysed if need be.
+    /// The linear solver that the settings name for the graph of `problem`, analysed if need be.
     pub fn linear_for(&mut self, problem: &Problem) -> &mut LinearSolver {
         analysed(&mut self.linear, problem, self.settings.factorization)
     }
 
     /// Covariance blocks of two nodes at the present poses, exact to first order.
     ///
-    /// The measurements count unweighted by any kernel, with their exact Jacobians.
+    /// The measurements count unweighted by any kernel, with their exact Jacobians. The factor is
+    /// this crate's own, whatever the settings name.
     ///
     /// # Errors
     /// Where the normal equations are not positive definite.
+    ///
+    /// # Panics
+    /// Where a node does not exist.
     pub fn joint_covariance(
         &mut self,
         problem: &Problem,
         first: usize,
         second: usize,
     ) -> Result<JointCovariance, OptimizeError> {
-        self.factorize_plain(problem)?;
-        Ok(self
-            .linear_for(problem)
-            .joint_covariance(problem, first, second))
+        let linear = self.factorize_plain(problem)?;
+        let joint = linear.joint_covariance(problem, first, second);
+        Ok(joint.expect("the block factorization shows its factor"))
     }
 
     /// Covariance block of every node at the present poses, exact to first order; zero for fixed ones.
     ///
+    /// By the rules of [`joint_covariance`](Self::joint_covariance).
+    ///
     /// # Errors
     /// Where the normal equations are not positive definite.
-    ///
-    /// # Panics
-    /// Where the factorization of the settings is not [`Factorization::Block`].
     pub fn marginals(&mut self, problem: &Problem) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
-        self.factorize_plain(problem)?;
-        let marginals = self.linear_for(problem).marginals(problem);
+        let marginals = self.factorize_plain(problem)?.marginals(problem);
         Ok(marginals.expect("the block factorization shows its factor"))
     }
 
-    /// Factorizes H at the present poses without kernel or damping.
-    fn factorize_plain(&mut self, problem: &Problem) -> Result<(), OptimizeError> {
-        let linear = analysed(&mut self.linear, problem, self.settings.factorization);
+    /// Covariance blocks of the two ends of every measurement, in the order of [`Problem::factors`].
+    ///
+    /// By the rules of [`joint_covariance`](Self::joint_covariance), but all at once.
+    ///
+    /// # Errors
+    /// Where the normal equations are not positive definite.
+    pub fn measured_covariances(
+        &mut self,
+        problem: &Problem,
+    ) -> Result<Vec<JointCovariance>, OptimizeError> {
+        let measured = self.factorize_plain(problem)?.measured_covariances(problem);
+        Ok(measured.expect("the block factorization shows its factor"))
+    }
+
+    /// Factorizes H at the present poses without kernel or damping, by blocks.
+    fn factorize_plain(&mut self, problem: &Problem) -> Result<&mut LinearSolver, OptimizeError> {
+        let linear = analysed(&mut self.linear, problem, Factorization::Block);
         self.equations.assemble(
             problem,
             linear.structure(),
@@ -248,10 +263,11 @@ impl Optimizer {
             RobustKernel::None,
             self.settings.ridge,
         );
-        linear.factorize(&self.equations, 0.0)
+        linear.factorize(&self.equations, 0.0)?;
+        Ok(linear)
     }
 
-    /// `Σ ρ(eᵀΩe)` at other poses of the same graph.
+    /// `Σ ρ(eᵀΩe)` at other poses of the same graph, with the kernel of the settings.
     pub fn cost_at(&mut self, problem: &Problem, poses: &[SE2]) -> f64 {
         self.equations.cost_at(problem, poses, self.settings.kernel)
     }

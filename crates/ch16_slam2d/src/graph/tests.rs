@@ -110,6 +110,10 @@ fn a_closed_loop_makes_the_relative_pose_more_certain() {
     let closed = graph.relative_covariance(nodes[1], nodes[4]).unwrap();
     // Three edges in a row beside one: 1/(1/3 + 1) of its variance along the line.
     assert!((closed[(0, 0)] - 0.75 / 100.0).abs() < 1e-7);
+    let at_edges = graph.edge_covariances().unwrap();
+    assert_eq!(at_edges.len(), 5);
+    // 1e-12: the same factor, another order of operations.
+    assert!((at_edges[4] - closed).amax() < 1e-12);
     let covariances = graph.pose_covariances().unwrap();
     assert_eq!(covariances[0], Matrix3::zeros());
     assert!((covariances[1][(0, 0)] - 1.0 / 100.0).abs() < 1e-7);
