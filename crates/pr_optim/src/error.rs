@@ -14,7 +14,10 @@ pub enum OptimizeError {
         /// Index of the pose at whose block the factorization stopped.
         node: usize,
     },
-    /// The cost or the step is not a number.
-    #[error("the cost is not finite")]
+    /// The cost or the step is infinite or not a number.
+    #[error(
+        "the cost or the step is not finite: \
+         a pose, a measurement or an information matrix holds too large a number"
+    )]
     NotFinite,
 }

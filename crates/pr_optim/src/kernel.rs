@@ -13,12 +13,12 @@ pub enum RobustKernel {
     /// Plain least squares: `ρ(s) = s`.
     #[default]
     None,
-    /// Quadratic up to `width` standard deviations, linear beyond.
+    /// Quadratic up to a Mahalanobis norm of `width`, linear beyond.
     ///
     /// With `m = √s`: `ρ = m²` for `m ≤ width`, else `2·width·m − width²`; `w = width/m`.
     /// Huber, "Robust estimation of a location parameter", 1964.
     Huber {
-        /// Mahalanobis norm at which the cost turns linear.
+        /// Mahalanobis norm at which the cost turns linear, above 0.
         width: f64,
     },
     /// Dynamic covariance scaling: a factor far out is switched off smoothly.
@@ -28,7 +28,7 @@ pub enum RobustKernel {
     /// Agarwal, Tipaldi, Spinello, Stachniss, Burgard, "Robust map optimization using dynamic
     /// covariance scaling", 2013.
     Dcs {
-        /// Squared Mahalanobis norm at which scaling begins.
+        /// Squared Mahalanobis norm at which scaling begins, above 0.
         phi: f64,
     },
 }

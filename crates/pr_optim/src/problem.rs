@@ -39,6 +39,9 @@ impl Problem {
     }
 
     /// Keeps a pose where it is from now on.
+    ///
+    /// # Panics
+    /// Where the pose does not exist.
     pub fn fix(&mut self, node: usize) {
         self.fixed[node] = true;
     }
@@ -95,7 +98,9 @@ impl Problem {
         &self.prepared
     }
 
-    /// The first pose that no chain of measurements ties to a fixed one.
+    /// The first pose that no chain of measurements ties to a fixed one, `None` where all are tied.
+    ///
+    /// With a loose pose the normal equations are singular, but for the ridge.
     #[must_use]
     pub fn first_loose_node(&self) -> Option<usize> {
         let mut parent: Vec<usize> = (0..self.node_count()).collect();
@@ -113,7 +118,10 @@ impl Problem {
         (0..self.node_count()).find(|&node| !held[root_of(&mut parent, node)])
     }
 
-    /// `eᵀΩe` of one measurement at the present poses.
+    /// `eᵀΩe` of one measurement at the present poses, by its index among [`factors`](Self::factors).
+    ///
+    /// # Panics
+    /// Where the measurement does not exist.
     #[must_use]
     pub fn factor_chi2(&self, factor: usize) -> f64 {
         let Between { from, to, .. } = self.factors[factor];

@@ -4,7 +4,7 @@ use crate::error::OptimizeError;
 use crate::kernel::RobustKernel;
 use crate::problem::Problem;
 
-/// Why [`run`](crate::Optimizer::run) returned, with the value that was measured and the threshold.
+/// Why a solve stopped, with the value that was measured and the threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StopReason {
     /// An accepted step moved no node by as much as the tolerance, damping taken out.
@@ -21,7 +21,7 @@ pub enum StopReason {
         /// Threshold that it fell below.
         tolerance: f64,
     },
-    /// A step raised the cost where the caller wanted none that does.
+    /// A step raised the cost, so that a [`Session`](crate::Session) gave up its cheap first guess.
     CostRose {
         /// Cost before the step.
         before: f64,
@@ -101,7 +101,7 @@ pub struct StepReport {
 pub struct Report {
     /// Linear systems solved.
     pub iterations: usize,
-    /// χ² = Σ eᵀΩe at the start, kernel not applied.
+    /// χ² = Σ eᵀΩe where the first step was computed, kernel not applied.
     pub chi2_initial: f64,
     /// χ² at the end, kernel not applied.
     pub chi2: f64,

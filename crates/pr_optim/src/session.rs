@@ -29,7 +29,8 @@ const FALLBACK_DAMPING: f64 = 1e-4;
 /// Where a solve starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Start {
-    /// The better of the given poses and the spanning tree; the chordal relaxation if that fails.
+    /// The better of the given poses and the spanning tree. Where that fails, the chordal
+    /// relaxation, and then the same with damped steps.
     #[default]
     Auto,
     /// The poses as given.
@@ -125,20 +126,23 @@ impl<'a> Session<'a> {
         !self.finished
     }
 
-    /// What the last iteration did.
+    /// What the last iteration did; `None` before the first.
     #[must_use]
     pub fn last_step(&self) -> Option<&StepReport> {
         self.last_step.as_ref()
     }
 
-    /// Iterates to the end, and leaves the best poses in the problem.
+    /// Iterates to the end, and leaves the poses of the attempt that was kept in the problem.
     #[must_use]
     pub fn run(mut self) -> Outcome {
         while self.step() {}
         self.finish()
     }
 
-    /// Leaves the best poses so far in the problem.
+    /// Ends here, and leaves the best poses so far in the problem.
+    ///
+    /// Attempts that converged go before others, then the lower cost. An attempt that is cut off
+    /// is reported with [`StopReason::IterationLimit`].
     #[must_use]
     pub fn finish(mut self) -> Outcome {
         if !self.finished {

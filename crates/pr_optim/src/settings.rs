@@ -30,7 +30,7 @@ pub struct Settings {
     pub jacobians: JacobianModel,
     /// Cost of a factor.
     pub kernel: RobustKernel,
-    /// Largest number of linear systems solved.
+    /// Largest number of linear systems solved; in a [`Session`](crate::Session), by one attempt.
     pub max_iterations: usize,
     /// Stop where `1 + λ` times the largest `‖(v_x, v_y)‖ + |ω|` over the nodes, metres and radians
     /// added, falls below this; 0 never stops.
@@ -43,7 +43,8 @@ pub struct Settings {
     /// where the accepted one before promised `p'`. A step so needs no other to confirm that it was
     /// the last.
     pub decrease_tolerance: f64,
-    /// Added to every diagonal entry of H.
+    /// Added to every diagonal entry of H, 1/m² and 1/rad²: keeps H invertible where a measurement
+    /// says nothing about a direction.
     pub ridge: f64,
     /// Which sparse Cholesky factorization to use.
     pub factorization: Factorization,

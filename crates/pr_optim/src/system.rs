@@ -17,7 +17,7 @@ pub struct NormalEquations {
     pub diagonal: Vec<Block>,
     /// Off-diagonal blocks by slot; rows belong to the node that is eliminated later.
     pub lower: Vec<Block>,
-    /// `g = JᵀΩe`, three entries per elimination position.
+    /// `g = JᵀΩe`, half of the derivative of the cost, three entries per elimination position.
     pub gradient: Vec<f64>,
     /// `Σ eᵀΩe` at the poses of the assembly, kernel not applied.
     pub chi2: f64,
@@ -29,7 +29,8 @@ pub struct NormalEquations {
 impl NormalEquations {
     /// Linearizes every factor of `problem` at its present poses and adds up the blocks.
     ///
-    /// `ridge` is added to every diagonal entry. Fixed nodes get an identity block.
+    /// With a kernel every factor's Ω counts times its weight. `ridge` is added to every diagonal
+    /// entry. Fixed nodes get an identity block, plus `ridge`.
     pub fn assemble(
         &mut self,
         problem: &Problem,

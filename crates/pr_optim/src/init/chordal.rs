@@ -21,10 +21,11 @@ use crate::linear::LinearSolver;
 use crate::problem::Problem;
 use crate::system::{Block, NormalEquations};
 
-/// Poses from the chordal relaxation. `linear` is an analysis of the same graph.
+/// Poses from the chordal relaxation; fixed poses stay. `linear` is an analysis of the same graph.
 ///
 /// # Errors
-/// [`OptimizeError::NotPositiveDefinite`] where no measurement ties a node to a fixed one.
+/// [`OptimizeError::NotPositiveDefinite`] where no measurement ties a node to a fixed one, or where
+/// information matrices leave a heading or a position open.
 pub fn chordal(problem: &Problem, linear: &mut LinearSolver) -> Result<Vec<SE2>, OptimizeError> {
     let headings = relax_headings(problem, linear)?;
     positions_for(problem, linear, &headings)
@@ -71,10 +72,7 @@ fn relax_headings(
 }
 
 /// The positions that agree best with the measurements once the headings are known.
-///
-/// # Errors
-/// [`OptimizeError::NotPositiveDefinite`] where no measurement ties a node to a fixed one.
-pub fn positions_for(
+fn positions_for(
     problem: &Problem,
     linear: &mut LinearSolver,
     headings: &[Rotation],

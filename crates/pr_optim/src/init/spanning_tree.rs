@@ -8,7 +8,7 @@ use crate::problem::Problem;
 
 /// The pose of every node along a breadth-first tree of measurements from the fixed nodes.
 ///
-/// A node that no measurement ties to a fixed one keeps its pose.
+/// Fixed poses stay. A node that no chain of measurements ties to a fixed one keeps its pose.
 #[must_use]
 pub fn spanning_tree(problem: &Problem) -> Vec<SE2> {
     let mut poses = problem.poses().to_vec();
