@@ -8,20 +8,22 @@
 //! FIX id …
 //! ```
 //!
-//! Any other record is kept as it is and written back in its place. Where no `FIX` names a vertex,
-//! the first one holds the gauge.
+//! Any other record is kept as it is and written back in its place, with its bytes and its line end.
+//! Comments may be in any encoding, everything else is UTF-8. Where no `FIX` names a vertex, the
+//! first one holds the gauge.
 //! Source: Kümmerle, Grisetti, Strasdat, Konolige, Burgard, "g2o: a general framework for graph
 //! optimization", 2011.
 
-use std::collections::{BTreeMap, HashMap};
-use std::fmt::Write as _;
+mod record;
 
-use nalgebra::Matrix3;
-use pr_geom::SE2;
+use std::collections::BTreeMap;
+use std::io::Write as _;
+
 use thiserror::Error;
 
 use crate::factor::Between;
 use crate::problem::Problem;
+use record::{Record, content, is_kept, parse_record, printable};
 
 /// What is wrong with a file, and in which line.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -49,15 +51,21 @@ pub enum G2oProblem {
     /// A field is not a number.
     #[error("`{field}` is not a finite number")]
     NotANumber {
-        /// The field as it stands.
+        /// The field, fit to be printed.
         field: String,
     },
     /// A field is not a vertex id.
     #[error("`{field}` is not a vertex id")]
     NotAnId {
-        /// The field as it stands.
+        /// The field, fit to be printed.
         field: String,
     },
+    /// A record has bytes that are no text.
+    #[error("the line is not UTF-8 text")]
+    NotText,
+    /// A FIX record stands alone.
+    #[error("FIX names no vertex")]
+    EmptyFix,
     /// Two vertices have the same id.
     #[error("vertex {id} is already in line {first_line}")]
     DuplicateVertex {
@@ -97,32 +105,22 @@ pub enum G2oProblem {
 pub struct G2oFile {
     /// The graph; nodes are numbered in the order of the file.
     pub problem: Problem,
-    lines: Vec<String>,
+    /// The file without its byte order mark.
+    text: Vec<u8>,
     vertices: Vec<VertexLine>,
+    /// Line of every factor, from 0.
+    edge_lines: Vec<usize>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct VertexLine {
     id: i64,
+    /// From 0.
     line: usize,
 }
 
-/// One record, as far as it is understood.
-enum Record {
-    Vertex {
-        id: i64,
-        pose: SE2,
-    },
-    Edge {
-        from: i64,
-        to: i64,
-        between: Between,
-    },
-    Fix {
-        ids: Vec<i64>,
-    },
-    Other,
-}
+/// What some editors put in front of UTF-8 text.
+const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 impl G2oFile {
     /// Reads a file's text.
@@ -130,13 +128,15 @@ impl G2oFile {
     /// # Errors
     /// The first line that is malformed, names a vertex that does not exist, carries an indefinite
     /// information matrix, or declares a vertex that nothing ties to a fixed one.
-    pub fn parse(text: &str) -> Result<Self, G2oError> {
+    pub fn parse(text: impl AsRef<[u8]>) -> Result<Self, G2oError> {
+        let text = text.as_ref();
+        let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
         let mut problem = Problem::new();
         let mut vertices: Vec<VertexLine> = Vec::new();
-        let mut node_of: HashMap<i64, usize> = HashMap::new();
+        let mut node_of: BTreeMap<i64, usize> = BTreeMap::new();
         let mut edges = Vec::new();
         let mut fixes = Vec::new();
-        for (index, line) in text.lines().enumerate() {
+        for (index, line) in lines_of(text).enumerate() {
             let at = |problem| G2oError {
                 line: index + 1,
                 problem,
@@ -161,53 +161,57 @@ impl G2oFile {
                 problem: G2oProblem::UnknownVertex { id },
             })
         };
+        let mut edge_lines = Vec::with_capacity(edges.len());
         for (index, from, to, between) in edges {
             problem.add_factor(Between {
                 from: find(index, from)?,
                 to: find(index, to)?,
                 ..between
             });
+            edge_lines.push(index);
         }
         for (index, id) in fixes {
             problem.fix(find(index, id)?);
         }
         let mut file = Self {
             problem,
-            lines: text.lines().map(str::to_owned).collect(),
+            text: text.to_vec(),
             vertices,
+            edge_lines,
         };
         file.hold_gauge()?;
         Ok(file)
     }
 
-    /// The text with the vertices at `problem`'s present poses, everything else as it was.
+    /// The file with the vertices at `problem`'s present poses, everything else as it was.
+    ///
+    /// A byte order mark is left out: other readers stumble over it.
     #[must_use]
-    pub fn to_text(&self) -> String {
-        let mut text = String::new();
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut text = Vec::with_capacity(self.text.len());
         let mut vertices = self.vertices.iter().zip(self.problem.poses()).peekable();
-        for (index, line) in self.lines.iter().enumerate() {
+        for (index, line) in lines_of(&self.text).enumerate() {
             match vertices.next_if(|(vertex, _)| vertex.line == index) {
                 Some((vertex, pose)) => {
                     let [x, y, theta] = pose.to_array();
-                    writeln!(text, "VERTEX_SE2 {} {x} {y} {theta}", vertex.id)
+                    write!(text, "VERTEX_SE2 {} {x} {y} {theta}", vertex.id)
+                        .expect("writing to memory");
+                    text.extend_from_slice(&line[content(line).len()..]);
                 }
-                None => writeln!(text, "{line}"),
+                None => text.extend_from_slice(line),
             }
-            .expect("writing to a string");
         }
         text
     }
 
-    /// How many records of each type were kept without being understood.
+    /// How many records of each type were kept without being understood; names fit to be printed.
     #[must_use]
-    pub fn kept_records(&self) -> BTreeMap<&str, usize> {
+    pub fn kept_records(&self) -> BTreeMap<String, usize> {
         let mut kept = BTreeMap::new();
-        for line in &self.lines {
-            if let Some(name) = line.split_whitespace().next()
-                && !name.starts_with('#')
-                && !matches!(name, "VERTEX_SE2" | "EDGE_SE2" | "FIX")
-            {
-                *kept.entry(name).or_default() += 1;
+        let lines = lines_of(&self.text).filter_map(|line| std::str::from_utf8(line).ok());
+        for name in lines.filter_map(|line| line.split_whitespace().next()) {
+            if is_kept(name) {
+                *kept.entry(printable(name)).or_default() += 1;
             }
         }
         kept
@@ -219,11 +223,23 @@ impl G2oFile {
         self.vertices[node].id
     }
 
+    /// The line, from 1, that declares a node of the problem.
+    #[must_use]
+    pub fn line_of(&self, node: usize) -> usize {
+        self.vertices[node].line + 1
+    }
+
+    /// The line, from 1, that holds a factor of the problem.
+    #[must_use]
+    pub fn line_of_factor(&self, factor: usize) -> usize {
+        self.edge_lines[factor] + 1
+    }
+
     /// Fixes the first vertex where none is, and checks that all hang on a fixed one.
     fn hold_gauge(&mut self) -> Result<(), G2oError> {
         if self.vertices.is_empty() {
             return Err(G2oError {
-                line: self.lines.len().max(1),
+                line: lines_of(&self.text).count().max(1),
                 problem: G2oProblem::Empty,
             });
         }
@@ -233,102 +249,18 @@ impl G2oFile {
         match self.problem.first_loose_node() {
             None => Ok(()),
             Some(node) => Err(G2oError {
-                line: self.vertices[node].line + 1,
+                line: self.line_of(node),
                 problem: G2oProblem::Disconnected {
-                    id: self.vertices[node].id,
+                    id: self.id_of(node),
                 },
             }),
         }
     }
 }
 
-fn parse_record(line: &str) -> Result<Record, G2oProblem> {
-    let mut fields = line.split_whitespace();
-    let name = fields.next().unwrap_or("#");
-    let fields: Vec<&str> = fields.collect();
-    match name {
-        "VERTEX_SE2" => {
-            expect_fields("VERTEX_SE2", &fields, 4)?;
-            let [x, y, theta] = numbers(&fields[1..])?;
-            Ok(Record::Vertex {
-                id: vertex_id(fields[0])?,
-                pose: SE2::new(x, y, theta),
-            })
-        }
-        "EDGE_SE2" => {
-            expect_fields("EDGE_SE2", &fields, 11)?;
-            let (from, to) = (vertex_id(fields[0])?, vertex_id(fields[1])?);
-            if from == to {
-                return Err(G2oProblem::SelfEdge { id: from });
-            }
-            let [x, y, theta, xx, xy, xt, yy, yt, tt] = numbers(&fields[2..])?;
-            let information = Matrix3::new(xx, xy, xt, xy, yy, yt, xt, yt, tt);
-            if !is_positive_semidefinite(&information) {
-                return Err(G2oProblem::IndefiniteInformation);
-            }
-            let between = Between {
-                from: 0,
-                to: 0,
-                measurement: SE2::new(x, y, theta),
-                information,
-            };
-            Ok(Record::Edge { from, to, between })
-        }
-        "FIX" => {
-            let ids: Result<_, _> = fields.iter().map(|field| vertex_id(field)).collect();
-            Ok(Record::Fix { ids: ids? })
-        }
-        _ => Ok(Record::Other),
-    }
-}
-
-fn expect_fields(record: &'static str, fields: &[&str], expected: usize) -> Result<(), G2oProblem> {
-    if fields.len() == expected {
-        Ok(())
-    } else {
-        Err(G2oProblem::FieldCount {
-            record,
-            expected,
-            found: fields.len(),
-        })
-    }
-}
-
-fn vertex_id(field: &str) -> Result<i64, G2oProblem> {
-    field.parse().map_err(|_| G2oProblem::NotAnId {
-        field: field.to_owned(),
-    })
-}
-
-fn numbers<const N: usize>(fields: &[&str]) -> Result<[f64; N], G2oProblem> {
-    let mut values = [0.0; N];
-    for (value, field) in values.iter_mut().zip(fields) {
-        *value = field
-            .parse()
-            .ok()
-            .filter(|value: &f64| value.is_finite())
-            .ok_or_else(|| G2oProblem::NotANumber {
-                field: (*field).to_owned(),
-            })?;
-    }
-    Ok(values)
-}
-
-/// Whether no principal minor is negative beyond rounding.
-///
-/// A matrix of rank 1 or 2 is allowed: an edge may say nothing about a direction.
-fn is_positive_semidefinite(matrix: &Matrix3<f64>) -> bool {
-    let m = |row: usize, column: usize| matrix[(row, column)];
-    let pairs = [(0, 1), (0, 2), (1, 2)];
-    // 1e-9: files print as few as ten digits, and a singular matrix so rounded is off by as much.
-    let slack = 1e-9;
-    let minors = pairs
-        .iter()
-        .map(|&(i, j)| m(i, i) * m(j, j) * (1.0 + slack) - m(i, j) * m(i, j));
-    let volume = m(0, 0) * m(1, 1) * m(2, 2);
-    (0..3).all(|axis| m(axis, axis) >= 0.0)
-        && minors.into_iter().all(|minor| minor >= 0.0)
-        && matrix.determinant() >= -slack * volume
+/// The lines of a file with their ends.
+fn lines_of(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    text.split_inclusive(|&byte| byte == b'\n')
 }
 
 #[cfg(test)]

@@ -175,7 +175,7 @@ fn solve_file(args: &OptimizeArgs) -> Result<Summary, OptimizeFailure> {
         path: args.input.clone(),
         source,
     };
-    let text = std::fs::read_to_string(&args.input).map_err(in_file)?;
+    let text = std::fs::read(&args.input).map_err(in_file)?;
     let mut file = G2oFile::parse(&text).map_err(|source| OptimizeFailure::Graph {
         path: args.input.clone(),
         source,
@@ -190,7 +190,7 @@ fn solve_file(args: &OptimizeArgs) -> Result<Summary, OptimizeFailure> {
             source,
         })?;
     if let Some(path) = &args.output {
-        write_whole(path, &file.to_text()).map_err(|source| OptimizeFailure::File {
+        write_whole(path, &file.to_bytes()).map_err(|source| OptimizeFailure::File {
             path: path.clone(),
             source,
         })?;
@@ -321,7 +321,7 @@ fn start_name(start: Start) -> &'static str {
 }
 
 /// Writes a file so that a reader sees either the old one or the whole new one.
-fn write_whole(path: &Path, text: &str) -> std::io::Result<()> {
+fn write_whole(path: &Path, text: &[u8]) -> std::io::Result<()> {
     let mut part = path.as_os_str().to_owned();
     part.push(format!(".{}.part", std::process::id()));
     let part = PathBuf::from(part);
@@ -333,9 +333,9 @@ fn write_whole(path: &Path, text: &str) -> std::io::Result<()> {
     written
 }
 
-fn write_synced(path: &Path, text: &str) -> std::io::Result<()> {
+fn write_synced(path: &Path, text: &[u8]) -> std::io::Result<()> {
     let mut file = std::fs::File::create(path)?;
-    file.write_all(text.as_bytes())?;
+    file.write_all(text)?;
     file.sync_all()
 }
 
