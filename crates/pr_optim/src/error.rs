@@ -8,7 +8,8 @@ pub enum OptimizeError {
     /// The factorization met a pivot that is not positive.
     #[error(
         "the normal equations are not positive definite at node {node}: \
-         nothing ties it to a fixed node, or an information matrix is indefinite"
+         nothing ties it to a fixed node, its measurements say nothing about a direction, \
+         or an information matrix is indefinite"
     )]
     NotPositiveDefinite {
         /// Index of the pose at whose block the factorization stopped.

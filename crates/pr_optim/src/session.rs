@@ -6,6 +6,10 @@
 //! [`SUSPICIOUS_TURN_RAD`], that basin is not trusted: the solve begins again from the chordal
 //! relaxation, and once more with damped steps where the result is not to be trusted either. The
 //! best of what converged is kept. This is a rule of thumb, not a proof of a global optimum.
+//!
+//! A robust kernel has many more false minima: from a poor guess it switches right measurements off.
+//! With one, [`Start::Auto`] goes on to solve the same graph without it, and from there once more
+//! with it: plain, and with damped steps where the cost rises. The lower robust cost is kept.
 
 use pr_geom::SE2;
 
@@ -39,6 +43,8 @@ pub enum Start {
     SpanningTree,
     /// Headings and positions by two linear problems.
     Chordal,
+    /// The least-squares solution without the robust kernel, itself started as by [`Start::Auto`].
+    LeastSquares,
 }
 
 /// What a session found.
@@ -60,6 +66,17 @@ struct Attempt {
     poses: Vec<SE2>,
 }
 
+/// Which cost is lowered, and from where. Without a kernel there is only the first round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Round {
+    /// The caller's cost, from guesses.
+    Guess,
+    /// Plain least squares in spite of the caller's kernel, from guesses.
+    LeastSquares,
+    /// The caller's kernel, from the least-squares solution.
+    Refine,
+}
+
 /// A solve that goes on step by step.
 ///
 /// Dropped before [`finish`](Self::finish), it leaves the poses where the last step put them.
@@ -68,13 +85,21 @@ struct Attempt {
 pub struct Session<'a> {
     optimizer: &'a mut Optimizer,
     problem: &'a mut Problem,
-    /// What the caller asked for. The last attempt solves with another; dropping restores it.
+    /// What the caller asked for. Later attempts solve with another; dropping restores it.
     method: Method,
+    /// What the caller asked for; dropping restores it.
+    kernel: RobustKernel,
+    /// Where the later rounds start: the poses as they came, then the least-squares solution.
+    origin: Vec<SE2>,
+    round: Round,
     automatic: bool,
     start: Start,
     steps: Vec<StepReport>,
     last_step: Option<StepReport>,
+    /// The attempts of this round that have ended.
     ended: Vec<Attempt>,
+    /// The attempts of earlier rounds that count at the end.
+    kept: Vec<Attempt>,
     total_iterations: usize,
     finished: bool,
 }
@@ -89,23 +114,33 @@ impl<'a> Session<'a> {
         problem: &'a mut Problem,
         start: Start,
     ) -> Result<Self, OptimizeError> {
+        let (method, kernel) = (optimizer.settings.method, optimizer.settings.kernel);
+        let is_robust = kernel != RobustKernel::None;
+        let automatic = matches!(start, Start::Auto | Start::LeastSquares);
         let mut session = Self {
-            method: optimizer.settings.method,
-            automatic: start == Start::Auto,
+            method,
+            kernel,
+            origin: if automatic && is_robust {
+                problem.poses().to_vec()
+            } else {
+                Vec::new()
+            },
+            round: Round::Guess,
+            automatic,
             optimizer,
             problem,
             start,
             steps: Vec::new(),
             last_step: None,
             ended: Vec::new(),
+            kept: Vec::new(),
             total_iterations: 0,
             finished: false,
         };
-        if start == Start::Auto {
-            session.start_cheaply();
-            session.optimizer.restart();
-        } else {
-            session.start_from(start)?;
+        match start {
+            Start::LeastSquares if is_robust => session.begin_least_squares(),
+            Start::Auto | Start::LeastSquares => session.start_cheaply(),
+            _ => session.start_from(start)?,
         }
         Ok(session)
     }
@@ -149,14 +184,15 @@ impl<'a> Session<'a> {
             let limit = self.steps.len();
             self.automatic = false;
             self.end_attempt(StopReason::IterationLimit { limit });
+            if self.round == Round::LeastSquares {
+                // What it found counts by the caller's cost.
+                self.begin_refinement();
+                self.end_attempt(StopReason::IterationLimit { limit });
+            }
         }
-        let ended = core::mem::take(&mut self.ended);
-        let converged = ended.iter().any(is_converged);
-        let best = ended
-            .into_iter()
-            .filter(|attempt| is_converged(attempt) || !converged)
-            .min_by(|a, b| a.report.cost.total_cmp(&b.report.cost))
-            .expect("at least one attempt has ended");
+        let mut attempts = core::mem::take(&mut self.kept);
+        attempts.append(&mut self.ended);
+        let best = best_of(attempts);
         self.problem.poses_mut().copy_from_slice(&best.poses);
         Outcome {
             report: best.report,
@@ -167,6 +203,8 @@ impl<'a> Session<'a> {
 
     /// Takes the better of the given poses and the spanning tree.
     fn start_cheaply(&mut self) {
+        self.steps.clear();
+        self.optimizer.restart();
         let tree = spanning_tree(self.problem);
         let given = self.optimizer.cost_at(self.problem, self.problem.poses());
         if self.optimizer.cost_at(self.problem, &tree) < given {
@@ -178,16 +216,18 @@ impl<'a> Session<'a> {
     }
 
     fn start_from(&mut self, start: Start) -> Result<(), OptimizeError> {
-        let poses = match start {
-            Start::Auto | Start::Given => None,
-            Start::SpanningTree => Some(spanning_tree(self.problem)),
+        match start {
+            Start::Auto | Start::Given => {}
+            Start::SpanningTree => {
+                let poses = spanning_tree(self.problem);
+                self.problem.poses_mut().copy_from_slice(&poses);
+            }
             Start::Chordal => {
                 let linear = self.optimizer.linear_for(self.problem);
-                Some(chordal(self.problem, linear)?)
+                let poses = chordal(self.problem, linear)?;
+                self.problem.poses_mut().copy_from_slice(&poses);
             }
-        };
-        if let Some(poses) = poses {
-            self.problem.poses_mut().copy_from_slice(&poses);
+            Start::LeastSquares => self.problem.poses_mut().copy_from_slice(&self.origin),
         }
         self.start = start;
         self.steps.clear();
@@ -195,7 +235,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// A reason to give up the cheap guess: its last step began at a higher cost than the one before.
+    /// A reason to give up the first attempt of a round: its last step began at a higher cost than the one before.
     fn watch(&self) -> Option<StopReason> {
         match self.steps.as_slice() {
             [.., before, last]
@@ -221,20 +261,59 @@ impl<'a> Session<'a> {
         };
         let trusted = is_converged(&attempt) && !self.is_twisted();
         self.ended.push(attempt);
-        self.finished = trusted || !self.automatic || !self.begin_next_attempt();
+        let goes_on =
+            self.automatic && (!trusted && self.begin_next_attempt() || self.begin_next_round());
+        self.finished = !goes_on;
     }
 
-    /// From the chordal relaxation; then the same with damped steps; then no more.
+    /// From the chordal relaxation; then the same with damped steps; then no more. A refinement goes
+    /// on from where it began, with damped steps.
     fn begin_next_attempt(&mut self) -> bool {
-        let method = match (self.ended.len(), self.method) {
-            (1, method) => method,
-            (2, Method::GaussNewton) => Method::LevenbergMarquardt {
-                initial_damping: FALLBACK_DAMPING,
-            },
+        let damped = Method::LevenbergMarquardt {
+            initial_damping: FALLBACK_DAMPING,
+        };
+        let (start, method) = match (self.round, self.ended.len(), self.method) {
+            (Round::Refine, 1, Method::GaussNewton) => (Start::LeastSquares, damped),
+            (Round::Refine, ..) => return false,
+            (_, 1, method) => (Start::Chordal, method),
+            (_, 2, Method::GaussNewton) => (Start::Chordal, damped),
             _ => return false,
         };
         self.optimizer.settings.method = method;
-        self.start_from(Start::Chordal).is_ok()
+        self.start_from(start).is_ok()
+    }
+
+    /// With a kernel: the least-squares solution, then the caller's cost from there; then no more.
+    fn begin_next_round(&mut self) -> bool {
+        match self.round {
+            Round::Guess if self.kernel != RobustKernel::None => {
+                self.kept.append(&mut self.ended);
+                self.begin_least_squares();
+                true
+            }
+            Round::LeastSquares => {
+                self.begin_refinement();
+                true
+            }
+            _ => false,
+        }
+    }
+
+    fn begin_least_squares(&mut self) {
+        self.round = Round::LeastSquares;
+        self.optimizer.settings.kernel = RobustKernel::None;
+        self.optimizer.settings.method = self.method;
+        self.problem.poses_mut().copy_from_slice(&self.origin);
+        self.start_cheaply();
+    }
+
+    fn begin_refinement(&mut self) {
+        self.round = Round::Refine;
+        self.optimizer.settings.kernel = self.kernel;
+        self.optimizer.settings.method = self.method;
+        self.origin = best_of(core::mem::take(&mut self.ended)).poses;
+        self.start_from(Start::LeastSquares)
+            .expect("poses that are known need no solution");
     }
 
     /// Whether some measurement's heading residual is beyond what noise explains.
@@ -256,8 +335,19 @@ impl<'a> Session<'a> {
 impl Drop for Session<'_> {
     fn drop(&mut self) {
         self.optimizer.settings.method = self.method;
+        self.optimizer.settings.kernel = self.kernel;
         self.optimizer.restart();
     }
+}
+
+/// The lowest cost of what converged; of all where nothing did.
+fn best_of(attempts: Vec<Attempt>) -> Attempt {
+    let converged = attempts.iter().any(is_converged);
+    attempts
+        .into_iter()
+        .filter(|attempt| is_converged(attempt) || !converged)
+        .min_by(|a, b| a.report.cost.total_cmp(&b.report.cost))
+        .expect("at least one attempt has ended")
 }
 
 fn is_converged(attempt: &Attempt) -> bool {

@@ -13,6 +13,11 @@ const NODES: usize = 24;
 
 /// A ring whose measurements agree, with first poses that wind `turns` times around it.
 fn ring(turns: f64) -> Problem {
+    ring_measured(turns, 1.0)
+}
+
+/// The same with measurements that wind `measured_turns` times around it.
+fn ring_measured(turns: f64, measured_turns: f64) -> Problem {
     let step = |turns: f64| SE2::new(1.0, 0.0, turns * TAU / NODES as f64);
     let mut problem = Problem::new();
     let mut pose = SE2::identity();
@@ -25,7 +30,7 @@ fn ring(turns: f64) -> Problem {
         problem.add_factor(Between {
             from,
             to: (from + 1) % NODES,
-            measurement: step(1.0),
+            measurement: step(measured_turns),
             information: Matrix3::identity() * 100.0,
         });
     }
@@ -168,4 +173,73 @@ fn a_session_dropped_during_the_fallback_gives_the_method_back() {
     assert_eq!(optimizer.settings.method, Method::GaussNewton);
     let step = optimizer.step(&mut problem).unwrap();
     assert_eq!(step.damping, 0.0);
+}
+
+/// A ring whose headings add up to 0.5 rad too much, with poses that say nothing. The tree leaves
+/// all of it to one measurement.
+fn open_ring() -> Problem {
+    let mut problem = ring_measured(1.0, (TAU + 0.5) / TAU);
+    problem.poses_mut().fill(SE2::identity());
+    problem
+}
+
+const DCS: RobustKernel = RobustKernel::Dcs { phi: 1.0 };
+
+#[test]
+fn automatic_start_with_a_kernel_keeps_right_measurements_that_a_guess_switches_off() {
+    let tree = solve(&mut open_ring(), Start::SpanningTree, DCS);
+    // One measurement is off by 0.5 rad, s = 100 · 0.25 = 25: by itself 3 − 4/26 = 2.8.
+    assert!(tree.report.stop.is_converged());
+    assert!(tree.report.cost > 2.0, "{}", tree.report.cost);
+    let mut problem = open_ring();
+    let outcome = solve(&mut problem, Start::Auto, DCS);
+    assert_eq!(outcome.start, Start::LeastSquares);
+    assert!(outcome.report.stop.is_converged());
+    // Spread over 24 measurements, 24 · 100 · (0.5/24)² = 1.04 for the headings alone, and none is
+    // beyond φ: the least-squares optimum is the optimum with the kernel.
+    let plain = solve(&mut open_ring(), Start::Auto, RobustKernel::None);
+    assert!(plain.report.chi2 < 1.05, "{}", plain.report.chi2);
+    // 1e-9: both stop at steps below 1e-9, and the cost is flat there.
+    assert!((outcome.report.cost - plain.report.chi2).abs() < 1e-9);
+    assert_eq!(problem.cost_and_chi2(DCS).0, outcome.report.cost);
+}
+
+#[test]
+fn automatic_start_with_a_kernel_keeps_the_guess_where_least_squares_leads_astray() {
+    let far = NODES / 2;
+    let mut problem = ring(1.0);
+    let truth = problem.poses()[far];
+    problem.add_factor(Between {
+        from: 0,
+        to: far,
+        measurement: SE2::identity(),
+        information: Matrix3::identity() * 100.0,
+    });
+    let given = solve(&mut problem.clone(), Start::Given, DCS);
+    let outcome = solve(&mut problem, Start::Auto, DCS);
+    assert!(outcome.report.cost <= given.report.cost);
+    assert!(problem.poses()[far].boxminus(&truth).norm() < 0.01);
+}
+
+#[test]
+fn a_session_that_is_left_early_reports_the_cost_with_the_kernel() {
+    let settings = Settings {
+        jacobians: JacobianModel::Exact,
+        kernel: DCS,
+        step_tolerance: 1e-9,
+        ..Settings::default()
+    };
+    let whole = solve(&mut open_ring(), Start::Auto, DCS).total_iterations;
+    for steps in 0..=whole {
+        let mut problem = open_ring();
+        let mut optimizer = Optimizer::new(settings);
+        let mut session = Session::new(&mut optimizer, &mut problem, Start::Auto).unwrap();
+        for _ in 0..steps {
+            session.step();
+        }
+        let outcome = session.finish();
+        let cost = problem.cost_and_chi2(DCS).0;
+        assert_eq!(cost, outcome.report.cost, "after {steps} steps");
+        assert_eq!(optimizer.settings, settings);
+    }
 }

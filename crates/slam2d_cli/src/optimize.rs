@@ -317,6 +317,7 @@ fn start_name(start: Start) -> &'static str {
         Start::Given => "file",
         Start::SpanningTree => "spanning-tree",
         Start::Chordal => "chordal",
+        Start::LeastSquares => "least-squares",
     }
 }
 
