@@ -1,6 +1,7 @@
 //! `slam2d optimize`: solve a pose graph in a g2o file.
 
-use std::io::Write as _;
+mod whole_file;
+
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -15,6 +16,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use crate::cpu_clock::CpuClock;
+use self::whole_file::write_whole;
 use crate::output::{print_json, say};
 
 /// First damping of `--method lm`, relative to the diagonal.
@@ -319,25 +321,6 @@ fn start_name(start: Start) -> &'static str {
         Start::Chordal => "chordal",
         Start::LeastSquares => "least-squares",
     }
-}
-
-/// Writes a file so that a reader sees either the old one or the whole new one.
-fn write_whole(path: &Path, text: &[u8]) -> std::io::Result<()> {
-    let mut part = path.as_os_str().to_owned();
-    part.push(format!(".{}.part", std::process::id()));
-    let part = PathBuf::from(part);
-    let written = write_synced(&part, text).and_then(|()| std::fs::rename(&part, path));
-    if written.is_err() {
-        // The write has failed already: that the rest cannot be removed either adds nothing.
-        let _ = std::fs::remove_file(&part);
-    }
-    written
-}
-
-fn write_synced(path: &Path, text: &[u8]) -> std::io::Result<()> {
-    let mut file = std::fs::File::create(path)?;
-    file.write_all(text)?;
-    file.sync_all()
 }
 
 #[cfg(test)]
