@@ -7,7 +7,7 @@ use ch16_slam2d::slam::{LapRunner, SlamConfig};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use thiserror::Error;
 
 use crate::numbers::{self, Seeds};
@@ -15,6 +15,9 @@ use crate::output::{print_json, say};
 
 /// Most laps of one sweep.
 const MAX_LAPS: u64 = 10_000_000;
+
+/// Most threads: beyond any machine's cores, more only cost memory.
+const MAX_THREADS: usize = 1024;
 
 /// Drive the lap at many seeds and noise factors and print how its figures are distributed.
 #[derive(Args, Clone, Debug)]
@@ -31,7 +34,7 @@ pub struct SweepArgs {
         allow_hyphen_values = true
     )]
     noise: Vec<f64>,
-    /// Number of threads; all cores without it.
+    /// Number of threads, at most one for each seed; all cores without it.
     #[arg(long)]
     threads: Option<NonZeroUsize>,
     /// Print one JSON list, an object for each noise factor.
@@ -69,12 +72,19 @@ struct Level {
 }
 
 /// An entry of the results table over the runs; runs that lack it are left out.
+///
+/// Column and row are ids that stay; [`column_title`] and [`row_title`] are for people.
 #[derive(Serialize)]
 struct Entry {
-    column: &'static str,
-    row: &'static str,
+    #[serde(serialize_with = "column_id")]
+    column: Column,
+    #[serde(serialize_with = "row_id")]
+    row: Row,
+    /// 5 % of the runs are below, m.
     p05: f64,
+    /// Half of the runs are below, m.
     median: f64,
+    /// 95 % of the runs are below, m.
     p95: f64,
 }
 
@@ -89,7 +99,8 @@ pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
     }
     let mut pool = rayon::ThreadPoolBuilder::new();
     if let Some(threads) = args.threads {
-        pool = pool.num_threads(threads.get());
+        let useful = usize::try_from(args.seeds.count()).unwrap_or(usize::MAX);
+        pool = pool.num_threads(threads.get().min(useful).min(MAX_THREADS));
     }
     let by_seed = pool.build()?.install(|| all_runs(args));
     let levels: Vec<Level> = args
@@ -152,8 +163,8 @@ fn entries(statistics: &LapStatistics) -> Vec<Entry> {
         .filter_map(|(column, row)| {
             let spread = statistics.spread(column, row)?;
             Some(Entry {
-                column: column_name(column),
-                row: row_name(row),
+                column,
+                row,
                 p05: spread.p05,
                 median: spread.median,
                 p95: spread.p95,
@@ -162,7 +173,27 @@ fn entries(statistics: &LapStatistics) -> Vec<Entry> {
         .collect()
 }
 
-fn column_name(column: Column) -> &'static str {
+fn column_id<S: Serializer>(column: &Column, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(match column {
+        Column::Odometry => "odometry",
+        Column::FrontEnd => "front_end",
+        Column::WithLoops => "with_loops",
+    })
+}
+
+/// The names that the figures of the page have, too.
+fn row_id<S: Serializer>(row: &Row, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(match row {
+        Row::EndError => "end_error",
+        Row::Rms => "rms",
+        Row::LastKeyframesMin => "last_nine_min",
+        Row::LastKeyframesMax => "last_nine_max",
+        Row::KeyframeMax => "max_error",
+        Row::MapDisagreement => "map_disagreement",
+    })
+}
+
+fn column_title(column: Column) -> &'static str {
     match column {
         Column::Odometry => "odometry",
         Column::FrontEnd => "front end",
@@ -170,7 +201,7 @@ fn column_name(column: Column) -> &'static str {
     }
 }
 
-fn row_name(row: Row) -> &'static str {
+fn row_title(row: Row) -> &'static str {
     match row {
         Row::EndError => "position error at the end (m)",
         Row::Rms => "rms position error (m)",
@@ -204,8 +235,8 @@ fn print_level(level: &Level) {
     for entry in &level.entries {
         say!(
             "  {:<12} {:<38} {:>8.4} {:>8.4} {:>8.4}",
-            entry.column,
-            entry.row,
+            column_title(entry.column),
+            row_title(entry.row),
             entry.p05,
             entry.median,
             entry.p95

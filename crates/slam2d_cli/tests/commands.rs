@@ -151,6 +151,23 @@ fn table_prints_what_the_chapter_prints() {
     }
 }
 
+const COLUMNS: [&str; 3] = ["odometry", "front_end", "with_loops"];
+const ROWS: [&str; 6] = [
+    "end_error",
+    "rms",
+    "last_nine_min",
+    "last_nine_max",
+    "max_error",
+    "map_disagreement",
+];
+
+#[test]
+fn a_million_threads_are_no_more_than_there_are_seeds() {
+    let arguments = ["sweep", "--seeds", "1..=2", "--noise", "1", "--json"];
+    let many = json(&[&arguments[..], &["--threads", "1000000"]].concat());
+    assert_eq!(many, json(&arguments));
+}
+
 #[test]
 fn sweep_counts_every_run_once_and_does_not_depend_on_threads() {
     let arguments = ["sweep", "--seeds", "1..=3", "--noise", "1,4", "--json"];
@@ -163,7 +180,13 @@ fn sweep_counts_every_run_once_and_does_not_depend_on_threads() {
         let shares = level["loop_shares"].as_array().unwrap();
         let total: f64 = shares.iter().map(|share| share.as_f64().unwrap()).sum();
         assert_close("shares", total, 1.0, 1e-12);
-        assert_eq!(level["entries"].as_array().unwrap().len(), 14);
+        let entries = level["entries"].as_array().unwrap();
+        assert_eq!(entries.len(), 14);
+        // Ids as the figures of the page have them, no prose.
+        for entry in entries {
+            let [column, row] = ["column", "row"].map(|key| entry[key].as_str().unwrap());
+            assert!(COLUMNS.contains(&column) && ROWS.contains(&row), "{entry}");
+        }
     }
     // Seeds 1, 2, 3 at noise 1 close 2, 3 and 2 loops (lap.json).
     assert_eq!(levels[0]["accepted_loops"], 7);
