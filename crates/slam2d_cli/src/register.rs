@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
-use ch16_slam2d::icp::{Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace};
+use ch16_slam2d::icp::{Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace, StopReason};
 use clap::{Args, ValueEnum};
 use pr_geom::{SE2, Vector2};
 use serde::Serialize;
@@ -144,10 +144,31 @@ pub fn run(args: &RegisterArgs) -> Result<(), RegisterFailure> {
     }
     say!("pose        {}", pose(&found.pose));
     say!("pairs       {} of {}", found.inliers, scan.len());
-    say!("rmse        {:.5} m", found.rmse);
-    say!("iterations  {}, {:?}", found.iterations, found.stop);
+    if found.rmse.is_finite() {
+        say!("rmse        {:.5} m", found.rmse);
+    } else {
+        say!("rmse        none, without pairs");
+    }
+    say!("iterations  {}", found.iterations);
+    say!("stop        {}", why(&found.stop));
     say!("time        {us:.1} µs, map {us_build:.1} µs");
     Ok(())
+}
+
+/// Why a registration ended, as a sentence.
+fn why(stop: &StopReason) -> String {
+    match stop {
+        StopReason::SmallStep { step, tolerance } => {
+            format!("converged: the last step, {step:.1e}, is below {tolerance:.1e}")
+        }
+        StopReason::IterationLimit { max_iters } => {
+            format!("not converged after {max_iters} iterations")
+        }
+        StopReason::TooFewPairs { pairs, min_pairs } => format!(
+            "too few pairs within tau: {pairs} where {min_pairs} are needed; \
+             bring the scan nearer to the map, or take a larger --tau"
+        ),
+    }
 }
 
 /// The fastest of `repeat` calls in microseconds of this thread's time.

@@ -229,6 +229,31 @@ fn register_finds_the_motion_between_two_files() {
 }
 
 #[test]
+fn register_says_in_words_why_it_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, x: f64| {
+        let path = folder.path().join(name);
+        let wall = |k: i32| format!("{x},{}\n", 0.05 * f64::from(k));
+        std::fs::write(&path, (0..60).map(wall).collect::<String>()).unwrap();
+        path.to_string_lossy().into_owned()
+    };
+    let (map, near, far) = (
+        write("map.csv", 0.0),
+        write("near.csv", 0.1),
+        write("far.csv", 9.0),
+    );
+    let said = |scan: &str| {
+        let output = slam2d(&["register", &map, scan]);
+        assert!(output.status.success());
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert!(said(&near).contains("converged: the last step"));
+    let text = said(&far);
+    assert!(text.contains("too few pairs within tau: 0 where"), "{text}");
+    assert!(!text.contains("inf") && !text.contains('{'), "{text}");
+}
+
+#[test]
 fn a_bad_line_is_named_with_its_file() {
     let folder = tempfile::tempdir().unwrap();
     let bad = folder.path().join("bad.csv");
