@@ -36,6 +36,11 @@ pub fn offset_m(text: &str) -> Result<f64, String> {
     within(text, -MAX_OFFSET_M..=MAX_OFFSET_M, " m")
 }
 
+/// A share of something.
+pub fn share(text: &str) -> Result<f64, String> {
+    within(text, 0.0..=1.0, "")
+}
+
 /// A factor of the wheels' noise.
 pub fn noise_factor(text: &str) -> Result<f64, String> {
     within(text, 0.0..=100.0, "")
@@ -150,6 +155,7 @@ mod tests {
             assert!(tau_m(wrong).is_err(), "{wrong}");
         }
         assert!(noise_factor("-0.5").is_err());
+        assert!(share("1.5").is_err());
         assert!(offset_m("21").is_err());
     }
 }

@@ -1,112 +1,20 @@
 //! `slam2d optimize`: solve a pose graph in a g2o file.
 
+mod args;
+mod solve;
 mod whole_file;
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
-use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
 use pr_optim::g2o::{G2oError, G2oFile};
-use pr_optim::{
-    JacobianModel, Method, OptimizeError, Optimizer, Outcome, Problem, RobustKernel, Session,
-    Settings, Start, StopReason,
-};
+use pr_optim::{OptimizeError, RobustKernel, Start};
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::cpu_clock::CpuClock;
+pub use self::args::OptimizeArgs;
+use self::solve::solve_repeatedly;
 use self::whole_file::write_whole;
 use crate::output::{print_json, say};
-
-/// First damping of `--method lm`, relative to the diagonal.
-const INITIAL_DAMPING: f64 = 1e-6;
-
-/// Largest step, m and rad added, at which a graph without contradictions counts as solved: its
-/// cost is rounding noise, of which no share is ever small.
-const STEP_TOLERANCE: f64 = 1e-10;
-
-/// Solve a pose graph: g2o in, g2o out.
-#[derive(Args, Clone, Debug)]
-pub struct OptimizeArgs {
-    /// Graph to read: VERTEX_SE2, EDGE_SE2, FIX; other records are kept as they are.
-    #[arg(value_name = "IN.g2o")]
-    pub input: PathBuf,
-    /// Where to write the solved graph. Nothing is written without it.
-    #[arg(short, long, value_name = "OUT.g2o")]
-    pub output: Option<PathBuf>,
-    /// Gauss–Newton or Levenberg–Marquardt.
-    #[arg(long, value_enum, default_value_t = MethodName::Gn)]
-    pub method: MethodName,
-    /// Where to start. `auto` tries the file and a spanning tree, and chordal where they fail.
-    #[arg(long, value_enum, default_value_t = StartName::Auto)]
-    pub init: StartName,
-    /// Robust kernel: none, huber:W (Mahalanobis norm) or dcs:PHI (squared norm).
-    #[arg(long, value_parser = KernelName::from_str, default_value = "none")]
-    pub kernel: KernelName,
-    /// Largest number of iterations of one attempt.
-    #[arg(long, value_name = "N", default_value_t = 100)]
-    pub max_iters: usize,
-    /// Stop where less than this share of χ² is estimated to be left to win.
-    #[arg(long, value_name = "T", default_value_t = 1e-8)]
-    pub tolerance: f64,
-    /// Solve so many times and report the fastest; the result is the same.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
-    pub repeat: u32,
-    /// Print one JSON object instead of text.
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// `--method`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum MethodName {
-    /// Gauss–Newton.
-    Gn,
-    /// Levenberg–Marquardt.
-    Lm,
-}
-
-/// `--init`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum StartName {
-    /// Chosen by the solver.
-    Auto,
-    /// The poses of the file.
-    File,
-    /// Along a tree of measurements.
-    SpanningTree,
-    /// Chordal relaxation.
-    Chordal,
-}
-
-/// `--kernel`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct KernelName(pub RobustKernel);
-
-impl FromStr for KernelName {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let positive = |value: &str| {
-            value
-                .parse()
-                .ok()
-                .filter(|value: &f64| value.is_finite() && *value > 0.0)
-                .ok_or_else(|| format!("`{value}` is not a positive number"))
-        };
-        match text.split_once(':') {
-            None if text == "none" => Ok(Self(RobustKernel::None)),
-            Some(("huber", width)) => Ok(Self(RobustKernel::Huber {
-                width: positive(width)?,
-            })),
-            Some(("dcs", phi)) => Ok(Self(RobustKernel::Dcs {
-                phi: positive(phi)?,
-            })),
-            _ => Err("expected none, huber:W or dcs:PHI".to_owned()),
-        }
-    }
-}
 
 /// Why a graph was not solved.
 #[derive(Debug, Error)]
@@ -127,19 +35,37 @@ pub enum OptimizeFailure {
         /// What is wrong, and in which line.
         source: G2oError,
     },
-    /// `--tolerance` is not a number that can be reached.
-    #[error("--tolerance: {tolerance} is not a finite number of at least 0")]
-    Tolerance {
-        /// As it was given.
-        tolerance: f64,
-    },
-    /// No step could be computed.
-    #[error("{}: {source}", path.display())]
-    Solve {
+    /// An edge is so far from its measurement that χ² overflows.
+    #[error(
+        "{}: line {line}: eᵀΩe of this edge is too large for a number: \
+         its vertices lie too far apart, or its information is too large",
+        path.display()
+    )]
+    Overflow {
         /// Which file.
         path: PathBuf,
-        /// What went wrong.
-        source: OptimizeError,
+        /// The line of the edge.
+        line: usize,
+    },
+    /// The measurements do not determine a pose.
+    #[error(
+        "{}: line {line}: the measurements do not determine the pose of vertex {id}: they say \
+         nothing about a direction, or their weights differ by too many orders of magnitude",
+        path.display()
+    )]
+    Undetermined {
+        /// Which file.
+        path: PathBuf,
+        /// The line of the vertex.
+        line: usize,
+        /// Its id.
+        id: i64,
+    },
+    /// The poses left what numbers can hold.
+    #[error("{}: the steps lead out of the range of numbers: try --method lm", path.display())]
+    Diverged {
+        /// Which file.
+        path: PathBuf,
     },
 }
 
@@ -153,6 +79,8 @@ struct Summary {
     total_iterations: usize,
     chi2_initial: f64,
     chi2: f64,
+    /// What was lowered: χ² where there is no kernel.
+    cost: f64,
     stop: String,
     cpu_ms: f64,
     cpu_ms_first: f64,
@@ -163,139 +91,89 @@ struct Summary {
 /// # Errors
 /// Where the file is malformed or cannot be solved; then no output file is touched.
 pub fn run(args: &OptimizeArgs) -> Result<(), OptimizeFailure> {
-    print_summary(&solve_file(args)?, args.json);
-    Ok(())
-}
-
-fn solve_file(args: &OptimizeArgs) -> Result<Summary, OptimizeFailure> {
-    if !(args.tolerance.is_finite() && args.tolerance >= 0.0) {
-        return Err(OptimizeFailure::Tolerance {
-            tolerance: args.tolerance,
-        });
-    }
-    let in_file = |source| OptimizeFailure::File {
-        path: args.input.clone(),
-        source,
-    };
-    let text = std::fs::read(&args.input).map_err(in_file)?;
-    let mut file = G2oFile::parse(&text).map_err(|source| OptimizeFailure::Graph {
-        path: args.input.clone(),
-        source,
-    })?;
+    let (file, summary) = solve_file(args)?;
     for (record, count) in file.kept_records() {
         eprintln!("{count} × {record} kept as it is, not part of the problem");
     }
+    print_summary(&summary, args);
+    Ok(())
+}
+
+fn solve_file(args: &OptimizeArgs) -> Result<(G2oFile, Summary), OptimizeFailure> {
+    let path = &args.input;
+    let text = std::fs::read(path).map_err(|source| OptimizeFailure::File {
+        path: path.clone(),
+        source,
+    })?;
+    let mut file = G2oFile::parse(&text).map_err(|source| OptimizeFailure::Graph {
+        path: path.clone(),
+        source,
+    })?;
     let chi2_initial = file.problem.chi2();
-    let solved =
-        solve_repeatedly(&mut file.problem, args).map_err(|source| OptimizeFailure::Solve {
-            path: args.input.clone(),
-            source,
-        })?;
-    if let Some(path) = &args.output {
-        write_whole(path, &file.to_bytes()).map_err(|source| OptimizeFailure::File {
+    if !chi2_initial.is_finite() {
+        return Err(OptimizeFailure::Overflow {
             path: path.clone(),
+            line: file.line_of_factor(worst_factor(&file)),
+        });
+    }
+    let solved = solve_repeatedly(&mut file.problem, args)
+        .map_err(|error| in_words_of_the_file(path, &file, error))?;
+    if let Some(output) = &args.output {
+        write_whole(output, &file.to_bytes()).map_err(|source| OptimizeFailure::File {
+            path: output.clone(),
             source,
         })?;
     }
-    Ok(Summary {
+    let report = solved.outcome.report;
+    let summary = Summary {
         nodes: file.problem.node_count(),
         edges: file.problem.factors().len(),
         init: start_name(solved.outcome.start),
-        iterations: solved.outcome.report.iterations,
+        iterations: report.iterations,
         total_iterations: solved.outcome.total_iterations,
         chi2_initial,
-        chi2: solved.outcome.report.chi2,
-        stop: solved.outcome.report.stop.to_string(),
+        chi2: report.chi2,
+        cost: report.cost,
+        stop: report.stop.to_string(),
         cpu_ms: solved.best_ms,
         cpu_ms_first: solved.first_ms,
-    })
+    };
+    Ok((file, summary))
 }
 
-struct Solved {
-    outcome: Outcome,
-    first_ms: f64,
-    best_ms: f64,
+/// The first factor that is not finite at the present poses, or else the largest.
+fn worst_factor(file: &G2oFile) -> usize {
+    let size = |factor: &usize| {
+        let chi2 = file.problem.factor_chi2(*factor);
+        if chi2.is_finite() {
+            chi2
+        } else {
+            f64::INFINITY
+        }
+    };
+    // From the end: `max_by` keeps the last of equal ones.
+    (0..file.problem.factors().len())
+        .rev()
+        .max_by(|a, b| size(a).total_cmp(&size(b)))
+        .expect("a graph without edges costs nothing")
 }
 
-/// Solves from the file's poses `repeat` times; the analysis of the graph is kept after the first.
-fn solve_repeatedly(problem: &mut Problem, args: &OptimizeArgs) -> Result<Solved, OptimizeError> {
-    let mut optimizer = Optimizer::new(Settings {
-        method: match args.method {
-            MethodName::Gn => Method::GaussNewton,
-            MethodName::Lm => Method::LevenbergMarquardt {
-                initial_damping: INITIAL_DAMPING,
-            },
+/// A solver's error by vertex and line. The file was checked for loose ends and indefinite matrices
+/// when it was read, so these are no causes any more.
+fn in_words_of_the_file(path: &Path, file: &G2oFile, error: OptimizeError) -> OptimizeFailure {
+    let path = path.to_owned();
+    match error {
+        OptimizeError::NotPositiveDefinite { node } => OptimizeFailure::Undetermined {
+            path,
+            line: file.line_of(node),
+            id: file.id_of(node),
         },
-        jacobians: JacobianModel::Exact,
-        kernel: args.kernel.0,
-        max_iterations: args.max_iters,
-        step_tolerance: STEP_TOLERANCE,
-        decrease_tolerance: args.tolerance,
-        ..Settings::default()
-    });
-    let start = match args.init {
-        StartName::Auto => Start::Auto,
-        StartName::File => Start::Given,
-        StartName::SpanningTree => Start::SpanningTree,
-        StartName::Chordal => Start::Chordal,
-    };
-    let bar = progress_bar();
-    let given = problem.poses().to_vec();
-    let mut times_ms = Vec::new();
-    let outcome = loop {
-        problem.poses_mut().copy_from_slice(&given);
-        let (outcome, elapsed_ms) = solve_once(&mut optimizer, problem, start, &bar)?;
-        times_ms.push(elapsed_ms);
-        if times_ms.len() >= args.repeat as usize {
-            break outcome;
-        }
-    };
-    bar.finish_and_clear();
-    if let StopReason::Failed { error } = outcome.report.stop {
-        return Err(error);
+        OptimizeError::NotFinite => OptimizeFailure::Diverged { path },
     }
-    Ok(Solved {
-        outcome,
-        first_ms: times_ms[0],
-        best_ms: times_ms.into_iter().fold(f64::INFINITY, f64::min),
-    })
 }
 
-/// One solve; the time of the progress bar is not counted.
-fn solve_once(
-    optimizer: &mut Optimizer,
-    problem: &mut Problem,
-    start: Start,
-    bar: &ProgressBar,
-) -> Result<(Outcome, f64), OptimizeError> {
-    let mut clock = CpuClock::start();
-    let mut session = Session::new(optimizer, problem, start)?;
-    loop {
-        let more = session.step();
-        if !more {
-            break;
-        }
-        clock.pause();
-        if let Some(step) = session.last_step() {
-            bar.set_message(format!("χ² {:.6e}", step.chi2_before));
-        }
-        bar.inc(1);
-        clock.resume();
-    }
-    let outcome = session.finish();
-    clock.pause();
-    Ok((outcome, clock.elapsed_ms()))
-}
-
-/// A line on a terminal's standard error; nothing where it is not a terminal.
-fn progress_bar() -> ProgressBar {
-    let style = ProgressStyle::with_template("{spinner} {pos} iterations, {msg} ({elapsed})")
-        .expect("the template is well formed");
-    ProgressBar::new_spinner().with_style(style)
-}
-
-fn print_summary(summary: &Summary, json: bool) {
-    if json {
+fn print_summary(summary: &Summary, args: &OptimizeArgs) {
+    if args.json {
         print_json(summary);
         return;
     }
@@ -305,6 +183,9 @@ fn print_summary(summary: &Summary, json: bool) {
     say!("iterations    {}", summary.iterations);
     say!("chi2 initial  {:.6}", summary.chi2_initial);
     say!("chi2          {:.6}", summary.chi2);
+    if args.kernel.0 != RobustKernel::None {
+        say!("cost          {:.6}, by the kernel", summary.cost);
+    }
     say!("stop          {}", summary.stop);
     say!(
         "cpu           {:.3} ms, first {:.3} ms",
@@ -320,79 +201,5 @@ fn start_name(start: Start) -> &'static str {
         Start::SpanningTree => "spanning-tree",
         Start::Chordal => "chordal",
         Start::LeastSquares => "least-squares",
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const SQUARE: &str = "\
-VERTEX_SE2 0 0 0 0
-VERTEX_SE2 1 1.2 0.1 1.5
-VERTEX_SE2 2 1 1.1 3.1
-VERTEX_SE2 3 0 1 -1.5
-EDGE_SE2 0 1 1 0 1.5707963 50 0 0 50 0 100
-EDGE_SE2 1 2 1 0 1.5707963 50 0 0 50 0 100
-EDGE_SE2 2 3 1 0 1.5707963 50 0 0 50 0 100
-EDGE_SE2 3 0 1 0 1.6 50 0 0 50 0 100
-";
-
-    fn args(input: &Path, output: Option<PathBuf>) -> OptimizeArgs {
-        OptimizeArgs {
-            input: input.to_owned(),
-            output,
-            method: MethodName::Gn,
-            init: StartName::Auto,
-            kernel: KernelName(RobustKernel::None),
-            max_iters: 50,
-            tolerance: 1e-8,
-            repeat: 2,
-            json: false,
-        }
-    }
-
-    #[test]
-    fn the_written_graph_has_the_reported_chi2() {
-        let folder = tempfile::tempdir().unwrap();
-        let input = folder.path().join("square.g2o");
-        let output = folder.path().join("solved.g2o");
-        std::fs::write(&input, SQUARE).unwrap();
-        let summary = solve_file(&args(&input, Some(output.clone()))).unwrap();
-        let written = std::fs::read_to_string(output).unwrap();
-        let problem = G2oFile::parse(&written).unwrap().problem;
-        // Numbers are written with all their digits: the sum has the same bits.
-        assert_eq!(problem.chi2(), summary.chi2);
-        // The headings add up to 0.0292 rad too much, at best over four edges of weight 100: 0.0213.
-        assert!(summary.chi2 > 0.0213 && summary.chi2 < 0.1);
-        assert!(summary.chi2 < 0.01 * summary.chi2_initial);
-    }
-
-    #[test]
-    fn a_malformed_file_leaves_the_output_as_it_was() {
-        let folder = tempfile::tempdir().unwrap();
-        let input = folder.path().join("bad.g2o");
-        let output = folder.path().join("solved.g2o");
-        std::fs::write(&input, format!("{SQUARE}EDGE_SE2 3 9 1 0 0 1 0 0 1 0 1\n")).unwrap();
-        std::fs::write(&output, "old").unwrap();
-        let failure = solve_file(&args(&input, Some(output.clone()))).unwrap_err();
-        assert!(
-            failure
-                .to_string()
-                .ends_with("bad.g2o: line 9: there is no vertex 9")
-        );
-        assert_eq!(std::fs::read_to_string(&output).unwrap(), "old");
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
-    }
-
-    #[test]
-    fn kernels_are_read_with_their_width() {
-        let kernel = |text| KernelName::from_str(text).map(|name| name.0);
-        assert_eq!(kernel("none"), Ok(RobustKernel::None));
-        assert_eq!(kernel("huber:1.5"), Ok(RobustKernel::Huber { width: 1.5 }));
-        assert_eq!(kernel("dcs:10"), Ok(RobustKernel::Dcs { phi: 10.0 }));
-        for wrong in ["huber", "huber:0", "dcs:x", "cauchy:1", "none:1"] {
-            assert!(kernel(wrong).is_err(), "{wrong}");
-        }
     }
 }

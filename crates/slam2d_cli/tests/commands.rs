@@ -1,24 +1,13 @@
 //! The command itself, run as a reader runs it, against the reference files.
 
+mod support;
+
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
 use serde_json::Value;
 use slam2d_tests::{assert_close, reference};
-
-fn slam2d(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_slam2d"))
-        .args(arguments)
-        .output()
-        .expect("the binary was built for this test")
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = slam2d(arguments);
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {errors}");
-    serde_json::from_slice(&output.stdout).expect("one JSON value")
-}
+use support::{assert_refused, json, slam2d};
 
 /// Asserts that `actual` has every field of `expected`, numbers within `tolerance`.
 fn assert_covers(path: &str, actual: &Value, expected: &Value, tolerance: f64) {
@@ -282,19 +271,20 @@ fn wrong_arguments_end_in_one_line_and_exit_code_2() {
         (&["sweep", "--noise", "1,-2"], "0 to 100"),
         (&["register", "absent.csv", "absent.csv"], "absent.csv"),
         (&["register", "a.csv", "b.csv", "--repeat", "0"], "0"),
+        (&["optimize"], "IN.g2o"),
+        (&["optimize", "absent.g2o"], "absent.g2o"),
+        (&["optimize", "a.g2o", "--kernel", "huber:0"], "positive"),
+        (&["optimize", "a.g2o", "--kernel", "cauchy:1"], "dcs:PHI"),
+        (&["optimize", "a.g2o", "--init", "zero"], "zero"),
+        (&["optimize", "a.g2o", "--method", "sgd"], "sgd"),
+        (&["optimize", "a.g2o", "--max-iters", "-1"], "-1"),
+        (&["optimize", "a.g2o", "--tolerance", "nan"], "finite"),
+        (&["optimize", "a.g2o", "--tolerance", "-1"], "0 to 1"),
+        (&["optimize", "a.g2o", "--repeat", "0"], "0"),
     ] {
         assert_refused(arguments, said);
     }
     assert!(!Path::new("absent.csv").exists());
-}
-
-fn assert_refused(arguments: &[&str], said: &str) {
-    let output = slam2d(arguments);
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    assert!(output.stdout.is_empty(), "{arguments:?}");
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(message.lines().count(), 1, "{arguments:?}: {message}");
-    assert!(message.contains(said), "{arguments:?}: {message}");
 }
 
 #[test]

@@ -1,0 +1,119 @@
+//! The solve of `slam2d optimize`: settings, repeats, times, progress.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use pr_optim::{
+    JacobianModel, Method, OptimizeError, Optimizer, Outcome, Problem, Session, Settings, Start,
+    StopReason,
+};
+
+use super::args::{MethodName, OptimizeArgs};
+use crate::cpu_clock::CpuClock;
+
+/// First damping of `--method lm`, relative to the diagonal.
+const INITIAL_DAMPING: f64 = 1e-6;
+
+/// Largest step, m and rad added, at which a graph without contradictions counts as solved: its
+/// cost is rounding noise, of which no share is ever small.
+const STEP_TOLERANCE: f64 = 1e-10;
+
+/// What a solve found, and how long it took.
+pub struct Solved {
+    /// The last solve; all are the same.
+    pub outcome: Outcome,
+    /// CPU time of the first solve, with ordering and symbolic analysis, ms.
+    pub first_ms: f64,
+    /// CPU time of the fastest solve, ms.
+    pub best_ms: f64,
+}
+
+/// Solves from the file's poses `repeat` times; the analysis of the graph is kept after the first.
+///
+/// # Errors
+/// Where no step could be computed, or the cost is not finite at the end.
+pub fn solve_repeatedly(
+    problem: &mut Problem,
+    args: &OptimizeArgs,
+) -> Result<Solved, OptimizeError> {
+    let mut optimizer = Optimizer::new(settings(args));
+    let start = args.init.start();
+    let bar = progress_bar(u64::from(args.repeat) * args.max_iters as u64);
+    let given = problem.poses().to_vec();
+    let mut times_ms = Vec::new();
+    let outcome = loop {
+        problem.poses_mut().copy_from_slice(&given);
+        let (outcome, elapsed_ms) = solve_once(&mut optimizer, problem, start, &bar)?;
+        // Every solve takes as many iterations as the first: from now on the share is exact.
+        bar.set_length(u64::from(args.repeat) * outcome.total_iterations as u64);
+        times_ms.push(elapsed_ms);
+        if times_ms.len() >= args.repeat as usize {
+            break outcome;
+        }
+    };
+    bar.finish_and_clear();
+    if let StopReason::Failed { error } = outcome.report.stop {
+        return Err(error);
+    }
+    if !outcome.report.chi2.is_finite() {
+        return Err(OptimizeError::NotFinite);
+    }
+    Ok(Solved {
+        outcome,
+        first_ms: times_ms[0],
+        best_ms: times_ms.into_iter().fold(f64::INFINITY, f64::min),
+    })
+}
+
+fn settings(args: &OptimizeArgs) -> Settings {
+    Settings {
+        method: match args.method {
+            MethodName::Gn => Method::GaussNewton,
+            MethodName::Lm => Method::LevenbergMarquardt {
+                initial_damping: INITIAL_DAMPING,
+            },
+        },
+        jacobians: JacobianModel::Exact,
+        kernel: args.kernel.0,
+        max_iterations: args.max_iters,
+        step_tolerance: STEP_TOLERANCE,
+        decrease_tolerance: args.tolerance,
+        ..Settings::default()
+    }
+}
+
+/// One solve; the time of the progress bar is not counted.
+fn solve_once(
+    optimizer: &mut Optimizer,
+    problem: &mut Problem,
+    start: Start,
+    bar: &ProgressBar,
+) -> Result<(Outcome, f64), OptimizeError> {
+    let mut clock = CpuClock::start();
+    let mut session = Session::new(optimizer, problem, start)?;
+    loop {
+        let more = session.step();
+        if !more {
+            break;
+        }
+        clock.pause();
+        if let Some(step) = session.last_step() {
+            bar.set_message(format!("χ² {:.6e}", step.chi2_before));
+        }
+        bar.inc(1);
+        clock.resume();
+    }
+    bar.inc(1);
+    let outcome = session.finish();
+    clock.pause();
+    Ok((outcome, clock.elapsed_ms()))
+}
+
+/// A bar on a terminal's standard error; nothing where it is not a terminal.
+///
+/// `most` is the limit of the iterations, which the first solve replaces by their number.
+fn progress_bar(most: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template(
+        "{wide_bar} {percent} %, {pos} of at most {len} iterations, {msg} ({elapsed})",
+    )
+    .expect("the template is well formed");
+    ProgressBar::new(most).with_style(style)
+}
