@@ -3,6 +3,8 @@
 //! The JSON files in `reference/` were computed by an independent implementation of the same
 //! system; nothing in the code is copied from them.
 
+pub mod generated;
+
 use std::fs;
 use std::path::Path;
 

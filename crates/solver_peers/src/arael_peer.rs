@@ -6,30 +6,17 @@ use arael::model::{CrossBlock, Param, SelfBlock};
 use arael::refs::{self, Ref};
 use arael::simple_lm::{LmConfig, LmSession, SparseFaer};
 use arael::vect::{vect2d, vect3d};
+use pr_geom::SE2;
 use pr_optim::Problem;
 
 use crate::clock::timed;
-use crate::{Peer, Timing};
+use crate::{Peer, Solve};
 
 #[arael::model]
 struct Pose {
     position: Param<vect2d>,
     heading: Param<f64>,
     block: SelfBlock<Pose>,
-}
-
-/// Holds the first pose where it is, with unit weight: free of cost at the optimum.
-#[arael::model]
-#[arael(constraint(pose.block, {
-    [pose.position.x - anchor.position.x,
-     pose.position.y - anchor.position.y,
-     pose.heading - anchor.heading]
-}))]
-struct Anchor {
-    #[arael(ref = root.poses)]
-    pose: Ref<Pose>,
-    position: vect2d,
-    heading: f64,
 }
 
 /// g2o's residual, whitened: the rows are a square root of Ω, its planar part turned by −θ_z.
@@ -60,29 +47,27 @@ struct Link {
 struct Graph {
     poses: refs::Vec<Pose>,
     links: std::vec::Vec<Link>,
-    anchor: Option<Anchor>,
 }
 
 fn graph_of(problem: &Problem) -> Graph {
     let mut graph = Graph {
         poses: refs::Vec::new(),
         links: std::vec::Vec::new(),
-        anchor: None,
     };
-    for pose in problem.poses() {
+    for (pose, &is_fixed) in problem.poses().iter().zip(problem.fixed()) {
         let position = vect2d::new(pose.x(), pose.y());
-        let handle = graph.poses.push(Pose {
-            position: Param::new(position),
-            heading: Param::new(pose.theta()),
+        let heading = pose.theta();
+        // Held where ours is held: at the file's FIX, or at its first vertex.
+        let (position, heading) = if is_fixed {
+            (Param::fixed(position), Param::fixed(heading))
+        } else {
+            (Param::new(position), Param::new(heading))
+        };
+        graph.poses.push(Pose {
+            position,
+            heading,
             block: SelfBlock::new(),
         });
-        if graph.anchor.is_none() {
-            graph.anchor = Some(Anchor {
-                pose: handle,
-                position,
-                heading: pose.theta(),
-            });
-        }
     }
     for factor in problem.factors() {
         let z = factor.measurement;
@@ -143,21 +128,23 @@ impl Arael {
     }
 }
 
-fn solve(session: &mut LmSession<f64, SparseFaer<f64>>, problem: &Problem) -> Timing {
+fn solve(session: &mut LmSession<f64, SparseFaer<f64>>, problem: &Problem) -> Solve {
     let mut graph = graph_of(problem);
     let config = config();
     let (result, cpu_ms) = timed(|| session.solve(&mut graph, &config));
-    match result {
-        Ok(result) => Timing {
-            cpu_ms,
-            chi2: result.end_cost,
-            iterations: result.iterations,
-        },
-        Err(_) => Timing {
-            cpu_ms,
-            chi2: f64::NAN,
-            iterations: 0,
-        },
+    let poses = || {
+        let poses = graph.poses.iter();
+        poses
+            .map(|pose| {
+                let position = pose.position.value;
+                SE2::new(position.x, position.y, pose.heading.value)
+            })
+            .collect()
+    };
+    Solve {
+        cpu_ms,
+        poses: result.is_ok().then(poses),
+        iterations: result.ok().map(|result| result.iterations),
     }
 }
 
@@ -166,11 +153,11 @@ impl Peer for Arael {
         "arael"
     }
 
-    fn solve_cold(&mut self) -> Timing {
+    fn solve_cold(&mut self) -> Solve {
         solve(&mut LmSession::new(SparseFaer::new()), &self.problem)
     }
 
-    fn solve_warm(&mut self) -> Option<Timing> {
+    fn solve_warm(&mut self) -> Option<Solve> {
         Some(solve(&mut self.session, &self.problem))
     }
 }

@@ -2,26 +2,42 @@
 
 use std::path::{Path, PathBuf};
 
+use factrs::containers::{DefaultSymbolHandler, Values};
 use factrs::core::GaussNewton;
-use factrs::optimizers::BaseOptParams;
+use factrs::optimizers::{BaseOptParams, OptError};
 use factrs::traits::Optimizer;
 use factrs::utils::load_g20;
+use factrs::variables;
+use pr_geom::SE2;
 
 use crate::clock::timed;
-use crate::{Peer, Timing};
+use crate::{Peer, Solve};
 
 /// factrs with the path of a graph: it keeps nothing from one solve to the next.
 pub struct Factrs {
     path: PathBuf,
+    /// Ids of the vertices in the order of the file; none where one is beyond what factrs reads.
+    ids: Option<Vec<u32>>,
 }
 
 impl Factrs {
     /// A peer that reads the file before every solve; reading is not timed.
     #[must_use]
-    pub fn new(path: &Path) -> Self {
+    pub fn new(path: &Path, ids: impl Iterator<Item = i64>) -> Self {
         Self {
             path: path.to_owned(),
+            ids: ids.map(|id| u32::try_from(id).ok()).collect(),
         }
+    }
+
+    fn poses_of(&self, values: &Values) -> Option<Vec<SE2>> {
+        let ids = self.ids.as_ref()?.iter();
+        ids.map(|&id| {
+            let key = DefaultSymbolHandler::sym_to_key('X', id);
+            let pose: &variables::SE2 = values.get_unchecked(key)?;
+            Some(SE2::new(pose.x(), pose.y(), pose.theta()))
+        })
+        .collect()
     }
 }
 
@@ -30,10 +46,9 @@ impl Peer for Factrs {
         "factrs"
     }
 
-    fn solve_cold(&mut self) -> Timing {
+    fn solve_cold(&mut self) -> Solve {
         let path = self.path.to_str().expect("a path in UTF-8");
         let (graph, start) = load_g20(path);
-        let (measured, _) = load_g20(path);
         let params = BaseOptParams {
             error_tol_relative: 1e-7,
             error_tol_absolute: 0.0,
@@ -41,16 +56,19 @@ impl Peer for Factrs {
         };
         let mut optimizer = GaussNewton::new(params, graph);
         let (result, cpu_ms) = timed(|| optimizer.optimize(start));
-        // factrs' error is half of χ².
-        let chi2 = result.map_or(f64::NAN, |values| 2.0 * measured.error(&values));
-        Timing {
+        let poses = match result {
+            // Out of iterations it still says where it got to.
+            Ok(values) | Err(OptError::MaxIterations(values)) => self.poses_of(&values),
+            Err(_) => None,
+        };
+        Solve {
             cpu_ms,
-            chi2,
-            iterations: 0,
+            poses,
+            iterations: None,
         }
     }
 
-    fn solve_warm(&mut self) -> Option<Timing> {
+    fn solve_warm(&mut self) -> Option<Solve> {
         None
     }
 }

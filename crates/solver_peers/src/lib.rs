@@ -2,23 +2,26 @@
 //!
 //! Every solver gets the same g2o file, starts from what it reads there, and runs on one thread.
 //! Runs are interleaved, so that a busy machine slows all of them alike, and the fastest of each
-//! counts. Each solver is judged by the χ² of its own residual, which differs a little between
-//! them: ours and factrs' is the log, arael's model here has g2o's.
+//! counts. All are judged by one χ², that of the log residual at the poses where they end. Ours and
+//! factrs lower it; arael's model here lowers that of g2o's residual, whose optimum is a little off.
 
 pub mod arael_peer;
 pub mod clock;
+pub mod compare;
 pub mod factrs_peer;
 pub mod ours;
 
+use pr_geom::SE2;
+
 /// What one timed solve gave.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Timing {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solve {
     /// CPU time of the thread, ms, without reading the file.
     pub cpu_ms: f64,
-    /// Cost at the end in the solver's own residual, as χ² = Σ eᵀΩe.
-    pub chi2: f64,
-    /// Linear systems solved; 0 where the solver does not say.
-    pub iterations: usize,
+    /// The poses at the end in the order of the file; none where the solver gave up.
+    pub poses: Option<Vec<SE2>>,
+    /// Linear systems solved; none where the solver does not say.
+    pub iterations: Option<usize>,
 }
 
 /// A solver with a graph loaded.
@@ -27,9 +30,9 @@ pub trait Peer {
     fn name(&self) -> &'static str;
 
     /// A solve with nothing known about the graph: ordering and analysis included.
-    fn solve_cold(&mut self) -> Timing;
+    fn solve_cold(&mut self) -> Solve;
 
     /// A solve that may use what earlier ones learnt about the pattern; `None` where the solver
     /// cannot keep it.
-    fn solve_warm(&mut self) -> Option<Timing>;
+    fn solve_warm(&mut self) -> Option<Solve>;
 }

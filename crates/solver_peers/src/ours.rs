@@ -3,7 +3,7 @@
 use pr_optim::{JacobianModel, Optimizer, Problem, Session, Settings, Start};
 
 use crate::clock::timed;
-use crate::{Peer, Timing};
+use crate::{Peer, Solve};
 
 /// The settings of `slam2d optimize` without options.
 fn settings() -> Settings {
@@ -35,11 +35,15 @@ impl Ours {
     }
 }
 
-fn solve(optimizer: &mut Optimizer, problem: &mut Problem, start: Start) -> (f64, usize) {
-    let outcome = Session::new(optimizer, problem, start)
-        .expect("the file was checked when it was read")
-        .run();
-    (outcome.report.chi2, outcome.total_iterations)
+fn solve(optimizer: &mut Optimizer, problem: &Problem, start: Start) -> Solve {
+    let mut problem = problem.clone();
+    let (outcome, cpu_ms) =
+        timed(|| Session::new(optimizer, &mut problem, start).map(Session::run));
+    Solve {
+        cpu_ms,
+        iterations: outcome.as_ref().map(|found| found.total_iterations).ok(),
+        poses: outcome.map(|_| problem.poses().to_vec()).ok(),
+    }
 }
 
 impl Peer for Ours {
@@ -50,25 +54,11 @@ impl Peer for Ours {
         }
     }
 
-    fn solve_cold(&mut self) -> Timing {
-        let mut problem = self.problem.clone();
-        let ((chi2, iterations), cpu_ms) =
-            timed(|| solve(&mut Optimizer::new(settings()), &mut problem, self.start));
-        Timing {
-            cpu_ms,
-            chi2,
-            iterations,
-        }
+    fn solve_cold(&mut self) -> Solve {
+        solve(&mut Optimizer::new(settings()), &self.problem, self.start)
     }
 
-    fn solve_warm(&mut self) -> Option<Timing> {
-        let mut problem = self.problem.clone();
-        let ((chi2, iterations), cpu_ms) =
-            timed(|| solve(&mut self.optimizer, &mut problem, self.start));
-        Some(Timing {
-            cpu_ms,
-            chi2,
-            iterations,
-        })
+    fn solve_warm(&mut self) -> Option<Solve> {
+        Some(solve(&mut self.optimizer, &self.problem, self.start))
     }
 }
