@@ -3,11 +3,13 @@
 pub mod basin;
 pub mod chi_squared;
 pub mod cloud;
+pub mod digest;
 pub mod graph;
 pub mod icp;
 pub mod loops;
 pub mod metrics;
 pub mod ndt;
 pub mod results;
+pub mod samples;
 pub mod slam;
 pub mod terrain;

@@ -1,44 +1,21 @@
 //! One number for all bits of a lap, to compare machines.
 
-use pr_geom::SE2;
-
 use super::record::{LapRecord, LapTrace};
 use super::{LapRunner, SlamConfig};
+use crate::digest::Digest;
 
-/// FNV-1a over 64-bit words (Fowler, Noll, Vo 1991).
-#[derive(Clone, Copy, Debug)]
-struct Digest(u64);
-
-impl Digest {
-    fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
+fn add_trace(digest: &mut Digest, trace: &LapTrace) {
+    for report in &trace.reports {
+        digest.add_pose(&report.truth);
+        digest.add_pose(&report.dead_reckoning);
+        digest.add_pose(&report.registration.icp.pose);
+        digest.add_pose(&report.estimate);
+        digest.add(report.registration.icp.rmse);
+        digest.add(report.metrics.map_disagreement_m.unwrap_or(-1.0));
+        digest.add(report.metrics.chi2);
     }
-
-    fn add(&mut self, value: f64) {
-        for byte in value.to_bits().to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    }
-
-    fn add_pose(&mut self, pose: &SE2) {
-        pose.to_array()
-            .into_iter()
-            .for_each(|value| self.add(value));
-    }
-
-    fn add_trace(&mut self, trace: &LapTrace) {
-        for report in &trace.reports {
-            self.add_pose(&report.truth);
-            self.add_pose(&report.dead_reckoning);
-            self.add_pose(&report.registration.icp.pose);
-            self.add_pose(&report.estimate);
-            self.add(report.registration.icp.rmse);
-            self.add(report.metrics.map_disagreement_m.unwrap_or(-1.0));
-            self.add(report.metrics.chi2);
-        }
-        for epoch in &trace.epochs {
-            epoch.poses.iter().for_each(|pose| self.add_pose(pose));
-        }
+    for epoch in &trace.epochs {
+        epoch.poses.iter().for_each(|pose| digest.add_pose(pose));
     }
 }
 
@@ -47,8 +24,8 @@ impl LapTrace {
     #[must_use]
     pub fn digest(&self) -> u64 {
         let mut digest = Digest::new();
-        digest.add_trace(self);
-        digest.0
+        add_trace(&mut digest, self);
+        digest.value()
     }
 }
 
@@ -57,9 +34,9 @@ impl LapRecord {
     #[must_use]
     pub fn digest(&self) -> u64 {
         let mut digest = Digest::new();
-        digest.add_trace(&self.lap);
-        digest.add_trace(&self.front_end);
-        digest.0
+        add_trace(&mut digest, &self.lap);
+        add_trace(&mut digest, &self.front_end);
+        digest.value()
     }
 }
 
