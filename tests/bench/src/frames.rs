@@ -1,10 +1,12 @@
 //! One frame of each widget: scene, layout and tessellation, everything but the graphics card.
 
+use ch16_slam2d::digest::Digest;
+use egui::epaint::{ClippedPrimitive, Primitive};
 use egui::{Context, Pos2, RawInput, Rect, vec2};
 use kit::model::Activity;
 use kit::shell::Shell;
 
-use crate::{Limit, Run, Workload, mix};
+use crate::{Limit, Run, Workload, prepared};
 
 /// A widget in the middle of a chapter, in points.
 const SIZE: [f32; 2] = [1000.0, 1400.0];
@@ -51,45 +53,68 @@ pub fn workloads() -> Vec<Workload> {
 /// A widget that is drawn without a screen.
 struct Frames {
     shell: Shell,
+    param: &'static str,
+    values: [f64; 2],
     context: Context,
     input: RawInput,
     frames: u32,
+    drawn: Vec<ClippedPrimitive>,
 }
 
 impl Frames {
-    fn of(mut shell: Shell, param: &'static str, values: [f64; 2]) -> Run {
+    fn of(mut shell: Shell, param: &'static str, values: [f64; 2]) -> Box<dyn Run> {
         while shell.model_mut().work() == Activity::Busy {}
         let mut frames = Self {
             shell,
+            param,
+            values,
             context: Context::default(),
             input: RawInput {
                 screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0], SIZE[1]))),
                 ..RawInput::default()
             },
             frames: 0,
+            drawn: Vec::new(),
         };
         // The first frames lay the fonts out and measure the text.
         for _ in 0..4 {
-            frames.draw(param, values);
+            frames.draw();
         }
-        frames.frames = 0;
-        Box::new(move || frames.draw(param, values))
+        prepared(frames, Self::draw, Self::add_to)
     }
 
-    fn draw(&mut self, param: &str, values: [f64; 2]) -> u64 {
-        let value = values[self.frames as usize % 2];
+    fn draw(&mut self) {
+        let value = self.values[self.frames as usize % 2];
         self.frames += 1;
         let model = self.shell.model_mut();
-        model.set(param, value).expect("the value is in range");
+        model.set(self.param, value).expect("the value is in range");
         self.input.time = Some(f64::from(self.frames) / 60.0);
         let mut output = self
             .context
             .run_ui(self.input.clone(), |ui| self.shell.ui(ui));
         // There is no graphics card to upload them to.
         output.textures_delta.clear();
-        let primitives = self
+        self.drawn = self
             .context
             .tessellate(output.shapes, output.pixels_per_point);
-        mix(1, primitives.len() as u64)
+    }
+
+    /// Adds every triangle of the last frame: corners, texture coordinates and colours.
+    fn add_to(&self, digest: &mut Digest) {
+        for primitive in &self.drawn {
+            let Rect { min, max } = primitive.clip_rect;
+            digest.add_all([min.x, min.y, max.x, max.y].map(f64::from).iter());
+            let Primitive::Mesh(mesh) = &primitive.primitive else {
+                continue;
+            };
+            for index in &mesh.indices {
+                digest.add_bits(u64::from(*index));
+            }
+            for vertex in &mesh.vertices {
+                let [x, y, u, v] = [vertex.pos.x, vertex.pos.y, vertex.uv.x, vertex.uv.y];
+                digest.add_all([x, y, u, v].map(f64::from).iter());
+                digest.add_bits(u64::from(u32::from_le_bytes(vertex.color.to_array())));
+            }
+        }
     }
 }

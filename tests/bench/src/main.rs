@@ -80,7 +80,7 @@ fn run(id: &str, times: &str) -> Result<(), String> {
         .ok_or_else(|| format!("there is no workload `{id}`"))?;
     let mut run = (workload.prepare)();
     for _ in 0..times {
-        std::hint::black_box(run());
+        run.once();
     }
     Ok(())
 }

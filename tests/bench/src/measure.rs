@@ -30,11 +30,12 @@ pub struct Measured {
 /// Runs a workload for about `budget_ms` and returns its median; `now_ms` is the clock.
 pub fn measure(workload: &Workload, budget_ms: f64, now_ms: &dyn Fn() -> f64) -> Measured {
     let mut run = (workload.prepare)();
-    let first = run();
+    run.once();
+    let digest = run.digest();
     let mut time = |runs: u32| {
         let start = now_ms();
         for _ in 0..runs {
-            run();
+            run.once();
         }
         now_ms() - start
     };
@@ -54,7 +55,7 @@ pub fn measure(workload: &Workload, budget_ms: f64, now_ms: &dyn Fn() -> f64) ->
         median_ms: samples[samples.len() / 2],
         least_ms: samples[0],
         samples: samples.len(),
-        digest: format!("{first:016x}"),
+        digest: format!("{digest:016x}"),
     }
 }
 
@@ -62,7 +63,10 @@ pub fn measure(workload: &Workload, budget_ms: f64, now_ms: &dyn Fn() -> f64) ->
 mod tests {
     use std::cell::Cell;
 
+    use ch16_slam2d::digest::Digest;
+
     use super::*;
+    use crate::prepared;
 
     #[test]
     fn the_median_is_that_of_one_repetition() {
@@ -77,11 +81,13 @@ mod tests {
             what: "nothing",
             repetitions: 4,
             limit: None,
-            prepare: || Box::new(|| 7),
+            prepare: || prepared((), |()| {}, |(), digest| digest.add_bits(7)),
         };
         let measured = measure(&workload, 100.0, &now);
         assert_eq!(measured.median_ms, 5.0);
         assert!(measured.samples >= MIN_SAMPLES);
-        assert_eq!(measured.digest, "0000000000000007");
+        let mut digest = Digest::new();
+        digest.add_bits(7);
+        assert_eq!(measured.digest, format!("{:016x}", digest.value()));
     }
 }
