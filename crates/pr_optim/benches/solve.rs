@@ -1,4 +1,7 @@
-//! Times of the solver on graphs made here: a lap of 41 poses, and a walk on a street grid.
+//! Times of the solver on graphs made here: a short and a long walk on a street grid.
+//!
+//! The graph of the lap is solved where it is made: `lap_41` in `ch16_slam2d`, `solve` in
+//! `tests/bench`.
 
 use std::hint::black_box;
 
@@ -136,7 +139,7 @@ fn parts_of_an_iteration(criterion: &mut Criterion) {
 
 fn whole_solves(criterion: &mut Criterion) {
     for (name, problem) in [
-        ("lap_41", street_walk(41, 2)),
+        ("streets_41", street_walk(41, 2)),
         ("streets_3500", street_walk(3500, 25)),
     ] {
         let mut group = criterion.benchmark_group(name);
