@@ -9,7 +9,7 @@ pub const USAGE: &str = "\
 cargo xtask serve [--port 8016] [--release]   build the page and serve it
 cargo xtask build                             build the finished static site into dist/
 cargo xtask test                              every check: format, lints, native, wasm, browser
-cargo xtask bench [--json FILE]               time the workloads natively and in Chromium";
+cargo xtask bench [--json FILE]               time and count the workloads, write docs/performance.md";
 
 /// One of the commands, with its options.
 #[derive(Debug, PartialEq, Eq)]

@@ -15,7 +15,7 @@ use slam2d_bench::workloads;
 const ALLOWED_RISE: f64 = 0.10;
 
 /// Instructions of one run of each workload, by its name.
-type Counts = BTreeMap<String, u64>;
+pub type Counts = BTreeMap<String, u64>;
 
 /// Where the accepted counts stand.
 fn record() -> PathBuf {
@@ -29,14 +29,38 @@ pub fn is_available() -> bool {
 }
 
 /// Counts every workload; `said` is told each count as it comes.
-pub fn count_all(said: &dyn Fn(&str, u64)) -> Result<Counts, String> {
+///
+/// # Errors
+/// One sentence where valgrind fails, where its counts do not repeat, or where `said` fails.
+pub fn count_all(said: &dyn Fn(&str, u64) -> Result<(), String>) -> Result<Counts, String> {
     let mut counts = Counts::new();
     for workload in workloads() {
-        let count = run(workload.id, 2)? - run(workload.id, 1)?;
-        said(workload.id, count);
+        let (once, twice) = (run(workload.id, 1)?, run(workload.id, 2)?);
+        let count = second_run(workload.id, once, twice)?;
+        said(workload.id, count)?;
         counts.insert(workload.id.to_owned(), count);
     }
     Ok(counts)
+}
+
+/// The instructions of the second of two runs.
+fn second_run(id: &str, once: u64, twice: u64) -> Result<u64, String> {
+    twice.checked_sub(once).ok_or_else(|| {
+        format!(
+            "{id}: callgrind counted {once} instructions for one run and only {twice} for two; \
+             the program does not repeat itself here, so count again"
+        )
+    })
+}
+
+/// The counts divided as the medians are: by the repetitions of a run.
+pub fn of_one_repetition(mut counts: Counts) -> Counts {
+    for workload in workloads() {
+        if let Some(count) = counts.get_mut(workload.id) {
+            *count /= u64::from(workload.repetitions);
+        }
+    }
+    counts
 }
 
 /// Writes the counts down as the accepted ones.
@@ -110,5 +134,22 @@ mod tests {
         assert_eq!(complaints.len(), 2, "{complaints:?}");
         assert!(complaints[0].starts_with("lap: 1101 instructions, 10 % more"));
         assert!(complaints[1].starts_with("new: no instruction count"));
+    }
+
+    #[test]
+    fn counts_that_do_not_repeat_are_refused_and_not_wrapped_around() {
+        assert_eq!(second_run("lap", 1000, 1700), Ok(700));
+        let message = second_run("lap", 1000, 999).unwrap_err();
+        assert!(
+            message.starts_with("lap: callgrind counted 1000"),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn a_count_is_divided_as_its_median_is() {
+        let counts = Counts::from([("nearest".to_owned(), 783_239), ("lap".to_owned(), 5)]);
+        let divided = of_one_repetition(counts);
+        assert_eq!((divided["nearest"], divided["lap"]), (783, 5));
     }
 }
