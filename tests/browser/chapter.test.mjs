@@ -1,8 +1,11 @@
 // The companion chapter itself: dist/index.html as a reader gets it.
 
 import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { readFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import * as h from './harness.mjs';
 import { cloudSpot, restingSpot, sliderRail } from './spots.mjs';
@@ -215,12 +218,26 @@ describe('the chapter', () => {
         await picture.scrollIntoViewIfNeeded();
         assert.ok(await picture.evaluate((image) => image.decode().then(() => image.naturalWidth > 100)), id);
         assert.ok((await picture.getAttribute('alt')).length > 80, id);
+        const words = await tab.locator(widget(id)).innerText();
+        assert.match(words, /still picture .* needs JavaScript and WebAssembly/, id);
       }
       const drawn = await (await tab.request.get(`${server.url}/pictures/w16.1-light.svg`)).text();
       assert.doesNotMatch(drawn, /% done/, 'the picture is of a finished map');
       assert.equal(await tab.locator('.theme').isVisible(), false);
-      assert.match(await tab.locator(widget('w16.1')).innerText(), /needs JavaScript/);
     }, { javaScriptEnabled: false });
+  });
+
+  it('is not built without the picture of a widget', () => {
+    const out = mkdtempSync(join(tmpdir(), 'chapter-'));
+    const build = () => {
+      const run = spawnSync(process.execPath, ['web/page/build.mjs', out], { cwd: join(h.DIST, '..') });
+      assert.equal(run.status, 1);
+      return String(run.stderr);
+    };
+    assert.match(build(), /schema\.json is missing: run node web\/build\.mjs first/);
+    writeFileSync(join(out, 'schema.json'), '[]');
+    assert.match(build(), /index\.html has a widget w16\.1, which does not exist/);
+    rmSync(out, { recursive: true });
   });
 
   it('prints its text and pictures without the buttons', async () => {

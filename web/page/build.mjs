@@ -26,27 +26,32 @@ await Promise.all([renderPage(), copyStyle(), copyKatex(), bundleScript()]);
 
 async function renderPage() {
   const source = await readFile(path.join(root, 'index.html'), 'utf8');
-  const page = addPictures(renderFormulas(source), await summaries());
+  const page = addPictures(renderFormulas(source), await widgetSpecs());
   await writeFile(path.join(outDir, 'index.html'), page);
 }
 
-/** What each widget's picture shows, in words: beside the pictures where those were built. */
-async function summaries() {
+/** Title and summary of each widget, by its id: web/build.mjs leaves them beside the pictures. */
+async function widgetSpecs() {
   const file = path.join(outDir, 'schema.json');
-  const widgets = existsSync(file) ? JSON.parse(await readFile(file, 'utf8')) : [];
-  return new Map(widgets.map((widget) => [widget.id, widget.summary]));
+  if (!existsSync(file)) throw new Error(`${file} is missing: run node web/build.mjs first, which draws the pictures`);
+  const widgets = JSON.parse(await readFile(file, 'utf8'));
+  return new Map(widgets.map((widget) => [widget.id, widget]));
 }
 
-/** What a reader without JavaScript sees; the element hides it once it is defined. */
-function addPictures(html, summaryOf) {
-  return html.replace(/(<slam-widget name="([^"]+)"[^>]*>)(<\/slam-widget>)/g, (_, open, id, close) => {
-    const alt = escapeHtml(summaryOf.get(id) ?? `Widget ${id}`);
+/** What a reader sees where no script runs or none arrives; the element hides it once it is defined. */
+function addPictures(html, specOf) {
+  return html.replace(/(<slam-widget\b[^>]*>)\s*(<\/slam-widget>)/g, (_, open, close) => {
+    const id = open.match(/\bname="([^"]*)"/)?.[1];
+    const spec = specOf.get(id);
+    if (spec === undefined) {
+      throw new Error(`index.html has a widget ${id}, which does not exist: the widgets are ${[...specOf.keys()].join(', ')}`);
+    }
     return `${open}
     <picture>
       <source media="(prefers-color-scheme: dark)" srcset="pictures/${id}-dark.svg">
-      <img src="pictures/${id}-light.svg" alt="${alt}">
+      <img src="pictures/${id}-light.svg" alt="${escapeHtml(spec.summary)}" loading="lazy">
     </picture>
-    <p>This widget needs JavaScript. The picture shows how it starts.</p>
+    <p>This is a still picture of “${escapeHtml(spec.title)}”: the widget needs JavaScript and WebAssembly.</p>
   ${close}`;
   });
 }

@@ -42,10 +42,6 @@ pub fn build(speed: Speed) -> Result<(), Failure> {
         "Rendering the page",
         program("node").arg("web/page/build.mjs").arg(&dist),
     )?;
-    step(
-        "Adding still pictures for readers without script",
-        program("node").arg("web/fallback.mjs").arg(&dist),
-    )?;
     report(&dist);
     Ok(())
 }
