@@ -54,7 +54,7 @@ pub fn show(what: &str, command: &mut Command) -> Result<(), Failure> {
     let started = Instant::now();
     let status = command
         .status()
-        .map_err(|error| Failure::new(format!("{what}: {}: {error}", name_of(command))))?;
+        .map_err(|error| cannot_start(what, command, &error))?;
     if !status.success() {
         return Err(Failure::new(format!("{what}: failed ({status})")));
     }
@@ -74,7 +74,7 @@ pub fn step(what: &str, command: &mut Command) -> Result<(), Failure> {
     command.stdout(log.try_clone().map_err(failed)?).stderr(log);
     let mut child = command
         .spawn()
-        .map_err(|error| Failure::new(format!("{what}: {}: {error}", name_of(command))))?;
+        .map_err(|error| cannot_start(what, command, &error))?;
 
     let started = Instant::now();
     let mut line = ProgressLine::new(what);
@@ -111,8 +111,12 @@ fn log_path(what: &str) -> Result<PathBuf, Failure> {
     Ok(folder.join(format!("{name}.log")))
 }
 
-fn name_of(command: &Command) -> String {
-    command.get_program().to_string_lossy().into_owned()
+fn cannot_start(what: &str, command: &Command, error: &io::Error) -> Failure {
+    let name = command.get_program().to_string_lossy();
+    Failure::new(match error.kind() {
+        io::ErrorKind::NotFound => format!("{what}: {name} is not installed, or not on the PATH"),
+        _ => format!("{what}: {name} cannot be started ({error})"),
+    })
 }
 
 /// `Compiling … 12 s`: rewritten in place on a terminal, every half minute in a log.
@@ -151,5 +155,19 @@ impl<'a> ProgressLine<'a> {
     fn end(&self, elapsed: Duration) {
         let start = if self.rewrites { "\r" } else { "" };
         println!("{start}{}: {:.1} s", self.what, elapsed.as_secs_f64());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_that_is_not_there_is_named() {
+        let failure = show("Trying", &mut program("no-such-program-anywhere")).unwrap_err();
+        assert_eq!(
+            failure.to_string(),
+            "Trying: no-such-program-anywhere is not installed, or not on the PATH"
+        );
     }
 }
