@@ -5,7 +5,6 @@
 
 pub mod document;
 mod figures;
-mod sweep;
 
 use document::{Document, Figure, NumberLink, numbers_in, source};
 use figures::Figures;

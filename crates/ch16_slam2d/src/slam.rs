@@ -30,7 +30,7 @@ pub use digest::lap_digest;
 pub use drive::{Drive, DriveTick, Sweep};
 pub use front_end::{FrontEnd, Registration, WindowSweep};
 pub use loop_error::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopError, LoopJudgement};
-pub use record::{Epoch, LapRecord, LapSummary, LapTrace, RecordedEdge};
+pub use record::{Epoch, LAST_KEYFRAMES, LapRecord, LapSummary, LapTrace, RecordedEdge};
 pub use replay::RegistrationView;
 pub use report::{Change, Keyframe, LoopAttempt, LoopEffect, SlamReport, TickMetrics};
 pub use runner::LapRunner;

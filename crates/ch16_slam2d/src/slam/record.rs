@@ -13,7 +13,7 @@ use crate::graph::EdgeKind;
 use crate::metrics::position_error_m;
 
 /// Keyframes at the end of the lap whose error range the results table shows.
-const LAST_KEYFRAMES: usize = 9;
+pub const LAST_KEYFRAMES: usize = 9;
 
 /// An edge of the graph with the tick in which it was added.
 #[derive(Clone, Copy, Debug, PartialEq)]

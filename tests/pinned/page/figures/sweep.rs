@@ -58,6 +58,8 @@ impl Sweep {
         let spread = once.spread(Column::WithLoops, Row::EndError)?;
         let below = |limit| 100.0 * once.share(|lap| end_error(lap) < Some(limit));
         match *path {
+            ["seeds"] => Some(SEEDS.count() as f64),
+            ["levels"] => Some(NOISE.len() as f64),
             ["first"] => Some(f64::from(*SEEDS.start())),
             ["last"] => Some(f64::from(*SEEDS.end())),
             ["below_low_percent"] => Some(below(spread.p05)),
@@ -79,6 +81,11 @@ impl Sweep {
             ["false"] => laps.false_acceptances() as f64,
             ["false_runs_percent"] => 100.0 * laps.false_run_share(),
             ["rms_grew_percent"] => percent(|lap| grew(lap, |lap| lap.keyframe_rms_m)),
+            ["rms_grew_false_percent"] => {
+                let grown = |lap: &&LapOutcome| grew(lap, |lap| lap.keyframe_rms_m);
+                let outcomes: Vec<_> = laps.outcomes.iter().filter(grown).copied().collect();
+                100.0 * LapStatistics { outcomes }.false_run_share()
+            }
             ["max_grew_percent"] => percent(|lap| grew(lap, |lap| lap.keyframe_max_m)),
             [column, row, "below_canonical_percent"] => {
                 let (column, row) = (column_of(column)?, row_of(row)?);

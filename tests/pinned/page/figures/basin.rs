@@ -1,0 +1,99 @@
+//! Registrations of w16.1 from a wrong heading: where they end, and how wide the basin is.
+
+use ch16_slam2d::basin::{BasinOutcome, BasinScene, BasinStart, Minimum, SUCCESS_RADIUS_M};
+use ch16_slam2d::icp::{IcpVariant, IcpWorkspace, correspondences, icp_information};
+
+/// The widget's own τ, m.
+pub const TAU_M: f64 = 0.7;
+/// Other τ that the exercises ask about, m.
+pub const WIDE_TAU_M: f64 = 1.4;
+const SHORT_TAU_M: f64 = 0.1;
+
+/// `p2l.180.rmse`, `p2p.wide.to_deg`: by variant, and by start or edge.
+pub fn value(scene: &BasinScene, path: &[&str]) -> Option<f64> {
+    match *path {
+        ["points"] => Some(scene.source().len() as f64),
+        ["success_m"] => Some(SUCCESS_RADIUS_M),
+        [variant, "from_deg"] => basin_edge(scene, variant, TAU_M, -1),
+        [variant, "to_deg"] => basin_edge(scene, variant, TAU_M, 1),
+        [variant, "wide", "from_deg"] => basin_edge(scene, variant, WIDE_TAU_M, -1),
+        [variant, "wide", "to_deg"] => basin_edge(scene, variant, WIDE_TAU_M, 1),
+        [_, "short", "starts"] => Some(whole_degrees().count() as f64),
+        [variant, "short", "right"] => {
+            let ends_right = |degrees: &i32| {
+                register(scene, variant, SHORT_TAU_M, f64::from(*degrees))
+                    .is_some_and(|found| found.minimum == Minimum::Right)
+            };
+            Some(whole_degrees().filter(ends_right).count() as f64)
+        }
+        [variant, heading_deg, "std_mm"] => {
+            claimed_std_mm(scene, variant, heading_deg.parse().ok()?)
+        }
+        [variant, heading_deg, "lost"] => {
+            let found = register(scene, variant, TAU_M, heading_deg.parse().ok()?)?;
+            Some((scene.source().len() - found.inliers) as f64)
+        }
+        [variant, heading_deg, what] => {
+            let found = register(scene, variant, TAU_M, heading_deg.parse().ok()?)?;
+            registration(&found, what)
+        }
+        _ => None,
+    }
+}
+
+fn variant(name: &str) -> Option<IcpVariant> {
+    match name {
+        "p2p" => Some(IcpVariant::PointToPoint),
+        "p2l" => Some(IcpVariant::PointToPlane),
+        _ => None,
+    }
+}
+
+/// Registers from the right position with a wrong heading.
+fn register(scene: &BasinScene, name: &str, tau: f64, heading_deg: f64) -> Option<BasinOutcome> {
+    let start = BasinStart {
+        heading_deg,
+        dx_m: 0.0,
+        dy_m: 0.0,
+    };
+    let config = BasinScene::config(variant(name)?, tau);
+    Some(scene.register_from(&start, &config, &mut IcpWorkspace::new()))
+}
+
+/// The standard deviation of the position, in its loosest direction, that a registration claims.
+fn claimed_std_mm(scene: &BasinScene, name: &str, heading_deg: f64) -> Option<f64> {
+    /// Range noise of the scene's sensor, m.
+    const SIGMA_M: f64 = 0.012;
+    let config = BasinScene::config(variant(name)?, TAU_M);
+    let found = register(scene, name, TAU_M, heading_deg)?;
+    let pairs = correspondences(scene.source(), scene.map(), found.pose, &config);
+    let information = icp_information(&pairs, SIGMA_M, 1.0, 0.0);
+    let position = information.fixed_view::<2, 2>(0, 0).into_owned();
+    Some(1e3 / position.symmetric_eigenvalues().min().sqrt())
+}
+
+fn registration(found: &BasinOutcome, what: &str) -> Option<f64> {
+    Some(match what {
+        "error_m" => found.error_m,
+        "error_deg" => found.error_deg.abs(),
+        "rmse" => found.rmse,
+        "inliers" => found.inliers as f64,
+        "iterations" => found.iterations as f64,
+        _ => return None,
+    })
+}
+
+fn whole_degrees() -> impl Iterator<Item = i32> {
+    -180..=180
+}
+
+/// The last whole degree, going from 0 to one side, from which the right minimum is reached.
+fn basin_edge(scene: &BasinScene, name: &str, tau: f64, side: i32) -> Option<f64> {
+    let comes_home = |degrees: i32| {
+        let found = register(scene, name, tau, f64::from(side * degrees));
+        found.is_some_and(|found| found.minimum == Minimum::Right)
+    };
+    variant(name)?;
+    let first_failure = (0..=180).find(|&degrees| !comes_home(degrees))?;
+    Some(f64::from(side * (first_failure - 1)))
+}

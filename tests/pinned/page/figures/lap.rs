@@ -1,0 +1,99 @@
+//! Laps by name, and what the results table says of each.
+
+use ch16_slam2d::chi_squared::gate_threshold;
+use ch16_slam2d::loops::GateModel;
+use ch16_slam2d::slam::{LapRecord, LapTrace, SlamConfig};
+use pr_geom::Translation;
+
+use super::loops;
+
+/// The parameters of the lap of that name.
+pub fn config(name: &str) -> Option<SlamConfig> {
+    Some(match name {
+        "canonical" => SlamConfig::default(),
+        "noloops" => SlamConfig::default().without_loops(),
+        "noisy" => noisy(),
+        "tight" => {
+            let mut config = noisy();
+            config.loops.gate_chi2 = gate_threshold(0.9);
+            config
+        }
+        "locked" => drifting(),
+        "exact" => {
+            let mut config = drifting();
+            config.loops.gate_model = GateModel::ExactMarginal;
+            config
+        }
+        "six" => SlamConfig::with_seed_and_noise(6, 1.0),
+        _ => return None,
+    })
+}
+
+/// The canonical run with four times the wheel noise.
+fn noisy() -> SlamConfig {
+    let mut config = SlamConfig::default();
+    config.drive.noise_factor = 4.0;
+    config
+}
+
+/// A lap that drifts farther than the gate allows for.
+fn drifting() -> SlamConfig {
+    SlamConfig::with_seed_and_noise(2, 3.0)
+}
+
+/// `rms`, `turn.short_m`, `loop.0.chi2`, `front_end.rms`: results of a lap, by name.
+pub fn value(record: &LapRecord, path: &[&str]) -> Option<f64> {
+    match *path {
+        ["seed"] => Some(f64::from(record.config.drive.seed)),
+        ["noise"] => Some(record.config.drive.noise_factor),
+        ["turn", what] => turn(&record.lap, what),
+        ["loop", index, what] => {
+            let attempt = record.lap.loop_attempts().nth(index.parse().ok()?)?;
+            loops::attempt(attempt, &record.lap, what)
+        }
+        ["right_refused"] => Some(loops::right_refused(&record.lap)),
+        ["front_end", what] => summary(&record.front_end, what),
+        [what] => summary(&record.lap, what),
+        _ => None,
+    }
+}
+
+/// Cells of the grid that is painted from a whole lap.
+pub fn grid(record: &LapRecord, what: &str) -> Option<f64> {
+    let grid = record.occupancy_grid(record.ticks());
+    match what {
+        "occupied" => Some(grid.occupied_cells() as f64),
+        "free" => Some(grid.free_cells() as f64),
+        _ => None,
+    }
+}
+
+fn summary(lap: &LapTrace, what: &str) -> Option<f64> {
+    let summary = &lap.summary;
+    Some(match what {
+        "ticks" => summary.ticks as f64,
+        "loops" => summary.loops as f64,
+        "turn_node" => lap.turn_node? as f64,
+        "odometry_end_error" => summary.odometry_end_error_m,
+        "odometry_rms" => summary.odometry_rms_m,
+        "end_error" => summary.keyframe_end_error_m,
+        "rms" => summary.keyframe_rms_m,
+        "max_error" => summary.keyframe_max_m,
+        "last_nine_min" => summary.last_keyframes_m.0,
+        "last_nine_max" => summary.last_keyframes_m.1,
+        "map_disagreement" => summary.map_disagreement_m?,
+        _ => return None,
+    })
+}
+
+/// The turn's keyframe against the truth: too short along the corridor, and off to the side.
+fn turn(lap: &LapTrace, what: &str) -> Option<f64> {
+    let node = lap.turn_node?;
+    let error =
+        lap.poses(lap.summary.ticks)[node].translation() - lap.keyframes[node].truth.translation();
+    match what {
+        "short_m" => Some(-error.x),
+        "side_m" => Some(error.y.abs()),
+        _ => None,
+    }
+}

@@ -1,0 +1,35 @@
+//! Attempts to close a loop: what was found, what the gate said, and how true it was.
+
+use ch16_slam2d::slam::{LapTrace, LoopAttempt};
+
+/// `from`, `chi2`, `max_shift`: one attempt, by name.
+pub fn attempt(attempt: &LoopAttempt, lap: &LapTrace, what: &str) -> Option<f64> {
+    let verification = &attempt.verification;
+    let gate_std = |axis: usize| 1.0 / verification.gate_information[(axis, axis)].sqrt();
+    Some(match what {
+        "tick" => attempt.tick as f64,
+        "from" => verification.from_node as f64,
+        "to" => verification.candidate.node as f64,
+        "gap" => verification.gap() as f64,
+        "chi2" => verification.gate.chi2,
+        "rmse" => verification.rmse_m,
+        "accepted" => f64::from(u8::from(attempt.accepted())),
+        "gate_std_m" => gate_std(0),
+        "gate_std_deg" => gate_std(2).to_degrees(),
+        "max_shift" => attempt.effect?.max_shift_m,
+        "rms_before" => attempt.effect?.keyframe_rms_m.before,
+        "rms_after" => attempt.effect?.keyframe_rms_m.after,
+        "error_m" => lap.loop_error(attempt).position_m,
+        "error_deg" => lap.loop_error(attempt).heading_deg,
+        _ => return None,
+    })
+}
+
+/// Attempts that the gate alone turned away although they were right.
+pub fn right_refused(lap: &LapTrace) -> f64 {
+    let is_right = |attempt: &&LoopAttempt| !lap.loop_error(attempt).is_false();
+    let refused = lap
+        .loop_attempts()
+        .filter(|attempt| !attempt.verification.gate.passes());
+    refused.filter(is_right).count() as f64
+}

@@ -1,0 +1,111 @@
+//! What the text says about the set-up: the Apartment, constants of the lap, the gate.
+
+use ch16_slam2d::basin::BasinScene;
+use ch16_slam2d::chi_squared::{cdf3, gate_threshold};
+use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::icp::{AdaptiveThreshold, IcpVariant, regularize};
+use ch16_slam2d::slam::{LAST_KEYFRAMES, SlamConfig};
+use ch16_slam2d::terrain::TerrainSettings;
+use nalgebra::Matrix3;
+use pr_geom::{SE2, Vector2};
+use pr_sim::World;
+
+use super::basin::{TAU_M, WIDE_TAU_M};
+
+/// Sizes of the Apartment, m.
+pub fn world(what: &str) -> Option<f64> {
+    let size = |bounds: pr_sim::Bounds| bounds.max - bounds.min;
+    let rooms = World::apartment_rooms();
+    let (a, d) = (rooms[0].bounds, rooms[3].bounds);
+    match what {
+        "width" => Some(size(World::apartment().bounds()).x),
+        "height" => Some(size(World::apartment().bounds()).y),
+        "corridor_width" => Some(d.min.y - a.max.y),
+        "room_a_width" => Some(size(a).x),
+        "room_a_height" => Some(size(a).y),
+        _ => None,
+    }
+}
+
+/// `lap.beams`, `loop.radius_m`, `basin.tau`: constants by the part that they belong to.
+pub fn value(path: &[&str]) -> Option<f64> {
+    let config = SlamConfig::default();
+    let loops = &config.loops;
+    let basin = BasinScene::config(IcpVariant::PointToPoint, TAU_M);
+    Some(match *path {
+        ["lap", "beams"] => config.drive.lidar.beams as f64,
+        ["lap", "tick_s"] => config.drive.dt_s,
+        ["lap", "last_keyframes"] => LAST_KEYFRAMES as f64,
+        ["lap", "window"] => config.window_sweeps as f64,
+        ["lap", "keyframe_m"] => config.keyframe_distance_m,
+        ["lap", "keyframe_rad"] => config.keyframe_turn_rad,
+        ["loop", "every_ordinal"] => loops.attempt_every_nodes as f64,
+        ["loop", "radius_m"] => loops.radius_m,
+        ["loop", "min_gap"] => loops.min_gap_nodes as f64,
+        ["loop", "max_rmse_m"] => loops.max_rmse_m,
+        ["loop", "min_inliers"] => loops.min_inliers as f64,
+        ["loop", "drift_m"] => loops.drift_sigma_m,
+        ["loop", "drift_rad"] => loops.drift_sigma_rad,
+        ["loop", "inflate"] => loops.trust.inflate,
+        ["odometry", "inflate"] => config.odometry_trust.inflate,
+        ["lap", "tau_deviations"] => tau_deviations(),
+        ["noise", "fourfold_std"] => fourfold_std(),
+        ["information", "ridge"] => regularize(&Matrix3::zeros())[(0, 0)],
+        ["information", "cap"] => information_cap(),
+        ["information", "cap_std_m"] => 1.0 / information_cap().sqrt(),
+        ["basin", "tau"] => basin.tau,
+        ["basin", "tau_wide"] => WIDE_TAU_M,
+        ["basin", "max_iters"] => basin.max_iters as f64,
+        ["normals", "min_neighbors"] => min_neighbors() as f64,
+        ["terrain", "span_m"] => TerrainSettings::default().span_m,
+        _ => return None,
+    })
+}
+
+fn information_cap() -> f64 {
+    regularize(&(Matrix3::identity() * 1e9))[(0, 0)]
+}
+
+/// The fewest points in a line that give each other normals.
+fn min_neighbors() -> usize {
+    let has_normals = |count: &usize| {
+        let line = (0..*count).map(|k| Vector2::new(0.05 * k as f64, 0.0));
+        let mut cloud: PointCloud = line.collect();
+        cloud.estimate_normals(0.3);
+        cloud.normal(0).is_some()
+    };
+    (1..10)
+        .find(has_normals)
+        .expect("ten points in a line give normals")
+}
+
+/// By how much noise factor 4 multiplies the standard deviation of the wheels' speed.
+fn fourfold_std() -> f64 {
+    let noise = SlamConfig::default().drive.odometry_noise;
+    (noise.scaled(4.0).alpha[0] / noise.alpha[0]).sqrt()
+}
+
+/// How many times the usual difference of prediction and registration the adaptive τ is.
+fn tau_deviations() -> f64 {
+    // A power of two, so that nothing is rounded.
+    const DIFFERENCE_M: f64 = 0.125;
+    let mut threshold = AdaptiveThreshold::new(0.5, 0.0, 6.0);
+    for _ in 0..8 {
+        threshold.update(&SE2::identity(), &SE2::translation(DIFFERENCE_M, 0.0));
+    }
+    threshold.tau() / DIFFERENCE_M
+}
+
+/// The test of an innovation: its threshold, and what that lets through.
+pub fn gate(what: &str) -> Option<f64> {
+    match what {
+        "chi2" => Some(SlamConfig::default().loops.gate_chi2),
+        "quantile_percent" => {
+            let gate = SlamConfig::default().loops.gate_chi2;
+            Some(100.0 * cdf3(gate))
+        }
+        "refused_share" => Some(1.0 - cdf3(SlamConfig::default().loops.gate_chi2)),
+        "tight_chi2" => Some(gate_threshold(0.9)),
+        _ => None,
+    }
+}
