@@ -5,6 +5,8 @@
 use std::fs;
 use std::path::Path;
 
+use super::printed::measures;
+
 /// A number that the page says was computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
@@ -51,7 +53,7 @@ pub struct Document {
     pub citations: Vec<(String, String)>,
     /// Every `id`, with the text of the element where it is an entry of the references.
     pub references: Vec<(String, String)>,
-    /// Text that no mark covers and that holds a digit: there should be none.
+    /// Text that no mark covers and that holds a number: there should be none.
     pub loose_numbers: Vec<String>,
     /// The path of the walls in the plan.
     pub wall_path: String,
@@ -64,8 +66,8 @@ enum Open {
     Citation(String, String),
     Reference(String, String),
     Formula(String),
-    /// A number of our own ordering: exercises.
-    Ordinal,
+    /// What the reader counts on the spot: items, unknowns, exercises.
+    Count,
     /// A command, whose digits are part of its name.
     Code,
 }
@@ -101,8 +103,8 @@ impl Document {
                 | Open::Reference(_, words)
                 | Open::Formula(words),
             ) => words.push_str(&text),
-            Some(Open::Ordinal | Open::Code) => {}
-            None if text.contains(|c: char| c.is_ascii_digit()) => {
+            Some(Open::Count | Open::Code) => {}
+            None if measures(&text) => {
                 self.loose_numbers.push(text.trim().to_owned());
             }
             None => {}
@@ -119,7 +121,7 @@ impl Document {
                 let text = String::new();
                 *open = Some(Open::Figure(Figure { name, text }));
             }
-            "span" if class == "ordinal" => *open = Some(Open::Ordinal),
+            "span" if class == "ordinal" || class == "count" => *open = Some(Open::Count),
             "a" if class.split(' ').any(|class| class == "slam-link") => {
                 let href = attribute("href").expect("a link has a target");
                 let text = String::new();
@@ -155,7 +157,7 @@ impl Document {
 
     fn close(&mut self, open: &mut Option<Open>, name: &str) {
         let ends = match open {
-            Some(Open::Figure(_) | Open::Ordinal) => "/span",
+            Some(Open::Figure(_) | Open::Count) => "/span",
             Some(Open::Link(_) | Open::Citation(..)) => "/a",
             Some(Open::Reference(..)) => "/li",
             Some(Open::Formula(_)) => "/tex",
@@ -171,7 +173,7 @@ impl Document {
             Some(Open::Citation(href, text)) => self.citations.push((href, text)),
             Some(Open::Reference(id, text)) => self.references.push((id, text)),
             Some(Open::Formula(tex)) => self.take_formula(&tex),
-            Some(Open::Ordinal | Open::Code) | None => {}
+            Some(Open::Count | Open::Code) | None => {}
         }
     }
 

@@ -1,0 +1,63 @@
+//! The page's own drawings: true to the Apartment, and in the marks of the legend.
+
+use pr_sim::World;
+
+use super::document::source;
+use super::page;
+
+#[test]
+fn the_plan_shows_the_walls_of_the_apartment() {
+    let path = page().wall_path;
+    let mut drawn = Vec::new();
+    for line in path.split('M').skip(1) {
+        let split = line.find(['H', 'V']).expect("walls run along the axes");
+        let from: Vec<f64> = line[..split]
+            .split(' ')
+            .map(|n| n.parse().unwrap())
+            .collect();
+        let to: f64 = line[split + 1..].parse().unwrap();
+        let end = if line.contains('H') {
+            [to, from[1]]
+        } else {
+            [from[0], to]
+        };
+        drawn.push([[from[0], from[1]], end]);
+    }
+    let world = World::apartment();
+    let walls: Vec<[[f64; 2]; 2]> = world
+        .walls()
+        .iter()
+        .map(|wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]])
+        .collect();
+    for wall in &walls {
+        assert!(drawn.contains(wall), "{wall:?} is missing in {drawn:?}");
+    }
+    assert_eq!(drawn.len(), walls.len());
+}
+
+#[test]
+fn every_drawing_uses_the_mark_that_belongs_to_its_colour() {
+    let style = source("web/page/page.css");
+    let mut marks = 0;
+    // `.nodes rect { fill: var(--posterior); }`: a group of a drawing and the shape in it.
+    for rule in style.lines().filter(|line| line.starts_with('.')) {
+        let Some((selector, declarations)) = rule.split_once(" { ") else {
+            continue;
+        };
+        let shape = selector.rsplit(' ').next().unwrap_or_default();
+        for (tone, mark) in [
+            ("prior", "circle"),
+            ("measurement", "path"),
+            ("posterior", "rect"),
+        ] {
+            if declarations.contains(&format!("var(--{tone})")) && selector.contains(' ') {
+                assert_eq!(shape, mark, "{rule}");
+                marks += 1;
+            }
+        }
+    }
+    assert_eq!(
+        marks, 5,
+        "sweep points, map points, poses, loop edge and its cross"
+    );
+}

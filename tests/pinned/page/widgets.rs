@@ -1,0 +1,43 @@
+//! The widgets of the page, set as its links and questions set them.
+
+use kit::model::Model;
+use kit::shell::Shell;
+
+/// One of each widget.
+pub struct Widgets(pub Vec<Shell>);
+
+impl Widgets {
+    /// All of them, at their defaults.
+    pub fn new() -> Self {
+        Self(vec![
+            w16_1_basin_explorer::widget(),
+            w16_2_full_lap::widget(),
+            w16_3_cost_terraces::widget(),
+            w16_4_control_room::widget(),
+        ])
+    }
+
+    /// Puts a widget into a state such as `heading=40&dx=0`, from its defaults.
+    pub fn set(&mut self, id: &str, state: &str) -> &dyn Model {
+        let widget = self
+            .0
+            .iter_mut()
+            .find(|widget| widget.model().spec().id == id);
+        let model = widget
+            .unwrap_or_else(|| panic!("no widget {id}"))
+            .model_mut();
+        model.press("defaults").expect("every widget has defaults");
+        for pair in state.split('&') {
+            let (name, text) = pair.split_once('=').expect("a name and a value");
+            let found = model.values().find(name);
+            let (spec, _) = found.unwrap_or_else(|| panic!("{id} has no {name}"));
+            let value = spec
+                .parse(text)
+                .unwrap_or_else(|error| panic!("{id}: {error}"));
+            model
+                .set(name, value)
+                .unwrap_or_else(|error| panic!("{id}: {error}"));
+        }
+        model
+    }
+}
