@@ -8,6 +8,7 @@ pub mod document;
 mod drawings;
 mod figures;
 mod printed;
+mod registrations;
 mod widgets;
 
 use document::{Document, Figure, NumberLink, numbers_in, source};

@@ -1,0 +1,35 @@
+//! What the page calls home is what w16.1 calls right.
+
+use ch16_slam2d::basin::Minimum;
+use kit::model::Standing;
+
+use super::figures::Figures;
+use super::widgets::Widgets;
+
+/// Names of basins in the text, and how the widget is set to them.
+const BASINS: [(&str, &str); 3] = [
+    ("basin.p2p", "variant=point-to-point"),
+    ("basin.p2p.wide", "variant=point-to-point&tau=1.4"),
+    ("basin.p2l", "variant=point-to-plane"),
+];
+
+#[test]
+fn the_widget_comes_home_at_both_printed_edges_and_not_one_degree_beyond() {
+    let mut figures = Figures::default();
+    let mut widgets = Widgets::new();
+    let mut verdict = |state: &str, heading: f64| {
+        let state = format!("{state}&dx=0&dy=0&heading={heading}");
+        let outcome = widgets.set("w16.1", &state).outcome();
+        (outcome.standing, outcome.verdict)
+    };
+    let home = (Standing::Good, Minimum::Right.name().to_owned());
+    for (basin, state) in BASINS {
+        for (edge, outwards) in [("from_deg", -1.0), ("to_deg", 1.0)] {
+            let name = format!("{basin}.{edge}");
+            let heading = figures.value(&name).expect("the page prints it");
+            assert_eq!(verdict(state, heading), home, "{name}: {heading}°");
+            let beyond = heading + outwards;
+            assert_ne!(verdict(state, beyond), home, "{name}: {beyond}°");
+        }
+    }
+}
