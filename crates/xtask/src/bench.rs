@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::chromium;
 use crate::run::{Failure, cargo, program, root, show, step};
 use crate::tools;
 
@@ -18,7 +19,7 @@ const PAGE: &str = "docs/performance.md";
 /// The first step that fails, in one line.
 pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
     tools::ensure_build_tools()?;
-    let chromium = tools::ensure_chromium()?;
+    let chromium = chromium::ensure_chromium()?;
     tools::ensure_node_modules(&root().join("tests/browser"))?;
     compile_native(&["slam2d_bench", "slam2d_cli"])?;
     let web = root().join("target/bench-web");

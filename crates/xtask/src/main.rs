@@ -1,11 +1,12 @@
 //! The project's commands: `cargo xtask serve`, `build`, `test`, `bench`.
 //!
 //! Everything that a step needs is checked first and installed where cargo, npm or apt can do it;
-//! what cannot be installed is named in one line, with the way to get it. Tools go to
-//! `target/tools`, never to the user's home.
+//! what cannot be installed is named in one line, with the way to get it. Tools of cargo go to
+//! `target/tools`; the wasm target goes into rustup's toolchain and Chromium where apt puts it.
 
 mod args;
 mod bench;
+mod chromium;
 mod http;
 mod run;
 mod serve;

@@ -17,6 +17,11 @@ impl Failure {
     pub fn new(message: impl Into<String>) -> Self {
         Self(message.into())
     }
+
+    /// The same failure, and on the same line what the reader can do about it.
+    pub fn with_way_out(self, what_to_do: &str) -> Self {
+        Self(format!("{self}; {what_to_do}"))
+    }
 }
 
 impl fmt::Display for Failure {

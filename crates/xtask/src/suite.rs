@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::{fs, io};
 
 use crate::bench;
+use crate::chromium;
 use crate::run::{Failure, cargo, program, root, show};
 use crate::site::{self, Speed};
 use crate::tools;
@@ -14,14 +15,17 @@ use crate::tools;
 /// The check that failed.
 pub fn test() -> Result<(), Failure> {
     show("Format", cargo().args(["fmt", "--check"]))?;
+    // What is missing is better known before many minutes of compiling and testing.
+    tools::ensure_build_tools()?;
+    let chromium = chromium::ensure_chromium()?;
+    let browser = root().join("tests/browser");
+    tools::ensure_node_modules(&browser)?;
     show(
         "Lints",
         cargo().args(["clippy", "--all-targets", "--quiet", "--", "-D", "warnings"]),
     )?;
     show("Native tests", cargo().args(["test", "--quiet"]))?;
     bench::check_counts()?;
-    // Before minutes of compiling for the web.
-    let chromium = tools::ensure_chromium()?;
     site::build(Speed::SmallAndFast)?;
     let web = root().join("web");
     show(
@@ -36,8 +40,6 @@ pub fn test() -> Result<(), Failure> {
             .arg("--test")
             .args(test_files("tests/wasm")?),
     )?;
-    let browser = root().join("tests/browser");
-    tools::ensure_node_modules(&browser)?;
     show(
         "Browser tests",
         program("node")

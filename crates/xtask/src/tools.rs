@@ -47,19 +47,37 @@ fn ensure_target() -> Result<(), Failure> {
     {
         return Ok(());
     }
+    if output(program("rustup").arg("--version")).is_none() {
+        return Err(Failure::new(format!(
+            "the Rust target {TARGET} is missing, and rustup, which installs it: https://rustup.rs"
+        )));
+    }
     step(
         "Installing the wasm target",
         program("rustup").args(["target", "add", TARGET]),
     )
     .map_err(|failure| {
-        Failure::new(format!(
-            "{failure}\nThe Rust target {TARGET} is missing: `rustup target add {TARGET}`"
+        failure.with_way_out(&format!(
+            "it needs the network: `rustup target add {TARGET}`"
         ))
     })
 }
 
 fn ensure_node() -> Result<(), Failure> {
-    let version = output(program("node").arg("--version")).ok_or_else(|| {
+    check_node(output(program("node").arg("--version")).as_deref())?;
+    // Distributions package npm apart from Node.
+    match output(program(npm()).arg("--version")) {
+        Some(_) => Ok(()),
+        None => Err(Failure::new(
+            "npm is missing: the Node of https://nodejs.org brings it, \
+             and Debian has it as `sudo apt-get install npm`",
+        )),
+    }
+}
+
+/// Takes what `node --version` printed, nothing where there is no Node.
+fn check_node(version: Option<&str>) -> Result<(), Failure> {
+    let version = version.ok_or_else(|| {
         Failure::new("Node is missing: install version 20 or later from https://nodejs.org")
     })?;
     let major = version
@@ -95,6 +113,11 @@ fn ensure_cargo_tool(name: &str, package: &str, version: &str) -> Result<(), Fai
             .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16")
             .env_remove("CARGO_TARGET_DIR"),
     )
+    .map_err(|failure| {
+        failure.with_way_out(&format!(
+            "it needs the network and a C compiler; any {name} {version} on the PATH will do, too"
+        ))
+    })
 }
 
 fn has_version(tool: &Path, version: &str) -> bool {
@@ -117,6 +140,12 @@ pub fn ensure_node_modules(folder: &Path) -> Result<(), Failure> {
             .args(["ci", "--no-audit", "--no-fund"])
             .current_dir(folder),
     )
+    .map_err(|failure| {
+        let folder = name.display();
+        failure.with_way_out(&format!(
+            "it needs the network: `npm ci` in {folder}/ tries again"
+        ))
+    })
 }
 
 /// npm is a script on Windows, which must be named in full.
@@ -124,64 +153,24 @@ pub fn npm() -> &'static str {
     if cfg!(windows) { "npm.cmd" } else { "npm" }
 }
 
-/// A Chromium for the browser tests; installed through apt-get as root on Debian.
-///
-/// # Errors
-/// One line on how to get it.
-pub fn ensure_chromium() -> Result<PathBuf, Failure> {
-    if let Some(path) = find_chromium() {
-        return Ok(path);
-    }
-    let is_root = output(program("id").arg("-u")).as_deref() == Some("0");
-    if is_root && output(program("apt-get").arg("--version")).is_some() {
-        step(
-            "Updating the package lists",
-            program("apt-get").arg("update"),
-        )?;
-        step(
-            "Installing Chromium (apt-get, once)",
-            program("apt-get").args([
-                "install",
-                "--yes",
-                "--no-install-recommends",
-                "chromium",
-                "fonts-dejavu-core",
-            ]),
-        )?;
-        if let Some(path) = find_chromium() {
-            return Ok(path);
-        }
-    }
-    Err(Failure::new(
-        "the browser tests need Chromium: `sudo apt-get install chromium`, \
-         or set CHROMIUM to the path of a Chromium or Chrome",
-    ))
-}
-
-fn find_chromium() -> Option<PathBuf> {
-    if let Some(path) = env::var_os("CHROMIUM").map(PathBuf::from) {
-        return path.exists().then_some(path);
-    }
-    let names = [
-        "chromium",
-        "chromium-browser",
-        "google-chrome-stable",
-        "google-chrome",
-    ];
-    let inherited = env::var_os("PATH").unwrap_or_default();
-    let on_path = env::split_paths(&inherited)
-        .flat_map(|folder| names.map(|name| folder.join(name)))
-        .find(|path| path.is_file());
-    let in_applications = || {
-        let path = "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome";
-        Some(PathBuf::from(path)).filter(|path| path.exists())
-    };
-    on_path.or_else(in_applications)
-}
-
 /// The trimmed standard output of a program that succeeds.
-fn output(command: &mut Command) -> Option<String> {
+pub fn output(command: &mut Command) -> Option<String> {
     let output = command.output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;
     output.status.success().then(|| text.trim().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_old_node_is_told_from_a_new_one_and_from_none() {
+        assert!(check_node(Some("v20.0.0")).is_ok());
+        assert!(check_node(Some("v26.1.0-nightly")).is_ok());
+        let refused = |version| check_node(version).unwrap_err().to_string();
+        assert!(refused(Some("v18.19.1")).starts_with("Node v18.19.1 is too old"));
+        assert!(refused(Some("nonsense")).starts_with("Node nonsense is too old"));
+        assert!(refused(None).starts_with("Node is missing"));
+    }
 }
