@@ -25,12 +25,15 @@ pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
     let web = root().join("target/bench-web");
     step(
         "Compiling the workloads to WebAssembly",
-        program(tools::tools().join("bin/wasm-pack"))
-            .args(["build", "tests/bench", "--target", "web", "--no-opt"])
-            .args(["--no-pack", "--mode", "no-install", "--profile", "web"])
-            .args(["--out-name", "slam2d_bench", "--out-dir"])
-            .arg(&web)
-            .env("PATH", tools::path_with_tools()),
+        &mut tools::wasm_pack_build(
+            "tests/bench",
+            &[
+                "--target=web",
+                "--out-dir=../../target/bench-web",
+                "--out-name=slam2d_bench",
+                "--profile=web",
+            ],
+        ),
     )?;
 
     let figures = Figures::in_folder(&web);
@@ -92,7 +95,12 @@ fn compile_native(packages: &[&str]) -> Result<(), Failure> {
     let named = packages.iter().flat_map(|package| ["--package", package]);
     step(
         "Compiling the workloads",
-        cargo().args(["build", "--release"]).args(named),
+        cargo()
+            .args(["build", "--release"])
+            .args(named)
+            // Said here, so that it is known: CARGO_TARGET_DIR and cargo's settings may say otherwise.
+            .arg("--target-dir")
+            .arg(root().join("target")),
     )
 }
 

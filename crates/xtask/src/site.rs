@@ -51,12 +51,15 @@ fn compile_wasm(speed: Speed) -> Result<(), Failure> {
     // instances as there are widgets. No wasm-opt: see web/Cargo.toml.
     step(
         "Compiling the widgets to WebAssembly (the first time takes minutes)",
-        program("wasm-pack")
-            .args(["build", "web", "--target", "no-modules", "--no-opt"])
-            .args(["--no-pack", "--mode", "no-install"])
-            .args(["--out-dir", "pkg", "--out-name", "slam_web"])
-            .args(["--profile", speed.profile()])
-            .env("PATH", tools::path_with_tools()),
+        &mut tools::wasm_pack_build(
+            "web",
+            &[
+                "--target=no-modules",
+                "--out-dir=pkg",
+                "--out-name=slam_web",
+                &format!("--profile={}", speed.profile()),
+            ],
+        ),
     )
 }
 

@@ -10,7 +10,8 @@ use crate::run::{Failure, cargo, program, root, step};
 /// Pinned: the glue that wasm-bindgen writes belongs to the crate of the very same version.
 const WASM_BINDGEN: &str = "0.2.130";
 const WASM_PACK: &str = "0.15.1";
-const TARGET: &str = "wasm32-unknown-unknown";
+/// What browsers run.
+pub const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Makes sure that everything that builds the site is there.
 ///
@@ -25,15 +26,36 @@ pub fn ensure_build_tools() -> Result<(), Failure> {
     ensure_node_modules(&root().join("web"))
 }
 
-/// The PATH with our own tools first, so that wasm-pack finds our wasm-bindgen.
-pub fn path_with_tools() -> std::ffi::OsString {
+/// `wasm-pack build PACKAGE`, with our own tools first on its PATH.
+///
+/// Takes more options of wasm-pack. Panic messages name sources, and so the module would hold
+/// where this machine keeps cargo's registry: the compiler writes `cargo/registry/…` instead.
+pub fn wasm_pack_build(package: &str, options: &[&str]) -> Command {
     let inherited = env::var_os("PATH").unwrap_or_default();
     let paths = std::iter::once(tools().join("bin")).chain(env::split_paths(&inherited));
-    env::join_paths(paths).unwrap_or(inherited)
+    let mut command = program("wasm-pack");
+    command
+        .args(["build", package, "--no-opt", "--no-pack"])
+        .args(["--mode", "no-install"])
+        .args(options)
+        .env("PATH", env::join_paths(paths).unwrap_or(inherited));
+    let home = env::var_os("CARGO_HOME").map(PathBuf::from);
+    if let Some(home) = home.or_else(|| Some(env::home_dir()?.join(".cargo"))) {
+        command.args(["--", "--config", &remapping(&home)]);
+    }
+    command
+}
+
+/// A setting for cargo; it is added to the flags of `.cargo/config.toml`.
+fn remapping(cargo_home: &Path) -> String {
+    format!(
+        "target.{TARGET}.rustflags=['--remap-path-prefix={}=cargo']",
+        cargo_home.display()
+    )
 }
 
 /// Where cargo puts the tools.
-pub fn tools() -> PathBuf {
+fn tools() -> PathBuf {
     root().join("target/tools")
 }
 
@@ -172,5 +194,12 @@ mod tests {
         assert!(refused(Some("v18.19.1")).starts_with("Node v18.19.1 is too old"));
         assert!(refused(Some("nonsense")).starts_with("Node nonsense is too old"));
         assert!(refused(None).starts_with("Node is missing"));
+    }
+
+    #[test]
+    fn a_flag_for_cargo_keeps_spaces_and_backslashes_of_the_path() {
+        let flag = remapping(Path::new(r"C:\Users\A B\.cargo"));
+        let expected = r"target.wasm32-unknown-unknown.rustflags=['--remap-path-prefix=C:\Users\A B\.cargo=cargo']";
+        assert_eq!(flag, expected);
     }
 }
