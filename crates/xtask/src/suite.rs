@@ -24,6 +24,12 @@ pub fn test() -> Result<(), Failure> {
         "Lints",
         cargo().args(["clippy", "--all-targets", "--quiet", "--", "-D", "warnings"]),
     )?;
+    show(
+        "Lints of what only WebAssembly compiles",
+        cargo()
+            .args(["clippy", "--quiet", "--package", "slam_web"])
+            .args(["--target", tools::TARGET, "--", "-D", "warnings"]),
+    )?;
     show("Native tests", cargo().args(["test", "--quiet"]))?;
     bench::check_counts()?;
     site::build(Speed::SmallAndFast)?;
