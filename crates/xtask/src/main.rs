@@ -7,6 +7,7 @@
 mod args;
 mod bench;
 mod chromium;
+mod committed;
 mod http;
 mod run;
 mod serve;

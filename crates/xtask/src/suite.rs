@@ -5,6 +5,7 @@ use std::{fs, io};
 
 use crate::bench;
 use crate::chromium;
+use crate::committed::{Committed, Strictness};
 use crate::run::{Failure, cargo, program, root, show};
 use crate::site::{self, Speed};
 use crate::tools;
@@ -32,7 +33,9 @@ pub fn test() -> Result<(), Failure> {
     )?;
     show("Native tests", cargo().args(["test", "--quiet"]))?;
     bench::check_counts()?;
+    let committed = Committed::read();
     site::build(Speed::SmallAndFast)?;
+    committed.compare(Strictness::of_this_run())?;
     let web = root().join("web");
     show(
         "Types of the element",
