@@ -1,6 +1,7 @@
 //! `slam2d basin`: where ICP ends in w16.1, from one start or a sweep of headings.
 
 use ch16_slam2d::basin::{BasinOutcome, BasinScene, BasinStart};
+use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace, StopReason};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -50,6 +51,13 @@ enum VariantName {
 
 #[derive(Serialize)]
 struct BasinJson {
+    /// Points of the target in its sensor's frame, m.
+    target: Vec<[f64; 2]>,
+    /// Unit normals of the target's points; null where a point has none.
+    normals: Vec<Option<[f64; 2]>>,
+    /// Points of the source in its sensor's frame, m.
+    source: Vec<[f64; 2]>,
+    /// The true `target_from_source`.
     truth: [f64; 3],
     runs: Vec<RunJson>,
 }
@@ -104,7 +112,13 @@ pub fn run(args: &BasinArgs) {
             error_deg: outcome.error_deg,
             minimum: outcome.minimum.name(),
         };
+        let target = scene.target();
         print_json(&BasinJson {
+            target: points(target),
+            normals: (0..target.len())
+                .map(|index| target.normal(index).map(Into::into))
+                .collect(),
+            source: points(scene.source()),
             truth: scene.truth().to_array(),
             runs: runs.map(run_json).collect(),
         });
@@ -134,4 +148,8 @@ pub fn run(args: &BasinArgs) {
             pose(&outcome.pose),
         );
     }
+}
+
+fn points(cloud: &PointCloud) -> Vec<[f64; 2]> {
+    cloud.iter().map(Into::into).collect()
 }

@@ -11,7 +11,7 @@ use crate::output::{print_json, say};
 #[derive(Args, Clone, Debug)]
 pub struct LapArgs {
     /// Seed of all noise, decimal or 0x….
-    #[arg(long, default_value = "0xC0FFEE", value_parser = numbers::seed)]
+    #[arg(long, default_value = "0xC0FFEE", value_parser = numbers::seed, allow_hyphen_values = true)]
     seed: u32,
     /// Factor of the wheels' six noise parameters.
     #[arg(long, default_value = "1", value_parser = numbers::noise_factor, allow_hyphen_values = true)]

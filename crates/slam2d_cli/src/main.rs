@@ -19,6 +19,8 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 
+use output::say;
+
 /// The numbers of the chapter on scan matching and pose-graph SLAM.
 #[derive(Debug, Parser)]
 #[command(name = "slam2d", version)]
@@ -79,7 +81,8 @@ fn refuse_arguments(error: &clap::Error) -> ExitCode {
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
     ) {
-        print!("{error}");
+        // The text of clap ends its own last line.
+        say!("{}", error.to_string().trim_end());
         return ExitCode::SUCCESS;
     }
     eprintln!("slam2d: {} (try slam2d --help)", one_line(error));

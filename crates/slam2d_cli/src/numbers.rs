@@ -1,5 +1,6 @@
 //! Numbers as arguments: read once, checked once, with a message that names the range.
 
+use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 
 /// Largest |offset| that a start may have, m: the Apartment is 12 m long.
@@ -46,6 +47,25 @@ pub fn noise_factor(text: &str) -> Result<f64, String> {
     within(text, 0.0..=100.0, "")
 }
 
+/// Shifts along each axis of a landscape: two make an axis, and a thousand take seconds.
+pub fn shifts(text: &str) -> Result<usize, String> {
+    let range = 2..=1001;
+    let count = text.parse().ok().filter(|count| range.contains(count));
+    count.ok_or_else(|| {
+        format!(
+            "not a whole number from {} to {}",
+            range.start(),
+            range.end()
+        )
+    })
+}
+
+/// A number of threads.
+pub fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let count = text.parse();
+    count.map_err(|_| "not a whole number from 1 on; without it all cores work".to_owned())
+}
+
 /// Headings in degrees: one, or `from:to:step` with both ends included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Headings(pub Vec<f64>);
@@ -63,9 +83,14 @@ pub fn headings_deg(text: &str) -> Result<Headings, String> {
         _ => return Err("expected A or A:B:STEP".to_owned()),
     };
     let count = ((to - from) / step + 1e-9).floor();
-    if step == 0.0 || !(0.0..MAX_HEADINGS).contains(&count) {
+    if step == 0.0 || count < 0.0 {
         return Err(format!(
             "a step of {step} does not lead from {from} to {to}"
+        ));
+    }
+    if count >= MAX_HEADINGS {
+        return Err(format!(
+            "a step of {step} makes too many headings, at most {MAX_HEADINGS}"
         ));
     }
     Ok(Headings(
@@ -134,6 +159,20 @@ mod tests {
         ] {
             assert!(headings_deg(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn a_step_that_leads_away_is_told_from_one_that_is_too_small() {
+        let refused = |text| headings_deg(text).unwrap_err();
+        for away in ["0:10:-1", "0:10:0", "10:10:0"] {
+            assert!(refused(away).contains("does not lead"), "{away}");
+        }
+        for small in ["0:10:1e-9", "0:10:1e-320", "0:100:0.001"] {
+            assert!(refused(small).contains("too many headings"), "{small}");
+        }
+        assert_eq!(headings_deg("0:99.999:0.001").unwrap().0.len(), 100_000);
+        // Where both ends are one, any step leads there.
+        assert_eq!(headings_deg("3:3:1").unwrap().0, [3.0]);
     }
 
     #[test]

@@ -23,7 +23,7 @@ const MAX_THREADS: usize = 1024;
 #[derive(Args, Clone, Debug)]
 pub struct SweepArgs {
     /// Seeds: A..=B, A..B or one.
-    #[arg(long, default_value = "1..=1000", value_parser = numbers::seeds)]
+    #[arg(long, default_value = "1..=1000", value_parser = numbers::seeds, allow_hyphen_values = true)]
     seeds: Seeds,
     /// Factors of the wheels' noise, separated by commas.
     #[arg(
@@ -35,7 +35,7 @@ pub struct SweepArgs {
     )]
     noise: Vec<f64>,
     /// Number of threads, at most one for each seed; all cores without it.
-    #[arg(long)]
+    #[arg(long, value_parser = numbers::threads, allow_hyphen_values = true)]
     threads: Option<NonZeroUsize>,
     /// Print one JSON list, an object for each noise factor.
     #[arg(long)]

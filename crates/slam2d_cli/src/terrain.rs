@@ -17,8 +17,8 @@ pub struct TerrainArgs {
     #[arg(long, default_value = "0.6", value_parser = numbers::tau_m, allow_hyphen_values = true)]
     tau: f64,
     /// Shifts along each axis.
-    #[arg(long, default_value_t = 49, value_parser = clap::value_parser!(u16).range(2..=1001))]
-    n: u16,
+    #[arg(long, default_value = "49", value_parser = numbers::shifts, allow_hyphen_values = true)]
+    n: usize,
     /// Print one JSON object, row-major with Δy outer.
     #[arg(long)]
     json: bool,
@@ -53,7 +53,7 @@ pub fn run(args: &TerrainArgs) {
     };
     let scene = TerrainScene::new(kind, TerrainScene::DEFAULT_NDT_CELL_M);
     let settings = TerrainSettings {
-        n: usize::from(args.n),
+        n: args.n,
         tau_m: args.tau,
         ..TerrainSettings::default()
     };

@@ -78,7 +78,10 @@ fn basin_prints_the_runs_of_the_reference() {
                 "--json",
             ];
             let printed = json(&arguments);
-            assert_covers("truth", &printed["truth"], &basin["truth"], 1e-9);
+            for field in ["target", "source", "truth"] {
+                assert_covers(field, &printed[field], &basin[field], 1e-9);
+            }
+            assert_same_lines(&printed["normals"], &basin["normals"]);
             let same_start = |run: &&Value| {
                 run["variant"] == variant
                     && [&run["tau"], &run["dx"], &run["dy"]].map(Value::to_string)
@@ -93,6 +96,26 @@ fn basin_prints_the_runs_of_the_reference() {
         }
     }
     assert_eq!(seen, runs.len());
+}
+
+/// Asserts that normals are those of the reference, where a normal and its opposite are the same.
+fn assert_same_lines(actual: &Value, expected: &Value) {
+    let normals = |list: &Value| -> Vec<Option<[f64; 2]>> {
+        serde_json::from_value(list.clone()).expect("a list of normals and nulls")
+    };
+    let (actual, expected) = (normals(actual), normals(expected));
+    assert_eq!(actual.len(), expected.len());
+    for (index, pair) in actual.into_iter().zip(expected).enumerate() {
+        match pair {
+            (None, None) => {}
+            (Some([ax, ay]), Some([bx, by])) => {
+                let sign = (ax * bx + ay * by).signum();
+                assert_close(&format!("normals[{index}]: x"), sign * ax, bx, 1e-9);
+                assert_close(&format!("normals[{index}]: y"), sign * ay, by, 1e-9);
+            }
+            _ => panic!("normals[{index}]: one of {pair:?} is missing"),
+        }
+    }
 }
 
 /// The offsets and thresholds that occur, as the reference writes them.
@@ -256,18 +279,26 @@ fn wrong_arguments_end_in_one_line_and_exit_code_2() {
     for (arguments, said) in [
         (&[][..], "a subcommand is needed"),
         (&["bogus"], "bogus"),
-        (&["lap", "--seed", "-1"], "-1"),
+        (&["lap", "--seed", "-1"], "4294967295"),
         (&["lap", "--seed", "4294967296"], "4294967295"),
         (&["lap", "--noise", "nan"], "finite"),
         (&["lap", "--noise", "-1"], "0 to 100"),
         (&["lap", "--frob"], "--frob"),
         (&["basin", "--tau", "inf"], "finite"),
         (&["basin", "--variant", "plane"], "plane"),
-        (&["basin", "--heading-deg", "0:10:0"], "step"),
+        (&["basin", "--heading-deg", "0:10:0"], "does not lead"),
+        (
+            &["basin", "--heading-deg", "0:10:1e-9"],
+            "too many headings",
+        ),
         (&["terrain", "--scene", "attic"], "attic"),
-        (&["terrain", "--n", "1"], "2..=1001"),
+        (&["terrain", "--n", "1"], "from 2 to 1001"),
+        (&["terrain", "--n", "48.5"], "whole number from 2 to 1001"),
+        (&["terrain", "--n", "-3"], "whole number from 2 to 1001"),
         (&["sweep", "--seeds", "5..5"], "empty"),
         (&["sweep", "--seeds", "0..=4294967295"], "too many"),
+        (&["sweep", "--seeds", "-1..3"], "4294967295"),
+        (&["sweep", "--threads", "0"], "whole number from 1 on"),
         (&["sweep", "--noise", "1,-2"], "0 to 100"),
         (&["register", "absent.csv", "absent.csv"], "absent.csv"),
         (&["register", "a.csv", "b.csv", "--repeat", "0"], "0"),
@@ -296,6 +327,23 @@ fn help_goes_to_standard_output() {
         "lap", "basin", "terrain", "table", "register", "sweep", "optimize",
     ] {
         assert!(text.contains(command), "{command} is not in\n{text}");
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_one_line_and_exit_code_2() {
+    for arguments in [&["lap", "--help"][..], &["--version"], &["table"]] {
+        let full = std::fs::File::create("/dev/full").unwrap();
+        let output = Command::new(env!("CARGO_BIN_EXE_slam2d"))
+            .args(arguments)
+            .stdout(full)
+            .output()
+            .expect("the binary was built for this test");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert_eq!(message.lines().count(), 1, "{arguments:?}: {message}");
+        assert!(message.contains("standard output"), "{message}");
     }
 }
 
