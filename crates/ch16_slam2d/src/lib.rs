@@ -9,6 +9,7 @@ pub mod icp;
 pub mod loops;
 pub mod metrics;
 pub mod ndt;
+pub mod prelude;
 pub mod results;
 pub mod samples;
 pub mod slam;
