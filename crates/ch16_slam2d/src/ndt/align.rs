@@ -246,3 +246,6 @@ fn linearize(cloud: &PointCloud, map: &NdtMap, pose: &SE2) -> (Vector3<f64>, Mat
         Matrix3::new(xx, xy, xw, xy, yy, yw, xw, yw, ww),
     )
 }
+
+#[cfg(test)]
+mod tests;
