@@ -146,31 +146,16 @@ async function bundle() {
     });
   }
   await cp(join(WEB, 'embed.html'), join(dist, 'embed.html'));
-  await cp(join(WEB, 'slam-widget.d.ts'), join(dist, 'slam-widget.d.ts'));
+  for (const types of ['slam-widget.d.ts', 'slam-predict.d.ts', 'slam-anywidget.d.ts']) {
+    await cp(join(WEB, types), join(dist, types));
+  }
 }
 
-/** `dist/` is the npm package, too: `npm pack dist`. */
+/** `dist/` is the npm package, too: `npm pack ./dist`. What serves the build alone stays out of it. */
 async function writePackage() {
-  const { name, version, description, license } = JSON.parse(await readFile(join(WEB, 'package.json'), 'utf8'));
-  const manifest = {
-    name,
-    version,
-    description,
-    license,
-    type: 'module',
-    exports: {
-      '.': { types: './slam-widget.d.ts', default: './slam-widget.js' },
-      './predict': './slam-predict.js',
-      './anywidget': './slam-anywidget.js',
-      './embed.html': './embed.html',
-      './schema.json': './schema.json',
-      './pictures/*': './pictures/*',
-      './package.json': './package.json',
-    },
-    sideEffects: true,
-    files: ['*.js', '*.wasm', '*.d.ts', 'embed.html', 'schema.json', 'pictures'],
-  };
-  await writeFile(join(dist, 'package.json'), `${JSON.stringify(manifest, null, 2)}\n`);
+  const source = JSON.parse(await readFile(join(WEB, 'package.json'), 'utf8'));
+  for (const key of ['//', 'private', 'engines', 'scripts', 'devDependencies']) delete source[key];
+  await writeFile(join(dist, 'package.json'), `${JSON.stringify(source, null, 2)}\n`);
 }
 
 async function copyExamples() {

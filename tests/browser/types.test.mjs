@@ -1,28 +1,30 @@
-// The generated types fit the element: right uses compile, wrong ones do not.
+// The types of the package fit what it holds: right uses compile, wrong ones do not.
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { it } from 'node:test';
+import { after, before, it } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import * as h from './harness.mjs';
+import { installPackage } from './package.mjs';
 
 const TSC = fileURLToPath(new URL('../../web/node_modules/typescript/bin/tsc', import.meta.url));
 
-/** The compiler's complaints about a program that uses the package's types. */
+let project;
+before(() => (project = installPackage()));
+after(() => project.remove());
+
+/** The compiler's complaints about a program that uses the package. */
 function complaints(program) {
-  const folder = mkdtempSync(join(tmpdir(), 'slam-types-'));
+  const file = join(project.folder, 'main.ts');
+  writeFileSync(file, `import type { WidgetStates, WidgetButtons, SlamWidget } from 'slam-widgets';\n${program}\nexport {};`);
   try {
-    writeFileSync(join(folder, 'main.ts'), `import type { WidgetStates, WidgetButtons, SlamWidget } from '${h.DIST}slam-widget';\n${program}`);
     execFileSync('node', [TSC, '--noEmit', '--strict', '--target', 'es2022', '--module', 'esnext',
-      '--moduleResolution', 'bundler', '--types', '', join(folder, 'main.ts')], { encoding: 'utf8' });
+      '--moduleResolution', 'bundler', '--types', '', file], { encoding: 'utf8', cwd: project.folder });
     return '';
   } catch (error) {
     return error.stdout;
-  } finally {
-    rmSync(folder, { recursive: true });
   }
 }
 
@@ -35,7 +37,7 @@ it('name every parameter and button of every widget', () => {
     ...[...widget.buttons, ...widget.presets].map((button, i) =>
       `const b${widget.id.replace('.', '_')}_${i}: WidgetButtons['${widget.id}'] = '${button.id}';`),
   ]);
-  assert.equal(complaints(`${lines.join('\n')}\nexport {};`), '');
+  assert.equal(complaints(lines.join('\n')), '');
 });
 
 it('take what the element takes', () => {
@@ -44,12 +46,28 @@ it('take what the element takes', () => {
     widget.heading = 60;
     widget.value = { heading: 12 };
     widget.addEventListener('slam-change', (event) => console.log(event.detail.parameter, event.detail.value));
-    void widget.press('play');
-    export {};`;
+    void widget.press('play');`;
   assert.equal(complaints(program), '');
 });
 
 it('refuse a parameter that is not there and an option that does not exist', () => {
-  assert.match(complaints("const x: WidgetStates['w16.1']['headin'] = 1; export {};"), /headin/);
-  assert.match(complaints("document.createElement('slam-widget').variant = 'plane'; export {};"), /not assignable/);
+  assert.match(complaints("const x: WidgetStates['w16.1']['headin'] = 1;"), /headin/);
+  assert.match(complaints("document.createElement('slam-widget').variant = 'plane';"), /not assignable/);
+});
+
+it('know the prediction and what it tells', () => {
+  const ask = (field) => `
+    import 'slam-widgets/predict';
+    const question = document.createElement('slam-predict');
+    question.addEventListener('slam-predict', ({ detail }) => { const told: boolean = detail.${field}; });`;
+  assert.equal(complaints(ask('correct')), '');
+  assert.match(complaints(ask('gap')), /not assignable/);
+});
+
+it('know the module for notebooks', () => {
+  const render = (cell) => `
+    import widget, { type Model } from 'slam-widgets/anywidget';
+    export const show = (model: Model, el: HTMLElement): (() => void) => widget.render(${cell});`;
+  assert.equal(complaints(render('{ model, el }')), '');
+  assert.match(complaints(render('{ model }')), /'el' is missing/);
 });

@@ -15,14 +15,9 @@ import './slam-widget.js';
 import { keepKeys } from './dom';
 import type { SlamWidget } from './element';
 import type { Outcome } from './instance';
+import type { Prediction } from '../slam-predict';
 
-interface Verdict {
-  prediction: string;
-  result: string;
-  correct: boolean;
-  /** Prediction minus result, for numbers. */
-  gap: number | null;
-}
+type Verdict = Omit<Prediction, 'widget'>;
 
 const STYLE = `
 :host { display: block; border: 1px solid currentColor; border-radius: 6px; padding: 0.75rem 1rem; }
@@ -97,7 +92,7 @@ export class SlamPredict extends HTMLElement {
       const outcome = await outcomeAt(widget, this.getAttribute('state') ?? '');
       const verdict = this.#judge(prediction, outcome);
       this.#show(verdict, outcome, widget);
-      const detail = { widget: name, ...verdict };
+      const detail: Prediction = { widget: name, ...verdict };
       this.dispatchEvent(new CustomEvent('slam-predict', { detail, bubbles: true, composed: true }));
     } catch (error) {
       const reason = error instanceof Error ? error.message : String(error);
