@@ -2,6 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
+import { violations } from './axe.mjs';
 import * as h from './harness.mjs';
 
 let browser;
@@ -9,29 +10,43 @@ before(async () => (browser = await h.launch()));
 after(() => browser.close());
 
 /** A page with the widget in a frame that keeps every message that comes out. */
-async function framed(query, test, { sandbox } = {}) {
+async function framed(query, test, { sandbox, answer, quiet = true } = {}) {
   const attribute = sandbox === undefined ? '' : ` sandbox="${sandbox}"`;
   const page = `<!doctype html><html lang="en"><title>Host</title><link rel="icon" href="data:,">
     <script>window.heard = []; addEventListener('message', (event) => heard.push(event.data));</script>
     <iframe title="Widget" src="/embed.html${query}" style="width: 100%; height: 800px"${attribute}></iframe></html>`;
-  const server = await h.serve({ pages: { '/host.html': page } });
+  const server = await h.serve({ pages: { '/host.html': page }, answer });
   const tab = await h.open(browser, `${server.url}/host.html`);
   const conversation = {
     tab,
+    frame: tab.frames().find((frame) => frame !== tab.mainFrame()),
     post: (message) => tab.evaluate((data) => document.querySelector('iframe').contentWindow.postMessage(data, '*'), message),
-    /** The first message of that type from now or before. */
-    hear: async (type, where = () => true) => {
-      await tab.waitForFunction((wanted) => heard.some((data) => data.type === wanted), type);
-      for (let tries = 0; tries < 200; tries += 1) {
-        const found = (await tab.evaluate(() => heard)).find((data) => data.type === type && where(data));
-        if (found !== undefined) return found;
-        await tab.evaluate(() => new Promise(requestAnimationFrame));
-      }
-      return assert.fail(`no ${type}`);
+    /** The first message of that type, from now or before, whose fields are these or match these. */
+    hear: async (type, fields = {}) => {
+      const wanted = Object.entries(fields).map(([name, value]) => [name, value.source ?? value, value instanceof RegExp]);
+      const found = await tab.waitForFunction(([kind, all]) => heard.find((data) => data?.type === kind
+        && all.every(([path, value, isPattern]) => {
+          const is = path.split('.').reduce((at, key) => at?.[key], data);
+          return isPattern ? new RegExp(value).test(is) : is === value;
+        })), [type, wanted]);
+      return found.jsonValue();
     },
   };
   try {
     await test(conversation);
+    if (quiet) assert.deepEqual(tab.troubles, []);
+  } finally {
+    await tab.context().close();
+    await server.close();
+  }
+}
+
+/** embed.html as a page of its own. */
+async function alone(query, test, serverOptions) {
+  const server = await h.serve(serverOptions);
+  const tab = await h.open(browser, `${server.url}/embed.html${query}`);
+  try {
+    await test(tab);
     assert.deepEqual(tab.troubles, []);
   } finally {
     await tab.context().close();
@@ -47,9 +62,9 @@ describe('a frame', () => {
         assert.equal(ready.slam, 1);
         assert.equal(ready.value.heading, 60);
         await post({ slam: 1, type: 'set', values: { heading: 12, variant: 'point-to-plane' } });
-        const changed = await hear('changed', (data) => data.parameter === 'heading');
+        const changed = await hear('changed', { parameter: 'heading' });
         assert.equal(changed.value, 12);
-        const result = await hear('result', (data) => data.value.heading === 12);
+        const result = await hear('result', { 'value.heading': 12 });
         assert.ok(result.outcome.sentence.length > 10);
         await post({ slam: 1, type: 'get', id: 'q1' });
         const state = await hear('state');
@@ -59,21 +74,51 @@ describe('a frame', () => {
     });
   }
 
+  it('saves the picture from a sandbox that allows downloads', async () => {
+    await framed('?w=16.1', async ({ tab, frame, hear }) => {
+      await hear('ready');
+      const [download] = await Promise.all([
+        tab.waitForEvent('download'),
+        frame.getByRole('button', { name: 'Save picture' }).click(),
+      ]);
+      assert.equal(download.suggestedFilename(), 'w16.1.png');
+    }, { sandbox: 'allow-scripts allow-downloads' });
+  });
+
   it('tells its size, to learning management systems too', async () => {
     await framed('?w=16.1', async ({ tab, hear }) => {
       await hear('ready');
-      const size = await hear('size', (data) => data.height > 500);
-      const lti = (await tab.evaluate(() => heard))
-        .filter((data) => typeof data === 'string').map((data) => JSON.parse(data));
-      assert.ok(lti.some((data) => data.subject === 'lti.frameResize' && data.height === size.height));
+      await tab.waitForFunction(() => {
+        const told = heard.filter((data) => typeof data === 'string').map((data) => JSON.parse(data));
+        return heard.some((data) => data.type === 'size' && data.height > 500
+          && told.some((lti) => lti.subject === 'lti.frameResize' && lti.height === data.height));
+      });
     });
   });
 
-  it('names what is wrong in its address and goes on', async () => {
-    await framed('?w=16.1&heading=abc&bogus=1', async ({ hear }) => {
-      await hear('error', (data) => /`heading` takes a number/.test(data.message));
-      await hear('error', (data) => /has no parameter `bogus`/.test(data.message));
+  it('is as high as it says: in a frame of that height nothing scrolls', async () => {
+    await framed('?w=16.1&bogus=1', async ({ tab, frame, hear }) => {
       await hear('ready');
+      await tab.evaluate(() => addEventListener('message', ({ data }) => {
+        if (data.type === 'size') document.querySelector('iframe').style.height = `${data.height}px`;
+      }));
+      // A change of width makes the frame tell its size again.
+      await tab.evaluate(() => (document.querySelector('iframe').style.width = '90%'));
+      await frame.waitForFunction(() => innerWidth < 1000
+        && Math.ceil(document.querySelector('main').getBoundingClientRect().height) === innerHeight
+        && document.documentElement.scrollHeight === innerHeight);
+    });
+  });
+
+  it('names what is wrong in its address, to the page and to the reader, and goes on', async () => {
+    await framed('?w=16.1&heading=abc&bogus=1', async ({ frame, hear }) => {
+      const { kind, name } = await hear('error', { message: /`heading` takes a number/ });
+      assert.deepEqual([kind, name], ['address', 'w16.1']);
+      await hear('error', { message: /has no parameter `bogus`/ });
+      await hear('ready');
+      for (const sentence of ['`heading` takes a number, not `abc`', 'w16.1 has no parameter `bogus`']) {
+        assert.ok(await frame.getByText(sentence).isVisible(), sentence);
+      }
     });
   });
 
@@ -84,21 +129,111 @@ describe('a frame', () => {
         [{ slam: 2, type: 'get' }, /speaks version 1, not 2/],
         [{ slam: 1, type: 'explode' }, /no message `explode`/],
         [{ slam: 1, type: 'set' }, /set takes `values`/],
-        [{ slam: 1, type: 'set', values: { heading: 1e9 } }, /`heading` takes -180 to 180/],
+        [{ slam: 1, type: 'set', values: { heading: 1e9, dx: 0.5 } }, /`heading` takes -180 to 180/],
         [{ slam: 1, type: 'set', values: { __proto__x: 1 } }, /has no parameter/],
         [{ slam: 1, type: 'press', button: 'nothing' }, /no button `nothing`/],
         [{ slam: 1, type: 'press' }, /press takes `button`/],
       ]) {
         await post(message);
-        await hear('error', (data) => reason.test(data.message));
+        assert.equal((await hear('error', { message: reason })).kind, 'message');
       }
+      // What stood beside a value that does not fit is set all the same.
+      await hear('changed', { parameter: 'dx', value: 0.5 });
       const before = (await tab.evaluate(() => heard)).length;
       await post('hello');
       await post({ type: 'webpackOk' });
       await post({ slam: 1, type: 'get', id: 'after' });
-      await hear('state', (data) => data.id === 'after');
+      await hear('state', { id: 'after' });
       const since = (await tab.evaluate(() => heard)).slice(before).filter((data) => data.type === 'error');
       assert.deepEqual(since, []);
     });
+  });
+
+  it('listens to its parent alone', async () => {
+    await framed('?w=16.1&heading=60', async ({ tab, post, hear }) => {
+      await hear('ready');
+      await tab.evaluate(() => {
+        const stranger = document.body.appendChild(document.createElement('iframe'));
+        const speak = stranger.contentWindow.eval('(data) => parent.frames[0].postMessage(data, "*")');
+        speak({ slam: 1, type: 'set', values: { heading: 7 } });
+        speak({ slam: 1, type: 'get', id: 'stranger' });
+        speak({ slam: 2, type: 'get' });
+      });
+      await post({ slam: 1, type: 'get', id: 'parent' });
+      const state = await hear('state', { id: 'parent' });
+      assert.equal(state.value.heading, 60);
+      const others = (await tab.evaluate(() => heard)).filter(({ type, id }) => type === 'error' || id === 'stranger');
+      assert.deepEqual(others, []);
+    });
+  });
+});
+
+describe('a frame that cannot start', () => {
+  /** The sentence that the page holds for this case. */
+  const says = (frame) => frame.getByText('The widget has not started.').waitFor();
+
+  it('says what a sandbox needs where the server sends no Access-Control-Allow-Origin', async () => {
+    const answer = (_, response) => {
+      response.removeHeader('Access-Control-Allow-Origin');
+      return false;
+    };
+    await framed('?w=16.1', async ({ tab, frame }) => {
+      await says(frame);
+      assert.ok(await frame.getByText('Access-Control-Allow-Origin: *').isVisible());
+      assert.match(tab.troubles.join('\n'), /blocked by CORS policy/);
+    }, { sandbox: 'allow-scripts', answer, quiet: false });
+  });
+
+  it('says so without JavaScript', async () => {
+    const server = await h.serve();
+    const tab = await h.open(browser, `${server.url}/embed.html?w=16.1`, { javaScriptEnabled: false });
+    await says(tab);
+    await tab.context().close();
+    await server.close();
+  });
+
+  it('says nothing of the kind where it starts', async () => {
+    await alone('?w=16.1', async (tab) => {
+      await h.ready(tab);
+      assert.equal(await tab.getByText('The widget has not started.').count(), 0);
+    });
+  });
+});
+
+describe('embed.html as a page', () => {
+  it('has the title of its widget, as a heading too, and satisfies axe-core', async () => {
+    for (const { id, title } of h.schema) {
+      await alone(`?w=${id.slice(1)}&bogus=1`, async (tab) => {
+        await h.ready(tab);
+        assert.equal(await tab.title(), title);
+        assert.equal(await tab.getByRole('main').getByRole('heading', { level: 1 }).innerText(), title);
+        assert.deepEqual(await violations(tab), []);
+      });
+    }
+  });
+
+  it('works under the strict policy', async () => {
+    await alone('?w=16.1&heading=abc', async (tab) => {
+      await h.ready(tab);
+      assert.ok(await tab.getByText('`heading` takes a number, not `abc`').isVisible());
+    }, { policy: h.STRICT_POLICY });
+  });
+
+  it('shows what its address says as text, never as HTML', async () => {
+    const html = '<img src=x onerror="window.ran = true"><b id=made>';
+    const part = encodeURIComponent(html);
+    for (const query of [`?w=${part}`, `?w=16.1&heading=${part}`, `?w=16.1&${part}=1`, `?w=16.1&theme=${part}`]) {
+      await alone(query, async (tab) => {
+        await h.ready(tab);
+        const made = await tab.evaluate(() => {
+          const roots = [document, document.querySelector('slam-widget').shadowRoot];
+          return roots.flatMap((root) => [...root.querySelectorAll('#made, [onerror]')].map((element) => element.outerHTML));
+        });
+        assert.deepEqual(made, []);
+        assert.equal(await tab.evaluate(() => window.ran), undefined);
+        const told = await tab.locator('.problems').innerText();
+        if (!query.includes('theme')) assert.ok(told.includes('<img src=x'), told);
+      });
+    }
   });
 });

@@ -12,29 +12,45 @@ import { SlamWidget as Element, widgets as schemas } from './slam-widget.js';
 import type { SlamWidget } from './element';
 import { readQuery } from './links';
 import type { WidgetSpec } from './schema';
-import type { Value } from './values';
+import { shorten, type Value } from './values';
 
 const VERSION = 1;
 
 type Message = Record<string, unknown>;
 
-const widget = new (Element as typeof SlamWidget)();
-const problems = open(widget);
-document.body.append(widget);
-for (const message of problems) post({ type: 'error', message });
-listen(widget);
+const [first] = schemas as WidgetSpec[];
 
-/** Sets the widget up from the address; returns what was wrong with it. */
-function open(element: SlamWidget): string[] {
-  const linked = readQuery(location.search);
-  const [first] = schemas as WidgetSpec[];
-  const known = linked !== undefined && 'widget' in linked ? linked : undefined;
-  element.setAttribute('name', known?.widget.id ?? first?.id ?? '');
-  for (const [id, text] of known?.values ?? []) element.setAttribute(id, text);
+const main = document.querySelector('main') ?? document.body;
+const linked = readQuery(location.search);
+const named = linked !== undefined && 'widget' in linked ? linked : undefined;
+const spec = named?.widget ?? first;
+
+const widget = new (Element as typeof SlamWidget)();
+setUp();
+main.querySelector('.absent')?.remove();
+main.append(widget);
+listen(widget);
+for (const message of linked?.problems ?? ['The address names no widget: ?w=16.1']) tell(message);
+
+/** Makes the widget of the address, and a page with its title around it. */
+function setUp(): void {
+  widget.setAttribute('name', spec?.id ?? '');
+  for (const [id, text] of named?.values ?? []) widget.setAttribute(id, text);
   const theme = new URLSearchParams(location.search).get('theme');
-  if (theme === 'light' || theme === 'dark') element.setAttribute('theme', theme);
-  if (linked === undefined) return ['The address names no widget: ?w=16.1'];
-  return linked.problems;
+  if (theme === 'light' || theme === 'dark') {
+    widget.setAttribute('theme', theme);
+    main.style.colorScheme = theme;
+  }
+  document.title = spec?.title ?? document.title;
+  main.querySelector('h1')?.replaceChildren(document.title);
+}
+
+/** Names what is wrong with the address to the reader, and to the page around. */
+function tell(message: string): void {
+  const line = document.createElement('p');
+  line.textContent = message;
+  main.querySelector('.problems')?.append(line);
+  post({ type: 'error', name: spec?.id ?? null, kind: 'address', message });
 }
 
 function listen(element: SlamWidget): void {
@@ -43,16 +59,20 @@ function listen(element: SlamWidget): void {
   element.addEventListener('slam-change', (event) => post({ type: 'changed', ...detail(event) }));
   element.addEventListener('slam-result', (event) => post({ type: 'result', ...detail(event) }));
   element.addEventListener('slam-error', (event) => post({ type: 'error', ...detail(event) }));
-  new ResizeObserver(() => tellSize(element)).observe(element);
+  new ResizeObserver(tellSize).observe(main);
   window.addEventListener('message', (event: MessageEvent<unknown>) => {
     const { data } = event;
     if (event.source !== window.parent || !isOurs(data)) return;
     try {
       answer(element, data);
     } catch (error) {
-      post({ type: 'error', kind: 'message', message: (error as Error).message });
+      refuse(error as Error);
     }
   });
+}
+
+function refuse({ message }: Error): void {
+  post({ type: 'error', name: spec?.id ?? null, kind: 'message', message });
 }
 
 function isOurs(data: unknown): data is Message {
@@ -61,7 +81,8 @@ function isOurs(data: unknown): data is Message {
 
 function answer(element: SlamWidget, message: Message): void {
   if (message['slam'] !== VERSION) {
-    throw new RangeError(`this widget speaks version ${VERSION}, not ${String(message['slam'])}`);
+    const spoken = shorten(String(message['slam']));
+    throw new RangeError(`this widget speaks version ${VERSION}, not ${spoken}`);
   }
   switch (message['type']) {
     case 'set': {
@@ -69,15 +90,13 @@ function answer(element: SlamWidget, message: Message): void {
       if (typeof values !== 'object' || values === null) {
         throw new TypeError('set takes `values`, an object of parameters');
       }
-      for (const [id, value] of Object.entries(values)) element.set(id, value as Value);
+      for (const [id, value] of Object.entries(values)) tryToSet(element, id, value as Value);
       break;
     }
     case 'press': {
       const { button } = message;
       if (typeof button !== 'string') throw new TypeError('press takes `button`, a name');
-      element.press(button).catch((error: Error) => {
-        post({ type: 'error', kind: 'message', message: error.message });
-      });
+      element.press(button).catch(refuse);
       break;
     }
     case 'get':
@@ -92,13 +111,23 @@ function answer(element: SlamWidget, message: Message): void {
       break;
     default:
       throw new RangeError(
-        `there is no message \`${String(message['type']).slice(0, 60)}\`; there are set, press, get`,
+        `there is no message \`${shorten(String(message['type']))}\`; there are set, press, get`,
       );
   }
 }
 
-function tellSize(element: SlamWidget): void {
-  const { width, height } = element.getBoundingClientRect();
+/** What does not fit keeps nothing from what does. */
+function tryToSet(element: SlamWidget, id: string, value: Value): void {
+  try {
+    element.set(id, value);
+  } catch (error) {
+    refuse(error as Error);
+  }
+}
+
+/** The height of all that the frame shows. */
+function tellSize(): void {
+  const { width, height } = main.getBoundingClientRect();
   post({ type: 'size', width: Math.ceil(width), height: Math.ceil(height) });
   // What learning management systems listen for.
   const lti = { subject: 'lti.frameResize', height: Math.ceil(height) };
