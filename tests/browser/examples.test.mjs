@@ -1,13 +1,14 @@
 // Every recipe of docs/embedding.md is a file of web/examples, and works.
 
 import assert from 'node:assert/strict';
-import { createReadStream, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync, cpSync, readdirSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { createReadStream, existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { extname, join } from 'node:path';
 import { after, before, it } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import * as esbuild from '../../web/node_modules/esbuild/lib/main.js';
+import { violations } from './axe.mjs';
 import * as h from './harness.mjs';
+import { installPackage } from './package.mjs';
 
 const REVEAL = fileURLToPath(new URL('./node_modules/reveal.js/dist/', import.meta.url));
 
@@ -15,18 +16,31 @@ let browser;
 before(async () => (browser = await h.launch()));
 after(() => browser.close());
 
+const TYPES = {
+  '.css': 'text/css',
+  '.html': 'text/html',
+  '.js': 'text/javascript',
+  '.mjs': 'text/javascript',
+  '.svg': 'image/svg+xml',
+  '.wasm': 'application/wasm',
+};
+
+/** Sends a file that does not lie in dist/. */
+function send(file, response) {
+  response.setHeader('Content-Type', TYPES[extname(file)]);
+  createReadStream(file).pipe(response);
+  return true;
+}
+
+/** Opens an example as it lies beside the widgets; axe has nothing against it at its end. */
 async function example(file, test) {
-  const answer = (path, response) => {
-    if (!path.startsWith('/examples/reveal/')) return false;
-    const type = path.endsWith('.css') ? 'text/css' : 'text/javascript';
-    response.setHeader('Content-Type', type);
-    createReadStream(join(REVEAL, path.slice('/examples/reveal/'.length))).pipe(response);
-    return true;
-  };
+  const answer = (path, response) => path.startsWith('/examples/reveal/')
+    && send(join(REVEAL, path.slice('/examples/reveal/'.length)), response);
   const server = await h.serve({ answer });
   const tab = await h.open(browser, `${server.url}/examples/${file}`);
   try {
     await test(tab);
+    assert.deepEqual(await violations(tab), []);
     assert.deepEqual(tab.troubles, []);
   } finally {
     await tab.context().close();
@@ -57,11 +71,27 @@ it('plain.html: a widget, a link that sets it, and a prediction', async () => {
 
 it('iframe.html: a sandboxed frame that is set and answers', async () => {
   await example('iframe.html', async (tab) => {
-    await tab.waitForFunction(() => parseInt(document.querySelector('#lap').style.height, 10) !== 900);
+    // The page's own script makes the frame as high as it says it needs to be.
+    const frame = tab.frames().find((candidate) => candidate !== tab.mainFrame());
+    await h.ready(frame);
+    let needed;
+    let given;
+    for (let tries = 0; tries < 100 && (given === undefined || given !== needed); tries += 1) {
+      needed = await frame.evaluate(() => `${Math.ceil(document.querySelector('main').getBoundingClientRect().height)}px`);
+      given = await tab.evaluate(() => new Promise((resolve) => setTimeout(() => resolve(document.querySelector('#lap').style.height), 100)));
+    }
+    assert.equal(given, needed);
     await tab.click('#noisy');
     await tab.waitForFunction(() => document.querySelector('#said').textContent.length > 10);
   });
 });
+
+/** Moves the focus to the first slider of the widget; returns what reads its value. */
+async function focusSlider(tab, name) {
+  const { id } = h.schema.find((widget) => widget.id === name).params.find(({ kind }) => kind === 'slider');
+  await tab.locator(`slam-widget #control-${id}`).focus();
+  return () => tab.evaluate((param) => document.querySelector('slam-widget').get(param), id);
+}
 
 for (const [file, parameter, value] of [
   ['mdbook.html', 'scene', 'corridor'],
@@ -80,6 +110,20 @@ for (const [file, parameter, value] of [
   });
 }
 
+it('mdbook.html: an arrow key sets the slider that has the focus, and turns no page', async () => {
+  await example('mdbook.html', async (tab) => {
+    await h.ready(tab);
+    const value = await focusSlider(tab, 'w16.3');
+    const before = await value();
+    for (const key of ['ArrowRight', 'ArrowRight', 'ArrowLeft']) await tab.keyboard.press(key);
+    assert.notEqual(await value(), before);
+    assert.equal(await tab.evaluate(() => location.hash), '');
+    await tab.evaluate(() => document.activeElement.blur());
+    await tab.keyboard.press('ArrowRight');
+    assert.equal(await tab.evaluate(() => location.hash), '#next');
+  });
+});
+
 it('jupyter.html: the anywidget module in step with its model, both ways', async () => {
   await example('jupyter.html', async (tab) => {
     await h.ready(tab);
@@ -90,8 +134,76 @@ it('jupyter.html: the anywidget module in step with its model, both ways', async
     await tab.evaluate(() => (document.querySelector('slam-widget').noise = 0.5));
     await tab.waitForFunction(() => traits.value.noise === 0.5);
     await tab.evaluate(() => unmount());
-    assert.equal(await tab.locator('slam-widget').count(), 0);
+    assert.equal(await tab.locator('#cell > *').count(), 0);
   });
+});
+
+it('jupyter.html: a value that does not fit is named in the cell, and the others are set', async () => {
+  await example('jupyter.html', async (tab) => {
+    const cell = tab.locator('#cell');
+    const noise = () => tab.evaluate(() => document.querySelector('slam-widget').noise);
+    await tab.evaluate(() => assign({ bogus: 1, noise: 3, seed: 'many' }));
+    await cell.getByText('w16.2 has no parameter `bogus`').waitFor();
+    await cell.getByText('`seed` takes a number, not `many`. It keeps its value.').waitFor();
+    assert.equal(await noise(), 3);
+    // What the widget itself writes into the model takes no sentence away.
+    await h.ready(tab);
+    await tab.waitForFunction(() => traits.value.noise === 3);
+    assert.match(await cell.innerText(), /no parameter `bogus`/);
+    await tab.evaluate(() => assign({ noise: 1 }));
+    assert.equal(await noise(), 1);
+    assert.doesNotMatch(await cell.innerText(), /bogus/);
+    await tab.evaluate(() => assign('noise=2'));
+    await cell.getByText('`value` takes an object of parameters').waitFor();
+  });
+});
+
+it('a notebook that starts with a bad value gets the widget and the sentence', async () => {
+  await example('jupyter.html', async (tab) => {
+    await tab.evaluate(() => {
+      unmount();
+      Object.assign(traits, { name: 'w16.1', value: { heading: 999, dx: 0.5 } });
+      mount();
+    });
+    await tab.locator('#cell').getByText('`heading` takes -180 to 180, not `999`').waitFor();
+    await h.ready(tab);
+    assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').dx), 0.5);
+    await tab.waitForFunction(() => traits.outcome !== null && traits.value.heading !== 999);
+  });
+});
+
+it('myst.md: the widget runs from the file that MyST copies', async () => {
+  const text = (file) => readFileSync(new URL(`../../web/examples/${file}`, import.meta.url), 'utf8');
+  const [, path, body] = text('myst.md').match(/```\{anywidget\} \.\/(\S+)\n([\s\S]*?)```/);
+  // MyST keeps the module under a name of its own and renders into a shadow tree.
+  const page = `<!doctype html><html lang="en"><title>MyST</title><link rel="icon" href="data:,">
+    <div id="host"></div><script type="module">
+      import widget from '/build/4f1c.mjs';
+      const traits = ${body};
+      const model = { get: (trait) => traits[trait], set: (trait, value) => (traits[trait] = value),
+        save_changes() {}, on() {}, off() {} };
+      const el = document.createElement('div');
+      document.querySelector('#host').attachShadow({ mode: 'open' }).append(el);
+      widget.render({ model, el });
+      window.inside = () => el.querySelector('slam-widget');
+    </script></html>`;
+  let home;
+  const server = await h.serve({
+    pages: { '/t.html': page },
+    answer: (asked, response) => {
+      if (asked !== '/build/4f1c.mjs') return false;
+      response.setHeader('Content-Type', TYPES['.mjs']);
+      response.end(text(path).replace('http://localhost:8016', home));
+      return true;
+    },
+  });
+  home = server.url;
+  const tab = await h.open(browser, `${home}/t.html`);
+  await tab.waitForFunction(() => window.inside?.().state === 'running');
+  assert.equal(await tab.evaluate(() => inside().noise), JSON.parse(body).value.noise);
+  assert.deepEqual(tab.troubles, []);
+  await tab.context().close();
+  await server.close();
 });
 
 it('reveal.html: the widget runs on its slide and leaves the keys to the deck', async () => {
@@ -101,58 +213,74 @@ it('reveal.html: the widget runs on its slide and leaves the keys to the deck', 
     await h.ready(tab);
     const box = await tab.locator('slam-widget canvas').boundingBox();
     assert.ok(box.width > 700, `${box.width} wide`);
+    const slide = () => tab.evaluate(async () => (await deck).getIndices().h);
+    const value = await focusSlider(tab, 'w16.2');
+    const before = await value();
+    for (const key of ['ArrowRight', 'ArrowRight', 'ArrowLeft']) await tab.keyboard.press(key);
+    assert.notEqual(await value(), before);
+    assert.equal(await slide(), 1);
+    await tab.evaluate(() => document.activeElement.blur());
     await tab.keyboard.press('ArrowLeft');
     await tab.waitForFunction(async () => (await deck).getIndices().h === 0);
   });
 });
 
-it('the npm package works from a bundler', async () => {
-  const folder = mkdtempSync(join(tmpdir(), 'slam-bundle-'));
+it('the npm package, packed and installed, works from a bundler and links to its own frame', async () => {
+  const project = installPackage();
   try {
-    const modules = join(folder, 'node_modules', 'slam-widgets');
-    cpSync(h.DIST, modules, { recursive: true });
-    const manifest = JSON.parse(readFileSync(join(modules, 'package.json'), 'utf8'));
+    const manifest = JSON.parse(readFileSync(join(project.installed, 'package.json'), 'utf8'));
     for (const target of Object.values(manifest.exports)) {
       for (const file of typeof target === 'string' ? [target] : Object.values(target)) {
-        assert.ok(file.includes('*') || existsSync(join(modules, file)), `${file} is not in the package`);
+        const isThere = file.includes('*') || existsSync(join(project.installed, file));
+        assert.ok(isThere, `${file} is not in the package`);
       }
     }
-    writeFileSync(join(folder, 'main.js'), "import { widgets } from 'slam-widgets';\nwindow.names = widgets.map((widget) => widget.id);\n");
+    writeFileSync(join(project.folder, 'main.js'),
+      "import { widgets } from 'slam-widgets';\nimport 'slam-widgets/predict';\nwindow.names = widgets.map((widget) => widget.id);\n");
     const { outputFiles } = await esbuild.build({
-      entryPoints: [join(folder, 'main.js')], bundle: true, minify: true, format: 'esm', write: false, outdir: folder,
+      entryPoints: [join(project.folder, 'main.js')], bundle: true, minify: true, format: 'esm', write: false, outdir: project.folder,
     });
-    const wasm = readdirSync(h.DIST).find((file) => file.endsWith('.wasm'));
+    // Beside the bundle stands what docs/embedding.md says, and nothing else.
+    const isBeside = /^\/app\/([^/]+\.wasm|pictures\/[^/]+|embed\.html|slam-[^/]+\.js)$/;
     const answer = (path, response) => {
       if (path === '/app/main.js') {
-        response.setHeader('Content-Type', 'text/javascript');
+        response.setHeader('Content-Type', TYPES['.js']);
         response.end(outputFiles[0].text);
-      } else if (path === `/app/${wasm}`) {
-        response.setHeader('Content-Type', 'application/wasm');
-        createReadStream(join(h.DIST, wasm)).pipe(response);
-      } else if (path.startsWith('/app/pictures/')) {
-        response.setHeader('Content-Type', 'image/svg+xml');
-        createReadStream(join(h.DIST, path.slice(5))).pipe(response);
-      } else return false;
+        return true;
+      }
+      const [, file] = path.match(isBeside) ?? [];
+      if (file !== undefined) return send(join(project.installed, file), response);
+      if (path === '/t.html') return false;
+      response.statusCode = 404;
+      response.end();
       return true;
     };
-    const page = '<!doctype html><html lang="en"><title>App</title><link rel="icon" href="data:,"><script type="module" src="/app/main.js"></script><slam-widget name="w16.4"></slam-widget></html>';
+    const page = '<!doctype html><html lang="en"><title>App</title><link rel="icon" href="data:,"><script type="module" src="/app/main.js"></script><slam-widget name="w16.4" noise="2"></slam-widget></html>';
     const server = await h.serve({ pages: { '/t.html': page }, answer });
     const tab = await h.open(browser, `${server.url}/t.html`);
     await h.ready(tab);
     assert.deepEqual(await tab.evaluate(() => names), h.schema.map((widget) => widget.id));
+    assert.ok(await tab.evaluate(() => customElements.get('slam-predict') !== undefined));
+    await tab.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+    await tab.getByRole('button', { name: 'Copy link' }).click();
+    await tab.getByText('The link is copied.').waitFor();
+    const link = await tab.evaluate(() => navigator.clipboard.readText());
+    assert.equal(link, `${server.url}/app/embed.html?w=16.4&noise=2`);
+    await tab.goto(link);
+    await h.ready(tab);
     assert.deepEqual(tab.troubles, []);
     await tab.context().close();
     await server.close();
   } finally {
-    rmSync(folder, { recursive: true });
+    project.remove();
   }
 });
 
-it('the recipes in docs/embedding.md name files that exist', () => {
+it('the recipes in docs/embedding.md name files that exist, and no recipe is left out', () => {
   const text = readFileSync(new URL('../../docs/embedding.md', import.meta.url), 'utf8');
-  const files = [...text.matchAll(/web\/examples\/([\w.-]+)/g)].map(([, file]) => file);
-  assert.ok(new Set(files).size >= 6, files.join(', '));
-  for (const file of files) {
-    assert.ok(existsSync(new URL(`../../web/examples/${file}`, import.meta.url)), file);
-  }
+  const named = new Set([...text.matchAll(/web\/examples\/([\w.-]+)/g)].map(([, file]) => file));
+  const folder = new URL('../../web/examples/', import.meta.url);
+  for (const file of named) assert.ok(existsSync(new URL(file, folder)), file);
+  const pages = readdirSync(folder).filter((file) => /\.(html|md|py)$/.test(file));
+  assert.deepEqual(pages.filter((file) => !named.has(file)), []);
 });

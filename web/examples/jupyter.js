@@ -7,16 +7,19 @@ const callbacks = new Map();
 
 const model = {
   get: (trait) => traits[trait],
-  set: (trait, value) => (traits[trait] = value),
+  /** A notebook calls back for what the widget itself writes, too. */
+  set: (trait, value) => {
+    traits[trait] = value;
+    callbacks.get(`change:${trait}`)?.();
+  },
   save_changes: () => {},
   on: (event, callback) => callbacks.set(event, callback),
   off: (event) => callbacks.delete(event),
 };
 
 /** What `lap.value = {...}` does in Python. */
-window.assign = (value) => {
-  traits.value = value;
-  callbacks.get('change:value')?.();
-};
+window.assign = (value) => model.set('value', value);
 window.traits = traits;
-window.unmount = module.render({ model, el: document.querySelector('#cell') });
+/** Runs the cell. */
+window.mount = () => (window.unmount = module.render({ model, el: document.querySelector('#cell') }));
+window.mount();

@@ -1,10 +1,12 @@
-"""The widgets in Jupyter, marimo and MyST: `pip install anywidget`, then in a cell
+"""The widgets in Jupyter and marimo: `pip install anywidget`, then in a cell
 
     from slam_widget import SlamWidget
     lap = SlamWidget(name="w16.2", value={"noise": 2})
     lap
 
 Afterwards `lap.value` is the state and `lap.outcome` the result; setting `lap.value` moves it.
+A value that does not fit is named below the widget, and the others are set.
+In marimo wrap it, `lap = mo.ui.anywidget(SlamWidget(name="w16.2"))`, and cells follow its traits.
 """
 
 import anywidget

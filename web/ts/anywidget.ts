@@ -2,32 +2,28 @@
 
 // @ts-expect-error: stays a file of its own beside this one.
 import './slam-widget.js';
+import type Declared from '../slam-anywidget';
+import type { Model } from '../slam-anywidget';
 import type { SlamWidget } from './element';
 import type { Value } from './values';
 
-/** What anywidget hands over of its model. */
-interface Model {
-  get(trait: string): unknown;
-  set(trait: string, value: unknown): void;
-  save_changes(): void;
-  on(event: string, callback: () => void): void;
-  off(event: string, callback: () => void): void;
-}
-
 function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
   const widget = document.createElement('slam-widget') as SlamWidget;
-  widget.setAttribute('name', String(model.get('name')));
-  el.append(widget);
+  const refused = document.createElement('div');
+  refused.setAttribute('role', 'status');
+  widget.setAttribute('name', String(model.get('name') ?? ''));
+  el.append(widget, refused);
 
+  // Some hosts call back for what the widget itself wrote: that asks for nothing.
+  let isGiving = false;
   const take = (): void => {
-    const wanted = (model.get('value') ?? {}) as Record<string, Value>;
-    for (const [id, value] of Object.entries(wanted)) {
-      if (widget.get(id) !== value) widget.set(id, value);
-    }
+    if (!isGiving) refused.textContent = setAll(widget, model.get('value')).join(' ');
   };
   const give = (): void => {
+    isGiving = true;
     model.set('value', widget.value);
     model.set('outcome', widget.outcome ?? null);
+    isGiving = false;
     model.save_changes();
   };
   take();
@@ -37,7 +33,26 @@ function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
   return () => {
     model.off('change:value', take);
     widget.remove();
+    refused.remove();
   };
 }
 
-export default { render };
+/** Sets what fits; returns a sentence for each value that does not. */
+function setAll(widget: SlamWidget, wanted: unknown): string[] {
+  if (wanted === undefined || wanted === null) return [];
+  if (typeof wanted !== 'object' || Array.isArray(wanted)) {
+    return ['`value` takes an object of parameters, such as {"noise": 2}.'];
+  }
+  const problems: string[] = [];
+  for (const [id, value] of Object.entries(wanted) as [string, Value][]) {
+    try {
+      if (widget.get(id) !== value) widget.set(id, value);
+    } catch (error) {
+      problems.push(`${(error as Error).message}. It keeps its value.`);
+    }
+  }
+  return problems;
+}
+
+const module: typeof Declared = { render };
+export default module;
