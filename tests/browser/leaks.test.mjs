@@ -1,0 +1,121 @@
+// What a widget that is taken away leaves behind: no context, no memory, no listener.
+
+import assert from 'node:assert/strict';
+import { after, before, it } from 'node:test';
+import * as h from './harness.mjs';
+
+let browser;
+before(async () => (browser = await h.launch()));
+after(() => browser.close());
+
+/** Stands before all scripts of a page: remembers every WebGL context, and every wasm memory. */
+const REMEMBER = `<script>
+  window.contexts = [];
+  window.memories = [];
+  const { getContext } = HTMLCanvasElement.prototype;
+  HTMLCanvasElement.prototype.getContext = function (...given) {
+    const context = getContext.apply(this, given);
+    const isNew = context instanceof WebGL2RenderingContext && !contexts.some((held) => held.deref() === context);
+    if (isNew) contexts.push(new WeakRef(context));
+    if (isNew) window.kept?.push(context);
+    return context;
+  };
+  const { instantiate } = WebAssembly;
+  WebAssembly.instantiate = async (...given) => {
+    const instance = await instantiate(...given);
+    memories.push(new WeakRef(instance.exports.memory));
+    return instance;
+  };
+  /** Contexts that the browser still holds: on the page, and elsewhere. */
+  window.heldContexts = () => {
+    const held = contexts.map((context) => context.deref()).filter((context) => context?.isContextLost() === false);
+    const onPage = held.filter((context) => context.canvas.isConnected);
+    return { onPage, elsewhere: held.filter((context) => !onPage.includes(context)) };
+  };
+</script>`;
+
+/** A page with a place for widgets and nothing in it. */
+async function on(test) {
+  const server = await h.serve({ pages: { '/t.html': h.bare('<div id="here"></div>', REMEMBER) } });
+  const tab = await h.open(browser, `${server.url}/t.html`);
+  try {
+    await test(tab);
+    assert.deepEqual(tab.troubles, []);
+  } finally {
+    await tab.context().close();
+    await server.close();
+  }
+}
+
+it('is mounted and taken away thirty times without leaking memory, contexts or listeners', async () => {
+  await on(async (tab) => {
+    const session = await tab.context().newCDPSession(tab);
+    const mount = async () => {
+      await tab.evaluate(() => {
+        document.querySelector('#here').innerHTML = '<slam-widget name="w16.4"></slam-widget>';
+      });
+      await h.ready(tab);
+      // The context is held until the very moment in which the element goes.
+      const [before, after] = await tab.evaluate(() => {
+        const { onPage, elsewhere } = heldContexts();
+        document.querySelector('#here').replaceChildren();
+        return [[onPage.length, elsewhere.length], [...onPage, ...elsewhere].map((context) => context.isContextLost())];
+      });
+      assert.deepEqual(before, [1, 0], 'contexts of the widget, and others');
+      assert.deepEqual(after, [true], 'the context is given back');
+    };
+    const measure = async () => {
+      for (let i = 0; i < 3; i += 1) await session.send('HeapProfiler.collectGarbage');
+      const { jsEventListeners, nodes } = await session.send('Memory.getDOMCounters');
+      const { usedSize } = await session.send('Runtime.getHeapUsage');
+      const memories = await tab.evaluate(
+        () => window.memories.filter((memory) => memory.deref() !== undefined).length);
+      return { jsEventListeners, nodes, usedSize, memories };
+    };
+    for (let i = 0; i < 5; i += 1) await mount();
+    const before = await measure();
+    for (let i = 0; i < 30; i += 1) await mount();
+    const limits = {
+      jsEventListeners: before.jsEventListeners + 15,
+      nodes: before.nodes + 300,
+      usedSize: before.usedSize + 5e6,
+      memories: 3,
+    };
+    const over = (now) => Object.keys(limits).filter((name) => now[name] >= limits[name]);
+    // The collector takes what is free when it likes; what leaks, it never takes.
+    let now = await measure();
+    for (let tries = 0; tries < 20 && over(now).length > 0; tries += 1) now = await measure();
+    assert.deepEqual(over(now), [], `${JSON.stringify(before)} → ${JSON.stringify(now)}`);
+  });
+});
+
+it('taken away while it loads, at any moment, holds no context', async () => {
+  await on(async (tab) => {
+    // The collector must not do what the widget has to.
+    await tab.evaluate(() => (window.kept = []));
+    const mountFor = (frames) => tab.evaluate(async (count) => {
+      const here = document.querySelector('#here');
+      here.innerHTML = '<slam-widget name="w16.1"></slam-widget>';
+      const { shadowRoot } = here.firstChild;
+      for (let i = 0; i < count; i += 1) await new Promise(requestAnimationFrame);
+      const isLoading = shadowRoot.querySelector('.stage.live') === null;
+      const hasCanvas = shadowRoot.querySelector('canvas') !== null;
+      here.replaceChildren();
+      return { isLoading, hasCanvas };
+    }, frames);
+    // The program is there when the moments are tried.
+    await tab.evaluate(() => (document.querySelector('#here').innerHTML = '<slam-widget name="w16.1"></slam-widget>'));
+    await h.ready(tab);
+    const moments = [];
+    for (let frames = 0; frames < 12; frames += 1) moments.push(await mountFor(frames));
+    const loading = moments.filter(({ isLoading }) => isLoading);
+    assert.ok(loading.some(({ hasCanvas }) => hasCanvas), JSON.stringify(moments));
+    assert.ok(loading.some(({ hasCanvas }) => !hasCanvas), JSON.stringify(moments));
+    // A start that was under way ends a little later.
+    await tab.waitForFunction(() => {
+      const { onPage, elsewhere } = heldContexts();
+      return onPage.length === 0 && elsewhere.length === 0;
+    });
+    assert.ok(await tab.evaluate(() => kept.length > 2));
+  });
+});
