@@ -51,7 +51,10 @@ mod tests {
         let page = include_str!("../../../docs/performance.md");
         for block in [Block::Workloads, Block::Registration, Block::Sweep] {
             let (start, end) = (block.start(), block.end());
-            assert!(page.find(&start) < page.find(&end) && page.contains(&start), "{block:?}");
+            assert!(
+                page.find(&start) < page.find(&end) && page.contains(&start),
+                "{block:?}"
+            );
         }
     }
 }
