@@ -5,7 +5,7 @@
 
 use std::hint::black_box;
 
-use ch16_slam2d::cloud::{DenseMap, NearestMap, PointCloud, VoxelMap};
+use ch16_slam2d::cloud::{DenseMap, PointCloud, VoxelMap};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace};
 use ch16_slam2d::samples::{self, RegistrationSample};
 use ch16_slam2d::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
