@@ -66,8 +66,7 @@ fn browser_tests(chromium: &Path) -> Result<(), Failure> {
             show(
                 &what,
                 program("node")
-                    // A test that waits for ever is a failure, not a reason to wait for ever.
-                    .args(["--test", "--test-timeout=600000"])
+                    .arg("--test")
                     .arg(&file)
                     .env("CHROMIUM", chromium),
             )
