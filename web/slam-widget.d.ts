@@ -35,7 +35,7 @@ export interface TheFullLapState {
   noise: number;
   /** Whether a keyframe near an old one is matched against it. */
   loops: boolean;
-  /** Another seed is another lap with the same robot; 12648430 is the chapter's. 0 to 4294967295. */
+  /** Another seed is another lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
   /** Share of right loops that the χ² gate lets pass, 3 degrees of freedom: 0.95 is χ² up to 7.815. 0.9 to 0.999. */
   gate: number;
@@ -77,11 +77,11 @@ export interface CostTerracesState {
 export interface ControlRoomState {
   /** Multiplies the variances of the wheel odometry: 1 is the chapter's robot. 0.25 to 4. */
   noise: number;
-  /** Whether the back end looks for loops. */
+  /** Whether a keyframe near an old one is matched against it. */
   loops: boolean;
-  /** Another seed is another lap with the same robot; 12648430 is the chapter's. 0 to 4294967295. */
+  /** Another seed is another lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** The moment shown; a tick is a quarter of a second, and the marks are loops. 0 to 2000. */
+  /** The moment shown; a tick is a quarter of a second, and the marks are loops. 0 to 129. */
   t: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -100,7 +100,7 @@ export interface WidgetButtons {
   'w16.1': 'play' | 'step' | 'reset' | 'defaults' | 'near' | 'quarter-turn' | 'between' | 'between-plane' | 'half-turn' | 'short-sighted';
   'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in';
   'w16.3': 'drop' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'turned';
-  'w16.4': 'play' | 'step' | 'reset' | 'next-event' | 'defaults' | 'watch' | 'blurred' | 'rebuilt' | 'noisy' | 'open';
+  'w16.4': 'play' | 'step' | 'reset' | 'next-event' | 'defaults' | 'watch' | 'blurred' | 'rebuilt' | 'noisy' | 'wrong-loop' | 'open';
 }
 
 /** What a parameter takes in JavaScript. */
@@ -184,6 +184,7 @@ export interface SlamWidgetProperties {
 }
 
 export declare class SlamWidget extends HTMLElement {
+  name: WidgetName;
   /** The whole state; setting takes some of it, as an object or as JSON text. */
   get value(): Record<string, Value>;
   set value(state: Record<string, Value> | string);
@@ -196,6 +197,8 @@ export declare class SlamWidget extends HTMLElement {
   readonly summary: string;
   /** The state as the query of a link: `?w=16.1&heading=60`. */
   readonly query: string;
+  /** A link to this page, or to the widget on a page of its own, in the present state. */
+  readonly link: string;
   tables(): Promise<CsvFile[]>;
   /** What the canvas shows, pixel by pixel; waits until the widget runs and draws. */
   snapshot(): Promise<ImageBitmap>;
@@ -206,6 +209,8 @@ export declare class SlamWidget extends HTMLElement {
   controlBox(control: string): [number, number, number, number] | null;
   /** Where a point of a panel lies on the canvas, in CSS pixels; null where it is not shown. */
   panelToScreen(panel: string, x: number, y: number): [number, number] | null;
+  /** Zooms every map, or moves the part that is seen. */
+  look(way: 'in' | 'out' | 'left' | 'right' | 'up' | 'down' | 'whole'): void;
   suspend(): void;
   addEventListener<K extends keyof SlamWidgetEvents>(
     type: K,
