@@ -33,6 +33,7 @@ export class SlamWidget extends HTMLElement {
   readonly #pictures: Pictures;
   readonly #life: Life;
   #state: State | undefined;
+  #isSetUp = false;
   #controls: Controls | undefined;
   #lastOutcome: Outcome | undefined;
   #resultTimer: ReturnType<typeof setTimeout> | undefined;
@@ -48,7 +49,7 @@ export class SlamWidget extends HTMLElement {
 
   connectedCallback(): void {
     // What moves within its page, or was set up before, keeps its state.
-    if (this.#state === undefined) this.#setUp();
+    if (!this.#isSetUp) this.#setUp();
     upgradeProperties(this);
     this.#unwatch = [
       watchTheme(this, () => this.#showTheme()),
@@ -73,7 +74,7 @@ export class SlamWidget extends HTMLElement {
 
   attributeChangedCallback(name: string, old: string | null, value: string | null): void {
     // Before the set-up there is nothing to change: it reads all attributes.
-    if (this.#state === undefined && !this.isConnected) return;
+    if (!this.#isSetUp) return;
     if (name === 'name') {
       if (old === value) return;
       this.#life.suspend();
@@ -124,7 +125,7 @@ export class SlamWidget extends HTMLElement {
 
   /** Presses a button or a preset by its name. */
   async press(id: string): Promise<void> {
-    await this.#life.ensureInstance();
+    await this.#ensureInstance();
     this.#life.ask((widget) => widget.press(id));
     this.#sync();
     this.#controls?.showTimeline(this.timeline);
@@ -162,7 +163,7 @@ export class SlamWidget extends HTMLElement {
 
   /** Every plot and table as CSV. */
   async tables(): Promise<CsvFile[]> {
-    await this.#life.ensureInstance();
+    await this.#ensureInstance();
     return this.#life.ask((_, instance) => instance.tables()) ?? [];
   }
 
@@ -219,8 +220,14 @@ export class SlamWidget extends HTMLElement {
 
   // ---- setting up ---------------------------------------------------------------------------
 
+  async #ensureInstance(): Promise<void> {
+    if (!this.#isSetUp) this.#setUp();
+    await this.#life.ensureInstance();
+  }
+
   #setUp(): void {
     const parts = this.#parts;
+    this.#isSetUp = true;
     const spec = findWidget(this.name);
     this.#state = spec && new State(spec);
     this.#lastOutcome = undefined;
@@ -345,7 +352,7 @@ export class SlamWidget extends HTMLElement {
 
   /** Sets a parameter; returns what was wrong. */
   #set(id: string, given: unknown): string | undefined {
-    if (this.#state === undefined) this.#setUp();
+    if (!this.#isSetUp) this.#setUp();
     const state = this.#state;
     if (state === undefined) return 'there is no such widget';
     const parsed = state.parse(id, given);
