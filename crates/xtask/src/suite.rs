@@ -31,6 +31,13 @@ pub fn test() -> Result<(), Failure> {
             .args(["clippy", "--quiet", "--package", "slam_web"])
             .args(["--target", tools::TARGET, "--", "-D", "warnings"]),
     )?;
+    // No default member, so that nothing else would notice that it does not compile any more.
+    show(
+        "Lints of the peers",
+        cargo()
+            .args(["clippy", "--package", "solver_peers", "--all-targets"])
+            .args(["--quiet", "--", "-D", "warnings"]),
+    )?;
     show("Native tests", cargo().args(["test", "--quiet"]))?;
     bench::check_counts()?;
     let committed = Committed::read();
