@@ -38,6 +38,22 @@ mod tests {
     }
 
     #[test]
+    fn no_text_overlaps_or_is_cut_off_in_any_widget() {
+        for (name, maker) in WIDGETS {
+            let mut shell = maker();
+            let presets = shell.model().spec().presets;
+            let states = core::iter::once("defaults").chain(presets.iter().map(|p| p.id));
+            for state in states {
+                shell.model_mut().press(state).expect("the widget has it");
+                for width in [320.0, 390.0, 700.0, 1100.0] {
+                    let faults = shell.text_faults(width);
+                    assert!(faults.is_empty(), "{name} after {state}: {faults:#?}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn an_unknown_name_gives_none() {
         assert!(make("w16.9").is_none());
         assert!(names().contains("w16.4"));
