@@ -47,7 +47,8 @@ fn the_listings_on_registration_compile() {
     map.clear();
     map.insert_cloud(&target);
 
-    let offset = SE2::new(0.03, -0.02, 0.02);
+    // No point is off by half the distance to its neighbour, so every pair is right at once.
+    let offset = SE2::new(0.01, -0.008, 0.004);
     let cloud: PointCloud = target.transformed(&offset.inverse());
     for variant in [IcpVariant::PointToPoint, IcpVariant::PointToPlane] {
         let cfg = IcpConfig {
@@ -62,9 +63,9 @@ fn the_listings_on_registration_compile() {
             ref trace,
             ..
         } = result;
-        // 1e-3: both stop at a step of 1e-4, and point-to-point takes several of about that size.
-        assert!(pose.between(&offset).step_size() < 1e-3, "{variant:?}");
-        assert!(rmse < 1e-3 && inliers == cloud.len(), "{variant:?}");
+        // 1e-4: the run ends at a step of that size, which the damping leaves to be made.
+        assert!(pose.between(&offset).step_size() < 1e-4, "{variant:?}");
+        assert!(rmse < 1e-4 && inliers == cloud.len(), "{variant:?}");
         assert_eq!(trace[0].pose, SE2::identity());
 
         let information: Matrix3<f64> = icp_information(&result.pairs, 0.02, 10.0, pose.theta());
