@@ -225,13 +225,18 @@ describe('an old entry that names a core which is gone', () => {
   };
   /** The picture within the element is loaded and stands on the page, and so does its sentence. */
   const showsItsContent = async (tab) => {
-    const widgets = await tab.evaluate(() => Promise.all([...document.querySelectorAll('slam-widget')].map(async (widget) => {
-      const image = widget.querySelector('img');
-      image.scrollIntoView();
-      await image.decode();
+    const widgets = await tab.evaluate(async () => {
       const isSeen = (element) => element.getBoundingClientRect().height > 10;
-      return image.naturalWidth > 300 && isSeen(image) && isSeen(widget.querySelector('p'));
-    })));
+      const found = [];
+      for (const widget of document.querySelectorAll('slam-widget')) {
+        const image = widget.querySelector('img');
+        // One after the other: a picture is fetched when it is near the screen.
+        image.scrollIntoView();
+        await image.decode();
+        found.push(image.naturalWidth > 300 && isSeen(image) && isSeen(widget.querySelector('p')));
+      }
+      return found;
+    });
     assert.ok(widgets.length > 0 && widgets.every(Boolean), JSON.stringify(widgets));
   };
 

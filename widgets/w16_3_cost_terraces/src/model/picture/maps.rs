@@ -16,7 +16,7 @@ pub fn icp(landscape: &Landscape, moment: Moment) -> Panel {
 /// NDT's score upside down, so that both balls descend; dark is low.
 pub fn ndt(landscape: &Landscape, moment: Moment) -> Panel {
     let title = |height: f64| format!("NDT score {:.4}", -height);
-    map("ndt", &title, "−score: upside down", landscape, moment)
+    map("ndt", &title, "−score", landscape, moment)
 }
 
 /// `title` puts the height that is pointed at into words.
