@@ -3,55 +3,13 @@
 //! Figures: the reference system's basin runs (`tests/reference/basin.json`), which the core is
 //! tested against in full; here a few of them show that the widget asks the core the right thing.
 
-use kit::model::{Activity, Model, Motion, Standing};
-use kit::scene::{Cell, Layer, Panel};
+mod common;
+
+use common::{class_at, fact, fill, panel_of, with};
+use kit::model::{Activity, Model, Motion};
+use kit::scene::{Cell, Layer};
 use w16_1_basin_explorer::model::{BasinExplorer, panel};
-use w16_1_basin_explorer::spec::{PARAMS, SPEC};
-
-fn fact(model: &BasinExplorer, id: &str) -> f64 {
-    let outcome = model.outcome();
-    let found = outcome.facts.iter().find(|fact| fact.id == id);
-    found.unwrap_or_else(|| panic!("no fact {id}")).value
-}
-
-fn with(values: &[(&str, f64)]) -> BasinExplorer {
-    let mut model = BasinExplorer::new();
-    for (id, value) in values {
-        model.set(id, *value).expect("a value of the range");
-    }
-    model
-}
-
-fn panel_of(model: &BasinExplorer, id: &str) -> Panel {
-    let scene = model.scene();
-    scene
-        .panels
-        .into_iter()
-        .find(|panel| panel.id == id)
-        .expect("a panel of the widget")
-}
-
-fn fill(model: &mut BasinExplorer) -> usize {
-    let mut pieces = 1;
-    while model.work() == Activity::Busy {
-        pieces += 1;
-    }
-    pieces
-}
-
-/// The class under a spot of a basin map.
-fn class_at(model: &BasinExplorer, id: &str, at: [f64; 2]) -> Cell {
-    let panel = panel_of(model, id);
-    let raster = panel.layers.iter().find_map(|layer| match layer {
-        Layer::Raster(raster) => Some(raster),
-        _ => None,
-    });
-    let raster = raster.expect("a basin map has a raster");
-    let size = raster.bounds.size();
-    let cell =
-        |i: usize, count: usize| ((at[i] - raster.bounds.min[i]) / size[i] * count as f64) as usize;
-    raster.cells[cell(1, raster.rows) * raster.columns + cell(0, raster.columns)]
-}
+use w16_1_basin_explorer::spec::PARAMS;
 
 #[test]
 fn the_verdicts_are_those_of_the_reference_runs() {
@@ -107,136 +65,6 @@ fn the_verdicts_are_those_of_the_reference_runs() {
             );
         }
     }
-}
-
-#[test]
-fn the_verdict_counts_the_place_alone_and_says_where_the_heading_is_not_home() {
-    // basin.json: heading 35°, no offset: 0.116 m, but 25.3° off, stopped at 30 iterations.
-    let model = with(&[("heading", 35.0), ("dx", 0.0), ("dy", 0.0)]);
-    assert!(fact(&model, "error_m") < 0.12);
-    assert_eq!(model.outcome().standing, Standing::Good);
-    assert_eq!(fact(&model, "converged"), 0.0);
-    let sentence = model.outcome().sentence;
-    assert!(sentence.contains("stopped at the limit of 30 iterations"));
-    assert!(sentence.ends_with("the heading is not home."), "{sentence}");
-    let home = BasinExplorer::new().outcome().sentence;
-    assert!(!home.contains("heading"), "{home}");
-}
-
-/// The page prints these edges: the last whole degrees from which a start comes home.
-#[test]
-fn verdict_and_basin_map_agree_at_the_edges_of_the_right_basin() {
-    let mut map = with(&[("dy", 0.0)]);
-    fill(&mut map);
-    for (variant, id, [from, to]) in [
-        (0.0, panel::POINT, [-39.0, 33.0]),
-        (1.0, panel::PLANE, [-47.0, 47.0]),
-    ] {
-        let verdict = |heading: f64| {
-            let start = [("heading", heading), ("dx", 0.0), ("dy", 0.0)];
-            let mut model = with(&start);
-            model.set("variant", variant).expect("a variant");
-            model.outcome().verdict
-        };
-        for inside in [from, to] {
-            assert_eq!(verdict(inside), "right minimum", "{id} from {inside}°");
-            assert_ne!(verdict(inside + inside.signum()), "right minimum");
-        }
-        // The map has a column every 3°; −39° and 33° are among them, ±47° are not.
-        let columns = (-60..=60).step_by(3).map(f64::from);
-        for heading in columns {
-            let right = class_at(&map, id, [heading, 0.0]) == Cell::Class(0);
-            assert_eq!(
-                verdict(heading) == "right minimum",
-                right,
-                "{id}, {heading}°"
-            );
-            assert!(right || heading < from || heading > to, "{id}, {heading}°");
-        }
-    }
-}
-
-#[test]
-fn every_preset_does_what_its_button_says() {
-    for (id, verdict, standing) in [
-        ("near", "right minimum", Standing::Good),
-        ("quarter-turn", "quarter turn", Standing::Bad),
-        ("between", "another false minimum", Standing::Bad),
-        ("between-plane", "right minimum", Standing::Good),
-        ("half-turn", "half turn", Standing::Bad),
-        ("short-sighted", "another false minimum", Standing::Bad),
-    ] {
-        let mut model = BasinExplorer::new();
-        model.press(id).expect("a preset of the widget");
-        assert_eq!(
-            model.values().get("iteration"),
-            0.0,
-            "{id} starts at the guess"
-        );
-        let outcome = model.outcome();
-        assert_eq!(
-            (outcome.verdict.as_str(), outcome.standing),
-            (verdict, standing),
-            "{id}"
-        );
-        while model.advance(0.1) == Activity::Busy {}
-        let timeline = model.timeline().expect("the widget has one");
-        assert_eq!(
-            model.values().get("iteration"),
-            timeline.last,
-            "{id} plays to the end"
-        );
-    }
-    assert_eq!(SPEC.presets.len(), 6, "a preset without a test");
-}
-
-#[test]
-fn the_words_to_notice_hold() {
-    let rmse = |heading: f64, variant: f64| {
-        let model = with(&[
-            ("heading", heading),
-            ("dx", 0.0),
-            ("dy", 0.0),
-            ("variant", variant),
-        ]);
-        (fact(&model, "rmse_m"), fact(&model, "iterations"))
-    };
-    assert_eq!(format!("{:.2}", rmse(65.0, 0.0).0), "0.13");
-    assert_eq!(format!("{:.2}", rmse(25.0, 0.0).0), "0.03");
-    assert!(
-        rmse(25.0, 1.0).1 < rmse(25.0, 0.0).1,
-        "point to plane needs fewer iterations"
-    );
-    let half_turn = rmse(180.0, 0.0).0;
-    assert!(
-        half_turn < 0.1,
-        "the half turn fits better than the quarter turn: {half_turn}"
-    );
-}
-
-/// The rows of the table of iterations, as numbers.
-fn iterations(model: &BasinExplorer) -> Vec<Vec<f64>> {
-    let tables = model.tables();
-    let table = tables.iter().find(|table| table.id == "iterations");
-    let rows = &table.expect("a table of the widget").rows;
-    rows.iter()
-        .map(|row| row.iter().map(|cell| cell.parse().unwrap()).collect())
-        .collect()
-}
-
-#[test]
-fn a_short_sighted_tau_leaves_most_points_without_a_pair() {
-    let mut model = BasinExplorer::new();
-    model.press("short-sighted").unwrap();
-    let rows = iterations(&model);
-    // Columns: iteration, pairs, rmse, error, x, y; of 155 points.
-    for row in &rows {
-        assert!(row[1] < 155.0 / 2.0, "{row:?}");
-    }
-    let (first, last) = (&rows[0], &rows[rows.len() - 1]);
-    let moved_m = (last[4] - first[4]).hypot(last[5] - first[5]);
-    // It starts 0.72 m from the truth and goes 6 cm.
-    assert!(moved_m < 0.1 * first[3], "{moved_m} of {} m", first[3]);
 }
 
 #[test]
