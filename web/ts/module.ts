@@ -78,15 +78,3 @@ function count(body: ReadableStream<Uint8Array>, expected: number): ReadableStre
     }),
   );
 }
-
-let webgl2: boolean | undefined;
-
-/** Whether the browser draws with WebGL 2; asked once, the context is given back. */
-export function hasWebGl2(): boolean {
-  if (webgl2 === undefined) {
-    const context = document.createElement('canvas').getContext('webgl2');
-    webgl2 = context !== null;
-    context?.getExtension('WEBGL_lose_context')?.loseContext();
-  }
-  return webgl2;
-}

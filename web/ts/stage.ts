@@ -1,6 +1,7 @@
 // The canvas with what belongs to it: input that eframe would take from the page is given back.
 
 import type { Instance } from './instance';
+import { LoadError } from './module';
 
 /** A canvas on which an instance runs. */
 export class Stage {
@@ -22,6 +23,8 @@ export class Stage {
     onContextLost: () => void,
   ): Promise<Stage> {
     const canvas = document.createElement('canvas');
+    // A canvas has one context: eframe gets this one.
+    if (canvas.getContext('webgl2') === null) throw new LoadError('this browser draws no WebGL 2');
     canvas.setAttribute('role', 'img');
     canvas.setAttribute('aria-label', label);
     canvas.style.height = `${Math.max(element.clientHeight, 1)}px`;
