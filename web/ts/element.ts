@@ -6,22 +6,20 @@
 import { Controls } from './controls';
 import { listen, reveal, upgradeProperties } from './dom';
 import { takeAwayBar } from './export';
-import { CrashError, type CsvFile, type Outcome, type Timeline } from './instance';
+import type { CsvFile, Outcome, Timeline } from './instance';
 import { Life, type LifeHost } from './life';
 import { LoadError } from './module';
 import { readQuery, withState } from './links';
 import { lookBar, type Way } from './look';
+import { News } from './news';
 import { Notes } from './notes';
-import { build, failureBox, type Parts } from './parts';
+import { build, type Parts } from './parts';
 import { Pictures } from './pictures';
 import { findParam, findWidget, widgets, type WidgetSpec } from './schema';
 import { State } from './state';
 import { themeOf, watchTheme, type Theme } from './theme';
 import { defaultText, type Value } from './values';
 import { unwatchVisibility, watchVisibility } from './visibility';
-
-/** After the last change, before the result is told: not every frame of a drag is news. */
-const SETTLED_MS = 350;
 
 const reducedMotion = globalThis.matchMedia?.('(prefers-reduced-motion: reduce)');
 
@@ -30,19 +28,20 @@ export class SlamWidget extends HTMLElement {
 
   readonly #parts: Parts;
   readonly #notes: Notes;
+  readonly #news: News;
   readonly #pictures: Pictures;
   readonly #life: Life;
   #state: State | undefined;
   #isSetUp = false;
   #controls: Controls | undefined;
   #lastOutcome: Outcome | undefined;
-  #resultTimer: ReturnType<typeof setTimeout> | undefined;
   #unwatch: (() => void)[] = [];
 
   constructor() {
     super();
     this.#parts = build(this.attachShadow({ mode: 'open' }));
     this.#notes = new Notes(this.#parts.note);
+    this.#news = new News(this, this.#parts, this.#notes);
     this.#pictures = new Pictures(this.#parts.picture);
     this.#life = new Life(this.#parts, this.#lifeHost());
   }
@@ -68,7 +67,7 @@ export class SlamWidget extends HTMLElement {
     unwatchVisibility(this);
     for (const end of this.#unwatch) end();
     this.#unwatch = [];
-    clearTimeout(this.#resultTimer);
+    this.#news.stop();
     this.#life.leave();
   }
 
@@ -236,7 +235,7 @@ export class SlamWidget extends HTMLElement {
     parts.bar.replaceChildren();
     if (spec === undefined) {
       const known = widgets.map((widget) => widget.id).join(', ');
-      this.#tell('name', `There is no widget \`${this.name.slice(0, 60)}\`; there are ${known}.`);
+      this.#news.wrong('name', `There is no widget \`${this.name.slice(0, 60)}\`; there are ${known}.`);
       return;
     }
     this.#controls = new Controls(spec, {
@@ -263,12 +262,12 @@ export class SlamWidget extends HTMLElement {
     if (!('widget' in linked)) {
       // One of them speaks for all.
       if (document.querySelector('slam-widget[linked]') !== this) return;
-      for (const problem of linked.problems) this.#tell('name', problem);
+      for (const problem of linked.problems) this.#news.wrong('name', problem);
       return;
     }
     if (linked.widget !== spec) return;
     for (const [id, text] of linked.values) this.#tryToSet(id, text);
-    for (const problem of linked.problems) this.#tell('value', problem);
+    for (const problem of linked.problems) this.#news.wrong('value', problem);
   }
 
   // ---- running ------------------------------------------------------------------------------
@@ -288,15 +287,17 @@ export class SlamWidget extends HTMLElement {
       live: (milliseconds) => {
         this.#controls?.showTimeline(this.timeline);
         this.#lastOutcome = this.outcome;
-        this.#parts.summary.textContent = this.summary;
-        this.#emit('slam-ready', { value: this.value, ms: milliseconds });
+        this.#news.ready(milliseconds);
       },
       drew: (canvas) => {
         this.#pictures.handOut(canvas);
         this.#sync();
       },
       leaving: () => this.#drawPicture(themeOf(this)),
-      failed: (error) => this.#showFailure(error),
+      failed: (error) => {
+        this.#pictures.refuse(error);
+        this.#news.failed(error, () => this.#life.restart());
+      },
     };
   }
 
@@ -304,18 +305,13 @@ export class SlamWidget extends HTMLElement {
   #sync(): void {
     const changes = this.#takeChanges();
     if (changes.length === 0) return;
-    this.#announcePassed(changes);
-    this.#told(changes);
-  }
-
-  /** A run that plays settles only at its end; what it passes is told on the way. */
-  #announcePassed(changes: Iterable<[string, string]>): void {
     const { timeline } = this;
-    if (timeline?.playing !== true) return;
-    const before = Number(this.#state?.text(timeline.param));
-    const now = Number(new Map(changes).get(timeline.param) ?? before);
-    const passed = timeline.marks.filter(({ at }) => before < at && at <= now);
-    if (passed.length > 0) this.#parts.live.textContent = passed.map(({ label }) => label).join('; ');
+    if (timeline?.playing === true) {
+      const before = Number(this.#state?.text(timeline.param));
+      const now = Number(new Map(changes).get(timeline.param) ?? before);
+      this.#news.passed(timeline, before, now);
+    }
+    this.#told(changes);
   }
 
   #takeChanges(): [string, string][] {
@@ -324,28 +320,10 @@ export class SlamWidget extends HTMLElement {
 
   /** Keeps changes, and tells controls and page of them. */
   #told(changes: Iterable<[string, string]>): void {
-    for (const [id, text] of changes) {
-      this.#state?.keep(id, text);
-      this.#notes.settle(id);
-    }
+    for (const [id, text] of changes) this.#state?.keep(id, text);
     this.#controls?.show(changes);
     this.#controls?.showTimeline(this.timeline);
-    const outcome = this.outcome;
-    for (const [parameter, text] of changes) {
-      this.#emit('slam-change', { parameter, value: this.get(parameter), text, outcome });
-    }
-    clearTimeout(this.#resultTimer);
-    this.#resultTimer = setTimeout(() => this.#settled(), SETTLED_MS);
-  }
-
-  #settled(): void {
-    const { outcome } = this;
-    this.#parts.summary.textContent = this.summary;
-    if (outcome !== undefined) {
-      this.#parts.live.textContent = outcome.sentence;
-      this.#emit('slam-result', { value: this.value, outcome });
-    }
-    if (this.hasAttribute('linked')) history.replaceState(history.state, '', this.link);
+    this.#news.changed(changes);
   }
 
   // ---- values -------------------------------------------------------------------------------
@@ -376,7 +354,7 @@ export class SlamWidget extends HTMLElement {
     }
     const label = this.#state?.label(id);
     const stands = label === undefined ? '' : ` It stays at ${label}.`;
-    this.#tell('value', `${problem}.${stands}`, id);
+    this.#news.wrong('value', `${problem}.${stands}`, id);
     return problem;
   }
 
@@ -415,33 +393,5 @@ export class SlamWidget extends HTMLElement {
     const width = Math.max(this.clientWidth, 320);
     const svg = this.#life.ask((widget) => widget.picture(width, theme));
     if (svg !== undefined) this.#pictures.showDrawn(svg, this.summary);
-  }
-
-  // ---- trouble ------------------------------------------------------------------------------
-
-  #showFailure(error: unknown): void {
-    const box = failureBox(error, () => {
-      // The button goes: the focus stays in the widget.
-      this.#parts.frame.focus({ preventScroll: true });
-      box.remove();
-      this.#life.restart();
-    });
-    this.#parts.note.append(box);
-    const message = error instanceof Error ? error.message : String(error);
-    this.#pictures.refuse(new LoadError(message));
-    this.#emit('slam-error', { kind: error instanceof CrashError ? 'crash' : 'load', message });
-  }
-
-  /** Names something that was wrong with what came from outside. */
-  #tell(kind: string, message: string, subject?: string): void {
-    this.#notes.say(message, subject);
-    this.#emit('slam-error', { kind, message });
-  }
-
-  #emit(type: string, detail: Record<string, unknown>): void {
-    const name = this.#state?.spec.id ?? this.getAttribute('name');
-    this.dispatchEvent(
-      new CustomEvent(type, { detail: { name, ...detail }, bubbles: true, composed: true }),
-    );
   }
 }

@@ -27,7 +27,7 @@ export interface LifeHost {
   /** The instance is about to go: the last moment to keep a picture. */
   leaving(): void;
   /** Nothing runs any more until the host calls `restart`. */
-  failed(error: unknown): void;
+  failed(error: Error): void;
 }
 
 export class Life implements Visibility {
@@ -169,7 +169,7 @@ export class Life implements Visibility {
       this.#instance = undefined;
     }
     this.suspend();
-    this.#host.failed(error);
+    this.#host.failed(error instanceof Error ? error : new LoadError(String(error)));
   }
 
   async #create(name: string): Promise<Instance> {

@@ -40,15 +40,14 @@ export function build(shadow: ShadowRoot): Parts {
 }
 
 /** What went wrong, in one sentence, and a way to go on. */
-export function failureBox(error: unknown, onAgain: () => void): HTMLElement {
+export function failureBox(error: Error, onAgain: () => void): HTMLElement {
   const isCrash = error instanceof CrashError;
   const box = create('div', { class: 'failure' });
   const sentence = create('p');
   const again = create('button', { type: 'button' });
-  const reason = error instanceof Error ? error.message : String(error);
   sentence.textContent = isCrash
     ? 'This widget stopped because of an error in its program. Your settings are kept.'
-    : `The interactive widget cannot run here: ${reason}. The picture shows its start.`;
+    : `The interactive widget cannot run here: ${error.message}. The picture shows its start.`;
   again.textContent = isCrash ? 'Restart with these settings' : 'Try again';
   again.addEventListener('click', onAgain);
   box.append(sentence, ...(isCrash ? [crashDetails(error.details)] : []), again);

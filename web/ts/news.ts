@@ -1,0 +1,106 @@
+// What is told of a widget: events for programs, sentences for a screen reader, the page's address.
+
+import { CrashError, type Outcome, type Timeline } from './instance';
+import type { Notes } from './notes';
+import { failureBox, type Parts } from './parts';
+import type { Value } from './values';
+
+/** After the last change, before the result is told: not every frame of a drag is news. */
+const SETTLED_MS = 350;
+
+/** The widget that is told of. */
+export interface NewsSource extends HTMLElement {
+  readonly name: string;
+  readonly value: Record<string, Value>;
+  readonly outcome: Outcome | undefined;
+  readonly summary: string;
+  readonly timeline: Timeline | null;
+  readonly link: string;
+  get(id: string): Value | undefined;
+}
+
+export class News {
+  readonly #source: NewsSource;
+  readonly #parts: Parts;
+  readonly #notes: Notes;
+  #timer: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(source: NewsSource, parts: Parts, notes: Notes) {
+    this.#source = source;
+    this.#parts = parts;
+    this.#notes = notes;
+  }
+
+  /** The first frame stands on the canvas, so many milliseconds after its start. */
+  ready(milliseconds: number): void {
+    this.#describe();
+    this.#emit('slam-ready', { value: this.#source.value, ms: milliseconds });
+  }
+
+  /** Values changed; the result follows once they rest. */
+  changed(changes: Iterable<[string, string]>): void {
+    const { outcome } = this.#source;
+    for (const [parameter, text] of changes) {
+      this.#notes.settle(parameter);
+      const value = this.#source.get(parameter);
+      this.#emit('slam-change', { parameter, value, text, outcome });
+    }
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => this.#settled(), SETTLED_MS);
+  }
+
+  /** A run that plays settles only at its end; what it passes is told on the way. */
+  passed({ marks }: Timeline, before: number, now: number): void {
+    const passed = marks.filter(({ at }) => before < at && at <= now);
+    if (passed.length > 0) this.#say(passed.map(({ label }) => label).join('; '));
+  }
+
+  /** Something that came from outside was wrong. */
+  wrong(kind: 'name' | 'value', message: string, subject?: string): void {
+    this.#notes.say(message, subject);
+    this.#emit('slam-error', { kind, message });
+  }
+
+  /** Nothing runs any more, until the reader asks for it. */
+  failed(error: Error, restart: () => void): void {
+    const { note, frame } = this.#parts;
+    const box = failureBox(error, () => {
+      // The button goes: the focus stays in the widget.
+      frame.focus({ preventScroll: true });
+      box.remove();
+      restart();
+    });
+    note.append(box);
+    const kind = error instanceof CrashError ? 'crash' : 'load';
+    this.#emit('slam-error', { kind, message: error.message });
+  }
+
+  /** The element left its page: what has not settled is no news any more. */
+  stop(): void {
+    clearTimeout(this.#timer);
+  }
+
+  #settled(): void {
+    const { outcome, value, link } = this.#source;
+    this.#describe();
+    if (outcome !== undefined) {
+      this.#say(outcome.sentence);
+      this.#emit('slam-result', { value, outcome });
+    }
+    if (this.#source.hasAttribute('linked')) history.replaceState(history.state, '', link);
+  }
+
+  #describe(): void {
+    this.#parts.summary.textContent = this.#source.summary;
+  }
+
+  #say(sentence: string): void {
+    this.#parts.live.textContent = sentence;
+  }
+
+  #emit(type: string, detail: Record<string, unknown>): void {
+    const { name } = this.#source;
+    const event = new CustomEvent(type, { detail: { name, ...detail }, bubbles: true, composed: true });
+    this.#source.dispatchEvent(event);
+  }
+}
