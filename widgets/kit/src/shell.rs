@@ -32,6 +32,10 @@ const GAP: f32 = 14.0;
 const WORK_WHILE_DRAGGING: Duration = Duration::from_millis(4);
 /// Part of a frame that it may take otherwise: a frame at 60 Hz has 16 ms.
 const WORK_AT_REST: Duration = Duration::from_millis(9);
+/// Where drawing is slow, it may take this share of the time from one frame to the next.
+const SHARE_AT_REST: f32 = 1.0 / 3.0;
+/// However slow drawing is, the reader is not kept waiting longer than this.
+const MOST_WORK: Duration = Duration::from_millis(100);
 
 /// A parameter that the pointer changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -234,10 +238,11 @@ impl Shell {
             y = self.block(ui, [left, y], width, Self::notice);
         }
 
-        self.work(if ui.input(|input| input.pointer.any_down()) {
+        let (dragging, frame_s) = ui.input(|input| (input.pointer.any_down(), input.stable_dt));
+        self.work(if dragging {
             WORK_WHILE_DRAGGING
         } else {
-            WORK_AT_REST
+            work_at_rest(frame_s)
         });
         self.paint(ui, &reserved);
         self.ring(ui);
@@ -336,5 +341,24 @@ impl Shell {
                 egui::StrokeKind::Outside,
             );
         }
+    }
+}
+
+/// Time for [`Model::work`] in a frame that came so many seconds after the last one.
+fn work_at_rest(frame_s: f32) -> Duration {
+    let share = Duration::try_from_secs_f32(SHARE_AT_REST * frame_s).unwrap_or_default();
+    share.clamp(WORK_AT_REST, MOST_WORK)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn work_fits_into_a_fast_frame_and_takes_a_third_of_a_slow_one() {
+        assert_eq!(work_at_rest(1.0 / 60.0), WORK_AT_REST);
+        assert!((work_at_rest(0.15).as_secs_f32() - 0.05).abs() < 1e-6);
+        assert_eq!(work_at_rest(5.0), MOST_WORK);
+        assert_eq!(work_at_rest(f32::NAN), WORK_AT_REST);
     }
 }
