@@ -149,7 +149,7 @@ it('jupyter.html: a value that does not fit is named in the cell, and the others
     // What the widget itself writes into the model takes no sentence away.
     await h.ready(tab);
     await tab.waitForFunction(() => traits.value.noise === 3);
-    assert.match(await cell.innerText(), /no parameter `bogus`/);
+    assert.match(await cell.innerText(), /no parameter `bogus`; it has [a-z, -]+\. `seed`/);
     await tab.evaluate(() => assign({ noise: 1 }));
     assert.equal(await noise(), 1);
     assert.doesNotMatch(await cell.innerText(), /bogus/);

@@ -48,7 +48,8 @@ function setAll(widget: SlamWidget, wanted: unknown): string[] {
     try {
       if (widget.get(id) !== value) widget.set(id, value);
     } catch (error) {
-      problems.push(`${(error as Error).message}. It keeps its value.`);
+      const stands = widget.get(id) === undefined ? '' : ' It keeps its value.';
+      problems.push(`${(error as Error).message}.${stands}`);
     }
   }
   return problems;
