@@ -10,10 +10,12 @@ import { createHash } from 'node:crypto';
 import { cp, mkdir, readFile, rm, writeFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
-import { brotliCompressSync, constants, gzipSync } from 'node:zlib';
+import { gzipSync } from 'node:zlib';
 import * as esbuild from 'esbuild';
 
 import { writeParameterTables, writeTypes } from './generate.mjs';
+import { writeMarked } from './marked.mjs';
+import { brotli, withoutNames } from './wasm-file.mjs';
 
 const WEB = dirname(fileURLToPath(import.meta.url));
 const PKG = join(WEB, 'pkg');
@@ -67,33 +69,6 @@ function replaceOnce(text, pattern, replacement) {
   const found = text.match(new RegExp(pattern, 'g'))?.length ?? 0;
   if (found !== 1) throw new Error(`the glue has ${found} places like ${pattern}, not one`);
   return text.replace(pattern, replacement);
-}
-
-/** The names of functions serve debuggers alone, and weigh a quarter of the module. */
-function withoutNames(module) {
-  const kept = [module.subarray(0, 8)];
-  for (let at = 8; at < module.length; ) {
-    const [size, start] = leb128(module, at + 1);
-    const [nameLength, nameStart] = leb128(module, start);
-    const name = module.subarray(nameStart, nameStart + nameLength).toString();
-    const isCustom = module[at] === 0;
-    if (!isCustom || (name !== 'name' && name !== 'producers')) {
-      kept.push(module.subarray(at, start + size));
-    }
-    at = start + size;
-  }
-  return Buffer.concat(kept);
-}
-
-/** An unsigned number at an offset, and the offset behind it. */
-function leb128(bytes, at) {
-  let value = 0;
-  for (let shift = 0; ; shift += 7) {
-    const byte = bytes[at];
-    at += 1;
-    value += (byte & 127) * 2 ** shift;
-    if (byte < 128) return [value, at];
-  }
 }
 
 async function instantiate(bytes) {
@@ -190,8 +165,6 @@ async function measure() {
 
 /** The table in the README. */
 async function writeSizes(sizes) {
-  const path = join(WEB, '..', 'README.md');
-  const text = await readFile(path, 'utf8');
   const rows = Object.entries(sizes).map(
     ([name, { raw, gzip, brotli: small }]) => `| ${name} | ${raw} | ${gzip} | ${small} |`,
   );
@@ -201,19 +174,8 @@ async function writeSizes(sizes) {
     '| --- | --- | --- | --- |',
     ...rows,
     `| both | ${total('raw')} | ${total('gzip')} | ${total('brotli')} |`,
-  ].join('\n');
-  const marked = /(<!-- sizes: [^>]*-->\n)[\s\S]*?(<!-- end of sizes -->)/;
-  const updated = text.replace(marked, `$1${table}\n$2`);
-  if (updated !== text) await writeFile(path, updated);
-}
-
-function brotli(bytes) {
-  const params = {
-    [constants.BROTLI_PARAM_QUALITY]: 11,
-    [constants.BROTLI_PARAM_LGWIN]: 24,
-    [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length,
-  };
-  return brotliCompressSync(bytes, { params }).length;
+  ];
+  await writeMarked(join(WEB, '..', 'README.md'), 'sizes', table.join('\n'));
 }
 
 function hash(bytes) {

@@ -9,7 +9,8 @@ pub const USAGE: &str = "\
 cargo xtask serve [--port 8016] [--release]   build the page and serve it
 cargo xtask build                             build the finished static site into dist/
 cargo xtask test                              every check: format, lints, native, wasm, browser
-cargo xtask bench [--json FILE]               time and count the workloads, write docs/performance.md";
+cargo xtask bench [--json FILE]               time and count the workloads, write docs/performance.md
+cargo xtask sizes                             what keeps the module small, each step left out once";
 
 /// One of the commands, with its options.
 #[derive(Debug, PartialEq, Eq)]
@@ -32,6 +33,8 @@ pub enum Command {
         /// Where the measurements go besides the table.
         json: Option<PathBuf>,
     },
+    /// Weigh builds of the module.
+    Sizes,
 }
 
 /// Reads the words after `cargo xtask`.
@@ -47,6 +50,7 @@ pub fn parse(words: impl Iterator<Item = String>) -> Result<Command, String> {
         "help" | "--help" | "-h" => Command::Help,
         "build" => Command::Build,
         "test" => Command::Test,
+        "sizes" => Command::Sizes,
         "bench" => Command::Bench {
             json: match words.next_if_eq("--json") {
                 Some(_) => Some(words.next().ok_or("--json takes a file name")?.into()),

@@ -1,4 +1,4 @@
-//! The project's commands: `cargo xtask serve`, `build`, `test`, `bench`.
+//! The project's commands: `cargo xtask serve`, `build`, `test`, `bench`, `sizes`.
 //!
 //! Everything that a step needs is checked first and installed where cargo, npm or apt can do it;
 //! what cannot be installed is named in one line, with the way to get it. Tools of cargo go to
@@ -12,6 +12,7 @@ mod http;
 mod run;
 mod serve;
 mod site;
+mod sizes;
 mod suite;
 mod tools;
 
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Command::Serve { port, speed } => serve::serve(port, speed),
         Command::Test => suite::test(),
         Command::Bench { json } => bench::bench(json.as_deref()),
+        Command::Sizes => sizes::sizes(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

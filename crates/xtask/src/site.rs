@@ -1,6 +1,7 @@
 //! The finished site: wasm, element, page, pictures, all in `dist/`.
 
 use std::path::Path;
+use std::process::Command;
 
 use crate::run::{Failure, program, root, step};
 use crate::tools;
@@ -47,19 +48,24 @@ pub fn build(speed: Speed) -> Result<(), Failure> {
 }
 
 fn compile_wasm(speed: Speed) -> Result<(), Failure> {
-    // `no-modules`: one function that holds the whole glue, so that the element can make as many
-    // instances as there are widgets. No wasm-opt: see web/Cargo.toml.
     step(
         "Compiling the widgets to WebAssembly (the first time takes minutes)",
-        &mut tools::wasm_pack_build(
-            "web",
-            &[
-                "--target=no-modules",
-                "--out-dir=pkg",
-                "--out-name=slam_web",
-                &format!("--profile={}", speed.profile()),
-            ],
-        ),
+        &mut wasm_build("pkg", speed),
+    )
+}
+
+/// The build of the module into a folder, named as seen from `web/`; takes more options of cargo.
+pub fn wasm_build(folder: &str, speed: Speed) -> Command {
+    // `no-modules`: one function that holds the whole glue, so that the element can make as many
+    // instances as there are widgets. No wasm-opt: see web/Cargo.toml.
+    tools::wasm_pack_build(
+        "web",
+        &[
+            "--target=no-modules",
+            &format!("--out-dir={folder}"),
+            "--out-name=slam_web",
+            &format!("--profile={}", speed.profile()),
+        ],
     )
 }
 

@@ -28,7 +28,7 @@ pub fn ensure_build_tools() -> Result<(), Failure> {
 
 /// `wasm-pack build PACKAGE`, with our own tools first on its PATH.
 ///
-/// Takes more options of wasm-pack. Panic messages name sources, and so the module would hold
+/// Takes more options of cargo. Panic messages name sources, and so the module would hold
 /// where this machine keeps cargo's registry: the compiler writes `cargo/registry/…` instead.
 pub fn wasm_pack_build(package: &str, options: &[&str]) -> Command {
     let inherited = env::var_os("PATH").unwrap_or_default();
@@ -38,10 +38,11 @@ pub fn wasm_pack_build(package: &str, options: &[&str]) -> Command {
         .args(["build", package, "--no-opt", "--no-pack"])
         .args(["--mode", "no-install"])
         .args(options)
+        .arg("--")
         .env("PATH", env::join_paths(paths).unwrap_or(inherited));
     let home = env::var_os("CARGO_HOME").map(PathBuf::from);
     if let Some(home) = home.or_else(|| Some(env::home_dir()?.join(".cargo"))) {
-        command.args(["--", "--config", &remapping(&home)]);
+        command.args(["--config", &remapping(&home)]);
     }
     command
 }

@@ -1,0 +1,83 @@
+//! `cargo xtask sizes`: what keeps the module small, measured by leaving each step out.
+
+use crate::run::{Failure, program, root, show, step};
+use crate::site::{Speed, wasm_build};
+use crate::tools;
+
+/// Where the table stands.
+const PAGE: &str = "docs/performance.md";
+
+/// A build that differs from the published one.
+struct Variant {
+    /// Its folder.
+    id: &'static str,
+    /// How it differs.
+    what: &'static str,
+    /// More options of cargo.
+    options: &'static [&'static str],
+    /// A setting of cargo that the environment overrides.
+    setting: Option<(&'static str, &'static str)>,
+}
+
+/// The first is the published build itself, before its names are taken out.
+const VARIANTS: [Variant; 5] = [
+    Variant {
+        id: "published",
+        what: "with the names of its functions",
+        options: &[],
+        setting: None,
+    },
+    Variant {
+        id: "fonts",
+        what: "with egui's own fonts besides the subset",
+        options: &["--features", "eframe/default_fonts"],
+        setting: None,
+    },
+    Variant {
+        id: "features",
+        what: "with all default features of eframe besides `glow`",
+        options: &["--features", "eframe/default"],
+        setting: None,
+    },
+    Variant {
+        id: "speed",
+        what: "with `opt-level` 3 everywhere",
+        options: &[],
+        setting: Some(("CARGO_PROFILE_WEB_OPT_LEVEL", "3")),
+    },
+    Variant {
+        id: "units",
+        what: "without link-time optimization",
+        options: &[],
+        setting: Some(("CARGO_PROFILE_WEB_LTO", "off")),
+    },
+];
+
+/// Builds all variants, prints their sizes and writes them into `docs/performance.md`.
+///
+/// # Errors
+/// The first step that fails, in one line.
+pub fn sizes() -> Result<(), Failure> {
+    tools::ensure_build_tools()?;
+    let folder = root().join("target/sizes");
+    let mut table = program("node");
+    table.args(["web/size-table.mjs", PAGE]);
+    for Variant {
+        id,
+        what,
+        options,
+        setting,
+    } in VARIANTS
+    {
+        // A target folder of its own: the published build stays compiled.
+        let mut build = wasm_build(&format!("../target/sizes/{id}"), Speed::SmallAndFast);
+        build
+            .args(options)
+            .envs(setting)
+            .env("CARGO_TARGET_DIR", folder.join("cargo"));
+        step(&format!("Compiling the widgets {what}"), &mut build)?;
+        let module = folder.join(id).join("slam_web_bg.wasm");
+        table.arg(format!("{what}={}", module.display()));
+    }
+    show("Sizes", &mut table)
+}

@@ -1,0 +1,40 @@
+// What a wasm file weighs, and what it need not carry.
+
+import { brotliCompressSync, constants } from 'node:zlib';
+
+/** The names of functions serve debuggers alone, and weigh a quarter of the module. */
+export function withoutNames(module) {
+  const kept = [module.subarray(0, 8)];
+  for (let at = 8; at < module.length; ) {
+    const [size, start] = leb128(module, at + 1);
+    const [nameLength, nameStart] = leb128(module, start);
+    const name = module.subarray(nameStart, nameStart + nameLength).toString();
+    const isCustom = module[at] === 0;
+    if (!isCustom || (name !== 'name' && name !== 'producers')) {
+      kept.push(module.subarray(at, start + size));
+    }
+    at = start + size;
+  }
+  return Buffer.concat(kept);
+}
+
+/** An unsigned number at an offset, and the offset behind it. */
+function leb128(bytes, at) {
+  let value = 0;
+  for (let shift = 0; ; shift += 7) {
+    const byte = bytes[at];
+    at += 1;
+    value += (byte & 127) * 2 ** shift;
+    if (byte < 128) return [value, at];
+  }
+}
+
+/** The bytes that arrive where the server compresses with brotli at its best. */
+export function brotli(bytes) {
+  const params = {
+    [constants.BROTLI_PARAM_QUALITY]: 11,
+    [constants.BROTLI_PARAM_LGWIN]: 24,
+    [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length,
+  };
+  return brotliCompressSync(bytes, { params }).length;
+}
