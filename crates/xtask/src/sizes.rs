@@ -20,7 +20,7 @@ struct Variant {
 }
 
 /// The first is the published build itself, before its names are taken out.
-const VARIANTS: [Variant; 5] = [
+const VARIANTS: [Variant; 4] = [
     Variant {
         id: "published",
         what: "with the names of its functions",
@@ -44,12 +44,6 @@ const VARIANTS: [Variant; 5] = [
         what: "with `opt-level` 3 everywhere",
         options: &[],
         setting: Some(("CARGO_PROFILE_WEB_OPT_LEVEL", "3")),
-    },
-    Variant {
-        id: "units",
-        what: "without link-time optimization",
-        options: &[],
-        setting: Some(("CARGO_PROFILE_WEB_LTO", "off")),
     },
 ];
 
