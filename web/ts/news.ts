@@ -81,13 +81,14 @@ export class News {
   }
 
   #settled(): void {
-    const { outcome, value, link } = this.#source;
+    const source = this.#source;
+    const { outcome } = source;
     this.#describe();
     if (outcome !== undefined) {
       this.#say(outcome.sentence);
-      this.#emit('slam-result', { value, outcome });
+      this.#emit('slam-result', { value: source.value, outcome });
     }
-    if (this.#source.hasAttribute('linked')) history.replaceState(history.state, '', link);
+    if (source.hasAttribute('linked')) history.replaceState(history.state, '', source.link);
   }
 
   #describe(): void {
