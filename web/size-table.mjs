@@ -1,7 +1,7 @@
 // node web/size-table.mjs PAGE WHAT=FILE…: what builds of the module weigh beside the first of them,
-// as a table in PAGE.
+// the published one, as a table in PAGE.
 
-import { readFile } from 'node:fs/promises';
+import { readFileSync } from 'node:fs';
 
 import { writeMarked } from './marked.mjs';
 import { brotli, withoutNames } from './wasm-file.mjs';
@@ -11,16 +11,14 @@ if (page === undefined || named.length === 0) {
   throw new Error('usage: node web/size-table.mjs PAGE WHAT=FILE…');
 }
 
-const rows = [];
-for (const pair of named) {
+const builds = named.map((pair) => {
   const end = pair.indexOf('=');
-  const what = pair.slice(0, end);
-  const module = await readFile(pair.slice(end + 1));
-  if (rows.length === 0) rows.push(['as published', brotli(withoutNames(module))]);
-  rows.push([what, brotli(rows.length === 1 ? module : withoutNames(module))]);
-}
-
+  return [pair.slice(0, end), readFileSync(pair.slice(end + 1))];
+});
+const rows = builds.map(([what, module]) => [what, brotli(withoutNames(module))]);
 const published = rows[0][1];
+rows.splice(1, 0, ['with the names of its functions', brotli(builds[0][1])]);
+
 const table = [
   '| build | brotli −11, bytes | more |',
   '|---|--:|--:|',

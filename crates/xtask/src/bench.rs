@@ -10,7 +10,7 @@ use crate::run::{Failure, cargo, program, root, show, step};
 use crate::tools;
 
 /// Where the tables stand.
-const PAGE: &str = "docs/performance.md";
+pub const PAGE: &str = "docs/performance.md";
 
 /// Measures, prints the tables, writes them into `docs/performance.md`, and the figures of the
 /// workloads to `json` where one is named.

@@ -1,49 +1,41 @@
 //! `cargo xtask sizes`: what keeps the module small, measured by leaving each step out.
 
+use crate::bench::PAGE;
 use crate::run::{Failure, program, root, show, step};
 use crate::site::{Speed, wasm_build};
 use crate::tools;
 
-/// Where the table stands.
-const PAGE: &str = "docs/performance.md";
-
-/// A build that differs from the published one.
+/// A build of the module.
 struct Variant {
     /// Its folder.
     id: &'static str,
-    /// How it differs.
+    /// How it differs from the published one.
     what: &'static str,
     /// More options of cargo.
     options: &'static [&'static str],
-    /// A setting of cargo that the environment overrides.
-    setting: Option<(&'static str, &'static str)>,
 }
 
-/// The first is the published build itself, before its names are taken out.
+/// The first is the published build itself.
 const VARIANTS: [Variant; 4] = [
     Variant {
         id: "published",
-        what: "with the names of its functions",
+        what: "as published",
         options: &[],
-        setting: None,
     },
     Variant {
         id: "fonts",
         what: "with egui's own fonts besides the subset",
         options: &["--features", "eframe/default_fonts"],
-        setting: None,
     },
     Variant {
         id: "features",
         what: "with all default features of eframe besides `glow`",
         options: &["--features", "eframe/default"],
-        setting: None,
     },
     Variant {
         id: "speed",
         what: "with `opt-level` 3 everywhere",
-        options: &[],
-        setting: Some(("CARGO_PROFILE_WEB_OPT_LEVEL", "3")),
+        options: &["--config", "profile.web.opt-level=3"],
     },
 ];
 
@@ -56,18 +48,11 @@ pub fn sizes() -> Result<(), Failure> {
     let folder = root().join("target/sizes");
     let mut table = program("node");
     table.args(["web/size-table.mjs", PAGE]);
-    for Variant {
-        id,
-        what,
-        options,
-        setting,
-    } in VARIANTS
-    {
+    for Variant { id, what, options } in VARIANTS {
         // A target folder of its own: the published build stays compiled.
         let mut build = wasm_build(&format!("../target/sizes/{id}"), Speed::SmallAndFast);
         build
             .args(options)
-            .envs(setting)
             .env("CARGO_TARGET_DIR", folder.join("cargo"));
         step(&format!("Compiling the widgets {what}"), &mut build)?;
         let module = folder.join(id).join("slam_web_bg.wasm");
