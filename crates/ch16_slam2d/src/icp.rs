@@ -21,6 +21,9 @@ mod stepper;
 pub use adaptive::AdaptiveThreshold;
 pub use align::{Alignment, closed_form, point_to_plane_step, svd_align};
 pub use config::{IcpConfig, IcpVariant};
-pub use information::{icp_information, regularize};
+pub use information::{
+    INFORMATION_CAP, INFORMATION_RIDGE, centroid, icp_information, icp_information_along,
+    move_information, regularize,
+};
 pub use pairing::{IcpWorkspace, Pair, correspondences};
 pub use stepper::{Icp, IcpResult, IcpStep, IcpSummary, IcpTrace, StopReason, icp};

@@ -3,11 +3,12 @@
 use ch16_slam2d::basin::{BasinScene, BasinStart, Minimum};
 use ch16_slam2d::cloud::{DenseMap, NearestMap, PointCloud, VoxelMap};
 use ch16_slam2d::icp::{
-    AdaptiveThreshold, Icp, IcpConfig, IcpVariant, IcpWorkspace, StopReason, correspondences, icp,
-    icp_information, regularize,
+    AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, Icp, IcpConfig, IcpVariant,
+    IcpWorkspace, Pair, StopReason, centroid, correspondences, icp, icp_information,
+    icp_information_along, move_information, regularize,
 };
 use ch16_slam2d::terrain::{SceneKind, TerrainScene};
-use pr_geom::{Matrix3, SE2, Vector2};
+use pr_geom::{Matrix3, SE2, Vector2, Vector3};
 use pr_sim::Rng;
 use proptest::prelude::*;
 
@@ -215,7 +216,7 @@ fn the_corridors_point_to_plane_matrix_has_rank_two_and_the_rooms_three() {
     // The last point of a wall may have too few neighbours for a normal.
     pairs.retain(|pair| pair.normal.is_some());
     assert!(pairs.len() >= corridor.len() - 4);
-    let information = icp_information(&pairs, 0.01, 1.0, 0.0);
+    let information = icp_information(&pairs, 0.01, 1.0);
     assert_eq!(information.rank(1e-9 * information.norm()), 2);
     assert_eq!(information.row(0).norm(), 0.0);
 
@@ -235,8 +236,8 @@ fn information_turns_with_the_body_and_counts_both_axes_without_a_normal() {
     let scene = TerrainScene::new(SceneKind::Room, TerrainScene::DEFAULT_NDT_CELL_M);
     let config = IcpConfig::default();
     let pairs = correspondences(scene.cloud(), scene.map(), SE2::identity(), &config);
-    let straight = icp_information(&pairs, 0.05, 12.0, 0.0);
-    let turned = icp_information(&pairs, 0.05, 12.0, 0.7);
+    let straight = icp_information(&pairs, 0.05, 12.0);
+    let turned = icp_information_along(&pairs, 0.05, 12.0, 0.7);
     let mut rotation = Matrix3::identity();
     rotation
         .fixed_view_mut::<2, 2>(0, 0)
@@ -253,17 +254,57 @@ fn information_turns_with_the_body_and_counts_both_axes_without_a_normal() {
         })
         .collect();
     let per_axis = pairs.len() as f64 / (0.05 * 0.05 * 12.0);
-    let information = icp_information(&bare, 0.05, 12.0, 0.0);
+    let information = icp_information(&bare, 0.05, 12.0);
     assert!((information[(0, 0)] - per_axis).abs() < 1e-9 * per_axis);
     assert!((information[(1, 1)] - per_axis).abs() < 1e-9 * per_axis);
     assert!(information[(0, 1)].abs() < 1e-9 * per_axis);
 }
 
 #[test]
+fn information_moved_to_the_body_is_the_hessian_of_the_cost_under_perturbations_there() {
+    let scene = TerrainScene::new(SceneKind::Room, TerrainScene::DEFAULT_NDT_CELL_M);
+    let map_from_body = SE2::new(3.0, -1.0, 2.0);
+    let (sigma, inflate) = (0.05_f64, 12.0);
+    let config = IcpConfig::default();
+    let mut pairs = correspondences(scene.cloud(), scene.map(), SE2::identity(), &config);
+    pairs.retain(|pair| pair.normal.is_some());
+    let residual = |pair: &Pair, delta: &Vector3<f64>| {
+        let in_body = map_from_body.inverse().transform(pair.source);
+        let moved = map_from_body.boxplus(delta).transform(in_body);
+        let normal = pair.normal.expect("pairs without one were left out");
+        normal.dot(&(moved - pair.target)) / (sigma * sigma * inflate).sqrt()
+    };
+    let step = 1e-4;
+    let mut hessian = Matrix3::zeros();
+    for pair in &pairs {
+        let row = Vector3::from_fn(|k, _| {
+            let delta = Vector3::from_fn(|axis, _| if axis == k { step } else { 0.0 });
+            (residual(pair, &delta) - residual(pair, &-delta)) / (2.0 * step)
+        });
+        hessian += row * row.transpose();
+    }
+
+    let center = centroid(&pairs);
+    let body_from_center = map_from_body.inverse() * SE2::translation(center.x, center.y);
+    let at_center = icp_information(&pairs, sigma, inflate);
+    let at_body = move_information(&at_center, &body_from_center.inverse());
+    // 1e-6: central differences over 1e-4 leave 1e-8 of an arm of a few metres.
+    assert!((at_body - hessian).norm() < 1e-6 * hessian.norm());
+    // The other way round is another matrix, and so is the one about the centroid.
+    let wrong_way = move_information(&at_center, &body_from_center);
+    assert!((wrong_way - hessian).norm() > 0.1 * hessian.norm());
+    let along = icp_information_along(&pairs, sigma, inflate, map_from_body.theta());
+    assert!((along - hessian).norm() > 0.1 * hessian.norm());
+    let turned = move_information(&at_center, &SE2::new(0.0, 0.0, map_from_body.theta()));
+    assert!((along - turned).norm() < 1e-12 * turned.norm());
+}
+
+#[test]
 fn regularizing_caps_the_largest_diagonal_entry_at_2500() {
     let small = Matrix3::from_diagonal_element(10.0);
-    assert_eq!(regularize(&small), Matrix3::from_diagonal_element(11.0));
-    let large = regularize(&Matrix3::new(
+    let chapters = |information| regularize(information, INFORMATION_RIDGE, INFORMATION_CAP);
+    assert_eq!(chapters(small), Matrix3::from_diagonal_element(11.0));
+    let large = chapters(Matrix3::new(
         9999.0, 5.0, 0.0, 5.0, 99.0, 0.0, 0.0, 0.0, 0.0,
     ));
     assert_eq!(large[(0, 0)], 2500.0);

@@ -1,36 +1,47 @@
 //! How much a registration knows, for the edges of the pose graph.
 
-use nalgebra::{Matrix3, Vector2};
-use pr_geom::Rotation;
+use nalgebra::{Matrix3, Point2, Vector2};
+use pr_geom::{Rotation, SE2};
 
 use super::Pair;
 use super::align::PlaneHessian;
 
-/// Added to the diagonal by [`regularize`], so that no direction is without any information.
-const RIDGE: f64 = 1.0;
-/// Largest diagonal entry that [`regularize`] leaves.
-const MAX_DIAGONAL: f64 = 2500.0;
+/// The ridge with which the chapter calls [`regularize`]: no direction is without any information.
+pub const INFORMATION_RIDGE: f64 = 1.0;
+/// The cap with which the chapter calls [`regularize`]: no direction is known better than to 2 cm.
+pub const INFORMATION_CAP: f64 = 2500.0;
 
 /// The information of a registration, `Σ J Jᵀ / (σ² · inflate)`, 3×3, translation first.
 ///
-/// A pair with a normal contributes the row `J = (Rᵀ n, lever)`, one without the rows of both axes.
-/// `lever` is the turn of the point about the centroid of all pairs, seen along the row's direction
-/// (m), and `R` is the rotation of heading `body_theta` (rad), so that the matrix belongs to
-/// perturbations in the body's frame. `sigma` is the range noise in metres. `inflate` accounts for
-/// pairs that are not independent.
+/// A pair with a normal contributes the row `J = (n, lever)`, one without the rows of both axes.
+/// `lever` is the turn of the moved point about the centroid of all pairs, seen along the row's
+/// direction (m). So the matrix belongs to motions along the axes of the map, about
+/// [`centroid`]`(pairs)`; [`move_information`] expresses it elsewhere. `sigma` is the range noise in
+/// metres. `inflate` accounts for pairs that are not independent.
 #[must_use]
-pub fn icp_information(pairs: &[Pair], sigma: f64, inflate: f64, body_theta: f64) -> Matrix3<f64> {
-    let centroid = pairs
-        .iter()
-        .fold(Vector2::zeros(), |sum, pair| sum + pair.source)
-        / pairs.len().max(1) as f64;
-    let body = Rotation::new(body_theta);
+pub fn icp_information(pairs: &[Pair], sigma: f64, inflate: f64) -> Matrix3<f64> {
+    icp_information_along(pairs, sigma, inflate, 0.0)
+}
+
+/// [`icp_information`] along the axes of heading `axes_theta` (rad) in place of the map's.
+///
+/// Each row is `(Rᵀ n, lever)` with the rotation `R` of that heading; the levers stay about the
+/// centroid of the pairs. It equals [`move_information`] by a turn about the centroid, up to rounding.
+#[must_use]
+pub fn icp_information_along(
+    pairs: &[Pair],
+    sigma: f64,
+    inflate: f64,
+    axes_theta: f64,
+) -> Matrix3<f64> {
+    let centroid = centroid(pairs);
+    let axes = Rotation::new(axes_theta);
     let mut hessian = PlaneHessian::default();
     let weight = 1.0 / (sigma * sigma * inflate);
     for pair in pairs {
-        let arm = pair.source - centroid;
+        let arm = pair.source - centroid.coords;
         let mut add = |direction: Vector2<f64>| {
-            let (nx, ny) = body.unrotate(direction.x, direction.y);
+            let (nx, ny) = axes.unrotate(direction.x, direction.y);
             let lever = arm.x * direction.y - arm.y * direction.x;
             hessian.add(nx, ny, lever, weight);
         };
@@ -45,14 +56,40 @@ pub fn icp_information(pairs: &[Pair], sigma: f64, inflate: f64, body_theta: f64
     hessian.matrix()
 }
 
-/// Makes an information matrix safe for the graph: adds 1 to the diagonal, then scales the whole
-/// so that no diagonal entry exceeds 2500.
+/// Mean of the moved points of `pairs`, in the map's frame, m; the origin where there are none.
 #[must_use]
-pub fn regularize(information: &Matrix3<f64>) -> Matrix3<f64> {
-    let ridged = information + Matrix3::identity() * RIDGE;
+pub fn centroid(pairs: &[Pair]) -> Point2<f64> {
+    let sum = pairs
+        .iter()
+        .fold(Vector2::zeros(), |sum, pair| sum + pair.source);
+    (sum / pairs.len().max(1) as f64).into()
+}
+
+/// `Adᵀ Ω Ad` with the adjoint of `old_from_new`: the same information, of perturbations at another
+/// frame of the same rigid body.
+///
+/// `information` belongs to perturbations `T ⊞ δ` of the old frame, translation first. A perturbation
+/// δ of the new frame moves the old one by `Ad δ`. So the information of [`icp_information`] at the
+/// origin of a registered body, along its axes, is that of `SE2::translation(cx, cy)⁻¹ · map_from_body`
+/// with the centroid `(cx, cy)`.
+///
+/// Source: Solà, Deray, Atchuthan 2018, section II-F.
+#[must_use]
+pub fn move_information(information: &Matrix3<f64>, old_from_new: &SE2) -> Matrix3<f64> {
+    let adjoint = old_from_new.adjoint();
+    adjoint.transpose() * information * adjoint
+}
+
+/// Makes an information matrix safe for the graph: adds `ridge` to the diagonal, then scales the
+/// whole so that no diagonal entry exceeds `cap`.
+///
+/// Scaling keeps the matrix positive definite; cutting off single entries would not.
+#[must_use]
+pub fn regularize(information: Matrix3<f64>, ridge: f64, cap: f64) -> Matrix3<f64> {
+    let ridged = information + Matrix3::identity() * ridge;
     let largest = ridged.diagonal().max();
-    if largest > MAX_DIAGONAL {
-        ridged * (MAX_DIAGONAL / largest)
+    if largest > cap {
+        ridged * (cap / largest)
     } else {
         ridged
     }

@@ -6,7 +6,10 @@ use pr_geom::SE2;
 use super::gate::{GateTest, chi_squared_gate};
 use super::{LoopCandidate, LoopConfig, MapConfig};
 use crate::cloud::{DenseMap, PointCloud};
-use crate::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace, Pair, icp_information, regularize};
+use crate::icp::{
+    INFORMATION_CAP, INFORMATION_RIDGE, Icp, IcpConfig, IcpVariant, IcpWorkspace, Pair,
+    icp_information_along, regularize,
+};
 
 /// Why a loop was turned away, with what was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,12 +168,12 @@ pub fn verify_loop(
     .run();
     workspace.pairs.clear();
     workspace.pairs.extend(workspace.icp.pairs(&workspace.map));
-    let information = regularize(&icp_information(
+    let information = icp_information_along(
         &workspace.pairs,
         config.trust.sigma_m,
         config.trust.inflate,
         center.theta(),
-    ));
+    );
 
     let innovation = initial.between(&summary.pose).log();
     let gate = chi_squared_gate(&innovation, gate_information, config.gate_chi2);
@@ -185,7 +188,7 @@ pub fn verify_loop(
         innovation,
         gate_information: *gate_information,
         gate,
-        information,
+        information: regularize(information, INFORMATION_RIDGE, INFORMATION_CAP),
         rejection: rejection(summary.rmse, summary.inliers, gate, config),
     }
 }

@@ -7,8 +7,8 @@ use super::config::SlamConfig;
 use super::drive::Drive;
 use crate::cloud::{DenseMap, PointCloud};
 use crate::icp::{
-    AdaptiveThreshold, Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace, Pair, icp_information,
-    regularize,
+    AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, Icp, IcpConfig, IcpSummary, IcpVariant,
+    IcpWorkspace, Pair, icp_information_along, regularize,
 };
 
 /// A sweep of the local map.
@@ -133,12 +133,13 @@ impl FrontEnd {
     pub fn information(&mut self, body_theta: f64, config: &SlamConfig) -> Matrix3<f64> {
         self.pairs.clear();
         self.pairs.extend(self.icp.pairs(&self.local_map));
-        regularize(&icp_information(
+        let information = icp_information_along(
             &self.pairs,
             config.odometry_trust.sigma_m,
             config.odometry_trust.inflate,
             body_theta,
-        ))
+        );
+        regularize(information, INFORMATION_RIDGE, INFORMATION_CAP)
     }
 
     /// Moves the estimate and the window by `correction`, applied on the left: a loop was closed.

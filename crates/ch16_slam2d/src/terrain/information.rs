@@ -76,7 +76,7 @@ pub struct ShiftInformation {
 /// The point-to-plane information of `pairs` for range noise of `sigma_m`, about their centroid.
 #[must_use]
 pub fn pose_information(pairs: &[Pair], sigma_m: f64) -> PoseInformation {
-    PoseInformation::new(icp_information(pairs, sigma_m, 1.0, 0.0))
+    PoseInformation::new(icp_information(pairs, sigma_m, 1.0))
 }
 
 #[cfg(test)]

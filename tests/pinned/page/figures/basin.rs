@@ -67,7 +67,7 @@ fn claimed_std_mm(scene: &BasinScene, name: &str, heading_deg: f64) -> Option<f6
     let config = BasinScene::config(variant(name)?, TAU_M);
     let found = register(scene, name, TAU_M, heading_deg)?;
     let pairs = correspondences(scene.source(), scene.map(), found.pose, &config);
-    let information = icp_information(&pairs, SIGMA_M, 1.0, 0.0);
+    let information = icp_information(&pairs, SIGMA_M, 1.0);
     let position = information.fixed_view::<2, 2>(0, 0).into_owned();
     Some(1e3 / position.symmetric_eigenvalues().min().sqrt())
 }

@@ -3,10 +3,9 @@
 use ch16_slam2d::basin::BasinScene;
 use ch16_slam2d::chi_squared::{cdf3, gate_threshold};
 use ch16_slam2d::cloud::PointCloud;
-use ch16_slam2d::icp::{AdaptiveThreshold, IcpVariant, regularize};
+use ch16_slam2d::icp::{AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, IcpVariant};
 use ch16_slam2d::slam::{LAST_KEYFRAMES, SlamConfig};
 use ch16_slam2d::terrain::TerrainSettings;
-use nalgebra::Matrix3;
 use pr_geom::{SE2, Vector2};
 use pr_sim::World;
 
@@ -50,9 +49,9 @@ pub fn value(path: &[&str]) -> Option<f64> {
         ["odometry", "inflate"] => config.odometry_trust.inflate,
         ["lap", "tau_deviations"] => tau_deviations(),
         ["noise", "fourfold_std"] => fourfold_std(),
-        ["information", "ridge"] => regularize(&Matrix3::zeros())[(0, 0)],
-        ["information", "cap"] => information_cap(),
-        ["information", "cap_std_m"] => 1.0 / information_cap().sqrt(),
+        ["information", "ridge"] => INFORMATION_RIDGE,
+        ["information", "cap"] => INFORMATION_CAP,
+        ["information", "cap_std_m"] => 1.0 / INFORMATION_CAP.sqrt(),
         ["basin", "tau"] => basin.tau,
         ["basin", "tau_wide"] => WIDE_TAU_M,
         ["basin", "max_iters"] => basin.max_iters as f64,
@@ -60,10 +59,6 @@ pub fn value(path: &[&str]) -> Option<f64> {
         ["terrain", "span_m"] => TerrainSettings::default().span_m,
         _ => return None,
     })
-}
-
-fn information_cap() -> f64 {
-    regularize(&(Matrix3::identity() * 1e9))[(0, 0)]
 }
 
 /// The fewest points in a line that give each other normals.
