@@ -9,6 +9,9 @@ use std::path::PathBuf;
 
 use pr_optim::g2o::G2oFile;
 use pr_optim::{JacobianModel, Optimizer, Session, Settings, Start};
+use slam2d_tests::skip::skip;
+
+const NO_DATA: &str = "the folder with the reference data is absent";
 
 /// Best known χ², seven digits.
 const OPTIMA: [(&str, f64); 7] = [
@@ -41,7 +44,7 @@ fn settings() -> Settings {
 fn every_recorded_graph_reaches_the_best_known_optimum() {
     for (name, best) in OPTIMA {
         let Ok(text) = std::fs::read_to_string(graph_file(name)) else {
-            println!("skipped {name}: the folder with the reference data is absent");
+            skip(&format!("the optimum of {name}"), NO_DATA);
             continue;
         };
         let mut problem = G2oFile::parse(&text).unwrap().problem;
@@ -73,7 +76,7 @@ fn every_recorded_graph_reaches_the_best_known_optimum() {
 #[test]
 fn a_second_solve_with_the_analysis_kept_has_the_same_bits() {
     let Ok(text) = std::fs::read_to_string(graph_file("m3500")) else {
-        println!("skipped: the folder with the reference data is absent");
+        skip("a second solve of m3500", NO_DATA);
         return;
     };
     let file = G2oFile::parse(&text).unwrap();

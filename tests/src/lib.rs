@@ -4,6 +4,7 @@
 //! system; nothing in the code is copied from them.
 
 pub mod generated;
+pub mod skip;
 
 use std::fs;
 use std::path::Path;

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use pr_optim::g2o::G2oFile;
 use serde_json::Value;
+use slam2d_tests::skip::skip;
 use support::{assert_refused, json, slam2d};
 use tempfile::TempDir;
 
@@ -322,7 +323,10 @@ fn recorded(name: &str) -> Option<PathBuf> {
 #[test]
 fn a_kernel_costs_no_more_on_mit_than_at_the_plain_optimum() {
     let Some(path) = recorded("mit.g2o") else {
-        println!("skipped: the folder with the reference data is absent");
+        skip(
+            "kernels on mit",
+            "the folder with the reference data is absent",
+        );
         return;
     };
     let path = path.to_str().unwrap();

@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use slam2d_bench::workloads;
+use slam2d_tests::skip::tell;
 
 /// A count may rise by this share over the recorded one.
 const ALLOWED_RISE: f64 = 0.10;
@@ -74,11 +75,10 @@ pub fn accept(counts: &Counts) -> Result<(), String> {
 /// Compares counts with the accepted ones and names every workload that got slower.
 pub fn compare(counts: &Counts) -> Result<(), String> {
     let Some(accepted) = accepted(ARCH)? else {
-        println!(
-            "No instruction counts are recorded for {ARCH}, so nothing was compared; \
-             `slam2d_bench --counts accept` records these"
+        return tell(
+            "instruction counts",
+            &format!("none are recorded for {ARCH}; `cargo xtask record-counts` records them"),
         );
-        return Ok(());
     };
     let complaints = complaints(counts, &accepted);
     if complaints.is_empty() {
@@ -102,7 +102,7 @@ fn accepted(architecture: &str) -> Result<Option<Counts>, String> {
 fn complaints(counts: &Counts, accepted: &Counts) -> Vec<String> {
     let judge = |(id, count): (&String, &u64)| match accepted.get(id) {
         None => Some(format!(
-            "{id}: no instruction count is recorded; `slam2d_bench --counts accept` records it"
+            "{id}: no instruction count is recorded; `cargo xtask record-counts` records it"
         )),
         Some(accepted) => {
             let rise = *count as f64 / *accepted as f64 - 1.0;

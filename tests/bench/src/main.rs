@@ -18,6 +18,7 @@ use page::{Block, write_into};
 use report::Figures;
 use serde::Serialize;
 use slam2d_bench::{measure::measure, workloads};
+use slam2d_tests::skip::tell;
 
 const USAGE: &str = "\
 slam2d_bench measure [SECONDS_EACH]      medians of all workloads as JSON
@@ -124,7 +125,7 @@ fn table([native, wasm, counts]: [&Path; 3], page: &Path) -> Result<(), String> 
 
 fn judge_counts(judge: impl FnOnce(&counts::Counts) -> Result<(), String>) -> Result<(), String> {
     if !counts::is_available() {
-        return say("valgrind is not installed: no instructions were counted");
+        return tell("instruction counts", "valgrind is not installed");
     }
     let counts = counts::count_all(&|id, count| say(&format!("{id:14} {count:>12} instructions")))?;
     judge(&counts)

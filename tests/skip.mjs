@@ -1,0 +1,14 @@
+// Tests that cannot run here: they say so in one list, and fail where nothing may skip. The protocol
+// is that of tests/src/skip.rs: SLAM_NO_SKIP lets nothing skip, SLAM_SKIPPED names the list.
+
+import { appendFileSync } from 'node:fs';
+
+/** Skips the running test `context` of node:test; the test returns after it. */
+export function skip(context, reason) {
+  if (!['', '0', 'false'].includes(process.env.SLAM_NO_SKIP ?? '')) {
+    throw new Error(`${context.name}: ${reason}, and SLAM_NO_SKIP lets nothing skip`);
+  }
+  const list = process.env.SLAM_SKIPPED;
+  if (list !== undefined) appendFileSync(list, `${context.name}: ${reason}\n`);
+  context.skip(reason);
+}

@@ -1,0 +1,84 @@
+//! Tests that cannot run here: they say so in one list, and fail where nothing may skip.
+//!
+//! Two variables of the environment hold what the suite wants: `SLAM_NO_SKIP`, set to anything but
+//! nothing, `0` and `false`, lets nothing skip; `SLAM_SKIPPED` names the file with the list, one line
+//! for each, `name: reason`. `cargo xtask test` prints it at its end.
+
+use std::env;
+use std::fs::OpenOptions;
+use std::io::Write as _;
+use std::path::Path;
+
+/// Says that a test leaves something out, and why; the test returns after it.
+///
+/// # Panics
+/// Where nothing may skip, or where the list cannot be written.
+pub fn skip(name: &str, reason: &str) {
+    tell(name, reason).unwrap_or_else(|message| panic!("{message}"));
+}
+
+/// As [`skip`], for what is no test.
+///
+/// # Errors
+/// One sentence where nothing may skip, or where the list cannot be written.
+pub fn tell(name: &str, reason: &str) -> Result<(), String> {
+    let no_skip = env::var("SLAM_NO_SKIP").ok();
+    let list = env::var_os("SLAM_SKIPPED");
+    record(
+        name,
+        reason,
+        no_skip.as_deref(),
+        list.as_deref().map(Path::new),
+    )
+}
+
+fn record(
+    name: &str,
+    reason: &str,
+    no_skip: Option<&str>,
+    list: Option<&Path>,
+) -> Result<(), String> {
+    if !matches!(no_skip, None | Some("" | "0" | "false")) {
+        return Err(format!(
+            "{name}: {reason}, and SLAM_NO_SKIP lets nothing skip"
+        ));
+    }
+    println!("skipped {name}: {reason}");
+    let Some(list) = list else { return Ok(()) };
+    OpenOptions::new()
+        .create(true)
+        .append(true)
+        .open(list)
+        // One call, so that the lines of tests that run at once do not mix.
+        .and_then(|mut file| file.write_all(format!("{name}: {reason}\n").as_bytes()))
+        .map_err(|error| format!("{}: {error}", list.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_skipped_is_appended_to_the_list() {
+        let list = env::temp_dir().join(format!("slam-skipped-{}", std::process::id()));
+        record("one", "no data", None, Some(&list)).unwrap();
+        record("two", "no valgrind", Some("0"), Some(&list)).unwrap();
+        let written = std::fs::read_to_string(&list).unwrap();
+        std::fs::remove_file(&list).unwrap();
+        assert_eq!(written, "one: no data\ntwo: no valgrind\n");
+    }
+
+    #[test]
+    fn nothing_skips_where_nothing_may() {
+        let message = record("one", "no data", Some("1"), None).unwrap_err();
+        assert_eq!(message, "one: no data, and SLAM_NO_SKIP lets nothing skip");
+        assert!(record("one", "no data", None, None).is_ok());
+    }
+
+    #[test]
+    fn a_list_that_cannot_be_written_is_named() {
+        let absent = Path::new("/absent/folder/list");
+        let message = record("one", "no data", None, Some(absent)).unwrap_err();
+        assert!(message.starts_with("/absent/folder/list: "), "{message}");
+    }
+}
