@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { describe, it } from 'node:test';
 import { fileURLToPath } from 'node:url';
 
@@ -12,14 +13,16 @@ const wasm = createGlue({ request: () => 0, cancel: () => {}, deviceSize: () => 
 wasm.initSync({ module: readFileSync(`${ROOT}web/pkg/slam_web_bg.wasm`) });
 const schema = JSON.parse(wasm.widgetSchemas());
 
-/** The output of a native program of the workspace. */
+/**
+ * The output of a native program of the workspace. The suite says in which folder it has compiled
+ * them; without it cargo compiles them first.
+ */
 function native(program, ...words) {
+  const options = { cwd: ROOT, encoding: 'utf8', maxBuffer: 1 << 28 };
+  const compiled = process.env.SLAM_NATIVE;
+  if (compiled !== undefined) return execFileSync(join(compiled, program), words, options);
   const cargo = ['run', '--quiet', '--package', program === 'states' ? 'slam_web' : 'slam2d_cli'];
-  return execFileSync('cargo', [...cargo, '--bin', program, '--', ...words], {
-    cwd: ROOT,
-    encoding: 'utf8',
-    maxBuffer: 1 << 28,
-  });
+  return execFileSync('cargo', [...cargo, '--bin', program, '--', ...words], options);
 }
 
 describe('a lap', () => {

@@ -3,12 +3,18 @@
 use std::path::PathBuf;
 
 use crate::site::Speed;
+use crate::suite::{AfterFailure, Piece, Soak};
 
 /// What `cargo xtask` alone prints.
 pub const USAGE: &str = "\
 cargo xtask serve [--port 8016] [--release]   build the page and serve it
 cargo xtask build                             build the finished static site into dist/
 cargo xtask test                              every check: format, lints, native, wasm, browser
+cargo xtask test --quick                      format, lints and native tests
+cargo xtask test PIECE...                     of: format native lints counts site node browser
+cargo xtask peers                             lints and tests of what times other people's solvers
+cargo xtask soak N [--go-on] [--only a,b]     the browser tests N times on a busy machine
+cargo xtask record-counts                     accept the instruction counts of the workloads
 cargo xtask bench [--json FILE]               time and count the workloads, write docs/performance.md
 cargo xtask sizes                             what keeps the module small, each step left out once";
 
@@ -26,8 +32,14 @@ pub enum Command {
         /// How long the compiler may take.
         speed: Speed,
     },
-    /// Run every check.
-    Test,
+    /// Run these checks, in the order of the suite.
+    Test(Vec<Piece>),
+    /// Check what times other people's solvers.
+    Peers,
+    /// Repeat the browser tests.
+    Soak(Soak),
+    /// Accept the instruction counts as they are.
+    RecordCounts,
     /// Time the workloads.
     Bench {
         /// Where the measurements go besides the table.
@@ -49,7 +61,10 @@ pub fn parse(words: impl Iterator<Item = String>) -> Result<Command, String> {
     let command = match name.as_str() {
         "help" | "--help" | "-h" => Command::Help,
         "build" => Command::Build,
-        "test" => Command::Test,
+        "test" => Command::Test(parse_pieces(&mut words)?),
+        "peers" => Command::Peers,
+        "soak" => Command::Soak(parse_soak(&mut words)?),
+        "record-counts" => Command::RecordCounts,
         "sizes" => Command::Sizes,
         "bench" => Command::Bench {
             json: match words.next_if_eq("--json") {
@@ -74,6 +89,48 @@ pub fn parse(words: impl Iterator<Item = String>) -> Result<Command, String> {
         Some(word) => Err(format!("{name} does not take `{word}`")),
         None => Ok(command),
     }
+}
+
+/// Nothing means everything.
+fn parse_pieces(words: &mut impl Iterator<Item = String>) -> Result<Vec<Piece>, String> {
+    let mut pieces = Vec::new();
+    for word in words {
+        match Piece::named(&word) {
+            Some(piece) => pieces.push(piece),
+            None if word == "--quick" => pieces.extend(Piece::QUICK),
+            None => return Err(format!("test does not take `{word}`")),
+        }
+    }
+    if pieces.is_empty() {
+        pieces.extend(Piece::ALL);
+    }
+    Ok(pieces)
+}
+
+fn parse_soak(words: &mut impl Iterator<Item = String>) -> Result<Soak, String> {
+    const ROUNDS: &str = "soak takes the number of rounds, such as 20";
+    let word = words.next().ok_or(ROUNDS)?;
+    let mut soak = Soak {
+        rounds: match word.parse() {
+            Ok(rounds) if rounds > 0 => rounds,
+            _ => return Err(format!("{ROUNDS}, not `{word}`")),
+        },
+        only: Vec::new(),
+        after_failure: AfterFailure::Stop,
+    };
+    while let Some(word) = words.next() {
+        match word.as_str() {
+            "--go-on" => soak.after_failure = AfterFailure::GoOn,
+            "--only" => {
+                let names = words
+                    .next()
+                    .ok_or("--only takes names, such as drag,embed")?;
+                soak.only = names.split(',').map(str::to_owned).collect();
+            }
+            _ => return Err(format!("soak does not take `{word}`")),
+        }
+    }
+    Ok(soak)
 }
 
 fn parse_port(word: Option<String>) -> Result<u16, String> {
@@ -113,6 +170,37 @@ mod tests {
     }
 
     #[test]
+    fn the_suite_runs_whole_or_in_named_pieces() {
+        let pieces = |line| match parse_line(line) {
+            Ok(Command::Test(pieces)) => pieces,
+            other => panic!("{line}: {other:?}"),
+        };
+        assert_eq!(pieces("test"), Piece::ALL);
+        assert_eq!(pieces("test --quick"), Piece::QUICK);
+        assert_eq!(pieces("test node counts"), [Piece::Node, Piece::Counts]);
+        for piece in Piece::ALL {
+            assert!(USAGE.contains(piece.name()));
+        }
+    }
+
+    #[test]
+    fn a_soak_stops_at_the_first_failure_unless_told_to_go_on() {
+        let soak = |line| match parse_line(line) {
+            Ok(Command::Soak(soak)) => soak,
+            other => panic!("{line}: {other:?}"),
+        };
+        let plain = soak("soak 20");
+        assert_eq!(
+            (plain.rounds, plain.after_failure),
+            (20, AfterFailure::Stop)
+        );
+        assert!(plain.only.is_empty());
+        let named = soak("soak 3 --only drag,embed --go-on");
+        assert_eq!(named.only, ["drag", "embed"]);
+        assert_eq!(named.after_failure, AfterFailure::GoOn);
+    }
+
+    #[test]
     fn a_wrong_word_is_named() {
         for (line, word) in [
             ("sevre", "`sevre`"),
@@ -120,6 +208,10 @@ mod tests {
             ("serve --port x", "`x`"),
             ("serve --port 0", "`0`"),
             ("build now", "`now`"),
+            ("test everything", "`everything`"),
+            ("soak forever", "`forever`"),
+            ("soak 0", "`0`"),
+            ("soak 2 --fiels a", "`--fiels`"),
         ] {
             let message = parse_line(line).unwrap_err();
             assert!(message.contains(word), "{line}: {message}");

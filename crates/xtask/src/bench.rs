@@ -79,18 +79,6 @@ pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
     )
 }
 
-/// Fails where a workload takes 10 % more instructions than recorded; says so without valgrind.
-///
-/// # Errors
-/// The workloads that got slower.
-pub fn check_counts() -> Result<(), Failure> {
-    compile_native(&["slam2d_bench"])?;
-    show(
-        "Instruction counts",
-        program(binary("slam2d_bench")).args(["--counts", "check"]),
-    )
-}
-
 fn compile_native(packages: &[&str]) -> Result<(), Failure> {
     let named = packages.iter().flat_map(|package| ["--package", package]);
     step(

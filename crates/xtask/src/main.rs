@@ -1,4 +1,4 @@
-//! The project's commands: `cargo xtask serve`, `build`, `test`, `bench`, `sizes`.
+//! The project's commands: `cargo xtask serve`, `build`, `test`, `peers`, `soak`, `bench`, `sizes`.
 //!
 //! Everything that a step needs is checked first and installed where cargo, npm or apt can do it;
 //! what cannot be installed is named in one line, with the way to get it. Tools of cargo go to
@@ -9,6 +9,8 @@ mod bench;
 mod chromium;
 mod committed;
 mod http;
+mod ledger;
+mod load;
 mod run;
 mod serve;
 mod site;
@@ -35,7 +37,10 @@ fn main() -> ExitCode {
         }
         Command::Build => site::build(site::Speed::SmallAndFast),
         Command::Serve { port, speed } => serve::serve(port, speed),
-        Command::Test => suite::test(),
+        Command::Test(pieces) => suite::test(&pieces),
+        Command::Peers => suite::peers(),
+        Command::Soak(soak) => suite::soak(&soak),
+        Command::RecordCounts => suite::record_counts(),
         Command::Bench { json } => bench::bench(json.as_deref()),
         Command::Sizes => sizes::sizes(),
     };

@@ -1,96 +1,84 @@
-//! `cargo xtask test`: every check there is, cheapest first.
+//! `cargo xtask test`: every check there is, cheapest first. `docs/testing.md` says what is where.
 
-use std::path::{Path, PathBuf};
+mod browser;
+mod native;
+mod piece;
+mod skipped;
+mod soak;
+mod wasm;
+
+use std::path::PathBuf;
+use std::process::Command;
 use std::{fs, io};
 
-use crate::bench;
-use crate::chromium;
-use crate::committed::{Committed, Strictness};
-use crate::run::{Failure, cargo, program, root, show};
-use crate::site::{self, Speed};
-use crate::tools;
+pub use native::{peers, record_counts};
+pub use piece::Piece;
+pub use soak::{AfterFailure, Soak, soak};
 
-/// Runs every check and stops at the first that fails.
+use crate::chromium;
+use crate::ledger::Ledger;
+use crate::run::{Failure, cargo, root, show};
+use crate::tools;
+use skipped::SkipList;
+
+/// Runs the pieces in the order of the suite and stops at the first check that fails. Says at the end
+/// what took how long and what was skipped, after a failure as well.
 ///
 /// # Errors
 /// The check that failed.
-pub fn test() -> Result<(), Failure> {
-    show("Format", cargo().args(["fmt", "--check"]))?;
-    // What is missing is better known before many minutes of compiling and testing.
-    tools::ensure_build_tools()?;
-    let chromium = chromium::ensure_chromium()?;
-    let browser = root().join("tests/browser");
-    tools::ensure_node_modules(&browser)?;
-    show(
-        "Lints",
-        cargo().args(["clippy", "--all-targets", "--quiet", "--", "-D", "warnings"]),
-    )?;
-    show(
-        "Lints of what only WebAssembly compiles",
-        cargo()
-            .args(["clippy", "--quiet", "--package", "slam_web"])
-            .args(["--target", tools::TARGET, "--", "-D", "warnings"]),
-    )?;
-    // No default member, so that nothing else would notice that it does not compile any more.
-    show(
-        "Lints of the peers",
-        cargo()
-            .args(["clippy", "--package", "solver_peers", "--all-targets"])
-            .args(["--quiet", "--", "-D", "warnings"]),
-    )?;
-    show("Native tests", cargo().args(["test", "--quiet"]))?;
-    bench::check_counts()?;
-    let committed = Committed::read();
-    site::build(Speed::SmallAndFast)?;
-    committed.compare(Strictness::of_this_run())?;
-    let web = root().join("web");
-    show(
-        "Types of the element",
-        program(tools::npm())
-            .args(["run", "--silent", "check"])
-            .current_dir(web),
-    )?;
-    show(
-        "WebAssembly tests in Node",
-        program("node")
-            .arg("--test")
-            .args(test_files("tests/wasm")?),
-    )?;
-    browser_tests(&chromium)
+pub fn test(pieces: &[Piece]) -> Result<(), Failure> {
+    let skipped = SkipList::begin()?;
+    let mut ledger = Ledger::default();
+    let done = ledger
+        .time("tools", || ensure_tools(pieces))
+        .and_then(|chromium| {
+            Piece::ALL
+                .into_iter()
+                .filter(|piece| pieces.contains(piece))
+                .try_for_each(|piece| run(piece, chromium.as_ref(), &skipped, &mut ledger))
+        });
+    println!("\n── What took how long\n{ledger}");
+    println!("── {skipped}");
+    done
 }
 
-/// Runs the browser tests one file after the other: they share one machine, and frame counts mean
-/// nothing when others run beside them.
-///
-/// A file that fails runs once more. Chromium draws by software here, and on a shared machine it
-/// may be held up for longer than any test should wait; a fault of ours fails both times. What
-/// passed at the second attempt only is named at the end.
-fn browser_tests(chromium: &Path) -> Result<(), Failure> {
-    let mut second = Vec::new();
-    for file in test_files("tests/browser")? {
-        let name = file.file_name().unwrap_or_default().to_string_lossy();
-        let run = |what: String| {
-            show(
-                &what,
-                program("node")
-                    .arg("--test")
-                    .arg(&file)
-                    .env("CHROMIUM", chromium),
-            )
-        };
-        if let Err(failure) = run(format!("Browser tests: {name}")) {
-            println!("── {failure}");
-            run(format!("Browser tests, second attempt: {name}"))?;
-            second.push(name.into_owned());
+/// What is missing is better known before many minutes of compiling and testing.
+fn ensure_tools(pieces: &[Piece]) -> Result<Option<PathBuf>, Failure> {
+    if pieces.iter().any(|piece| piece.needs_the_site()) {
+        tools::ensure_build_tools()?;
+    }
+    if !pieces.contains(&Piece::Browser) {
+        return Ok(None);
+    }
+    tools::ensure_node_modules(&root().join("tests/browser"))?;
+    chromium::ensure_chromium().map(Some)
+}
+
+fn run(
+    piece: Piece,
+    chromium: Option<&PathBuf>,
+    skipped: &SkipList,
+    ledger: &mut Ledger,
+) -> Result<(), Failure> {
+    match piece {
+        Piece::Format => timed(ledger, "format", cargo().args(["fmt", "--check"])),
+        Piece::Native => native::test(skipped, ledger),
+        Piece::Lints => wasm::lints(ledger),
+        Piece::Counts => native::counts(skipped, ledger),
+        Piece::Site => wasm::site(ledger),
+        Piece::Node => wasm::node(skipped, ledger),
+        Piece::Browser => {
+            let chromium = chromium.ok_or_else(|| Failure::new("no Chromium was looked for"))?;
+            ledger.time("browser tests", || {
+                browser::run(chromium, &[], Some(skipped))
+            })
         }
     }
-    if !second.is_empty() {
-        println!(
-            "── Passed at the second attempt only: {}",
-            second.join(", ")
-        );
-    }
-    Ok(())
+}
+
+/// A program that shows its output, as a step of the ledger.
+fn timed(ledger: &mut Ledger, what: &str, command: &mut Command) -> Result<(), Failure> {
+    ledger.time(what, || show(what, command))
 }
 
 /// The test files of a folder by name: what `node --test` makes of a folder differs by version.

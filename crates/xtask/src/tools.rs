@@ -60,14 +60,30 @@ fn tools() -> PathBuf {
     root().join("target/tools")
 }
 
+/// The compiler with clippy's lints.
+///
+/// # Errors
+/// One line on how to get it.
+pub fn clippy_driver() -> Result<PathBuf, Failure> {
+    let name = format!("clippy-driver{}", env::consts::EXE_SUFFIX);
+    let driver = sysroot()?.join("bin").join(name);
+    if driver.is_file() {
+        return Ok(driver);
+    }
+    Err(Failure::new(
+        "clippy is missing: `rustup component add clippy` installs it",
+    ))
+}
+
+/// Where the toolchain is.
+fn sysroot() -> Result<PathBuf, Failure> {
+    output(program("rustc").args(["--print", "sysroot"]))
+        .map(PathBuf::from)
+        .ok_or_else(|| Failure::new("rustc is missing: install it from https://rustup.rs"))
+}
+
 fn ensure_target() -> Result<(), Failure> {
-    let sysroot = output(program("rustc").args(["--print", "sysroot"]))
-        .ok_or_else(|| Failure::new("rustc is missing: install it from https://rustup.rs"))?;
-    if Path::new(&sysroot)
-        .join("lib/rustlib")
-        .join(TARGET)
-        .exists()
-    {
+    if sysroot()?.join("lib/rustlib").join(TARGET).exists() {
         return Ok(());
     }
     if output(program("rustup").arg("--version")).is_none() {
