@@ -4,7 +4,8 @@
 // 2. runs the module here in Node: it writes its own schema and draws the static pictures;
 // 3. bundles the element; wasm and bundle carry a hash of their content in their names, so that an
 //    old cached one is never paired with a new one;
-// 4. measures what a reader downloads.
+// 4. writes our licences and the notices of others' work;
+// 5. measures what a reader downloads.
 
 import { createHash } from 'node:crypto';
 import { cp, mkdir, readFile, rm, writeFile } from 'node:fs/promises';
@@ -14,6 +15,8 @@ import { gzipSync } from 'node:zlib';
 import * as esbuild from 'esbuild';
 
 import { writeParameterTables, writeTypes } from './generate.mjs';
+import { endWithOneSentence } from './licences/allowed.mjs';
+import { partsOfWidgets, writePackageNotices } from './licences/notices.mjs';
 import { writeMarked } from './marked.mjs';
 import { brotli, withoutNames } from './wasm-file.mjs';
 
@@ -41,7 +44,8 @@ for (const { id } of schema) await drawPictures(id);
 
 const wasmFile = `slam_web-${hash(wasm)}.wasm`;
 await writeFile(join(dist, wasmFile), wasm);
-await bundle();
+const metafiles = await bundle();
+await writeNotices(metafiles).catch(endWithOneSentence);
 await copyExamples();
 await writePackage();
 await writeFile(join(dist, 'schema.json'), JSON.stringify(schema, null, 1));
@@ -98,6 +102,7 @@ async function bundle() {
     sourcemap: profile === 'web' ? false : 'inline',
     define: { WASM_FILE: JSON.stringify(`./${wasmFile}`) },
     write: false,
+    metafile: true,
     legalComments: 'none',
     logLevel: 'warning',
   };
@@ -111,19 +116,29 @@ async function bundle() {
   await writeFile(join(dist, coreFile), code.contents);
   // The one name that pages know; small, and fetched afresh.
   await writeFile(join(dist, 'slam-widget.js'), `export * from './${coreFile}';\n`);
+  const metafiles = [built.metafile];
   for (const entry of ['embed', 'predict', 'anywidget']) {
-    await esbuild.build({
+    const { metafile } = await esbuild.build({
       ...shared,
       entryPoints: [join(WEB, 'ts', `${entry}.ts`)],
       external: ['./slam-widget.js'],
       outfile: join(dist, `slam-${entry}.js`),
       write: true,
     });
+    metafiles.push(metafile);
   }
   await cp(join(WEB, 'embed.html'), join(dist, 'embed.html'));
   for (const types of ['slam-widget.d.ts', 'slam-predict.d.ts', 'slam-anywidget.d.ts']) {
     await cp(join(WEB, types), join(dist, types));
   }
+  return metafiles;
+}
+
+/** For the package as text; the page, which is built later, shows the same parts. */
+async function writeNotices(metafiles) {
+  const parts = await partsOfWidgets(metafiles);
+  await writePackageNotices(parts, dist);
+  await writeFile(join(PKG, 'parts.json'), JSON.stringify(parts));
 }
 
 /** `dist/` is the npm package, too: `npm pack ./dist`. What serves the build alone stays out of it. */

@@ -1,5 +1,5 @@
 // Renders the chapter: index.html with its formulas as HTML and MathML, its style, its script and
-// KaTeX's style and fonts, all into one directory. Nothing of it is loaded from another host.
+// KaTeX's style and fonts, and the page of licences and notices, all into one directory. Nothing of it is loaded from another host.
 //
 //     node web/page/build.mjs <out-dir>
 
@@ -12,6 +12,9 @@ import { fileURLToPath } from 'node:url';
 import { build } from 'esbuild';
 import katex from 'katex';
 
+import { endWithOneSentence } from '../licences/allowed.mjs';
+import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
+
 const here = path.dirname(fileURLToPath(import.meta.url));
 const root = path.join(here, '..', '..');
 
@@ -22,7 +25,8 @@ if (outDir === undefined) {
 }
 
 await mkdir(outDir, { recursive: true });
-await Promise.all([renderPage(), copyStyle(), copyKatex(), bundleScript()]);
+await Promise.all([renderPage(), copyStyle(), copyKatex()]);
+await writeNotices(await bundleScript()).catch(endWithOneSentence);
 
 async function renderPage() {
   const source = await readFile(path.join(root, 'index.html'), 'utf8');
@@ -105,14 +109,23 @@ async function copyKatex() {
   });
 }
 
+/** What esbuild took into the script. */
 async function bundleScript() {
-  await build({
+  const { metafile } = await build({
     entryPoints: [path.join(here, 'page.ts')],
     outfile: path.join(outDir, 'page.js'),
     bundle: true,
+    metafile: true,
     format: 'esm',
     minify: true,
     target: 'es2022',
     logLevel: 'warning',
   });
+  return metafile;
+}
+
+/** What the widgets hold, which their build has left, and what the page adds. */
+async function writeNotices(metafile) {
+  const ofWidgets = JSON.parse(await readFile(path.join(root, 'web', 'pkg', 'parts.json'), 'utf8'));
+  await writeNoticesPage([...ofWidgets, ...(await partsOfPage([metafile]))], outDir);
 }

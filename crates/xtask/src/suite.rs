@@ -17,7 +17,7 @@ pub use soak::{AfterFailure, Soak, soak};
 
 use crate::chromium;
 use crate::ledger::Ledger;
-use crate::run::{Failure, cargo, root, show};
+use crate::run::{Failure, cargo, program, root, show};
 use crate::tools;
 use skipped::SkipList;
 
@@ -62,6 +62,11 @@ fn run(
 ) -> Result<(), Failure> {
     match piece {
         Piece::Format => timed(ledger, "format", cargo().args(["fmt", "--check"])),
+        Piece::Licences => timed(
+            ledger,
+            "licences",
+            program("node").arg("web/licences/check.mjs"),
+        ),
         Piece::Native => native::test(skipped, ledger),
         Piece::Lints => wasm::lints(ledger),
         Piece::Counts => native::counts(skipped, ledger),

@@ -5,6 +5,8 @@
 pub enum Piece {
     /// `cargo fmt --check`.
     Format,
+    /// The licences of all crates and npm packages.
+    Licences,
     /// Everything native: compiled and linted in one pass, then tested.
     Native,
     /// Lints of what only WebAssembly compiles.
@@ -21,8 +23,9 @@ pub enum Piece {
 
 impl Piece {
     /// All of them, in the order in which they run.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Format,
+        Self::Licences,
         Self::Native,
         Self::Lints,
         Self::Counts,
@@ -32,12 +35,13 @@ impl Piece {
     ];
 
     /// What `--quick` runs: nothing that builds the site.
-    pub const QUICK: [Self; 3] = [Self::Format, Self::Native, Self::Lints];
+    pub const QUICK: [Self; 4] = [Self::Format, Self::Licences, Self::Native, Self::Lints];
 
     /// Its name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Format => "format",
+            Self::Licences => "licences",
             Self::Native => "native",
             Self::Lints => "lints",
             Self::Counts => "counts",
@@ -52,9 +56,12 @@ impl Piece {
         Self::ALL.into_iter().find(|piece| piece.name() == name)
     }
 
-    /// Whether wasm-bindgen, Node and their kin must be there.
+    /// Whether wasm-bindgen, Node, npm packages and their kin must be there.
     pub fn needs_the_site(self) -> bool {
-        matches!(self, Self::Lints | Self::Site | Self::Node | Self::Browser)
+        matches!(
+            self,
+            Self::Licences | Self::Lints | Self::Site | Self::Node | Self::Browser
+        )
     }
 }
 

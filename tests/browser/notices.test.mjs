@@ -1,0 +1,53 @@
+// The page of licences and notices, as a reader gets it from the foot of the chapter.
+
+import assert from 'node:assert/strict';
+import { after, before, describe, it } from 'node:test';
+import { violations } from './axe.mjs';
+import * as h from './harness.mjs';
+
+let browser;
+let server;
+before(async () => {
+  browser = await h.launch();
+  server = await h.serve({ policy: h.STRICT_POLICY });
+});
+after(async () => {
+  await browser.close();
+  await server.close();
+});
+
+async function reading(test, options) {
+  const tab = await h.open(browser, `${server.url}/notices.html`, options);
+  try {
+    await test(tab);
+    assert.deepEqual(tab.troubles, []);
+  } finally {
+    await tab.context().close();
+  }
+}
+
+describe('the page of notices', () => {
+  for (const colorScheme of ['light', 'dark']) {
+    it(`breaks no rule of accessibility that axe knows, ${colorScheme}`, async () => {
+      await reading(async (tab) => assert.deepEqual(await violations(tab), []), { colorScheme });
+    });
+  }
+
+  it('fits a phone: nothing is wider than the screen', async () => {
+    await reading(async (tab) => {
+      assert.equal(await tab.evaluate(() => document.documentElement.scrollWidth), 390);
+      const cut = await tab.evaluate(() =>
+        [...document.querySelectorAll('pre')].filter((text) => text.scrollWidth > text.clientWidth).length);
+      assert.equal(cut, 0, 'every text is broken into lines that fit');
+    }, { viewport: { width: 390, height: 800 } });
+  });
+
+  it('leads from a crate to its text', async () => {
+    await reading(async (tab) => {
+      const row = tab.locator('li', { has: tab.getByRole('link', { name: 'nalgebra', exact: true }) });
+      await row.getByRole('link', { name: 'Apache-2.0', exact: true }).click();
+      const text = await tab.evaluate(() => document.querySelector(location.hash).parentElement.textContent);
+      assert.match(text, /For .*nalgebra /);
+    });
+  });
+});

@@ -1,0 +1,83 @@
+// Which licences this project accepts, and how an expression of SPDX is judged by them.
+
+import parse from 'spdx-expression-parse';
+
+/**
+ * What may be in the module and on the page, the first choice first, and how its text is known.
+ * Texts are compared in lower case with single spaces.
+ */
+export const SHIPPED = new Map([
+  ['MIT', /permission is hereby granted, free of charge, to any person obtaining a copy of this software.*this permission notice.{0,40} shall be included/],
+  ['Apache-2.0', /apache license version 2\.0.*terms and conditions for use, reproduction, and distribution/],
+  ['Zlib', /provided 'as-is', without any express or implied warranty.*must not be misrepresented/],
+  ['ISC', /permission to use, copy, modify,? and(\/or)? distribute this software/],
+  ['BSD-2-Clause', /redistributions in binary form must reproduce/],
+  ['BSD-3-Clause', /redistributions in binary form must reproduce.*neither the name/],
+  ['Unicode-3.0', /unicode license v3/],
+  ['OFL-1.1', /sil open font license version 1\.1/],
+  ['Bitstream-Vera', /bitstream vera fonts copyright/],
+]);
+
+/** What may build and test besides: none of it reaches a reader. */
+export const TOOLS = [
+  ...SHIPPED.keys(),
+  'Apache-2.0 WITH LLVM-exception',
+  'BSL-1.0',
+  'CC-BY-3.0',
+  'CC0-1.0',
+  'MPL-2.0',
+  'NCSA',
+  'Ubuntu-font-1.0',
+];
+
+/** Something about a licence that a person has to decide; the message is one sentence. */
+export class LicenceProblem extends Error {}
+
+/** For the end of a script: the sentence alone, without a stack. */
+export function endWithOneSentence(error) {
+  if (!(error instanceof LicenceProblem)) throw error;
+  console.error(error.message);
+  process.exit(1);
+}
+
+/**
+ * The ways to take a package whose licences are `expression`, each as the list of licences that
+ * then hold, with only allowed ones in it; the first choice first.
+ *
+ * `what` names the package in the sentence of a LicenceProblem.
+ */
+export function waysToTake(expression, allowed, what) {
+  if (typeof expression !== 'string' || expression.trim() === '') {
+    throw new LicenceProblem(`${what} names no licence: read its sources, and do without it if they name none.`);
+  }
+  const ranks = [...allowed];
+  const ways = alternatives(parsed(expression, what)).filter((way) => way.every((id) => ranks.includes(id)));
+  if (ways.length === 0) {
+    throw new LicenceProblem(
+      `${what} is under ${expression}, which web/licences/allowed.mjs does not accept: `
+      + 'do without it, or add its licence there once somebody has read it.',
+    );
+  }
+  const rank = (way) => Math.max(...way.map((id) => ranks.indexOf(id)));
+  return ways.sort((a, b) => rank(a) - rank(b));
+}
+
+function parsed(expression, what) {
+  try {
+    // Manifests of old crates write a slash.
+    return parse(expression.replaceAll('/', ' OR '));
+  } catch {
+    throw new LicenceProblem(`${what} is under \`${expression}\`, which is no expression of SPDX: ask its authors what it means.`);
+  }
+}
+
+/** The tree as a list of alternatives; each is a list of licences that hold together. */
+function alternatives(tree) {
+  if (tree.conjunction === 'or') return [...alternatives(tree.left), ...alternatives(tree.right)];
+  if (tree.conjunction === 'and') {
+    const right = alternatives(tree.right);
+    return alternatives(tree.left).flatMap((one) => right.map((other) => [...new Set([...one, ...other])]));
+  }
+  const id = tree.plus ? `${tree.license}+` : tree.license;
+  return [[tree.exception === undefined ? id : `${id} WITH ${tree.exception}`]];
+}

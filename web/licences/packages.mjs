@@ -1,0 +1,80 @@
+// What this project is made of, as cargo and npm tell it.
+
+import { execFileSync } from 'node:child_process';
+import { existsSync } from 'node:fs';
+import { readFile } from 'node:fs/promises';
+import path from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+export const ROOT = fileURLToPath(new URL('../../', import.meta.url));
+const TARGET = 'wasm32-unknown-unknown';
+
+function run(program, ...words) {
+  return execFileSync(program, words, { cwd: ROOT, encoding: 'utf8', maxBuffer: 1 << 28 });
+}
+
+/** The cargo that started us, where one did. */
+const cargo = (...words) => run(process.env.CARGO ?? 'cargo', ...words);
+
+/** The crates of others that a workspace uses anywhere: every target, tests and tools included. */
+export function cratesOf(manifest, ...filter) {
+  const metadata = cargo('metadata', '--format-version', '1', '--manifest-path', manifest, ...filter);
+  return JSON.parse(metadata)
+    .packages.filter((crate) => crate.source !== null)
+    .map((crate) => ({
+      name: crate.name,
+      version: crate.version,
+      licence: crate.license,
+      repository: crate.repository ?? '',
+      url: `https://crates.io/crates/${crate.name}/${crate.version}`,
+      folder: path.dirname(crate.manifest_path),
+    }));
+}
+
+/**
+ * The crates of others whose code is in the WebAssembly module.
+ *
+ * `cargo metadata` unites the features of all members, and so lists crates that the module does
+ * not hold; `cargo tree` resolves the module's own. Macros run while compiling and stay out.
+ */
+export function cratesOfModule() {
+  const tree = cargo('tree', '--package', 'slam_web', '--target', TARGET, '--edges', 'normal,no-proc-macro',
+    '--prefix', 'none', '--format', '{p}');
+  const inside = new Set(tree.split('\n').map((line) => line.match(/^(\S+) v(\S+)/)?.slice(1).join(' ')));
+  const all = cratesOf('Cargo.toml', '--filter-platform', TARGET);
+  return all.filter(({ name, version }) => inside.has(`${name} ${version}`));
+}
+
+/** The version of the standard library that is compiled into the module. */
+export function rustVersion() {
+  return run('rustc', '--version').split(' ')[1];
+}
+
+/** The npm packages of a lock file: what builds and tests, for every system. */
+export async function npmPackagesOf(folder) {
+  const lock = JSON.parse(await readFile(path.join(ROOT, folder, 'package-lock.json'), 'utf8'));
+  return Object.entries(lock.packages)
+    .filter(([place]) => place !== '')
+    .map(([place, { version, license }]) => ({ name: place.replace(/^.*node_modules\//, ''), version, licence: license }));
+}
+
+/** The npm packages whose code esbuild put into a bundle, by the `metafile` that it gives. */
+export async function npmPackagesIn(...metafiles) {
+  const folders = new Set();
+  for (const input of metafiles.flatMap((metafile) => Object.keys(metafile.inputs))) {
+    const folder = input.match(/^(.*node_modules\/(?:@[^/]+\/)?[^/]+)\//)?.[1];
+    if (folder !== undefined) folders.add(path.resolve(folder));
+  }
+  return Promise.all([...folders].sort().map(npmPackage));
+}
+
+/** An installed npm package. */
+export async function npmPackage(folder) {
+  const { name, version, license } = JSON.parse(await readFile(path.join(folder, 'package.json'), 'utf8'));
+  return { name, version, licence: license, repository: '', url: `https://www.npmjs.com/package/${name}/v/${version}`, folder };
+}
+
+/** The manifests of cargo's workspaces here: the fuzz targets have one of their own. */
+export function workspaces() {
+  return ['Cargo.toml', 'fuzz/Cargo.toml'].filter((manifest) => existsSync(path.join(ROOT, manifest)));
+}
