@@ -6,29 +6,31 @@ use std::path::{Path, PathBuf};
 use super::page::document::source;
 
 /// Every package with its layer; a package may use only packages of lower layers.
-const LAYERS: [(&str, u8); 14] = [
+const LAYERS: [(&str, u8); 15] = [
     ("crates/pr_geom", 0),
     ("crates/pr_sim", 1),
     ("crates/pr_grid", 1),
     ("crates/pr_optim", 1),
     ("crates/ch16_slam2d", 2),
-    ("crates/slam2d_cli", 3),
+    ("crates/ch16_lab", 3),
+    ("crates/slam2d_cli", 4),
     ("crates/solver_peers", 3),
     ("crates/xtask", 0),
     ("widgets/kit", 1),
-    ("widgets/w16_1_basin_explorer", 3),
-    ("widgets/w16_2_full_lap", 3),
-    ("widgets/w16_3_cost_terraces", 3),
-    ("widgets/w16_4_control_room", 3),
-    ("web", 4),
+    ("widgets/w16_1_basin_explorer", 4),
+    ("widgets/w16_2_full_lap", 4),
+    ("widgets/w16_3_cost_terraces", 4),
+    ("widgets/w16_4_control_room", 4),
+    ("web", 5),
 ];
 
-const CORE: [&str; 5] = [
+const CORE: [&str; 6] = [
     "crates/pr_geom",
     "crates/pr_sim",
     "crates/pr_grid",
     "crates/pr_optim",
     "crates/ch16_slam2d",
+    "crates/ch16_lab",
 ];
 
 /// The half of the kit that a model may use.
@@ -156,6 +158,15 @@ fn data_flows_one_way() {
                 );
             }
         }
+    }
+}
+
+#[test]
+fn the_estimator_does_not_know_the_simulator() {
+    let manifest = source("crates/ch16_slam2d/Cargo.toml");
+    assert!(manifest.contains("pr_optim"));
+    for name in ["pr_sim", "ch16_lab"] {
+        assert!(!manifest.contains(name), "the estimator uses {name}");
     }
 }
 

@@ -1,6 +1,6 @@
 //! w16.1: every registration of `basin.json`, and the normals of its target.
 
-use ch16_slam2d::basin::{BasinScene, BasinStart};
+use ch16_lab::basin::{BasinScene, BasinStart};
 use ch16_slam2d::cloud::{DenseMap, NearestMap, PointCloud, VoxelMap};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace, icp};
 use pr_geom::{SE2, Vector2};

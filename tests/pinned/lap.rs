@@ -1,6 +1,6 @@
 //! The lap against `lap.json`: nine laps, tick by tick and keyframe by keyframe.
 
-use ch16_slam2d::slam::{LapRecord, LapRunner, SlamConfig};
+use ch16_lab::lap::{LapRecord, LapRunner, SlamConfig};
 use pr_geom::{SE2, wrap_angle};
 use serde::Deserialize;
 use slam2d_tests::{assert_close, reference};

@@ -1,6 +1,6 @@
 //! w16.3: both landscapes of `terrain.json`, cell by cell.
 
-use ch16_slam2d::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
+use ch16_lab::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
 use serde::Deserialize;
 use slam2d_tests::{assert_close, reference};
 

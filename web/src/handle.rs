@@ -35,7 +35,7 @@ pub fn after_each_preset(name: &str) -> Result<String, JsError> {
 /// The digest of a lap's poses and metrics, 16 hexadecimal digits as `slam2d lap` prints it.
 #[wasm_bindgen(js_name = lapDigest)]
 pub fn lap_digest(seed: u32, noise_factor: f64) -> String {
-    format!("{:016x}", ch16_slam2d::slam::lap_digest(seed, noise_factor))
+    format!("{:016x}", ch16_lab::lap::lap_digest(seed, noise_factor))
 }
 
 /// Reads a text as the core does: `[true, value as text]` or `[false, what was wrong]`.

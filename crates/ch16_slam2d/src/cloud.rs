@@ -24,7 +24,8 @@ pub use voxel_map::VoxelMap;
 
 /// Index of the cell that holds `coordinate_m`, for cells of `cell_m` that tile the axis from 0.
 #[inline]
-pub(crate) fn cell_index(coordinate_m: f64, cell_m: f64) -> i32 {
+#[must_use]
+pub fn cell_index(coordinate_m: f64, cell_m: f64) -> i32 {
     let cells = coordinate_m / cell_m;
     // The cast cuts off towards zero and saturates: whatever lies beyond ±2³¹ cells shares the
     // outermost one. `floor` itself is a function call where SSE 4.1 cannot be assumed.

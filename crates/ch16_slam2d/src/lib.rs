@@ -1,6 +1,5 @@
 //! Scan matching and pose-graph SLAM: the system of the chapter.
 
-pub mod basin;
 pub mod chi_squared;
 pub mod cloud;
 pub mod digest;
@@ -10,7 +9,3 @@ pub mod loops;
 pub mod metrics;
 pub mod ndt;
 pub mod prelude;
-pub mod results;
-pub mod samples;
-pub mod slam;
-pub mod terrain;

@@ -1,6 +1,6 @@
 //! `slam2d basin`: where ICP ends in w16.1, from one start or a sweep of headings.
 
-use ch16_slam2d::basin::{BasinOutcome, BasinScene, BasinStart};
+use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace, StopReason};
 use clap::{Args, ValueEnum};

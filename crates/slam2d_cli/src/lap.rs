@@ -1,6 +1,6 @@
 //! `slam2d lap`: the Apartment's lap at one seed and noise factor.
 
-use ch16_slam2d::slam::{LapRecord, LapRunner, LoopAttempt, SlamConfig, SlamReport};
+use ch16_lab::lap::{LapRecord, LapRunner, LoopAttempt, SlamConfig, SlamReport};
 use clap::Args;
 use serde::Serialize;
 

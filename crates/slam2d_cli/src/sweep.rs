@@ -2,8 +2,8 @@
 
 use std::num::NonZeroUsize;
 
-use ch16_slam2d::results::{Column, LapOutcome, LapStatistics, Row};
-use ch16_slam2d::slam::{LapRunner, SlamConfig};
+use ch16_lab::lap::{LapRunner, SlamConfig};
+use ch16_lab::results::{Column, LapOutcome, LapStatistics, Row};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;

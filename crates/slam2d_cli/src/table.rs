@@ -1,6 +1,6 @@
 //! `slam2d table`: the chapter's results table, computed.
 
-use ch16_slam2d::slam::{LapRunner, LapSummary, SlamConfig};
+use ch16_lab::lap::{LapRunner, LapSummary, SlamConfig};
 use clap::Args;
 use serde::Serialize;
 

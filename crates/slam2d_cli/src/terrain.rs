@@ -1,6 +1,6 @@
 //! `slam2d terrain`: the landscapes of w16.3.
 
-use ch16_slam2d::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
+use ch16_lab::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 

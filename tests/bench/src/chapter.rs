@@ -1,8 +1,8 @@
 //! The chapter's computations: the list of them, and the runs of the lap.
 
+use ch16_lab::lap::{LapRecord, LapRunner, SlamConfig};
+use ch16_lab::samples;
 use ch16_slam2d::icp::IcpVariant;
-use ch16_slam2d::samples;
-use ch16_slam2d::slam::{LapRecord, LapRunner, SlamConfig};
 
 use crate::scans::{
     QUERIES, ndt_build, ndt_registration, nearest, normals, register, sweep, terrain,

@@ -7,8 +7,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use ch16_lab::samples::RegistrationSample;
 use ch16_slam2d::cloud::PointCloud;
-use ch16_slam2d::samples::RegistrationSample;
 
 /// A map and a scan with the names of their files.
 pub struct Clouds {

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use ch16_slam2d::samples::RegistrationSample;
+use ch16_lab::samples::RegistrationSample;
 use pr_geom::SE2;
 use serde::Deserialize;
 

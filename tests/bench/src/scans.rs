@@ -1,12 +1,12 @@
 //! The runs of scan matching: registration, landscapes, maps and normals.
 
-use ch16_slam2d::basin::{BasinOutcome, BasinScene, BasinStart};
+use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart};
+use ch16_lab::samples;
+use ch16_lab::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
 use ch16_slam2d::cloud::{DenseMap, NearestMap, NormalEstimator, PointCloud};
 use ch16_slam2d::digest::Digest;
 use ch16_slam2d::icp::{IcpConfig, IcpVariant, IcpWorkspace};
 use ch16_slam2d::ndt::{NdtConfig, NdtMap, ndt_align};
-use ch16_slam2d::samples;
-use ch16_slam2d::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
 use nalgebra::Vector2;
 use pr_geom::SE2;
 use pr_sim::Rng;

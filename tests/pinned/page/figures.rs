@@ -18,8 +18,8 @@ mod terrain;
 use std::cell::OnceCell;
 use std::collections::HashMap;
 
-use ch16_slam2d::basin::BasinScene;
-use ch16_slam2d::slam::{LapRecord, LapRunner};
+use ch16_lab::basin::BasinScene;
+use ch16_lab::lap::{LapRecord, LapRunner};
 
 use sweep::Sweep;
 

@@ -1,6 +1,6 @@
 //! What the page calls home is what w16.1 calls right.
 
-use ch16_slam2d::basin::Minimum;
+use ch16_lab::basin::Minimum;
 use kit::model::Standing;
 
 use super::figures::Figures;

@@ -7,7 +7,7 @@ mod picture;
 mod report;
 mod settings;
 
-use ch16_slam2d::basin::{BasinOutcome, BasinScene, BasinStart};
+use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart};
 use ch16_slam2d::icp::{IcpTrace, IcpWorkspace, Pair, correspondences};
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark,

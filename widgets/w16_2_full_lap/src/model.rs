@@ -14,9 +14,9 @@ mod track;
 mod transition;
 mod words;
 
+use ch16_lab::lap::{LoopAttempt, LoopClosure};
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
-use ch16_slam2d::slam::{LoopAttempt, LoopClosure};
 use kit::chart::{dragged_to, grab_now};
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,

@@ -8,8 +8,8 @@ mod log;
 mod picture;
 mod words;
 
+use ch16_lab::lap::{LapRecord, LapRunner, RegistrationView, SlamConfig, SlamReport};
 use ch16_slam2d::icp::IcpSummary;
-use ch16_slam2d::slam::{LapRecord, LapRunner, RegistrationView, SlamConfig, SlamReport};
 use kit::chart::{dragged_to, grab_now};
 use kit::model::{
     Activity, Fact, Handle, Model, Motion, Outcome, Standing, Table, Timeline, press_preset,

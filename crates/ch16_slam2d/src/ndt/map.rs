@@ -120,7 +120,8 @@ impl NdtMap {
 
     /// Indices of the Gaussians of the 3×3 cells around `cell`.
     #[inline]
-    pub(crate) fn near_cell(&self, cell: (i32, i32)) -> &[u32] {
+    #[must_use]
+    pub fn near_cell(&self, cell: (i32, i32)) -> &[u32] {
         let (start, end) = self.lookup.run(cell);
         &self.near[start as usize..end as usize]
     }

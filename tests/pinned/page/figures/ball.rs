@@ -1,8 +1,6 @@
 //! Balls of w16.3: where gradient descent comes to rest.
 
-use ch16_slam2d::terrain::{
-    Ball, BallConfig, Objective, TerrainProbe, TerrainScene, TerrainSettings,
-};
+use ch16_lab::terrain::{Ball, BallConfig, Objective, TerrainProbe, TerrainScene, TerrainSettings};
 use pr_geom::Vector2;
 
 use super::terrain::scene_kind;

@@ -1,6 +1,6 @@
 //! Registrations of w16.1 from a wrong heading: where they end, and how wide the basin is.
 
-use ch16_slam2d::basin::{BasinOutcome, BasinScene, BasinStart, Minimum, SUCCESS_RADIUS_M};
+use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart, Minimum, SUCCESS_RADIUS_M};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace, correspondences, icp_information};
 
 /// The widget's own τ, m.

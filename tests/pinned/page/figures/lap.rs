@@ -1,8 +1,8 @@
 //! Laps by name, and what the results table says of each.
 
+use ch16_lab::lap::{LapRecord, LapTrace, SlamConfig};
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
-use ch16_slam2d::slam::{LapRecord, LapTrace, SlamConfig};
 use pr_geom::Translation;
 
 use super::loops;

@@ -1,6 +1,6 @@
 //! Attempts to close a loop: what was found, what the gate said, and how true it was.
 
-use ch16_slam2d::slam::{LapTrace, LoopAttempt};
+use ch16_lab::lap::{LapTrace, LoopAttempt};
 
 /// `from`, `chi2`, `max_shift`: one attempt, by name.
 pub fn attempt(attempt: &LoopAttempt, lap: &LapTrace, what: &str) -> Option<f64> {

@@ -1,11 +1,11 @@
 //! What the text says about the set-up: the Apartment, constants of the lap, the gate.
 
-use ch16_slam2d::basin::BasinScene;
+use ch16_lab::basin::BasinScene;
+use ch16_lab::lap::{LAST_KEYFRAMES, SlamConfig};
+use ch16_lab::terrain::TerrainSettings;
 use ch16_slam2d::chi_squared::{cdf3, gate_threshold};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, IcpVariant};
-use ch16_slam2d::slam::{LAST_KEYFRAMES, SlamConfig};
-use ch16_slam2d::terrain::TerrainSettings;
 use pr_geom::{SE2, Vector2};
 use pr_sim::World;
 

@@ -5,10 +5,10 @@
 use std::ops::RangeInclusive;
 use std::thread;
 
-use ch16_slam2d::results::{Column, LapOutcome, LapStatistics, Row};
-use ch16_slam2d::slam::{
+use ch16_lab::lap::{
     FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LapRunner, LapSummary, SlamConfig,
 };
+use ch16_lab::results::{Column, LapOutcome, LapStatistics, Row};
 
 const SEEDS: RangeInclusive<u32> = 1..=1000;
 /// Factors of the wheels' noise, by the names that the page gives them.

@@ -1,6 +1,6 @@
 //! Landscapes of w16.3: costs at a shift, the roughness of the ground, and what a sweep knows.
 
-use ch16_slam2d::terrain::{SceneKind, Terrain, TerrainProbe, TerrainScene, TerrainSettings};
+use ch16_lab::terrain::{SceneKind, Terrain, TerrainProbe, TerrainScene, TerrainSettings};
 use pr_geom::Vector2;
 
 /// The shift at which the text compares landscapes, m.

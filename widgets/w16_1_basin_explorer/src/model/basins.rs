@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::sync::Arc;
 
-use ch16_slam2d::basin::{BasinMap, BasinMapAxes, BasinScene, BasinStart, Minimum, OffsetAxis};
+use ch16_lab::basin::{BasinMap, BasinMapAxes, BasinScene, BasinStart, Minimum, OffsetAxis};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
 use kit::model::Activity;
 use kit::param::Values;

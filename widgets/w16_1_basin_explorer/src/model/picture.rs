@@ -1,6 +1,6 @@
 //! The panels: the two sweeps, the two basin maps, the curve over the iterations.
 
-use ch16_slam2d::basin::{Minimum, OffsetAxis};
+use ch16_lab::basin::{Minimum, OffsetAxis};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::IcpVariant;
 use kit::chart::{Series, TimeChart};

@@ -1,6 +1,6 @@
 //! The outcome in words, numbers and tables.
 
-use ch16_slam2d::basin::{BasinOutcome, Minimum};
+use ch16_lab::basin::{BasinOutcome, Minimum};
 use ch16_slam2d::icp::{IcpVariant, StopReason};
 use kit::model::{Fact, Outcome, Standing, Table, TablePlace};
 use kit::ticks::signed;

@@ -1,6 +1,6 @@
 //! What the values of the parameter list mean to the core.
 
-use ch16_slam2d::basin::{BasinScene, BasinStart, OffsetAxis};
+use ch16_lab::basin::{BasinScene, BasinStart, OffsetAxis};
 use ch16_slam2d::icp::{IcpConfig, IcpVariant};
 use kit::param::Values;
 

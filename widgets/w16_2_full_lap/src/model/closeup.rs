@@ -1,7 +1,7 @@
 //! One loop from near, in the frame of the old node: where the graph expected the new sweep, where
 //! registration put it, and how far each gate lets the two lie apart.
 
-use ch16_slam2d::slam::LoopAttempt;
+use ch16_lab::lap::LoopAttempt;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::SE2;
 

@@ -1,11 +1,11 @@
 //! Both gates of a loop: what each takes for the drift, and the region that it leaves to the
 //! measured position.
 
+use ch16_lab::lap::{LapTrace, LoopAttempt};
 use ch16_slam2d::loops::{
     GateModel, GateTest, LoopConfig, LoopVerification, chi_squared_gate, marginal_information,
     path_information,
 };
-use ch16_slam2d::slam::{LapTrace, LoopAttempt};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use pr_geom::{SE2, math};
 

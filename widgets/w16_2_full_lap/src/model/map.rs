@@ -1,6 +1,6 @@
 //! The map panel: the Apartment, the three estimates, the graph and its map.
 
-use ch16_slam2d::slam::LoopAttempt;
+use ch16_lab::lap::LoopAttempt;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::{SE2, math};
 use pr_sim::World;

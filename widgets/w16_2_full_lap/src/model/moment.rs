@@ -1,7 +1,7 @@
 //! What the widget shows at a tick: poses of the graph, on the way from old to new where a loop's
 //! animation runs.
 
-use ch16_slam2d::slam::LoopAttempt;
+use ch16_lab::lap::LoopAttempt;
 use pr_geom::SE2;
 
 use super::runs::Runs;

@@ -1,6 +1,6 @@
 //! The plots over time: errors, map disagreement, and the χ² of each attempt with the gate.
 
-use ch16_slam2d::slam::LoopAttempt;
+use ch16_lab::lap::LoopAttempt;
 use kit::chart::{Series, TimeChart, axis_from_zero};
 use kit::scene::{Aspect, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 

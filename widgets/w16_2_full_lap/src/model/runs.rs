@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use ch16_slam2d::loops::{GateModel, LoopConfig};
-use ch16_slam2d::slam::{
+use ch16_lab::lap::{
     Drive, LapRecord, LapRunner, LapSummary, LoopAttempt, LoopClosure, SlamConfig,
 };
+use ch16_slam2d::loops::{GateModel, LoopConfig};
 use pr_geom::SE2;
 
 use super::gates::Gates;

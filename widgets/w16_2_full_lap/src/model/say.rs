@@ -1,7 +1,7 @@
 //! The result in words and numbers.
 
+use ch16_lab::lap::{LoopAttempt, LoopEffect, LoopJudgement};
 use ch16_slam2d::loops::GateModel;
-use ch16_slam2d::slam::{LoopAttempt, LoopEffect, LoopJudgement};
 use kit::model::{Fact, Outcome, Standing};
 
 use super::runs::Runs;

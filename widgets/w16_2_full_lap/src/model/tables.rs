@@ -1,7 +1,7 @@
 //! The tables: this run beside the canonical one, the loops, and the data of every plot.
 
+use ch16_lab::lap::{LapSummary, LoopAttempt, LoopEffect};
 use ch16_slam2d::loops::LoopRejection;
-use ch16_slam2d::slam::{LapSummary, LoopAttempt, LoopEffect};
 use kit::model::{Table, TablePlace};
 
 use super::runs::{Results, Runs};

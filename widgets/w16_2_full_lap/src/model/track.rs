@@ -1,6 +1,6 @@
 //! One estimator's way over the lap, with its series for the plots.
 
-use ch16_slam2d::slam::{LapSummary, LapTrace, LoopAttempt, TickMetrics};
+use ch16_lab::lap::{LapSummary, LapTrace, LoopAttempt, TickMetrics};
 use pr_geom::SE2;
 
 /// A finished lap of one estimator.

@@ -1,14 +1,14 @@
 //! What the widget says of itself: its words, parameters, buttons and presets.
 
+use ch16_lab::lap;
 use ch16_slam2d::chi_squared::CHAPTER_QUANTILE;
-use ch16_slam2d::slam;
 use kit::param::{Choice, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::run::{LOOPS, NOISE, seed};
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Ticks of a lap.
-pub const LAP_TICKS: f64 = slam::LAP_TICKS as f64;
+pub const LAP_TICKS: f64 = lap::LAP_TICKS as f64;
 
 /// Where the widget starts: the tick of the canonical run's first loop.
 const FIRST_LOOP_TICK: f64 = 92.0;
@@ -16,7 +16,7 @@ const FIRST_LOOP_TICK: f64 = 92.0;
 const PARAMS: &[ParamSpec] = &[
     NOISE,
     LOOPS,
-    seed(slam::CANONICAL_SEED),
+    seed(lap::CANONICAL_SEED),
     ParamSpec {
         id: "gate",
         label: "gate quantile",

@@ -1,10 +1,10 @@
 //! Both landscapes of a place, and what has to be computed again when a setting changes.
 
-use ch16_slam2d::cloud::{NearestMap, PointCloud};
-use ch16_slam2d::terrain::{
+use ch16_lab::terrain::{
     Ball as Roller, BallConfig, BallStop, Objective, SceneKind, Terrain, TerrainProbe,
     TerrainScene, TerrainSettings,
 };
+use ch16_slam2d::cloud::{NearestMap, PointCloud};
 use pr_geom::{SE2, Vector2, math};
 
 use super::HALF_SPAN_M;

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use ch16_lab::lap::LapRecord;
 use ch16_slam2d::graph::EdgeKind;
-use ch16_slam2d::slam::LapRecord;
 use kit::model::Fact;
 use kit::scene::{Bounds, Cell, Raster};
 use pr_geom::math;

@@ -1,6 +1,6 @@
 //! The course of a run: one sample a tick, for plots and for export.
 
-use ch16_slam2d::slam::{LapRecord, SlamReport};
+use ch16_lab::lap::{LapRecord, SlamReport};
 use kit::chart::{Series, TimeChart};
 use kit::model::{Table, TablePlace};
 use kit::scene::{Mark, Panel, Tone};

@@ -1,6 +1,6 @@
 //! What happened, tick by tick, in words.
 
-use ch16_slam2d::slam::{LapRecord, LapTrace, LoopAttempt, LoopJudgement};
+use ch16_lab::lap::{LapRecord, LapTrace, LoopAttempt, LoopJudgement};
 use kit::model::{Standing, TimelineMark};
 
 /// One line of the log.

@@ -1,8 +1,8 @@
 //! The two pictures: the map with its graph, and the registration of the newest sweep.
 
+use ch16_lab::lap::{LapRecord, RegistrationView};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::graph::EdgeKind;
-use ch16_slam2d::slam::{LapRecord, RegistrationView};
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Raster, Stroke, Tone, Weight};
 use pr_geom::SE2;
 use pr_sim::World;

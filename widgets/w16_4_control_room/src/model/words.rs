@@ -1,18 +1,18 @@
 //! What the widget says of itself: its words, parameters, buttons and presets.
 
-use ch16_slam2d::slam;
+use ch16_lab::lap;
 use kit::param::{ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::run::{LOOPS, NOISE, seed};
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Ticks of a lap.
-const LAP_TICKS: f64 = slam::LAP_TICKS as f64;
+const LAP_TICKS: f64 = lap::LAP_TICKS as f64;
 
 const PARAMS: &[ParamSpec] = &[
     NOISE,
     LOOPS,
-    seed(slam::CANONICAL_SEED),
+    seed(lap::CANONICAL_SEED),
     ParamSpec {
         id: "t",
         label: "tick",

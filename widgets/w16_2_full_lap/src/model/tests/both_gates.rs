@@ -1,7 +1,7 @@
 //! Both gates of every loop: their verdicts, their regions, and what each lets through.
 
+use ch16_lab::lap::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopJudgement};
 use ch16_slam2d::loops::LoopVerification;
-use ch16_slam2d::slam::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopJudgement};
 use kit::scene::Stroke;
 
 use super::*;

@@ -1,0 +1,121 @@
+//! Where a registration ended, named.
+
+use pr_geom::{SE2, math};
+
+use super::SUCCESS_RADIUS_M;
+use ch16_slam2d::icp::{IcpSummary, StopReason};
+
+/// A heading error this close to a quarter or half turn belongs to that minimum, degrees.
+const TURN_TOLERANCE_DEG: f64 = 10.0;
+
+/// The minimum in which a registration ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Minimum {
+    /// The right one: closer than 0.12 m to the truth.
+    Right,
+    /// The room turned by a quarter, to either side.
+    QuarterTurn,
+    /// The room turned by a half.
+    HalfTurn,
+    /// Another false minimum, or on the way to one when the iterations ran out.
+    Other,
+}
+
+impl Minimum {
+    /// One letter for pictures that have to do without colour.
+    #[must_use]
+    pub fn letter(self) -> char {
+        match self {
+            Self::Right => 'R',
+            Self::QuarterTurn => 'Q',
+            Self::HalfTurn => 'H',
+            Self::Other => 'F',
+        }
+    }
+
+    /// What a reader calls it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Right => "right minimum",
+            Self::QuarterTurn => "quarter turn",
+            Self::HalfTurn => "half turn",
+            Self::Other => "another false minimum",
+        }
+    }
+
+    /// All of them, for legends.
+    #[must_use]
+    pub fn all() -> [Self; 4] {
+        [Self::Right, Self::QuarterTurn, Self::HalfTurn, Self::Other]
+    }
+}
+
+/// How one start ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BasinOutcome {
+    /// `target_from_source` as registered.
+    pub pose: SE2,
+    /// Which minimum that is.
+    pub minimum: Minimum,
+    /// Length of the translation part of `log(truth⁻¹ ∘ pose)`, m.
+    pub error_m: f64,
+    /// Its rotation, degrees, with sign.
+    pub error_deg: f64,
+    /// Root mean square residual of the pairs, m. Small at false minima, too.
+    pub rmse: f64,
+    /// Number of pairs.
+    pub inliers: usize,
+    /// Increments made.
+    pub iterations: usize,
+    /// Why the registration ended.
+    pub stop: StopReason,
+}
+
+impl BasinOutcome {
+    /// Judges a registration against the true `target_from_source`.
+    #[must_use]
+    pub fn judge(truth: &SE2, found: &IcpSummary) -> Self {
+        let error = truth.between(&found.pose).log();
+        let error_m = math::norm2(error.x, error.y);
+        let error_deg = error.z.to_degrees();
+        Self {
+            pose: found.pose,
+            minimum: classify(error_m, error_deg),
+            error_m,
+            error_deg,
+            rmse: found.rmse,
+            inliers: found.inliers,
+            iterations: found.iterations,
+            stop: found.stop,
+        }
+    }
+}
+
+fn classify(error_m: f64, error_deg: f64) -> Minimum {
+    let turned_by = |turn_deg: f64| (error_deg.abs() - turn_deg).abs() <= TURN_TOLERANCE_DEG;
+    if error_m < SUCCESS_RADIUS_M {
+        Minimum::Right
+    } else if turned_by(90.0) {
+        Minimum::QuarterTurn
+    } else if turned_by(180.0) {
+        Minimum::HalfTurn
+    } else {
+        Minimum::Other
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_verdict_follows_position_first_and_heading_second() {
+        assert_eq!(classify(0.119, 2.0), Minimum::Right);
+        assert_eq!(classify(0.121, 2.0), Minimum::Other);
+        assert_eq!(classify(0.943, 89.5), Minimum::QuarterTurn);
+        assert_eq!(classify(0.981, -90.5), Minimum::QuarterTurn);
+        assert_eq!(classify(1.921, -179.9), Minimum::HalfTurn);
+        assert_eq!(classify(0.498, 48.1), Minimum::Other);
+    }
+}

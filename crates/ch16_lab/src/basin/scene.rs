@@ -1,0 +1,190 @@
+//! The two sweeps and the registration from one start.
+
+use pr_geom::SE2;
+use pr_sim::{Lidar, LidarConfig, Rng, World};
+
+use super::BasinOutcome;
+use ch16_slam2d::cloud::{DenseMap, NearestTable, PointCloud};
+use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace};
+
+/// A registration counts as right closer than this to the truth, m.
+pub const SUCCESS_RADIUS_M: f64 = 0.12;
+
+const SEED: u32 = 0x1C9;
+const BEAMS: usize = 180;
+const RANGE_SIGMA_M: f64 = 0.012;
+const TARGET_VOXEL_M: f64 = 0.06;
+const SOURCE_VOXEL_M: f64 = 0.09;
+const MAP_CELL_M: f64 = 0.25;
+const MAP_POINTS_PER_CELL: usize = 8;
+const NORMAL_RADIUS_M: f64 = 0.3;
+/// A basin map asks the target about a million times, so the answers are tabulated.
+const TABLE_SQUARE_M: f64 = 0.08;
+const TABLE_REACH_M: f64 = 2.0;
+const MAX_ITERS: usize = 30;
+
+/// An initial guess, relative to the truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BasinStart {
+    /// Added to the heading, degrees.
+    pub heading_deg: f64,
+    /// Added to x of the translation, m.
+    pub dx_m: f64,
+    /// Added to y of the translation, m.
+    pub dy_m: f64,
+}
+
+impl Default for BasinStart {
+    fn default() -> Self {
+        Self {
+            heading_deg: 25.0,
+            dx_m: 0.55,
+            dy_m: 0.45,
+        }
+    }
+}
+
+/// Two sweeps of room A: the target with its map, and the source to be registered on it.
+#[derive(Clone, Debug)]
+pub struct BasinScene {
+    world_from_target: SE2,
+    target: PointCloud,
+    map: NearestTable,
+    source: PointCloud,
+    truth: SE2,
+}
+
+impl Default for BasinScene {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl BasinScene {
+    /// The chapter's scene.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::with_seed(SEED)
+    }
+
+    /// The chapter's scene with other range noise.
+    #[must_use]
+    pub fn with_seed(seed: u32) -> Self {
+        let world = World::apartment();
+        let world_from_target = SE2::new(2.0, 1.9, 0.0);
+        let world_from_source = SE2::new(2.5, 1.55, 0.35);
+        let mut lidar = Lidar::new(LidarConfig {
+            beams: BEAMS,
+            range_sigma_m: RANGE_SIGMA_M,
+            ..LidarConfig::default()
+        });
+        let mut rng = Rng::new(seed);
+        let mut sweep = |world_from_sensor: &SE2, voxel_m: f64| {
+            let ranges_m = lidar.sense(&world, world_from_sensor, &mut rng);
+            let cloud: PointCloud = lidar.project(&ranges_m).collect();
+            cloud.downsample(voxel_m)
+        };
+        let mut target = sweep(&world_from_target, TARGET_VOXEL_M);
+        let source = sweep(&world_from_source, SOURCE_VOXEL_M);
+        target.estimate_normals(NORMAL_RADIUS_M);
+        let map = DenseMap::from_cloud(&target, MAP_CELL_M, MAP_POINTS_PER_CELL);
+        Self {
+            world_from_target,
+            map: NearestTable::new(map, TABLE_SQUARE_M, TABLE_REACH_M),
+            target,
+            source,
+            truth: world_from_target.between(&world_from_source),
+        }
+    }
+
+    /// The scene's settings for a registration: 30 iterations, everything else the chapter's.
+    #[must_use]
+    pub fn config(variant: IcpVariant, tau: f64) -> IcpConfig {
+        IcpConfig {
+            variant,
+            tau,
+            max_iters: MAX_ITERS,
+            ..IcpConfig::default()
+        }
+    }
+
+    /// Points of the target in its sensor's frame, with normals.
+    #[must_use]
+    pub fn target(&self) -> &PointCloud {
+        &self.target
+    }
+
+    /// The target's map.
+    #[must_use]
+    pub fn map(&self) -> &NearestTable {
+        &self.map
+    }
+
+    /// Points of the source in its sensor's frame.
+    #[must_use]
+    pub fn source(&self) -> &PointCloud {
+        &self.source
+    }
+
+    /// The true `target_from_source`.
+    #[must_use]
+    pub fn truth(&self) -> SE2 {
+        self.truth
+    }
+
+    /// Where the target's sensor stood in the Apartment, `world_from_target`.
+    #[must_use]
+    pub fn world_from_target(&self) -> SE2 {
+        self.world_from_target
+    }
+
+    /// The initial guess of a start, `target_from_source`.
+    #[must_use]
+    pub fn guess(&self, start: &BasinStart) -> SE2 {
+        SE2::new(
+            self.truth.x() + start.dx_m,
+            self.truth.y() + start.dy_m,
+            self.truth.theta() + start.heading_deg.to_radians(),
+        )
+    }
+
+    /// The start whose guess is `target_from_source`: the inverse of [`BasinScene::guess`].
+    #[must_use]
+    pub fn start_of(&self, target_from_source: &SE2) -> BasinStart {
+        let turn = SE2::new(0.0, 0.0, target_from_source.theta() - self.truth.theta());
+        BasinStart {
+            heading_deg: turn.theta().to_degrees(),
+            dx_m: target_from_source.x() - self.truth.x(),
+            dy_m: target_from_source.y() - self.truth.y(),
+        }
+    }
+
+    /// Registers the source from `start`; the trace stays in the workspace.
+    pub fn register_from(
+        &self,
+        start: &BasinStart,
+        config: &IcpConfig,
+        workspace: &mut IcpWorkspace,
+    ) -> BasinOutcome {
+        let guess = self.guess(start);
+        let found = Icp::new(&self.source, &self.map, guess, config, workspace).run();
+        BasinOutcome::judge(&self.truth, &found)
+    }
+
+    /// The outcomes of a sweep over headings with the offsets of `start`, one after the other.
+    pub fn sweep<'a>(
+        &'a self,
+        start: BasinStart,
+        headings_deg: impl IntoIterator<Item = f64> + 'a,
+        config: &'a IcpConfig,
+        workspace: &'a mut IcpWorkspace,
+    ) -> impl Iterator<Item = BasinOutcome> + 'a {
+        headings_deg.into_iter().map(move |heading_deg| {
+            let start = BasinStart {
+                heading_deg,
+                ..start
+            };
+            self.register_from(&start, config, workspace)
+        })
+    }
+}

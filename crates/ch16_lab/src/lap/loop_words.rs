@@ -1,0 +1,128 @@
+//! What became of a loop, in words: the widgets say it in their outcome, their log and their marks.
+
+use core::fmt;
+
+use super::loop_error::LoopJudgement;
+use super::record::LapTrace;
+use super::report::LoopAttempt;
+use ch16_slam2d::loops::{GateTest, LoopRejection};
+
+impl fmt::Display for LoopJudgement {
+    /// `loop accepted`, `wrong loop accepted` or `loop rejected`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Right => "loop accepted",
+            Self::FalseAcceptance => "wrong loop accepted",
+            Self::Rejected => "loop rejected",
+        })
+    }
+}
+
+impl LapTrace {
+    /// `loop 29 to 7 accepted`: what became of an attempt, from its new node to its old one.
+    ///
+    /// # Panics
+    /// Where the attempt names a node that the lap does not have.
+    #[must_use]
+    pub fn loop_headline(&self, attempt: &LoopAttempt) -> String {
+        let loop_ = &attempt.verification;
+        let (name, verdict) = match self.judge(attempt) {
+            LoopJudgement::Right => ("loop", "accepted"),
+            LoopJudgement::FalseAcceptance => ("wrong loop", "accepted"),
+            LoopJudgement::Rejected => ("loop", "rejected"),
+        };
+        let (new, old) = (loop_.from_node, loop_.candidate.node);
+        format!("{name} {new} to {old} {verdict}")
+    }
+
+    /// The headline with its reason: χ² against the gate, and what the loop moved or why it was
+    /// turned away; how far a false acceptance is off the truth.
+    ///
+    /// # Panics
+    /// Where the attempt names a node that the lap does not have.
+    #[must_use]
+    pub fn loop_sentence(&self, attempt: &LoopAttempt) -> String {
+        let head = self.loop_headline(attempt);
+        let gate = gate_words(&attempt.verification.gate);
+        if let Some(effect) = &attempt.effect {
+            let moved = format!("{head}, {gate}, history moved {:.2} m", effect.max_shift_m);
+            let error = self.loop_error(attempt);
+            return if error.is_false() {
+                let (off_m, off_deg) = (error.position_m, error.heading_deg);
+                format!("{moved}: its measurement is {off_m:.2} m and {off_deg:.1}° off the truth")
+            } else {
+                moved
+            };
+        }
+        match attempt.verification.rejection {
+            Some(LoopRejection::PoorFit { rmse_m, max_rmse_m }) => format!(
+                "{head}: {gate}, but the sweep fits to {rmse_m:.3} m only, {max_rmse_m:.2} m is asked"
+            ),
+            Some(LoopRejection::FewInliers {
+                inliers,
+                min_inliers,
+            }) => format!("{head}: {gate}, but only {inliers} pairs of {min_inliers}"),
+            Some(LoopRejection::OutsideGate(_)) | None => format!("{head}: {gate}"),
+        }
+    }
+}
+
+fn gate_words(gate: &GateTest) -> String {
+    let side = if gate.passes() { "below" } else { "above" };
+    format!("chi-squared {:.2} {side} {:.3}", gate.chi2, gate.gate_chi2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lap::{LapRunner, SlamConfig};
+    use pr_geom::SE2;
+
+    #[test]
+    fn a_sentence_names_the_nodes_the_test_that_decided_and_what_it_measured() {
+        let lap = LapRunner::new().run(&SlamConfig::default()).lap;
+        let mut attempt = *lap.loop_attempts().next().unwrap();
+        assert_eq!(
+            lap.loop_sentence(&attempt),
+            "loop 29 to 7 accepted, chi-squared 4.24 below 7.815, history moved 0.24 m"
+        );
+        let right = attempt;
+        attempt.verification.registered = lap.loop_truth(&attempt) * SE2::translation(0.0, 0.456);
+        assert_eq!(
+            lap.loop_sentence(&attempt),
+            "wrong loop 29 to 7 accepted, chi-squared 4.24 below 7.815, history moved 0.24 m: \
+             its measurement is 0.46 m and 0.0° off the truth"
+        );
+        attempt = right;
+        attempt.effect = None;
+        for (rejection, reason) in [
+            (
+                LoopRejection::PoorFit {
+                    rmse_m: 0.1859,
+                    max_rmse_m: 0.16,
+                },
+                "below 7.815, but the sweep fits to 0.186 m only, 0.16 m is asked",
+            ),
+            (
+                LoopRejection::FewInliers {
+                    inliers: 20,
+                    min_inliers: 25,
+                },
+                "below 7.815, but only 20 pairs of 25",
+            ),
+        ] {
+            attempt.verification.rejection = Some(rejection);
+            assert_eq!(
+                lap.loop_sentence(&attempt),
+                format!("loop 29 to 7 rejected: chi-squared 4.24 {reason}")
+            );
+        }
+        attempt.verification.gate.chi2 = 8.0;
+        attempt.verification.rejection =
+            Some(LoopRejection::OutsideGate(attempt.verification.gate));
+        assert_eq!(
+            lap.loop_sentence(&attempt),
+            "loop 29 to 7 rejected: chi-squared 8.00 above 7.815"
+        );
+    }
+}

@@ -1,0 +1,305 @@
+//! A finished lap as a timeline needs it: any tick can be looked at without running again.
+//!
+//! Between two accepted loops no node moves, so the poses of all nodes are stored once for each
+//! such epoch; the poses at a tick are the first few of its epoch.
+
+use nalgebra::Matrix3;
+use pr_geom::SE2;
+
+use super::front_end::WindowSweep;
+use super::report::{Keyframe, LoopAttempt, SlamReport};
+use super::{Drive, Slam, SlamConfig};
+use ch16_slam2d::graph::EdgeKind;
+use ch16_slam2d::metrics::position_error_m;
+
+/// Keyframes at the end of the lap whose error range the results table shows.
+pub const LAST_KEYFRAMES: usize = 9;
+
+/// An edge of the graph with the tick in which it was added.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecordedEdge {
+    /// The tick, counted from 1.
+    pub tick: usize,
+    /// The node in whose frame it was measured.
+    pub from: usize,
+    /// The node that was measured.
+    pub to: usize,
+    /// Pose of `to` in the frame of `from`.
+    pub measurement: SE2,
+    /// Its information, 3×3, translation first.
+    pub information: Matrix3<f64>,
+    /// Odometry or loop.
+    pub kind: EdgeKind,
+}
+
+/// The poses of all nodes between two accepted loops.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Epoch {
+    /// The first tick at whose end these poses hold; 0 is the start.
+    pub first_tick: usize,
+    /// The pose of every node that exists at the end of the epoch, `world_from_body`.
+    pub poses: Vec<SE2>,
+}
+
+/// The history of one estimator.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LapTrace {
+    /// Reports of all ticks; tick t is at index t − 1.
+    pub reports: Vec<SlamReport>,
+    /// Keyframes in order; node k is keyframe k.
+    pub keyframes: Vec<Keyframe>,
+    /// Edges in the order in which they were added.
+    pub edges: Vec<RecordedEdge>,
+    /// Epochs in order; there is one more than accepted loops.
+    pub epochs: Vec<Epoch>,
+    /// Node that was newest when the way back began.
+    pub turn_node: Option<usize>,
+    /// The rows of the results table.
+    pub summary: LapSummary,
+}
+
+/// The rows of the chapter's results table, and the counts of the run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LapSummary {
+    /// Ticks of the lap.
+    pub ticks: usize,
+    /// Keyframes.
+    pub keyframes: usize,
+    /// Attempts to close a loop that had a candidate.
+    pub loop_attempts: usize,
+    /// Loops that were closed.
+    pub loops: usize,
+    /// Position error of dead reckoning at the end, m.
+    pub odometry_end_error_m: f64,
+    /// Root mean square position error of dead reckoning over the ticks, m.
+    pub odometry_rms_m: f64,
+    /// Position error of the last keyframe, m.
+    pub keyframe_end_error_m: f64,
+    /// Root mean square position error of the keyframes, m.
+    pub keyframe_rms_m: f64,
+    /// Largest position error of a keyframe, m.
+    pub keyframe_max_m: f64,
+    /// Smallest and largest position error of the last nine keyframes, m.
+    pub last_keyframes_m: (f64, f64),
+    /// Map self-disagreement, m.
+    pub map_disagreement_m: Option<f64>,
+    /// χ² of the graph.
+    pub chi2: f64,
+}
+
+impl LapTrace {
+    /// Number of nodes that exist at the end of `tick`; 0 is the start.
+    #[must_use]
+    pub fn node_count(&self, tick: usize) -> usize {
+        self.keyframes
+            .partition_point(|keyframe| keyframe.tick <= tick)
+    }
+
+    /// Poses of all nodes at the end of `tick`, `world_from_body`.
+    #[must_use]
+    pub fn poses(&self, tick: usize) -> &[SE2] {
+        let epoch = self
+            .epochs
+            .partition_point(|epoch| epoch.first_tick <= tick)
+            - 1;
+        &self.epochs[epoch].poses[..self.node_count(tick)]
+    }
+
+    /// Edges that exist at the end of `tick`.
+    #[must_use]
+    pub fn edges(&self, tick: usize) -> &[RecordedEdge] {
+        let count = self.edges.partition_point(|edge| edge.tick <= tick);
+        &self.edges[..count]
+    }
+
+    /// The report of `tick`, counted from 1; none at the start.
+    #[must_use]
+    pub fn report(&self, tick: usize) -> Option<&SlamReport> {
+        self.reports.get(tick.checked_sub(1)?)
+    }
+
+    /// All attempts to close a loop, in order.
+    pub fn loop_attempts(&self) -> impl Iterator<Item = &LoopAttempt> {
+        self.reports
+            .iter()
+            .filter_map(|report| report.loop_attempt.as_ref())
+    }
+
+    /// Poses before and after the loop that was closed in `tick`; none where none was.
+    ///
+    /// Both have the same nodes: an animation goes from one to the other.
+    #[must_use]
+    pub fn loop_motion(&self, tick: usize) -> Option<(&[SE2], &[SE2])> {
+        let after = self
+            .epochs
+            .iter()
+            .position(|epoch| epoch.first_tick == tick)?;
+        let nodes = self.node_count(tick);
+        let before = &self.epochs[after.checked_sub(1)?];
+        Some((&before.poses[..nodes], &self.epochs[after].poses[..nodes]))
+    }
+
+    /// Position errors of all keyframes at the poses of the end of `tick`, m.
+    pub fn keyframe_errors_m(&self, tick: usize) -> impl Iterator<Item = f64> + '_ {
+        self.poses(tick)
+            .iter()
+            .zip(&self.keyframes)
+            .map(|(pose, keyframe)| position_error_m(pose, &keyframe.truth))
+    }
+
+    /// The sweeps of the local map on which the sweep of `tick` was registered, oldest first.
+    #[must_use]
+    pub fn window(&self, tick: usize, config: &SlamConfig) -> Vec<WindowSweep> {
+        let first = tick.saturating_sub(config.window_sweeps);
+        (first..tick)
+            .map(|taken| WindowSweep {
+                tick: taken,
+                pose: self.window_pose(taken, tick, config),
+            })
+            .collect()
+    }
+
+    /// Where the sweep of `taken` stood in the window of `tick`: loops in between have moved it.
+    fn window_pose(&self, taken: usize, tick: usize, config: &SlamConfig) -> SE2 {
+        let start = self
+            .report(taken)
+            .map_or(config.drive.start, |report| report.estimate);
+        self.reports[taken..tick - 1]
+            .iter()
+            .filter_map(|report| report.loop_attempt?.effect)
+            .fold(start, |pose, effect| effect.correction * pose)
+    }
+}
+
+/// A lap under way, writing down what [`LapTrace`] holds.
+#[derive(Clone)]
+pub(super) struct Recorder {
+    slam: Slam,
+    reports: Vec<SlamReport>,
+    epochs: Vec<Epoch>,
+}
+
+impl Recorder {
+    pub(super) fn new(slam: Slam) -> Self {
+        Self {
+            reports: Vec::with_capacity(slam.drive().ticks().len()),
+            slam,
+            epochs: vec![Epoch {
+                first_tick: 0,
+                poses: Vec::new(),
+            }],
+        }
+    }
+
+    /// Runs to the end. Returns, beside the history, a copy from just before the first accepted
+    /// loop: continued without loops it is the front end alone, with no need to start over.
+    pub(super) fn run(mut self) -> (LapTrace, Option<Recorder>) {
+        let mut front_end_alone = None;
+        while let Some(mut pending) = self.slam.advance() {
+            if let Some(verification) = self.slam.verify_loop(&pending) {
+                if verification.accepted() {
+                    if front_end_alone.is_none() {
+                        let mut alone = self.clone();
+                        alone.slam.config = alone.slam.config.without_loops();
+                        let report = alone.slam.finish(pending.clone());
+                        alone.reports.push(report);
+                        front_end_alone = Some(alone);
+                    }
+                    self.end_epoch();
+                }
+                self.slam.close_loop(&mut pending, verification);
+            }
+            self.reports.push(self.slam.finish(pending));
+        }
+        (self.into_trace(), front_end_alone)
+    }
+
+    /// Stores the poses that the coming optimization will change.
+    fn end_epoch(&mut self) {
+        self.store_poses();
+        self.epochs.push(Epoch {
+            first_tick: self.slam.tick(),
+            poses: Vec::new(),
+        });
+    }
+
+    fn store_poses(&mut self) {
+        if let Some(epoch) = self.epochs.last_mut() {
+            epoch.poses = self.slam.graph().poses().to_vec();
+        }
+    }
+
+    fn into_trace(mut self) -> LapTrace {
+        self.store_poses();
+        let slam = &self.slam;
+        let edges = slam.graph().edges().map(|view| {
+            let (from, to) = (view.from.index(), view.to.index());
+            RecordedEdge {
+                tick: slam.keyframes()[from.max(to)].tick,
+                from,
+                to,
+                measurement: view.edge.measurement,
+                information: view.edge.information,
+                kind: view.edge.kind,
+            }
+        });
+        LapTrace {
+            edges: edges.collect(),
+            keyframes: slam.keyframes().to_vec(),
+            turn_node: slam.turn_node(),
+            summary: LapSummary::of(slam, &self.reports),
+            reports: self.reports,
+            epochs: self.epochs,
+        }
+    }
+}
+
+impl LapSummary {
+    /// The summary of a lap: its present state and the reports of its ticks.
+    #[must_use]
+    pub fn of(slam: &Slam, reports: &[SlamReport]) -> Self {
+        let errors: Vec<f64> = slam.keyframe_errors_m().collect();
+        let last = &errors[errors.len().saturating_sub(LAST_KEYFRAMES)..];
+        let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
+        let attempts = || reports.iter().filter_map(|report| report.loop_attempt);
+        let metrics = reports.last().map(|report| report.metrics);
+        Self {
+            ticks: reports.len(),
+            keyframes: errors.len(),
+            loop_attempts: attempts().count(),
+            loops: attempts().filter(LoopAttempt::accepted).count(),
+            odometry_end_error_m: metrics.map_or(0.0, |m| m.odometry_error_m),
+            odometry_rms_m: metrics.map_or(0.0, |m| m.odometry_rms_m),
+            keyframe_end_error_m: metrics.map_or(0.0, |m| m.keyframe_error_m),
+            keyframe_rms_m: metrics.map_or(0.0, |m| m.keyframe_rms_m),
+            keyframe_max_m: largest(&errors),
+            last_keyframes_m: (
+                last.iter().copied().fold(f64::INFINITY, f64::min),
+                largest(last),
+            ),
+            map_disagreement_m: metrics.and_then(|m| m.map_disagreement_m),
+            chi2: metrics.map_or(0.0, |m| m.chi2),
+        }
+    }
+}
+
+/// A finished lap with everything that was driven and estimated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LapRecord {
+    /// The parameters.
+    pub config: SlamConfig,
+    /// Truth, wheels and sweeps.
+    pub drive: std::sync::Arc<Drive>,
+    /// The lap as configured.
+    pub lap: LapTrace,
+    /// The front end alone on the same drive; equal to `lap` where no loop was closed.
+    pub front_end: LapTrace,
+}
+
+impl LapRecord {
+    /// Number of ticks.
+    #[must_use]
+    pub fn ticks(&self) -> usize {
+        self.drive.ticks().len()
+    }
+}

@@ -1,0 +1,150 @@
+//! What a tick saw: its local map, its registration iteration by iteration, the grid so far, and
+//! the graph that a loop met.
+//!
+//! A record does not keep these; they are worked out again for the one tick that is looked at.
+
+use pr_geom::SE2;
+use pr_grid::{Beams, GridConfig, OccupancyGrid};
+use pr_sim::Lidar;
+
+use super::front_end::{local_cloud_into, registration_config};
+use super::record::{LapRecord, LapTrace};
+use super::{Drive, LoopAttempt, SlamConfig, WindowSweep};
+use ch16_slam2d::cloud::{DenseMap, PointCloud};
+use ch16_slam2d::graph::{EdgeKind, PoseGraph};
+use ch16_slam2d::icp::{IcpResult, icp};
+
+/// One sweep's registration, in full.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegistrationView {
+    /// The sweeps of the local map, oldest first.
+    pub window: Vec<WindowSweep>,
+    /// The points of the local map, world frame; its cells keep only some of them.
+    pub local_cloud: PointCloud,
+    /// Where registration started: `world_from_body`.
+    pub prediction: SE2,
+    /// The registration with its history and last pairs, world frame.
+    pub icp: IcpResult,
+}
+
+impl LapRecord {
+    /// The registration of `tick` in the lap; none at the start.
+    #[must_use]
+    pub fn registration(&self, tick: usize) -> Option<RegistrationView> {
+        self.lap.registration(tick, &self.drive, &self.config)
+    }
+
+    /// The occupancy grid of the keyframes up to `tick`, at their poses of that tick.
+    #[must_use]
+    pub fn occupancy_grid(&self, tick: usize) -> OccupancyGrid {
+        let lidar = self.config.drive.lidar;
+        let mut config = GridConfig::default();
+        config.sensor.max_range_m = lidar.max_range_m;
+        let mut grid = OccupancyGrid::new(config);
+        let beams = Beams::new(Lidar::new(lidar).bearings_rad());
+        for (pose, keyframe) in self.lap.poses(tick).iter().zip(&self.lap.keyframes) {
+            grid.integrate(pose, &beams, &self.drive.sweep(keyframe.tick).ranges_m);
+        }
+        grid
+    }
+}
+
+impl LapTrace {
+    /// The registration of `tick`; none at the start. `drive` and `config` are those of the lap.
+    #[must_use]
+    pub fn registration(
+        &self,
+        tick: usize,
+        drive: &Drive,
+        config: &SlamConfig,
+    ) -> Option<RegistrationView> {
+        let recorded = &self.report(tick)?.registration;
+        let window = self.window(tick, config);
+        let mut local_cloud = PointCloud::new();
+        local_cloud_into(&window, drive, &mut local_cloud);
+        let map = DenseMap::from_cloud(
+            &local_cloud,
+            config.local_map.cell_m,
+            config.local_map.max_per_cell,
+        );
+        let icp = icp(
+            &drive.sweep(tick).cloud,
+            &map,
+            recorded.prediction,
+            &registration_config(recorded.tau_m, config),
+        );
+        Some(RegistrationView {
+            window,
+            local_cloud,
+            prediction: recorded.prediction,
+            icp,
+        })
+    }
+
+    /// The graph as `attempt` met it: with the new keyframe, without the loop that is tried.
+    #[must_use]
+    pub fn graph_before(&self, attempt: &LoopAttempt) -> PoseGraph {
+        let tick = attempt.tick;
+        let poses = match self.loop_motion(tick) {
+            Some((before, _)) => before,
+            None => self.poses(tick),
+        };
+        let mut graph = PoseGraph::new();
+        for (node, pose) in poses.iter().enumerate() {
+            match node {
+                0 => graph.add_fixed_node(*pose),
+                _ => graph.add_node(*pose),
+            };
+        }
+        for edge in self.edges(tick) {
+            if edge.kind == EdgeKind::Odometry || edge.tick < tick {
+                graph.add_edge(
+                    edge.from,
+                    edge.to,
+                    edge.measurement,
+                    edge.information,
+                    edge.kind,
+                );
+            }
+        }
+        graph
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lap::LapRunner;
+    use ch16_slam2d::loops::{GateModel, marginal_information};
+
+    #[test]
+    fn a_replayed_registration_has_the_bits_of_the_recorded_one() {
+        let record = LapRunner::new().run(&SlamConfig::default());
+        for tick in 1..=record.ticks() {
+            let view = record.registration(tick).unwrap();
+            let recorded = record.lap.report(tick).unwrap().registration;
+            assert_eq!(view.icp.pose, recorded.icp.pose, "tick {tick}");
+            assert_eq!(view.icp.rmse, recorded.icp.rmse, "tick {tick}");
+        }
+        assert_eq!(record.registration(0), None);
+    }
+
+    #[test]
+    fn the_graph_before_a_loop_gives_the_exact_gate_its_covariance() {
+        let mut config = SlamConfig::default();
+        config.loops.gate_model = GateModel::ExactMarginal;
+        let lap = LapRunner::new().run(&config).lap;
+        let attempts: Vec<_> = lap.loop_attempts().collect();
+        assert!(attempts.iter().filter(|a| a.accepted()).count() > 1);
+        for attempt in attempts {
+            let loop_ = &attempt.verification;
+            let (old, new) = (loop_.candidate.node, loop_.from_node);
+            let mut graph = lap.graph_before(attempt);
+            assert_eq!(graph.pose(old).between(&graph.pose(new)), loop_.initial);
+            assert_eq!(
+                marginal_information(&mut graph, old, new),
+                loop_.gate_information
+            );
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! What a tick of the lap reports.
+
+use pr_geom::SE2;
+use pr_sim::VelocityCommand;
+
+use super::front_end::Registration;
+use ch16_slam2d::loops::LoopVerification;
+
+/// A keyframe: a node of the graph with the sweep that was taken there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Keyframe {
+    /// Number of its node.
+    pub node: usize,
+    /// The tick after which it was taken; 0 is the start.
+    pub tick: usize,
+    /// True pose, world frame: for the metrics, the estimator never sees it.
+    pub truth: SE2,
+}
+
+/// What closing a loop did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopEffect {
+    /// Newest node's pose after the optimization ∘ its pose before it, inverted: what moved the
+    /// estimate and the window.
+    pub correction: SE2,
+    /// Farthest that a node moved, m.
+    pub max_shift_m: f64,
+    /// Iterations of the optimizer.
+    pub iterations: usize,
+    /// χ² of the graph with the new edge, before and after the optimization.
+    pub chi2: Change,
+    /// Root mean square position error of the keyframes before and after, m.
+    pub keyframe_rms_m: Change,
+}
+
+/// A value before and after.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change {
+    /// Before.
+    pub before: f64,
+    /// After.
+    pub after: f64,
+}
+
+/// An attempt to close a loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopAttempt {
+    /// The tick in which it was made, counted from 1.
+    pub tick: usize,
+    /// Candidate, registration and tests.
+    pub verification: LoopVerification,
+    /// What it did to the graph; none where it was turned away.
+    pub effect: Option<LoopEffect>,
+}
+
+impl LoopAttempt {
+    /// Whether the loop was closed.
+    #[must_use]
+    pub fn accepted(&self) -> bool {
+        self.effect.is_some()
+    }
+}
+
+/// The metrics after a tick; all errors against the simulated truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TickMetrics {
+    /// Position error of dead reckoning, m.
+    pub odometry_error_m: f64,
+    /// Position error of the estimate, m.
+    pub estimate_error_m: f64,
+    /// Root mean square of the dead reckoning error over the ticks so far, m.
+    pub odometry_rms_m: f64,
+    /// Root mean square position error of the keyframes at their present poses, m.
+    pub keyframe_rms_m: f64,
+    /// Position error of the newest keyframe at its present pose, m.
+    pub keyframe_error_m: f64,
+    /// Map self-disagreement so far, m; none before the way back has a keyframe.
+    pub map_disagreement_m: Option<f64>,
+    /// χ² of the graph.
+    pub chi2: f64,
+}
+
+/// Everything that one tick did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlamReport {
+    /// Number of the tick, counted from 1.
+    pub tick: usize,
+    /// Time at its end, s.
+    pub time_s: f64,
+    /// The command that was held.
+    pub command: VelocityCommand,
+    /// True pose after the tick, world frame.
+    pub truth: SE2,
+    /// Dead reckoning after the tick, world frame.
+    pub dead_reckoning: SE2,
+    /// Prediction and registration of the sweep.
+    pub registration: Registration,
+    /// Estimate at the end of the tick, a loop's correction included: `world_from_body`.
+    pub estimate: SE2,
+    /// Node of the keyframe that was taken.
+    pub new_keyframe: Option<usize>,
+    /// The attempt to close a loop that was made.
+    pub loop_attempt: Option<LoopAttempt>,
+    /// Errors and map quality.
+    pub metrics: TickMetrics,
+    /// Whether the lap is finished.
+    pub finished: bool,
+}

@@ -1,0 +1,111 @@
+//! Whole laps on demand, as fast as a dragged slider needs them.
+
+use std::sync::Arc;
+
+use super::record::{LapRecord, Recorder};
+use super::{Drive, Slam, SlamConfig};
+
+/// Runs laps and keeps the simulated drive between them.
+///
+/// A new gate or window runs on the drive that is there; new wheel noise changes only what the
+/// wheels report; a new seed or sensor simulates anew. The results do not depend on what ran
+/// before.
+#[derive(Clone, Debug, Default)]
+pub struct LapRunner {
+    drive: Option<Arc<Drive>>,
+}
+
+impl LapRunner {
+    /// A runner that has simulated nothing yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Runs the lap of `config`, and its front end alone.
+    pub fn run(&mut self, config: &SlamConfig) -> LapRecord {
+        let drive = self.drive_for(config);
+        let slam = Slam::on_drive(config.clone(), Arc::clone(&drive));
+        let (lap, fork) = Recorder::new(slam).run();
+        let front_end = fork.map_or_else(|| lap.clone(), |alone| alone.run().0);
+        LapRecord {
+            config: config.clone(),
+            drive,
+            lap,
+            front_end,
+        }
+    }
+
+    fn drive_for(&mut self, config: &SlamConfig) -> Arc<Drive> {
+        let mut drive = match self.drive.take() {
+            Some(drive) if drive.config().differs_only_in_noise_from(&config.drive) => drive,
+            _ => Arc::new(Drive::simulate(&config.drive)),
+        };
+        if drive.config().noise_factor != config.drive.noise_factor {
+            Arc::make_mut(&mut drive).set_noise_factor(config.drive.noise_factor);
+        }
+        self.drive = Some(Arc::clone(&drive));
+        drive
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lap_does_not_depend_on_what_ran_before() {
+        let mut runner = LapRunner::new();
+        let configs = [
+            SlamConfig::default(),
+            SlamConfig::with_seed_and_noise(6, 2.0),
+            SlamConfig::with_seed_and_noise(6, 1.0),
+            SlamConfig::default().without_loops(),
+        ];
+        for config in &configs {
+            assert_eq!(runner.run(config), LapRunner::new().run(config));
+        }
+    }
+
+    #[test]
+    fn the_front_end_alone_is_the_lap_with_loop_closure_off() {
+        let both = LapRunner::new().run(&SlamConfig::default());
+        let alone = LapRunner::new().run(&SlamConfig::default().without_loops());
+        assert_eq!(both.front_end, alone.lap);
+        assert_ne!(both.front_end, both.lap);
+    }
+
+    #[test]
+    fn the_record_has_the_graph_of_every_tick() {
+        let config = SlamConfig::default();
+        let record = LapRunner::new().run(&config);
+        let mut slam = Slam::new(config.clone());
+        assert_eq!(record.lap.poses(0), slam.graph().poses());
+        while let Some(report) = slam.step() {
+            assert_eq!(record.lap.report(report.tick), Some(&report));
+            assert_eq!(record.lap.poses(report.tick), slam.graph().poses());
+            assert_eq!(
+                record.lap.edges(report.tick).len(),
+                slam.graph().edge_count()
+            );
+            let next_window = slam.front_end().window();
+            assert_eq!(record.lap.window(report.tick + 1, &config), next_window);
+        }
+    }
+
+    #[test]
+    fn the_motion_of_a_loop_starts_where_the_graph_was_and_ends_where_it_is() {
+        let lap = LapRunner::new().run(&SlamConfig::default()).lap;
+        for attempt in lap.loop_attempts() {
+            let (before, after) = lap.loop_motion(attempt.tick).unwrap();
+            let shift = before
+                .iter()
+                .zip(after)
+                .map(|(a, b)| ch16_slam2d::metrics::position_error_m(a, b))
+                .fold(0.0, f64::max);
+            assert_eq!(Some(shift), attempt.effect.map(|effect| effect.max_shift_m));
+            assert_eq!(after, lap.poses(attempt.tick));
+        }
+        assert_eq!(lap.loop_motion(5), None);
+    }
+}

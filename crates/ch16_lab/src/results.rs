@@ -1,0 +1,230 @@
+//! The results table of many laps: how each of its entries is distributed.
+//!
+//! One seed is an anecdote. Everything here is about laps that have been run; who runs them, and on
+//! how many threads, is up to the caller.
+
+use crate::lap::{LapRecord, LapSummary};
+
+/// A column of the results table: whose errors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Column {
+    /// Dead reckoning by the wheels.
+    Odometry,
+    /// Scan matching without loops.
+    FrontEnd,
+    /// The lap as configured.
+    WithLoops,
+}
+
+/// A row of the results table: which error, m.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Row {
+    /// Position error at the end.
+    EndError,
+    /// Root mean square position error.
+    Rms,
+    /// Smallest error of the last nine keyframes.
+    LastKeyframesMin,
+    /// Largest error of the last nine keyframes.
+    LastKeyframesMax,
+    /// Largest error of all keyframes.
+    KeyframeMax,
+    /// Distance between what the way out mapped and what the way back saw.
+    MapDisagreement,
+}
+
+impl Column {
+    /// All columns, from left to right.
+    pub const ALL: [Self; 3] = [Self::Odometry, Self::FrontEnd, Self::WithLoops];
+}
+
+impl Row {
+    /// All rows, from top to bottom.
+    pub const ALL: [Self; 6] = [
+        Self::EndError,
+        Self::Rms,
+        Self::LastKeyframesMin,
+        Self::LastKeyframesMax,
+        Self::KeyframeMax,
+        Self::MapDisagreement,
+    ];
+}
+
+/// What statistics need of one lap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LapOutcome {
+    /// The lap as configured.
+    pub lap: LapSummary,
+    /// Its front end alone.
+    pub front_end: LapSummary,
+    /// Loops that were closed although they are false.
+    pub false_acceptances: usize,
+}
+
+impl LapOutcome {
+    /// The outcome of a finished lap.
+    #[must_use]
+    pub fn of(record: &LapRecord) -> Self {
+        Self {
+            lap: record.lap.summary,
+            front_end: record.front_end.summary,
+            false_acceptances: record.lap.false_acceptances().count(),
+        }
+    }
+
+    /// An entry of the results table, m; none where the table has a gap.
+    #[must_use]
+    pub fn entry(&self, column: Column, row: Row) -> Option<f64> {
+        let summary = match column {
+            Column::Odometry => return self.odometry_entry(row),
+            Column::FrontEnd => &self.front_end,
+            Column::WithLoops => &self.lap,
+        };
+        match row {
+            Row::EndError => Some(summary.keyframe_end_error_m),
+            Row::Rms => Some(summary.keyframe_rms_m),
+            Row::LastKeyframesMin => Some(summary.last_keyframes_m.0),
+            Row::LastKeyframesMax => Some(summary.last_keyframes_m.1),
+            Row::KeyframeMax => Some(summary.keyframe_max_m),
+            Row::MapDisagreement => summary.map_disagreement_m,
+        }
+    }
+
+    /// Wheels have no keyframes, and no map.
+    fn odometry_entry(&self, row: Row) -> Option<f64> {
+        match row {
+            Row::EndError => Some(self.lap.odometry_end_error_m),
+            Row::Rms => Some(self.lap.odometry_rms_m),
+            _ => None,
+        }
+    }
+}
+
+/// What laps that differ only in their seed have in common.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LapStatistics {
+    /// The laps, in the order of their seeds.
+    pub outcomes: Vec<LapOutcome>,
+}
+
+impl LapStatistics {
+    /// How an entry of the results table is distributed; none where no lap has it.
+    #[must_use]
+    pub fn spread(&self, column: Column, row: Row) -> Option<Spread> {
+        let entries = self.outcomes.iter();
+        Spread::of(entries.filter_map(|outcome| outcome.entry(column, row)))
+    }
+
+    /// Share of the laps of which something is true; not a number of no laps.
+    #[must_use]
+    pub fn share(&self, is_true: impl Fn(&LapOutcome) -> bool) -> f64 {
+        let matches = self.outcomes.iter().filter(|outcome| is_true(outcome));
+        matches.count() as f64 / self.outcomes.len() as f64
+    }
+
+    /// Shares of the laps with 0, 1, 2, and 3 or more closed loops.
+    #[must_use]
+    pub fn loop_shares(&self) -> [f64; 4] {
+        [0, 1, 2, 3].map(|loops| self.share(|outcome| outcome.lap.loops.min(3) == loops))
+    }
+
+    /// Share of the laps that took a false loop.
+    #[must_use]
+    pub fn false_run_share(&self) -> f64 {
+        self.share(|outcome| outcome.false_acceptances > 0)
+    }
+
+    /// Closed loops of all laps.
+    #[must_use]
+    pub fn accepted_loops(&self) -> usize {
+        self.outcomes.iter().map(|outcome| outcome.lap.loops).sum()
+    }
+
+    /// False ones among [`Self::accepted_loops`].
+    #[must_use]
+    pub fn false_acceptances(&self) -> usize {
+        let counts = self.outcomes.iter();
+        counts.map(|outcome| outcome.false_acceptances).sum()
+    }
+}
+
+/// The middle of a distribution, and where its tails begin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// One value in twenty is lower.
+    pub p05: f64,
+    /// Half of the values are lower.
+    pub median: f64,
+    /// One value in twenty is higher.
+    pub p95: f64,
+}
+
+impl Spread {
+    /// The spread of some values; none of none.
+    #[must_use]
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let mut sorted: Vec<f64> = values.into_iter().collect();
+        sorted.sort_by(f64::total_cmp);
+        Some(Self {
+            p05: quantile(&sorted, 0.05)?,
+            median: quantile(&sorted, 0.5)?,
+            p95: quantile(&sorted, 0.95)?,
+        })
+    }
+}
+
+/// The quantile of sorted values, linear between neighbours (Hyndman & Fan 1996, type 7).
+fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
+    let position = share * sorted.len().checked_sub(1)? as f64;
+    let below = position.floor();
+    let low = sorted[below as usize];
+    let high = sorted[position.ceil() as usize];
+    Some(low + (position - below) * (high - low))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lap::{LapRunner, SlamConfig};
+
+    #[test]
+    fn quantiles_lie_between_the_sorted_values() {
+        let values = [1.0, 2.0, 4.0, 8.0, 16.0];
+        assert_eq!(quantile(&values, 0.5), Some(4.0));
+        assert_eq!(quantile(&values, 0.0), Some(1.0));
+        assert_eq!(quantile(&values, 1.0), Some(16.0));
+        // Position 0.05 · 4 = 0.2 between 1 and 2.
+        assert_eq!(quantile(&values, 0.05), Some(1.2));
+        assert_eq!(Spread::of([]), None);
+        let spread = Spread::of([8.0, 1.0, 16.0, 4.0, 2.0]).unwrap();
+        assert_eq!((spread.p05, spread.median), (1.2, 4.0));
+    }
+
+    #[test]
+    fn shares_and_counts_are_of_laps_and_of_loops() {
+        let record = LapRunner::new().run(&SlamConfig::default());
+        let right = LapOutcome::of(&record);
+        let mut wrong = right;
+        wrong.lap.loops = 4;
+        wrong.false_acceptances = 2;
+        let mut lost = right;
+        lost.lap.loops = 0;
+        let outcomes = vec![right, wrong, lost, lost];
+        let statistics = LapStatistics { outcomes };
+        assert_eq!(statistics.loop_shares(), [0.5, 0.0, 0.0, 0.5]);
+        assert_eq!(statistics.accepted_loops(), 7);
+        assert_eq!(statistics.false_acceptances(), 2);
+        assert_eq!(statistics.false_run_share(), 0.25);
+    }
+
+    #[test]
+    fn odometry_has_the_two_entries_that_need_no_keyframes() {
+        let record = LapRunner::new().run(&SlamConfig::default());
+        let outcome = LapOutcome::of(&record);
+        let entries_of = |column| {
+            let rows = Row::ALL.into_iter();
+            rows.filter_map(|row| outcome.entry(column, row)).count()
+        };
+        assert_eq!(Column::ALL.map(entries_of), [2, 6, 6]);
+    }
+}

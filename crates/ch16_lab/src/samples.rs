@@ -1,0 +1,150 @@
+//! Clouds and a graph to time and to try things on, always the same.
+//!
+//! The benchmarks, the table of workloads and the files for `slam2d register` draw on these, so that
+//! all of them speak of the same points. Everything is seen by the simulator's LiDAR in the
+//! Apartment, with range noise of 0.02 m.
+
+use pr_geom::SE2;
+use pr_sim::{Lidar, LidarConfig, Rng, World};
+
+use crate::lap::{Slam, SlamConfig};
+use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::graph::PoseGraph;
+
+const RANGE_SIGMA_M: f64 = 0.02;
+/// Points of [`apartment_map`].
+const MAP_POINTS: usize = 5000;
+/// Radius of the normals on the map, where points lie close, m.
+const MAP_NORMAL_RADIUS_M: f64 = 0.2;
+/// Radius of the normals on one sweep, m.
+const SWEEP_NORMAL_RADIUS_M: f64 = 0.3;
+
+/// The returns of one sweep of `beams` rays, in the sensor's frame.
+#[must_use]
+pub fn sweep(world_from_sensor: &SE2, beams: usize, rng: &mut Rng) -> PointCloud {
+    let mut lidar = Lidar::new(LidarConfig {
+        beams,
+        range_sigma_m: RANGE_SIGMA_M,
+        ..LidarConfig::default()
+    });
+    let ranges_m = lidar.sense(&World::apartment(), world_from_sensor, rng);
+    lidar.project(&ranges_m).collect()
+}
+
+/// 5,000 points of the Apartment in the world's frame, seen from 14 places, without normals.
+#[must_use]
+pub fn apartment_map() -> PointCloud {
+    let mut rng = Rng::new(5);
+    let mut points = PointCloud::new();
+    for k in 0..14 {
+        let (column, row) = (f64::from(k % 7), f64::from(k / 7));
+        let pose = SE2::new(0.9 + 1.7 * column, 2.2 + 4.6 * row, 0.3 * column);
+        points.extend_transformed(&sweep(&pose, 360, &mut rng), &pose);
+    }
+    points.iter().take(MAP_POINTS).collect()
+}
+
+/// A scan to be registered on a map.
+#[derive(Clone, Debug)]
+pub struct RegistrationSample {
+    /// The map with normals, in the world's frame.
+    pub map: PointCloud,
+    /// The scan in its sensor's frame.
+    pub scan: PointCloud,
+    /// Where the sensor stood, `world_from_scan`.
+    pub truth: SE2,
+    /// The initial guess of `world_from_scan`, 0.18 m and 0.05 rad off.
+    pub guess: SE2,
+}
+
+impl RegistrationSample {
+    /// A sweep of 720 points on [`apartment_map`].
+    #[must_use]
+    pub fn large() -> Self {
+        let mut map = apartment_map();
+        map.estimate_normals(MAP_NORMAL_RADIUS_M);
+        Self::new(map, 720, 77)
+    }
+
+    /// A sweep of 180 points on another one of 180, seen from 0.11 m and 0.05 rad beside it.
+    #[must_use]
+    pub fn small() -> Self {
+        let near = SE2::new(2.1, 1.95, 0.15);
+        let mut map = sweep(&near, 180, &mut Rng::new(79)).transformed(&near);
+        map.estimate_normals(SWEEP_NORMAL_RADIUS_M);
+        Self::new(map, 180, 78)
+    }
+
+    fn new(map: PointCloud, beams: usize, seed: u32) -> Self {
+        // From here every beam ends within range: none passes the doors of rooms A and D both.
+        let truth = SE2::new(2.2, 1.9, 0.2);
+        Self {
+            map,
+            scan: sweep(&truth, beams, &mut Rng::new(seed)),
+            truth,
+            guess: truth * SE2::new(0.15, -0.1, 0.05),
+        }
+    }
+}
+
+/// The pose graph that the canonical lap ends with, its 41 nodes put back where the wheels alone
+/// place them.
+#[must_use]
+pub fn lap_graph() -> PoseGraph {
+    let mut slam = Slam::new(SlamConfig::default());
+    slam.run();
+    let mut graph = slam.graph().clone();
+    for (node, keyframe) in slam.keyframes().iter().enumerate() {
+        // Tick 0 is the start, before anything moved.
+        let driven = keyframe.tick.checked_sub(1);
+        let tick = driven.and_then(|index| slam.drive().ticks().get(index));
+        let pose = tick.map_or(slam.config().drive.start, |tick| tick.dead_reckoning);
+        graph.set_pose(node, pose);
+    }
+    graph
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ch16_slam2d::cloud::DenseMap;
+    use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace};
+
+    #[test]
+    fn the_clouds_have_the_sizes_that_their_names_promise() {
+        let (large, small) = (RegistrationSample::large(), RegistrationSample::small());
+        assert_eq!((large.map.len(), large.scan.len()), (5000, 720));
+        assert_eq!((small.map.len(), small.scan.len()), (180, 180));
+        assert!(large.map.has_normals() && small.map.has_normals());
+    }
+
+    #[test]
+    fn both_variants_find_home_from_the_guess() {
+        // 3 cm and 1°: the noise is 2 cm a point, and the small map is sparse.
+        for sample in [RegistrationSample::large(), RegistrationSample::small()] {
+            let map = DenseMap::from_cloud(&sample.map, 0.25, usize::MAX);
+            for variant in [IcpVariant::PointToPoint, IcpVariant::PointToPlane] {
+                let config = IcpConfig {
+                    variant,
+                    tau: 0.5,
+                    ..IcpConfig::default()
+                };
+                let mut workspace = IcpWorkspace::new();
+                let found =
+                    Icp::new(&sample.scan, &map, sample.guess, &config, &mut workspace).run();
+                let error = sample.truth.between(&found.pose).log();
+                assert!(error.x.hypot(error.y) < 0.03, "{variant:?}: {error}");
+                assert!(error.z.abs() < 1_f64.to_radians(), "{variant:?}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_graph_of_the_lap_starts_where_the_wheels_end() {
+        let mut graph = lap_graph();
+        assert_eq!(graph.node_count(), 41);
+        let before = graph.chi2();
+        graph.optimize_robust(15, 1e-7, 12.0);
+        assert!(graph.chi2() < 0.1 * before, "{before} → {}", graph.chi2());
+    }
+}

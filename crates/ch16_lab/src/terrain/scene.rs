@@ -1,0 +1,195 @@
+//! The two places, their maps, and what can be changed.
+
+use pr_geom::{Rotation, SE2};
+use pr_sim::{Lidar, LidarConfig, Rng, World};
+
+use super::information::{PoseInformation, pose_information};
+use ch16_slam2d::cloud::{DenseMap, PointCloud};
+use ch16_slam2d::icp::{IcpConfig, correspondences};
+use ch16_slam2d::ndt::NdtMap;
+
+const SEED: u32 = 0x5C0;
+const BEAMS: usize = 180;
+const MAX_RANGE_M: f64 = 3.0;
+const RANGE_SIGMA_M: f64 = 0.01;
+const VOXEL_M: f64 = 0.08;
+const MAP_CELL_M: f64 = 0.3;
+const MAP_POINTS_PER_CELL: usize = 8;
+const NDT_MIN_POINTS: usize = 4;
+const NORMAL_RADIUS_M: f64 = 0.3;
+
+/// Where the sweep was taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum SceneKind {
+    /// Room A: walls on all four sides.
+    #[default]
+    Room,
+    /// The corridor: two long walls and nothing across.
+    Corridor,
+}
+
+/// What the landscapes depend on, apart from the place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TerrainSettings {
+    /// Shifts along each axis.
+    pub n: usize,
+    /// Largest shift, m: the axes run from `−span_m` to `span_m` inclusive.
+    pub span_m: f64,
+    /// Truncation of ICP's distances, m.
+    pub tau_m: f64,
+    /// The cloud is turned by this about the sensor, degrees.
+    pub heading_deg: f64,
+}
+
+impl Default for TerrainSettings {
+    fn default() -> Self {
+        Self {
+            n: 49,
+            span_m: 1.3,
+            tau_m: 0.6,
+            heading_deg: 0.0,
+        }
+    }
+}
+
+impl TerrainSettings {
+    /// The shift of column or row `index`, m.
+    #[inline]
+    #[must_use]
+    pub fn offset_m(&self, index: usize) -> f64 {
+        if self.n < 2 {
+            return 0.0;
+        }
+        -self.span_m + 2.0 * self.span_m * index as f64 / (self.n - 1) as f64
+    }
+
+    /// Column or row, in fractions of a cell, of a shift; it may lie outside.
+    #[must_use]
+    pub fn index_of(&self, offset_m: f64) -> f64 {
+        0.5 * (offset_m / self.span_m + 1.0) * self.n.saturating_sub(1) as f64
+    }
+}
+
+/// One sweep in the world's frame, as points for ICP and as Gaussians for NDT.
+#[derive(Clone, Debug)]
+pub struct TerrainScene {
+    kind: SceneKind,
+    world_from_sensor: SE2,
+    cloud: PointCloud,
+    map: DenseMap,
+    ndt: NdtMap,
+}
+
+impl TerrainScene {
+    /// The chapter's size of an NDT cell, m.
+    pub const DEFAULT_NDT_CELL_M: f64 = 0.55;
+
+    /// The chapter's sweep of a place, with NDT cells of `ndt_cell_m`.
+    ///
+    /// # Panics
+    /// If the cell size is not positive and finite.
+    #[must_use]
+    pub fn new(kind: SceneKind, ndt_cell_m: f64) -> Self {
+        Self::with_seed(kind, ndt_cell_m, SEED)
+    }
+
+    /// The same place with other range noise.
+    ///
+    /// # Panics
+    /// If the cell size is not positive and finite.
+    #[must_use]
+    pub fn with_seed(kind: SceneKind, ndt_cell_m: f64, seed: u32) -> Self {
+        let world_from_sensor = match kind {
+            SceneKind::Room => SE2::new(2.0, 1.9, 0.0),
+            SceneKind::Corridor => SE2::new(6.0, 4.42, 0.0),
+        };
+        let mut lidar = Lidar::new(LidarConfig {
+            beams: BEAMS,
+            max_range_m: MAX_RANGE_M,
+            range_sigma_m: RANGE_SIGMA_M,
+            ..LidarConfig::default()
+        });
+        let ranges_m = lidar.sense(&World::apartment(), &world_from_sensor, &mut Rng::new(seed));
+        let sweep: PointCloud = lidar.project(&ranges_m).collect();
+        let mut cloud = sweep.downsample(VOXEL_M).transformed(&world_from_sensor);
+        cloud.estimate_normals(NORMAL_RADIUS_M);
+        Self {
+            kind,
+            world_from_sensor,
+            map: DenseMap::from_cloud(&cloud, MAP_CELL_M, MAP_POINTS_PER_CELL),
+            ndt: NdtMap::build(&cloud, ndt_cell_m, NDT_MIN_POINTS),
+            cloud,
+        }
+    }
+
+    /// Builds the NDT anew with cells of `ndt_cell_m`.
+    ///
+    /// # Panics
+    /// If the cell size is not positive and finite.
+    pub fn set_ndt_cell(&mut self, ndt_cell_m: f64) {
+        self.ndt = NdtMap::build(&self.cloud, ndt_cell_m, NDT_MIN_POINTS);
+    }
+
+    /// The place.
+    #[must_use]
+    pub fn kind(&self) -> SceneKind {
+        self.kind
+    }
+
+    /// Where the sensor stood.
+    #[must_use]
+    pub fn world_from_sensor(&self) -> SE2 {
+        self.world_from_sensor
+    }
+
+    /// The points in the world's frame, with normals.
+    #[must_use]
+    pub fn cloud(&self) -> &PointCloud {
+        &self.cloud
+    }
+
+    /// The map of ICP.
+    #[must_use]
+    pub fn map(&self) -> &DenseMap {
+        &self.map
+    }
+
+    /// The map of NDT.
+    #[must_use]
+    pub fn ndt(&self) -> &NdtMap {
+        &self.ndt
+    }
+
+    /// What point-to-plane knows of the pose at the truth, for the scene's range noise.
+    ///
+    /// Only points with normals count. In the corridor all normals point across it, so nothing
+    /// is known of the direction along it.
+    #[must_use]
+    pub fn information(&self, tau_m: f64) -> PoseInformation {
+        let config = IcpConfig {
+            tau: tau_m,
+            ..IcpConfig::default()
+        };
+        let mut pairs = correspondences(&self.cloud, &self.map, SE2::identity(), &config);
+        pairs.retain(|pair| pair.normal.is_some());
+        pose_information(&pairs, RANGE_SIGMA_M)
+    }
+
+    /// The points turned about the sensor by `heading_deg`, into `xs` and `ys`.
+    pub(super) fn turned_into(&self, heading_deg: f64, xs: &mut Vec<f64>, ys: &mut Vec<f64>) {
+        xs.clear();
+        ys.clear();
+        if heading_deg == 0.0 {
+            xs.extend_from_slice(self.cloud.xs());
+            ys.extend_from_slice(self.cloud.ys());
+            return;
+        }
+        let rotation = Rotation::new(heading_deg.to_radians());
+        let (sx, sy) = (self.world_from_sensor.x(), self.world_from_sensor.y());
+        for (x, y) in self.cloud.xs().iter().zip(self.cloud.ys()) {
+            let (x, y) = rotation.rotate(x - sx, y - sy);
+            xs.push(x + sx);
+            ys.push(y + sy);
+        }
+    }
+}
