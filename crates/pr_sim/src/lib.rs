@@ -1,15 +1,17 @@
-//! The simulated Apartment: seeded noise, ray casting, LiDAR, wheel odometry and the way-point
-//! driver (Chapters 4 and 9).
+//! Simulated worlds: seeded noise, ray casting, LiDAR, wheel odometry and the way-point driver
+//! (Chapters 4 and 9).
 //!
 //! Everything here is a function of its arguments and of one seeded [`Rng`]: the same seed gives
 //! the same bits natively and in WebAssembly. Units are metres, radians and seconds.
 
+pub mod course;
 pub mod driver;
 pub mod lidar;
 pub mod motion;
 pub mod rng;
 pub mod world;
 
+pub use course::{Course, CourseError};
 pub use driver::{DriveStep, DriverConfig, WaypointDriver};
 pub use lidar::{Lidar, LidarConfig};
 pub use motion::{OdometryNoise, VelocityCommand};

@@ -1,4 +1,4 @@
-//! The Apartment: walls as line segments, and the ray cast against them.
+//! Walls as line segments, the Apartment among them, and the ray cast against them.
 
 use pr_geom::{Vector2, math};
 
@@ -18,14 +18,14 @@ pub struct Wall {
 }
 
 impl Wall {
-    fn horizontal(y: f64, x_from: f64, x_to: f64) -> Self {
+    pub(crate) fn horizontal(y: f64, x_from: f64, x_to: f64) -> Self {
         Self {
             start: Vector2::new(x_from, y),
             end: Vector2::new(x_to, y),
         }
     }
 
-    fn vertical(x: f64, y_from: f64, y_to: f64) -> Self {
+    pub(crate) fn vertical(x: f64, y_from: f64, y_to: f64) -> Self {
         Self {
             start: Vector2::new(x, y_from),
             end: Vector2::new(x, y_to),
@@ -133,7 +133,7 @@ impl World {
     }
 }
 
-fn rectangle(x_from: f64, y_from: f64, x_to: f64, y_to: f64) -> Bounds {
+pub(crate) fn rectangle(x_from: f64, y_from: f64, x_to: f64, y_to: f64) -> Bounds {
     Bounds {
         min: Vector2::new(x_from, y_from),
         max: Vector2::new(x_to, y_to),
@@ -209,7 +209,7 @@ impl Viewpoint {
 }
 
 /// Distance from the origin to the segment that starts at `(x, y)` and runs along the edge.
-fn distance_to_segment(x: f64, y: f64, edge_x: f64, edge_y: f64) -> f64 {
+pub(crate) fn distance_to_segment(x: f64, y: f64, edge_x: f64, edge_y: f64) -> f64 {
     let length_squared = edge_x * edge_x + edge_y * edge_y;
     let along = if length_squared > 0.0 {
         (-(x * edge_x + y * edge_y) / length_squared).clamp(0.0, 1.0)

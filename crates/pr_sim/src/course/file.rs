@@ -1,0 +1,104 @@
+//! Courses as JSON: `docs/worlds.md` shows one and says what its fields are.
+
+use pr_geom::{SE2, Vector2};
+use serde::Deserialize;
+use serde_json::error::Category;
+
+use super::{Course, CourseError};
+use crate::world::{Bounds, Wall, World};
+
+/// What editors of Windows put before a text.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CourseFile {
+    walls_m: Vec<[f64; 4]>,
+    start: StartPose,
+    way_points_m: Vec<[f64; 2]>,
+    turn_at: Option<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StartPose {
+    x_m: f64,
+    y_m: f64,
+    heading_deg: f64,
+}
+
+impl Course {
+    /// Reads a course from JSON; the extent of its world is that of its walls.
+    ///
+    /// # Errors
+    /// Where the text is no JSON or does not describe a course that can be driven.
+    pub fn from_json(text: &[u8]) -> Result<Self, CourseError> {
+        let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+        let file: CourseFile = serde_json::from_slice(text).map_err(|error| refusal(&error))?;
+        let turn = match file.turn_at {
+            Some(0) => {
+                return Err(CourseError::NoSuchTurn {
+                    turn: 0,
+                    count: file.way_points_m.len(),
+                });
+            }
+            number => number.map(|number| number - 1),
+        };
+        if !(-360.0..=360.0).contains(&file.start.heading_deg) {
+            return Err(CourseError::NoHeading);
+        }
+        let walls: Vec<Wall> = file
+            .walls_m
+            .iter()
+            .map(|&[x_from, y_from, x_to, y_to]| Wall {
+                start: Vector2::new(x_from, y_from),
+                end: Vector2::new(x_to, y_to),
+            })
+            .collect();
+        let start = SE2::new(
+            file.start.x_m,
+            file.start.y_m,
+            file.start.heading_deg.to_radians(),
+        );
+        let way_points = file.way_points_m.iter().map(|&[x, y]| Vector2::new(x, y));
+        Self::new(
+            World::new(extent(&walls), walls),
+            start,
+            way_points.collect(),
+            turn,
+        )
+    }
+}
+
+fn extent(walls: &[Wall]) -> Bounds {
+    let ends = || walls.iter().flat_map(|wall| [wall.start, wall.end]);
+    let lowest = |axis: usize| ends().map(|end| end[axis]).fold(f64::INFINITY, f64::min);
+    let highest = |axis: usize| {
+        ends()
+            .map(|end| end[axis])
+            .fold(f64::NEG_INFINITY, f64::max)
+    };
+    Bounds {
+        min: Vector2::new(lowest(0), lowest(1)),
+        max: Vector2::new(highest(0), highest(1)),
+    }
+}
+
+fn refusal(error: &serde_json::Error) -> CourseError {
+    let (line, column) = (error.line(), error.column());
+    let words = error.to_string();
+    let place = format!(" at line {line} column {column}");
+    let problem = words.strip_suffix(&place).unwrap_or(&words).to_owned();
+    match error.classify() {
+        Category::Data => CourseError::NotACourse {
+            line,
+            column,
+            problem,
+        },
+        Category::Io | Category::Syntax | Category::Eof => CourseError::NotJson {
+            line,
+            column,
+            problem,
+        },
+    }
+}
