@@ -5,9 +5,7 @@ use std::fs;
 use std::time::{Duration, Instant};
 
 use crate::run::Failure;
-
-/// Linux reports times of processes in hundredths of a second, on every machine.
-const TICKS_PER_SECOND: f64 = 100.0;
+use crate::unwaited::{TICKS_PER_SECOND, Watch};
 
 /// The steps so far, in the order in which they ran.
 #[derive(Debug, Default)]
@@ -41,6 +39,24 @@ impl Ledger {
             started.elapsed(),
             cpu_before_s.zip(cpu_after_s),
         ));
+        done
+    }
+
+    /// As [`Ledger::time`], for work with Chromium, which leaves processes that nobody waits for.
+    ///
+    /// # Errors
+    /// Those of the work.
+    pub fn time_with_chromium<T>(
+        &mut self,
+        what: &str,
+        work: impl FnOnce() -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        let watch = Watch::begin();
+        let done = self.time(what, work);
+        let unwaited_s = watch.end();
+        if let Some(Row { cpu_s, .. }) = self.rows.last_mut() {
+            *cpu_s = cpu_s.map(|waited_s| waited_s + unwaited_s);
+        }
         done
     }
 }

@@ -17,6 +17,7 @@ mod site;
 mod sizes;
 mod suite;
 mod tools;
+mod unwaited;
 
 use std::process::ExitCode;
 

@@ -74,7 +74,7 @@ fn run(
         Piece::Node => wasm::node(skipped, ledger),
         Piece::Browser => {
             let chromium = chromium.ok_or_else(|| Failure::new("no Chromium was looked for"))?;
-            ledger.time("browser tests", || {
+            ledger.time_with_chromium("browser tests", || {
                 browser::run(chromium, &[], Some(skipped))
             })
         }
