@@ -8,6 +8,7 @@ mod ndt;
 mod normals;
 mod optimum;
 mod page;
+mod reached;
 mod rng;
 mod scan;
 mod terrain;

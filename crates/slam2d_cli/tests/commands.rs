@@ -1,13 +1,11 @@
 //! The command itself, run as a reader runs it, against the reference files.
 
-mod support;
-
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use crate::support::{assert_refused, json, slam2d};
 use serde_json::Value;
 use slam2d_tests::{assert_close, reference};
-use support::{assert_refused, json, slam2d};
 
 /// Asserts that `actual` has every field of `expected`, numbers within `tolerance`.
 fn assert_covers(path: &str, actual: &Value, expected: &Value, tolerance: f64) {

@@ -1,14 +1,12 @@
 //! `slam2d optimize`, run as a reader runs it.
 
-mod support;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::support::{assert_refused, json, slam2d};
 use pr_optim::g2o::G2oFile;
 use serde_json::Value;
 use slam2d_tests::skip::skip;
-use support::{assert_refused, json, slam2d};
 use tempfile::TempDir;
 
 const SQUARE: &str = "\

@@ -1,12 +1,10 @@
 //! The shell driven as a reader drives it, through egui's accessibility tree and its pointer.
 
-mod fake;
-
+use crate::fake::Fake;
 use egui::accesskit::Role;
 use egui::{Event, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use fake::Fake;
 use kit::palette::Theme;
 use kit::shell::{Change, Shell};
 use kit::view::DefaultView;

@@ -3,9 +3,7 @@
 //! Figures: the reference system's basin runs (`tests/reference/basin.json`), which the core is
 //! tested against in full; here a few of them show that the widget asks the core the right thing.
 
-mod common;
-
-use common::{class_at, fact, fill, panel_of, with};
+use crate::common::{class_at, fact, fill, panel_of, with};
 use kit::model::{Activity, Model, Motion};
 use kit::scene::{Cell, Layer};
 use w16_1_basin_explorer::model::{BasinExplorer, panel};

@@ -1,8 +1,6 @@
 //! What the widget says holds: its verdicts, its presets' promises, its words to notice.
 
-mod common;
-
-use common::{class_at, fact, fill, with};
+use crate::common::{class_at, fact, fill, with};
 use kit::model::{Activity, Model, Standing};
 use kit::scene::Cell;
 use w16_1_basin_explorer::model::{BasinExplorer, panel};

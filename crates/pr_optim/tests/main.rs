@@ -1,0 +1,7 @@
+//! The solver against other ways to the same answer: one binary, one module for each.
+
+mod block_against_faer;
+mod damped_steps;
+mod marginals_against_dense;
+mod properties;
+mod session;

@@ -1,0 +1,5 @@
+//! The command as a reader calls it: one binary, one module for each kind of call.
+
+mod commands;
+mod optimize;
+mod support;

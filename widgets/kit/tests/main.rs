@@ -1,0 +1,6 @@
+//! What the widgets share, on a widget made for the tests: one binary, one module for each part.
+
+mod draw;
+mod fake;
+mod palette;
+mod shell;

@@ -1,0 +1,6 @@
+//! The widget from outside: its model, its words, its view. One binary, one module for each.
+
+mod common;
+mod model;
+mod view;
+mod words;
