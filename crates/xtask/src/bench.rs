@@ -1,5 +1,5 @@
 //! `cargo xtask bench`: the same workloads natively and as wasm in Chromium, timed and counted, in
-//! one table; registration of files and the sweep over many seeds beside it.
+//! one table; registration of files, the sweep over many seeds and the first frames beside it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,6 +7,7 @@ use std::process::Command;
 
 use crate::chromium;
 use crate::run::{Failure, cargo, program, root, show, step};
+use crate::site::{self, Speed};
 use crate::tools;
 
 /// Where the tables stand.
@@ -47,7 +48,7 @@ pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
             .args(["-c", "exec node tests/bench/browser.mjs \"$0\" >\"$1\""])
             .arg(&web)
             .arg(&figures.wasm)
-            .env("CHROMIUM", chromium),
+            .env("CHROMIUM", &chromium),
     )?;
     step(
         "Counting instructions, where valgrind is installed",
@@ -76,6 +77,13 @@ pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
             .arg("sweep")
             .arg(binary("slam2d"))
             .arg(PAGE),
+    )?;
+    site::build(Speed::SmallAndFast)?;
+    show(
+        "The first frame of each widget",
+        program("node")
+            .args(["tests/bench/first_frame.mjs", PAGE])
+            .env("CHROMIUM", chromium),
     )
 }
 

@@ -1,0 +1,113 @@
+// Measures the first frame of each widget in Chromium, beside a bare canvas with the same WebGL start:
+// `node tests/bench/first_frame.mjs [PAGE.md] [ROUNDS]`. Prints a table, and writes it into the page.
+
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { cpus, platform } from 'node:os';
+import { writeMarked } from '../../web/marked.mjs';
+import { bare, launch, schema, serve } from '../browser/harness.mjs';
+
+/** From the navigation to the first frame of a widget: the project's own limit. */
+const LIMIT_MS = 1500;
+
+const [page, rounds = '7'] = process.argv.slice(2);
+
+/** What no widget can be faster than: a context, one program, one triangle, in the next frame. */
+const BARE_CANVAS = `<!doctype html><html lang="en"><title>Bare</title><link rel="icon" href="data:,">
+<canvas width="1098" height="700"></canvas><script type="module">
+  const gl = document.querySelector('canvas').getContext('webgl2');
+  const program = gl.createProgram();
+  for (const [type, source] of [
+    [gl.VERTEX_SHADER, 'attribute vec2 at; void main() { gl_Position = vec4(at, 0.0, 1.0); }'],
+    [gl.FRAGMENT_SHADER, 'void main() { gl_FragColor = vec4(0.2, 0.4, 0.8, 1.0); }'],
+  ]) {
+    const shader = gl.createShader(type);
+    gl.shaderSource(shader, source);
+    gl.compileShader(shader);
+    gl.attachShader(program, shader);
+  }
+  gl.linkProgram(program);
+  gl.useProgram(program);
+  gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+  gl.bufferData(gl.ARRAY_BUFFER, new Float32Array([-1, -1, 3, -1, -1, 3]), gl.STATIC_DRAW);
+  const at = gl.getAttribLocation(program, 'at');
+  gl.enableVertexAttribArray(at);
+  gl.vertexAttribPointer(at, 2, gl.FLOAT, false, 0, 0);
+  requestAnimationFrame(() => {
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    window.readyMs = performance.now();
+  });
+</script></html>`;
+const WATCH = '<script>document.addEventListener("slam-ready", () => (window.readyMs ??= performance.now()));</script>';
+
+const pages = { '/bare.html': BARE_CANVAS };
+for (const { id } of schema) pages[`/${id}.html`] = bare(`<slam-widget name="${id}"></slam-widget>`, WATCH);
+
+const times = await measure(Object.keys(pages), Number(rounds));
+const text = table(times);
+console.log(text);
+if (page !== undefined) await writeMarked(page, 'first frame', text);
+
+/** Milliseconds from the navigation to the first frame, of each page by turns. */
+async function measure(paths, count) {
+  const server = await serve({ pages });
+  const browser = await launch();
+  const found = new Map(paths.map((path) => [path, []]));
+  try {
+    const context = await browser.newContext({ viewport: { width: 1100, height: 900 } });
+    const tab = await context.newPage();
+    const devTools = await context.newCDPSession(tab);
+    await devTools.send('Network.enable');
+    await devTools.send('Network.setCacheDisabled', { cacheDisabled: true });
+    // A window that has just opened still loads the browser's own parts: one round is for the window.
+    for (let round = 0; round <= count; round += 1) {
+      for (const path of paths) {
+        await tab.goto('about:blank');
+        await tab.goto(server.url + path);
+        await tab.waitForFunction(() => window.readyMs !== undefined, undefined, { timeout: 0 });
+        if (round > 0) found.get(path).push(await tab.evaluate(() => readyMs));
+      }
+    }
+  } finally {
+    await browser.close();
+    await server.close();
+  }
+  return found;
+}
+
+function table(found) {
+  const reference = found.get('/bare.html');
+  const rows = [...found].map(([path, ms]) => {
+    const isBare = path === '/bare.html';
+    const what = isBare ? 'a bare canvas: one program, one triangle' : path.slice(1, -'.html'.length);
+    // Round by round: what held up the one held up the other as well.
+    const over = median(ms.map((time, round) => time - reference[round]));
+    const cells = [what, ...[Math.min(...ms), median(ms)].map(told), isBare ? '–' : told(over), isBare ? '–' : told(LIMIT_MS)];
+    return `| ${cells.join(' | ')} |`;
+  });
+  const browser = execFileSync(process.env.CHROMIUM ?? '/usr/bin/chromium', ['--version'], { encoding: 'utf8' });
+  return [
+    `Measured on ${processor()}, ${cpus().length} cores, ${platform()}, ${browser.trim()}, WebGL by software, ${rounds} rounds.`,
+    '',
+    '| page | fastest | median | over the bare canvas | limit |',
+    '|---|--:|--:|--:|--:|',
+    ...rows,
+  ].join('\n');
+}
+
+function median(values) {
+  const sorted = [...values].sort((a, b) => a - b);
+  return sorted[Math.floor(sorted.length / 2)];
+}
+
+function told(ms) {
+  return `${Math.round(ms)} ms`;
+}
+
+function processor() {
+  try {
+    return readFileSync('/proc/cpuinfo', 'utf8').match(/^model name\s*: (.*)$/m)?.[1] ?? process.arch;
+  } catch {
+    return process.arch;
+  }
+}
