@@ -7,7 +7,7 @@ import { Controls } from './controls';
 import { listen, reveal, upgradeProperties } from './dom';
 import { takeAwayBar } from './export';
 import type { CsvFile, Outcome, Timeline } from './instance';
-import { Life, type LifeHost } from './life';
+import { Life, TakenAwayError, type LifeHost } from './life';
 import { LoadError } from './module';
 import { readQuery, withState } from './links';
 import { lookBar, type Way } from './look';
@@ -18,7 +18,7 @@ import { Pictures } from './pictures';
 import { findParam, findWidget, widgets, type WidgetSpec } from './schema';
 import { State } from './state';
 import { themeOf, watchTheme, type Theme } from './theme';
-import { defaultText, type Value } from './values';
+import { defaultText, shorten, type Value } from './values';
 import { unwatchVisibility, watchVisibility } from './visibility';
 
 const reducedMotion = globalThis.matchMedia?.('(prefers-reduced-motion: reduce)');
@@ -113,19 +113,23 @@ export class SlamWidget extends HTMLElement {
 
   /** One parameter; undefined where this widget has none of that name. */
   get(id: string): Value | undefined {
-    return this.#state?.value(id);
+    return this.#state?.value(String(id));
   }
 
   /** Sets one parameter; throws a RangeError that names what would be right. */
   set(id: string, value: Value): void {
-    const problem = this.#set(id, value);
+    const problem = this.#set(String(id), value);
     if (problem !== undefined) throw new RangeError(problem);
   }
 
-  /** Presses a button or a preset by its name. */
+  /** Presses a button or a preset by its name; rejects with a RangeError that names those there are. */
   async press(id: string): Promise<void> {
-    await this.#ensureInstance();
-    this.#life.ask((widget) => widget.press(id));
+    if (!this.#isSetUp) this.#setUp();
+    const button = String(id);
+    const problem = this.#state?.buttonProblem(button);
+    if (problem !== undefined) throw new RangeError(problem);
+    await this.#life.ensureInstance();
+    this.#life.ask((widget) => widget.press(button));
     this.#sync();
     this.#controls?.showTimeline(this.timeline);
     this.#life.wake();
@@ -191,19 +195,19 @@ export class SlamWidget extends HTMLElement {
 
   /** Where a control lies on the canvas: left, top, width, height; null while it rests. */
   controlBox(id: string): [number, number, number, number] | null {
-    const box = this.#life.ask((widget) => widget.controlBox(id));
+    const box = this.#life.ask((widget) => widget.controlBox(String(id)));
     return box === undefined ? null : ([...box] as [number, number, number, number]);
   }
 
   /** Where a point of a panel lies on the canvas, in CSS pixels; null where it is not shown. */
   panelToScreen(panel: string, x: number, y: number): [number, number] | null {
-    const at = this.#life.ask((widget) => widget.panelToScreen(panel, x, y));
+    const at = this.#life.ask((widget) => widget.panelToScreen(String(panel), x, y));
     return at === undefined ? null : [at[0] ?? 0, at[1] ?? 0];
   }
 
   /** Zooms every map, or moves the part that is seen. */
   look(way: Way): void {
-    this.#life.ask((widget) => widget.look(way));
+    this.#life.ask((widget) => widget.look(shorten(String(way))));
     this.#life.wake();
   }
 
@@ -240,7 +244,7 @@ export class SlamWidget extends HTMLElement {
     }
     this.#controls = new Controls(spec, {
       set: (id, text) => this.#tryToSet(id, text),
-      press: (id) => void this.press(id).catch((error: unknown) => this.#life.fail(error)),
+      press: (id) => void this.press(id).catch((error: unknown) => this.#pressFailed(error)),
       focus: (id) => this.#showFocus(id),
     });
     const look = lookBar((way) => this.look(way));
@@ -254,6 +258,11 @@ export class SlamWidget extends HTMLElement {
     }
     if (this.hasAttribute('linked')) this.#readAddress(spec);
     this.#controls.show(this.#state?.texts ?? []);
+  }
+
+  /** A reader who pressed a button of an element that then left its page is not there to be told. */
+  #pressFailed(error: unknown): void {
+    if (!(error instanceof TakenAwayError)) this.#life.fail(error);
   }
 
   #readAddress(spec: WidgetSpec): void {
@@ -275,6 +284,7 @@ export class SlamWidget extends HTMLElement {
   #lifeHost(): LifeHost {
     return {
       widget: () => this.#state?.spec,
+      isHere: () => this.isConnected,
       prepare: (widget) => {
         const state = this.#state;
         for (const [id, text] of state?.texts ?? []) widget.set(id, text);

@@ -16,6 +16,11 @@ import { shorten, type Value } from './values';
 
 const VERSION = 1;
 
+/** So many values of one message are refused by name; of the others, their number is told. */
+const MOST_REFUSALS = 8;
+/** What comes back with an answer is the sender's own, but not at any length. */
+const LONGEST_ID = 200;
+
 type Message = Record<string, unknown>;
 
 const [first] = schemas as WidgetSpec[];
@@ -90,7 +95,7 @@ function answer(element: SlamWidget, message: Message): void {
       if (typeof values !== 'object' || values === null) {
         throw new TypeError('set takes `values`, an object of parameters');
       }
-      for (const [id, value] of Object.entries(values)) tryToSet(element, id, value as Value);
+      setAll(element, values as Record<string, Value>);
       break;
     }
     case 'press': {
@@ -102,7 +107,7 @@ function answer(element: SlamWidget, message: Message): void {
     case 'get':
       post({
         type: 'state',
-        id: message['id'] ?? null,
+        id: idOf(message),
         name: element.getAttribute('name'),
         value: element.value,
         outcome: element.outcome ?? null,
@@ -116,13 +121,26 @@ function answer(element: SlamWidget, message: Message): void {
   }
 }
 
+/** The name that the sender gave its question. */
+function idOf({ id }: Message): string | number | null {
+  if (id === undefined || id === null) return null;
+  if (typeof id === 'number' || (typeof id === 'string' && id.length <= LONGEST_ID)) return id;
+  throw new RangeError(`get takes as \`id\` a number, or a text of at most ${LONGEST_ID} characters`);
+}
+
 /** What does not fit keeps nothing from what does. */
-function tryToSet(element: SlamWidget, id: string, value: Value): void {
-  try {
-    element.set(id, value);
-  } catch (error) {
-    refuse(error as Error);
+function setAll(element: SlamWidget, values: Record<string, Value>): void {
+  let refused = 0;
+  for (const [id, value] of Object.entries(values)) {
+    try {
+      element.set(id, value);
+    } catch (error) {
+      refused += 1;
+      if (refused <= MOST_REFUSALS) refuse(error as Error);
+    }
   }
+  const more = refused - MOST_REFUSALS;
+  if (more > 0) refuse(new RangeError(`${more} more values do not fit, either`));
 }
 
 /** The height of all that the frame shows. */

@@ -53,12 +53,12 @@ export class Instance {
     const glue = createGlue(frames);
     try {
       await glue({ module_or_path: module });
+      return new Instance(new glue.Widget(name), frames);
     } catch {
       // A whole module, but not the one that this script was built with.
       forgetModule();
       throw new LoadError('the program does not fit the rest of the page; one of them is an old copy');
     }
-    return new Instance(new glue.Widget(name), frames);
   }
 
   /** Calls into the widget; a panic comes out as a CrashError. */

@@ -15,9 +15,18 @@ const MAX_RUNNING = 8;
 
 const running = new Set<Life>();
 
+/** The element left its page, and nobody waits for its widget any more. */
+export class TakenAwayError extends LoadError {
+  constructor() {
+    super('the widget was taken away while it loaded');
+  }
+}
+
 export interface LifeHost {
   /** The widget to draw; undefined where the page names none. */
   widget(): { id: string; title: string } | undefined;
+  /** Whether the element stands on a page. */
+  isHere(): boolean;
   /** Gives a fresh instance everything that the host keeps. */
   prepare(widget: Widget): void;
   /** The first frame stands on the canvas, so many milliseconds after its start. */
@@ -179,7 +188,9 @@ export class Life implements Visibility {
     const instance = await Instance.create(name, (share) => (progress.value = share));
     if (generation !== this.#generation) {
       instance.dispose();
-      throw new LoadError('the widget was taken away while it loaded');
+      // It has moved within its page, or rests: whoever asked still wants an instance.
+      if (this.#host.isHere()) return this.ensureInstance();
+      throw new TakenAwayError();
     }
     this.#instance = instance;
     instance.use((widget) => this.#host.prepare(widget));

@@ -5,6 +5,9 @@ declare const WASM_FILE: string;
 
 export class LoadError extends Error {}
 
+/** So long may a server say nothing, before or between two parts of the program. */
+const SILENCE_MS = 10_000;
+
 type Listener = (share: number) => void;
 
 let compiled: Promise<WebAssembly.Module> | undefined;
@@ -36,16 +39,27 @@ async function compile(): Promise<WebAssembly.Module> {
     throw new LoadError('this browser has no WebAssembly');
   }
   const url = new URL(WASM_FILE, import.meta.url);
+  const silence = new Silence();
+  try {
+    return await fetchAndCompile(url, silence);
+  } catch (error) {
+    throw silence.isOver ? new LoadError('the server of the program does not answer') : error;
+  } finally {
+    silence.end();
+  }
+}
+
+async function fetchAndCompile(url: URL, silence: Silence): Promise<WebAssembly.Module> {
   let response: Response;
   try {
-    response = await fetch(url, { cache: isRetry ? 'reload' : 'default' });
+    response = await fetch(url, { cache: isRetry ? 'reload' : 'default', signal: silence.signal });
   } catch {
     throw new LoadError('the program could not be fetched');
   }
   if (!response.ok || response.body === null) {
     throw new LoadError(`the program could not be fetched (${response.status})`);
   }
-  const counted = new Response(count(response.body, expectedLength(response)), {
+  const counted = new Response(count(response.body, expectedLength(response), silence), {
     // Whatever type the server gave: what is no wasm is refused by its first bytes.
     headers: { 'Content-Type': 'application/wasm' },
   });
@@ -65,16 +79,52 @@ function expectedLength(response: Response): number {
   return encoded ? 0 : Number(response.headers.get('Content-Length') ?? 0);
 }
 
-function count(body: ReadableStream<Uint8Array>, expected: number): ReadableStream<Uint8Array> {
+/** Gives up a fetch once nothing has been heard of it for too long. */
+class Silence {
+  readonly #giveUp = new AbortController();
+  #timer: ReturnType<typeof setTimeout> | undefined;
+
+  constructor() {
+    this.heard();
+  }
+
+  get signal(): AbortSignal {
+    return this.#giveUp.signal;
+  }
+
+  get isOver(): boolean {
+    return this.signal.aborted;
+  }
+
+  /** Something has arrived. */
+  heard(): void {
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => this.#giveUp.abort(), SILENCE_MS);
+  }
+
+  /** Nothing more is to arrive. */
+  end(): void {
+    clearTimeout(this.#timer);
+  }
+}
+
+function count(
+  body: ReadableStream<Uint8Array>,
+  expected: number,
+  silence: Silence,
+): ReadableStream<Uint8Array> {
   let arrived = 0;
   return body.pipeThrough(
     new TransformStream<Uint8Array, Uint8Array>({
       transform(chunk, controller) {
+        silence.heard();
         arrived += chunk.byteLength;
         share = expected > 0 ? Math.min(arrived / expected, 1) : arrived / (arrived + 1e6);
         for (const listener of listeners) listener(share);
         controller.enqueue(chunk);
       },
+      // What is whole may take its time to compile.
+      flush: () => silence.end(),
     }),
   );
 }

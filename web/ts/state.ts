@@ -2,7 +2,7 @@
 
 import { writeQuery } from './links';
 import { findParam, type WidgetSpec } from './schema';
-import { defaultText, parseValue, toLabel, toValue, type Parsed, type Value } from './values';
+import { defaultText, parseValue, shorten, toLabel, toValue, type Parsed, type Value } from './values';
 
 export class State {
   readonly spec: WidgetSpec;
@@ -49,8 +49,15 @@ export class State {
     const spec = findParam(this.spec, id);
     if (spec !== undefined) return parseValue(spec, given);
     const known = this.spec.params.map((param) => param.id).join(', ');
-    const problem = `${this.spec.id} has no parameter \`${id.slice(0, 60)}\`; it has ${known}`;
+    const problem = `${this.spec.id} has no parameter \`${shorten(id)}\`; it has ${known}`;
     return { ok: false, problem };
+  }
+
+  /** What is wrong with the name of a button or a preset, where there is none of that name. */
+  buttonProblem(id: string): string | undefined {
+    const known = [...this.spec.presets, ...this.spec.buttons].map((button) => button.id);
+    if (known.includes(id)) return undefined;
+    return `${this.spec.id} has no button \`${shorten(id)}\`; it has ${known.join(', ')}`;
   }
 
   /** Keeps a text that was checked. */
