@@ -1,28 +1,14 @@
 // For everyone: the native controls beside the canvas, by keyboard alone and for a screen reader.
 
 import assert from 'node:assert/strict';
-import { after, before, describe, it } from 'node:test';
+import { before, beforeEach, describe, it } from 'node:test';
 import { violations } from './axe.mjs';
 import * as h from './harness.mjs';
 import { canvasBox } from './spots.mjs';
 
-let browser;
-before(async () => (browser = await h.launch()));
-after(() => browser.close());
+const visit = h.visitor();
 
-async function on(name, test, options) {
-  const body = `<main><h1>A page</h1><slam-widget name="${name}"></slam-widget></main>`;
-  const server = await h.serve({ pages: { '/t.html': h.bare(body) } });
-  const tab = await h.open(browser, `${server.url}/t.html`, options);
-  try {
-    await h.ready(tab);
-    await test(tab);
-    assert.deepEqual(tab.troubles, []);
-  } finally {
-    await tab.context().close();
-    await server.close();
-  }
-}
+const body = (name) => `<main><h1 tabindex="-1">A page</h1><slam-widget name="${name}"></slam-widget></main>`;
 
 /** Types over what stands in the field that has the focus. */
 async function type(tab, text) {
@@ -58,177 +44,185 @@ function ringInSight(tab, control) {
 
 for (const widget of h.schema) {
   describe(widget.id, () => {
-    it('gives every control to the keyboard, in reading order and in sight', async () => {
-      await on(widget.id, async (tab) => {
-        const stops = [];
-        for (let presses = 0; presses < 150; presses += 1) {
-          await tab.keyboard.press('Tab');
-          const stop = await focused(tab);
-          if (stop === null) break;
-          assert.ok(stop.seen, `${JSON.stringify(stop)} is out of sight`);
-          if (stop.control !== null) assert.ok(await ringInSight(tab, stop.control), `the ring of ${stop.control} is out of sight`);
-          stops.push(stop.control);
-        }
-        const order = [...new Set(stops.filter((control) => control !== null))];
-        const ids = (list) => list.map((item) => item.id);
-        const expected = [...ids(widget.presets), ...ids(widget.params), ...ids(widget.buttons)];
-        assert.deepEqual(order, expected);
+    const page = visit.once(body(widget.id));
+    before(() => h.ready(page.tab));
+    beforeEach(() => page.tab.evaluate(async () => {
+      await document.querySelector('slam-widget').press('defaults');
+      document.querySelector('h1').focus();
+    }));
+
+    it('says outcomes in words once they settle, and sums the picture up', async () => {
+      const { tab } = page;
+      const live = tab.locator('slam-widget [aria-live="polite"]');
+      assert.equal(await live.textContent(), '');
+      const slider = widget.params.find((param) => param.kind === 'slider');
+      await tab.evaluate(([id, to]) => document.querySelector('slam-widget').set(id, to), [slider.id, slider.max]);
+      await tab.waitForFunction(() => {
+        const widget = document.querySelector('slam-widget');
+        const said = widget.shadowRoot.querySelector('[aria-live="polite"]').textContent;
+        return said.length > 15 && said === widget.outcome.sentence;
       });
+      const [summary, written] = await tab.evaluate(() => {
+        const widget = document.querySelector('slam-widget');
+        return [widget.summary, widget.shadowRoot.querySelector('.summary').textContent];
+      });
+      assert.ok(summary.length > 40);
+      assert.equal(written, summary);
+    });
+
+    it('gives every control to the keyboard, in reading order and in sight', async () => {
+      const { tab } = page;
+      const stops = [];
+      for (let presses = 0; presses < 150; presses += 1) {
+        await tab.keyboard.press('Tab');
+        const stop = await focused(tab);
+        if (stop === null) break;
+        assert.ok(stop.seen, `${JSON.stringify(stop)} is out of sight`);
+        if (stop.control !== null) assert.ok(await ringInSight(tab, stop.control), `the ring of ${stop.control} is out of sight`);
+        stops.push(stop.control);
+      }
+      const order = [...new Set(stops.filter((control) => control !== null))];
+      const ids = (list) => list.map((item) => item.id);
+      const expected = [...ids(widget.presets), ...ids(widget.params), ...ids(widget.buttons)];
+      assert.deepEqual(order, expected);
     });
 
     it('changes every parameter by keys alone, with fine steps under Shift', async () => {
-      await on(widget.id, async (tab) => {
-        for (const param of widget.params) {
-          // The extremes of other parameters may leave a run without a single step.
-          await tab.evaluate(() => document.querySelector('slam-widget').press('defaults'));
-          const control = tab.locator(`slam-widget #control-${param.id}`);
-          await control.focus();
-          const before = await value(tab, param.id);
-          if (param.kind === 'switch') {
-            await tab.keyboard.press('Space');
-            assert.equal(await value(tab, param.id), !before, param.id);
-          } else if (param.kind === 'choice') {
-            const now = param.options.findIndex((option) => option.id === before);
-            const isLast = now === param.options.length - 1;
-            await tab.keyboard.press(isLast ? 'ArrowUp' : 'ArrowDown');
-            assert.equal(await value(tab, param.id), param.options[isLast ? now - 1 : now + 1].id);
-          } else if (param.kind === 'seed') {
-            await type(tab, '11');
-            assert.equal(await value(tab, param.id), 11);
-          } else {
-            await tab.keyboard.press('Home');
-            assert.equal(await value(tab, param.id), param.min, `${param.id} at its start`);
-            await tab.keyboard.press('ArrowRight');
-            const stepped = await value(tab, param.id);
-            assert.ok(Math.abs(stepped - param.min - param.step) < 1e-9, `${param.id}: ${stepped}`);
-            if (param.kind === 'slider') {
-              await tab.keyboard.press('Shift+ArrowRight');
-              const fine = (await value(tab, param.id)) - stepped;
-              assert.ok(Math.abs(fine - param.step / 10) < 1e-9, `${param.id}: fine step ${fine}`);
-            }
-            // The number field is the next stop.
-            await tab.keyboard.press('Tab');
-            const typed = param.min + 2 * param.step;
-            await type(tab, String(Number(typed.toPrecision(10))));
-            assert.ok(Math.abs((await value(tab, param.id)) - typed) < 1e-9, `${param.id} typed`);
+      const { tab } = page;
+      for (const param of widget.params) {
+        // The extremes of other parameters may leave a run without a single step.
+        await tab.evaluate(() => document.querySelector('slam-widget').press('defaults'));
+        const control = tab.locator(`slam-widget #control-${param.id}`);
+        await control.focus();
+        const before = await value(tab, param.id);
+        if (param.kind === 'switch') {
+          await tab.keyboard.press('Space');
+          assert.equal(await value(tab, param.id), !before, param.id);
+        } else if (param.kind === 'choice') {
+          const now = param.options.findIndex((option) => option.id === before);
+          const isLast = now === param.options.length - 1;
+          await tab.keyboard.press(isLast ? 'ArrowUp' : 'ArrowDown');
+          assert.equal(await value(tab, param.id), param.options[isLast ? now - 1 : now + 1].id);
+        } else if (param.kind === 'seed') {
+          await type(tab, '11');
+          assert.equal(await value(tab, param.id), 11);
+        } else {
+          await tab.keyboard.press('Home');
+          assert.equal(await value(tab, param.id), param.min, `${param.id} at its start`);
+          await tab.keyboard.press('ArrowRight');
+          const stepped = await value(tab, param.id);
+          assert.ok(Math.abs(stepped - param.min - param.step) < 1e-9, `${param.id}: ${stepped}`);
+          if (param.kind === 'slider') {
+            await tab.keyboard.press('Shift+ArrowRight');
+            const fine = (await value(tab, param.id)) - stepped;
+            assert.ok(Math.abs(fine - param.step / 10) < 1e-9, `${param.id}: fine step ${fine}`);
           }
+          // The number field is the next stop.
+          await tab.keyboard.press('Tab');
+          const typed = param.min + 2 * param.step;
+          await type(tab, String(Number(typed.toPrecision(10))));
+          assert.ok(Math.abs((await value(tab, param.id)) - typed) < 1e-9, `${param.id} typed`);
         }
-      });
-    });
-
-    it('presses every button and preset by keys', async () => {
-      await on(widget.id, async (tab) => {
-        for (const button of [...widget.presets, ...widget.buttons]) {
-          // What a press does is told by a widget that is not drawn, and so does not play on.
-          const expected = await tab.evaluate(async (id) => {
-            const fresh = document.createElement('slam-widget');
-            fresh.name = document.querySelector('slam-widget').name;
-            await fresh.press(id);
-            const { query, timeline } = fresh;
-            return { query, playing: timeline?.playing ?? false };
-          }, button.id);
-          await tab.evaluate(() => document.querySelector('slam-widget').press('defaults'));
-          await tab.evaluate(() => {
-            window.after = undefined;
-            const widget = document.querySelector('slam-widget');
-            // Heard before the next frame can play on.
-            widget.shadowRoot.addEventListener('click', () => {
-              queueMicrotask(() => queueMicrotask(() => {
-                const { query, timeline } = widget;
-                window.after = { query, playing: timeline?.playing ?? false };
-              }));
-            }, { once: true });
-          });
-          await tab.locator(`slam-widget button[data-control="${button.id}"]`).focus();
-          await tab.keyboard.press('Enter');
-          await tab.waitForFunction(() => window.after !== undefined);
-          assert.deepEqual(await tab.evaluate(() => after), expected, button.id);
-        }
-        await tab.locator('slam-widget button[data-control="defaults"]').press('Enter');
-        const state = await tab.evaluate(() => document.querySelector('slam-widget').query);
-        assert.equal(state, `?w=${widget.id.slice(1)}`);
-      });
-    });
-
-    it('keeps its keys from the page, and leaves it all others', async () => {
-      await on(widget.id, async (tab) => {
-        await tab.evaluate(() => {
-          window.heard = [];
-          document.addEventListener('keydown', (event) => heard.push(event.key));
-        });
-        const slider = widget.params.find((param) => param.kind === 'slider');
-        await tab.locator(`slam-widget #control-${slider.id}`).focus();
-        await tab.keyboard.press('ArrowRight');
-        await tab.keyboard.press('Escape');
-        const box = await canvasBox(tab);
-        await tab.mouse.click(box.x + box.width / 2, box.y + 5);
-        await tab.keyboard.press('ArrowLeft');
-        assert.deepEqual(await tab.evaluate(() => heard), ['Escape', 'ArrowLeft']);
-      });
-    });
-
-    it('names every control with role, value and unit in the accessibility tree', async () => {
-      await on(widget.id, async (tab) => {
-        const session = await tab.context().newCDPSession(tab);
-        const { nodes } = await session.send('Accessibility.getFullAXTree');
-        const named = nodes
-          .filter((node) => !node.ignored)
-          .map((node) => ({
-            role: node.role?.value,
-            name: node.name?.value ?? '',
-            description: node.description?.value ?? '',
-          }));
-        const find = (role, name) => named.find((node) => node.role === role && node.name === name);
-        for (const param of widget.params) {
-          const role = { slider: 'slider', timeline: 'slider', seed: 'spinbutton', choice: 'combobox', switch: 'switch' }[param.kind];
-          const node = find(role, param.label);
-          assert.ok(node, `no ${role} named ${param.label}`);
-          assert.equal(node.description, param.help);
-          if (param.kind !== 'slider') continue;
-          const said = await tab.locator(`slam-widget #control-${param.id}`).getAttribute('aria-valuetext');
-          assert.ok(said.endsWith(param.unit) && /\d/.test(said), `${param.label}: ${said}`);
-        }
-        for (const button of widget.buttons) assert.ok(find('button', button.label), button.label);
-        assert.ok(find('image', widget.title), 'the canvas has no name');
-      });
-    });
-
-    it('satisfies axe-core in light and dark', async () => {
-      for (const colorScheme of ['light', 'dark']) {
-        await on(widget.id, async (tab) => {
-          assert.deepEqual(await violations(tab), []);
-          // A control is laid out only while it has the focus.
-          await tab.locator(`slam-widget #control-${widget.params[0].id}`).focus();
-          assert.deepEqual(await violations(tab), []);
-        }, { colorScheme });
       }
     });
 
-    it('says outcomes in words once they settle, and sums the picture up', async () => {
-      await on(widget.id, async (tab) => {
-        const live = tab.locator('slam-widget [aria-live="polite"]');
-        assert.equal(await live.textContent(), '');
-        const slider = widget.params.find((param) => param.kind === 'slider');
-        await tab.evaluate(([id, to]) => document.querySelector('slam-widget').set(id, to), [slider.id, slider.max]);
-        await tab.waitForFunction(() => {
-          const widget = document.querySelector('slam-widget');
-          const said = widget.shadowRoot.querySelector('[aria-live="polite"]').textContent;
-          return said.length > 15 && said === widget.outcome.sentence;
-        });
-        const [summary, written] = await tab.evaluate(() => {
-          const widget = document.querySelector('slam-widget');
-          return [widget.summary, widget.shadowRoot.querySelector('.summary').textContent];
-        });
-        assert.ok(summary.length > 40);
-        assert.equal(written, summary);
+    it('presses every button and preset by keys', async () => {
+      const { tab } = page;
+      await tab.evaluate(() => {
+        const widget = document.querySelector('slam-widget');
+        const told = ({ query, timeline }) => ({ query, playing: timeline?.playing ?? false });
+        // What a press does is told by a widget that is not drawn, and so does not play on.
+        const other = document.createElement('slam-widget');
+        other.name = widget.name;
+        window.expected = async (id) => {
+          await other.press('defaults');
+          await other.press(id);
+          return told(other);
+        };
+        // Asked before the next frame can play on.
+        const { press } = widget;
+        widget.press = async (id) => {
+          await press.call(widget, id);
+          window.after = told(widget);
+        };
       });
+      for (const button of [...widget.presets, ...widget.buttons]) {
+        const expected = await tab.evaluate((id) => window.expected(id), button.id);
+        await tab.evaluate(async () => {
+          await document.querySelector('slam-widget').press('defaults');
+          window.after = undefined;
+        });
+        await tab.locator(`slam-widget button[data-control="${button.id}"]`).focus();
+        await tab.keyboard.press('Enter');
+        await tab.waitForFunction(() => window.after !== undefined);
+        assert.deepEqual(await tab.evaluate(() => after), expected, button.id);
+      }
+      await tab.evaluate(() => delete document.querySelector('slam-widget').press);
+      await tab.locator('slam-widget button[data-control="defaults"]').press('Enter');
+      const state = await tab.evaluate(() => document.querySelector('slam-widget').query);
+      assert.equal(state, `?w=${widget.id.slice(1)}`);
+    });
+
+    it('keeps its keys from the page, and leaves it all others', async () => {
+      const { tab } = page;
+      await tab.evaluate(() => {
+        window.heard = [];
+        document.addEventListener('keydown', (event) => heard.push(event.key));
+      });
+      const slider = widget.params.find((param) => param.kind === 'slider');
+      await tab.locator(`slam-widget #control-${slider.id}`).focus();
+      await tab.keyboard.press('ArrowRight');
+      await tab.keyboard.press('Escape');
+      const box = await canvasBox(tab);
+      await tab.mouse.click(box.x + box.width / 2, box.y + 5);
+      await tab.keyboard.press('ArrowLeft');
+      assert.deepEqual(await tab.evaluate(() => heard), ['Escape', 'ArrowLeft']);
+    });
+
+    it('names every control with role, value and unit in the accessibility tree', async () => {
+      const { tab } = page;
+      const session = await tab.context().newCDPSession(tab);
+      const { nodes } = await session.send('Accessibility.getFullAXTree');
+      const named = nodes
+        .filter((node) => !node.ignored)
+        .map((node) => ({
+          role: node.role?.value,
+          name: node.name?.value ?? '',
+          description: node.description?.value ?? '',
+        }));
+      const find = (role, name) => named.find((node) => node.role === role && node.name === name);
+      for (const param of widget.params) {
+        const role = { slider: 'slider', timeline: 'slider', seed: 'spinbutton', choice: 'combobox', switch: 'switch' }[param.kind];
+        const node = find(role, param.label);
+        assert.ok(node, `no ${role} named ${param.label}`);
+        assert.equal(node.description, param.help);
+        if (param.kind !== 'slider') continue;
+        const said = await tab.locator(`slam-widget #control-${param.id}`).getAttribute('aria-valuetext');
+        assert.ok(said.endsWith(param.unit) && /\d/.test(said), `${param.label}: ${said}`);
+      }
+      for (const button of widget.buttons) assert.ok(find('button', button.label), button.label);
+      assert.ok(find('image', widget.title), 'the canvas has no name');
+    });
+
+    it('satisfies axe-core in light and dark', async () => {
+      const { tab } = page;
+      for (const colorScheme of ['light', 'dark']) {
+        await tab.emulateMedia({ colorScheme });
+        await tab.locator('h1').focus();
+        assert.deepEqual(await violations(tab), []);
+        // A control is laid out only while it has the focus.
+        await tab.locator(`slam-widget #control-${widget.params[0].id}`).focus();
+        assert.deepEqual(await violations(tab), []);
+      }
+      await tab.emulateMedia({ colorScheme: null });
     });
   });
 }
 
 describe('the focus ring', () => {
   it('shows on the canvas at the control that has the focus, and goes with it', async () => {
-    await on('w16.2', async (tab) => {
+    await visit(body('w16.2'), async (tab) => {
+      await h.ready(tab);
       const look = () => tab.evaluate(async () => {
         const widget = document.querySelector('slam-widget');
         const picture = await widget.snapshot();

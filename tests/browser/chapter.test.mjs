@@ -6,7 +6,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, describe, it } from 'node:test';
+import { describe, it } from 'node:test';
 import { violations } from './axe.mjs';
 import * as h from './harness.mjs';
 import { cloudSpot, restingSpot, sliderRail } from './spots.mjs';
@@ -14,26 +14,9 @@ import { cloudSpot, restingSpot, sliderRail } from './spots.mjs';
 /** What the chapter adds to the element's policy are fonts, its own. */
 const POLICY = `${h.STRICT_POLICY}; font-src 'self'`;
 
-let browser;
-let server;
-before(async () => {
-  browser = await h.launch();
-  server = await h.serve({ policy: POLICY });
-});
-after(async () => {
-  await browser.close();
-  await server.close();
-});
-
-async function reading(test, options = {}) {
-  const tab = await h.open(browser, `${server.url}/index.html`, options);
-  try {
-    await test(tab);
-    assert.deepEqual(tab.troubles, []);
-  } finally {
-    await tab.context().close();
-  }
-}
+const visit = h.visitor();
+const reading = (test, options = {}, how = {}) =>
+  visit('', test, { path: '/index.html', server: { policy: POLICY }, options, ...how });
 
 const widget = (id) => `slam-widget[name="${id}"]`;
 /** Runs in the page. */
@@ -55,7 +38,7 @@ describe('the chapter', () => {
         assert.deepEqual((await states()).slice(place + 1), Array(later).fill('resting'));
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
         await h.ready(tab, widget(id));
-        assert.ok((await h.paintedShare(tab, widget(id))).share > 0.03, id);
+        assert.ok((await h.painted(tab, widget(id))).share > 0.03, id);
       }
     });
   });
@@ -200,15 +183,15 @@ describe('the chapter', () => {
 
   for (const colorScheme of ['light', 'dark']) {
     it(`breaks no rule of accessibility that axe knows, ${colorScheme}`, async () => {
-      const tab = await h.open(browser, `${server.url}/index.html`, { colorScheme });
-      await tab.locator('#exercise-5 slam-predict').scrollIntoViewIfNeeded();
-      assert.deepEqual(await violations(tab), []);
-      await tab.context().close();
+      await reading(async (tab) => {
+        await tab.locator('#exercise-5 slam-predict').scrollIntoViewIfNeeded();
+        assert.deepEqual(await violations(tab), []);
+      }, { colorScheme }, { quiet: false });
     });
   }
 
   it('shows pictures and says why where scripts do not run', async () => {
-    await reading(async (tab) => {
+    await reading(async (tab, server) => {
       for (const id of ['w16.1', 'w16.2', 'w16.3', 'w16.4']) {
         const picture = tab.locator(`${widget(id)} img`);
         await picture.scrollIntoViewIfNeeded();

@@ -1,57 +1,44 @@
 // The element on a page: it paints, takes values in every way, and tells what happens.
 
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
-import { after, before, describe, it } from 'node:test';
+import { describe, it } from 'node:test';
 import * as h from './harness.mjs';
 
 const names = h.schema.map((widget) => widget.id);
-const page = (body, head) => ({ '/t.html': h.bare(body, head) });
+const on = h.visitor();
 
-let browser;
-before(async () => (browser = await h.launch()));
-after(() => browser.close());
+for (const name of names) {
+  describe(name, () => {
+    const page = on.once(`<slam-widget name="${name}" theme="light"></slam-widget>`);
 
-/** Opens a page with that body, runs the test on it, expects no trouble, and closes all. */
-async function on(body, test, { options, head, url = '', troubles = true } = {}) {
-  const server = await h.serve({ pages: page(body, head) });
-  const tab = await h.open(browser, `${server.url}/t.html${url}`, options);
-  try {
-    await test(tab, server);
-    if (troubles) assert.deepEqual(tab.troubles, []);
-  } finally {
-    await tab.context().close();
-    await server.close();
-  }
-}
-
-describe('every widget', () => {
-  for (const name of names) {
-    it(`${name} paints something other than background, in light and dark`, async () => {
+    it('paints something other than background, in light and dark', async () => {
+      const { tab } = page;
+      await h.ready(tab);
+      const papers = [];
       for (const theme of ['light', 'dark']) {
-        await on(`<slam-widget name="${name}" theme="${theme}"></slam-widget>`, async (tab) => {
-          await h.ready(tab);
-          const { share, colors } = await h.paintedShare(tab);
-          assert.ok(share > 0.03, `${theme}: ${share} of the pixels differ`);
-          assert.ok(colors > 20, `${theme}: ${colors} colours`);
-        });
+        await tab.evaluate((wanted) => document.querySelector('slam-widget').setAttribute('theme', wanted), theme);
+        const { share, colors, paper } = await h.painted(tab);
+        assert.ok(share > 0.03, `${theme}: ${share} of the pixels differ`);
+        assert.ok(colors > 20, `${theme}: ${colors} colours`);
+        papers.push(paper);
       }
+      assert.ok(papers[0].every((light, channel) => light > 200 && papers[1][channel] < 100), `${papers}`);
     });
 
-    it(`${name} fits into 390 pixels without scrolling sideways`, async () => {
-      const options = { viewport: { width: 390, height: 800 }, deviceScaleFactor: 2 };
-      await on(`<slam-widget name="${name}"></slam-widget>`, async (tab) => {
-        await h.ready(tab);
-        const [wide, high] = await tab.evaluate(() => [
-          document.documentElement.scrollWidth,
-          document.querySelector('slam-widget').offsetHeight,
-        ]);
-        assert.ok(wide <= 390, `${wide} pixels wide`);
-        assert.ok(high > 400, `${high} pixels high`);
-      }, { options });
+    it('fits into 390 pixels without scrolling sideways', async () => {
+      const { tab } = page;
+      await tab.setViewportSize({ width: 390, height: 800 });
+      await h.quiet(tab);
+      const [wide, inside, high] = await tab.evaluate(() => {
+        const widget = document.querySelector('slam-widget');
+        const { clientWidth } = widget.shadowRoot.querySelector('canvas');
+        return [document.documentElement.scrollWidth, clientWidth, widget.offsetHeight];
+      });
+      assert.ok(wide <= 390 && inside > 350, `${wide} pixels wide, the canvas ${inside}`);
+      assert.ok(high > 400, `${high} pixels high`);
     });
-  }
-});
+  });
+}
 
 describe('values', () => {
   it('come in by attribute, property, value and link, and go out by all of them', async () => {
@@ -110,7 +97,7 @@ describe('values', () => {
       await h.ready(tab);
       await tab.evaluate(() => (document.querySelector('slam-widget').heading = 20));
       await tab.waitForURL(/heading=20/);
-    }, { url: '?w=16.1&heading=70&bogus=1' });
+    }, { path: '/t.html?w=16.1&heading=70&bogus=1' });
   });
 
   it('of an address that names no widget are reported once', async () => {
@@ -119,7 +106,7 @@ describe('values', () => {
       const notes = await tab.evaluate(() => [...document.querySelectorAll('slam-widget')].map(
         (widget) => widget.shadowRoot.querySelector('.note').textContent));
       assert.deepEqual(notes, ['There is no widget `99`.', '']);
-    }, { url: '?w=99' });
+    }, { path: '/t.html?w=99' });
   });
 
   it('that were set before the element was defined, or connected, are taken', async () => {
@@ -194,7 +181,7 @@ describe('values', () => {
       await tab.evaluate(() => (document.querySelector('slam-widget').heading = 20));
       await tab.waitForURL(/heading=20/);
       assert.equal(new URL(tab.url()).searchParams.get('id'), '12');
-    }, { url: '?id=12' });
+    }, { path: '/t.html?id=12' });
   });
 
   it('in an unknown widget name the widgets there are', async () => {
@@ -203,6 +190,38 @@ describe('values', () => {
         () => document.querySelector('slam-widget').shadowRoot.querySelector('.note').textContent,
       );
       assert.match(note, /There is no widget `w99`; there are w16.1/);
+    });
+  });
+});
+
+describe('a name that is no text', () => {
+  it('is a name that does not exist, and the widget goes on', async () => {
+    await on('<slam-widget name="w16.1"></slam-widget>', async (tab) => {
+      await h.ready(tab);
+      const said = await tab.evaluate(async () => {
+        const widget = document.querySelector('slam-widget');
+        const outcomes = [];
+        for (const wrong of [5, {}, null, undefined, 'x'.repeat(1e6)]) {
+          for (const act of [() => widget.press(wrong), () => widget.set(wrong, 1), () => widget.look(wrong)]) {
+            try {
+              await act();
+              outcomes.push('taken');
+            } catch ({ message }) {
+              outcomes.push(message);
+            }
+          }
+          outcomes.push(String([widget.get(wrong), widget.controlBox(wrong), widget.panelToScreen(wrong, 0, 0)]));
+        }
+        return outcomes;
+      });
+      for (let at = 0; at < said.length; at += 4) {
+        assert.match(said[at], /^w16\.1 has no button `.*`; it has /);
+        assert.match(said[at + 1], /^w16\.1 has no parameter `.*`; it has heading/);
+        assert.match(said[at + 2], /^one looks in, out, .*, not `/);
+        assert.equal(said[at + 3], ',,');
+      }
+      assert.ok(said.every((sentence) => sentence.length < 400), 'a long name is cut short');
+      await h.moreFrames(tab, 2);
     });
   });
 });
@@ -242,7 +261,7 @@ describe('exports', () => {
         tab.getByRole('button', { name: 'Save picture' }).click(),
       ]);
       assert.equal(picture.suggestedFilename(), 'w16.1.png');
-      const bytes = readFileSync(await picture.path());
+      const bytes = await h.bytesOf(picture);
       assert.equal(bytes.subarray(1, 4).toString(), 'PNG');
       const canvas = await tab.evaluate(() => {
         const { width, height } = document.querySelector('slam-widget').shadowRoot.querySelector('canvas');

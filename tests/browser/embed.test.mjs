@@ -1,13 +1,11 @@
 // embed.html in a frame, also in a sandbox without an origin, and its messages.
 
 import assert from 'node:assert/strict';
-import { after, before, describe, it } from 'node:test';
+import { describe, it } from 'node:test';
 import { violations } from './axe.mjs';
 import * as h from './harness.mjs';
 
-let browser;
-before(async () => (browser = await h.launch()));
-after(() => browser.close());
+const visit = h.visitor();
 
 /** A page with the widget in a frame that keeps every message that comes out. */
 async function framed(query, test, { sandbox, answer, quiet = true } = {}) {
@@ -15,9 +13,7 @@ async function framed(query, test, { sandbox, answer, quiet = true } = {}) {
   const page = `<!doctype html><html lang="en"><title>Host</title><link rel="icon" href="data:,">
     <script>window.heard = []; addEventListener('message', (event) => heard.push(event.data));</script>
     <iframe title="Widget" src="/embed.html${query}" style="width: 100%; height: 800px"${attribute}></iframe></html>`;
-  const server = await h.serve({ pages: { '/host.html': page }, answer });
-  const tab = await h.open(browser, `${server.url}/host.html`);
-  const conversation = {
+  const conversation = (tab) => ({
     tab,
     frame: tab.frames().find((frame) => frame !== tab.mainFrame()),
     post: (message) => tab.evaluate((data) => document.querySelector('iframe').contentWindow.postMessage(data, '*'), message),
@@ -31,28 +27,14 @@ async function framed(query, test, { sandbox, answer, quiet = true } = {}) {
         })), [type, wanted]);
       return found.jsonValue();
     },
-  };
-  try {
-    await test(conversation);
-    if (quiet) assert.deepEqual(tab.troubles, []);
-  } finally {
-    await tab.context().close();
-    await server.close();
-  }
+  });
+  await visit('', (tab) => test(conversation(tab)), {
+    path: '/host.html', server: { pages: { '/host.html': page }, answer }, quiet,
+  });
 }
 
 /** embed.html as a page of its own. */
-async function alone(query, test, serverOptions) {
-  const server = await h.serve(serverOptions);
-  const tab = await h.open(browser, `${server.url}/embed.html${query}`);
-  try {
-    await test(tab);
-    assert.deepEqual(tab.troubles, []);
-  } finally {
-    await tab.context().close();
-    await server.close();
-  }
-}
+const alone = (query, test, how) => visit('', test, { path: `/embed.html${query}`, ...how });
 
 describe('a frame', () => {
   for (const sandbox of [undefined, 'allow-scripts']) {
@@ -149,6 +131,29 @@ describe('a frame', () => {
     });
   });
 
+  it('answers a megabyte with a sentence', async () => {
+    await framed('?w=16.1', async ({ tab, post, hear }) => {
+      await hear('ready');
+      const long = 'x'.repeat(1e6);
+      const many = Object.fromEntries(Array.from({ length: 1e5 }, (_, i) => [`x${i}`, 1]));
+      for (const [message, reason] of [
+        [{ slam: long, type: 'get' }, /speaks version 1/],
+        [{ slam: 1, type: long }, /no message `x+…`/],
+        [{ slam: 1, type: 'get', id: long }, /at most 200 characters/],
+        [{ slam: 1, type: 'press', button: long }, /no button `x+…`/],
+        [{ slam: 1, type: 'set', values: { [long]: 1 } }, /no parameter `x+…`/],
+        [{ slam: 1, type: 'set', values: { heading: long } }, /takes a number, not `x+…`/],
+        [{ slam: 1, type: 'set', values: many }, /99992 more values do not fit/],
+      ]) {
+        await post(message);
+        await hear('error', { message: reason });
+      }
+      const told = (await tab.evaluate(() => heard)).filter(({ type }) => type === 'error');
+      assert.equal(told.length, 15);
+      assert.ok(told.every((message) => JSON.stringify(message).length < 500));
+    });
+  });
+
   it('listens to its parent alone', async () => {
     await framed('?w=16.1&heading=60', async ({ tab, post, hear }) => {
       await hear('ready');
@@ -185,11 +190,7 @@ describe('a frame that cannot start', () => {
   });
 
   it('says so without JavaScript', async () => {
-    const server = await h.serve();
-    const tab = await h.open(browser, `${server.url}/embed.html?w=16.1`, { javaScriptEnabled: false });
-    await says(tab);
-    await tab.context().close();
-    await server.close();
+    await alone('?w=16.1', says, { options: { javaScriptEnabled: false } });
   });
 
   it('says nothing of the kind where it starts', async () => {
@@ -201,28 +202,28 @@ describe('a frame that cannot start', () => {
 });
 
 describe('embed.html as a page', () => {
-  it('has the title of its widget, as a heading too, and satisfies axe-core', async () => {
-    for (const { id, title } of h.schema) {
-      await alone(`?w=${id.slice(1)}&bogus=1`, async (tab) => {
-        await h.ready(tab);
+  it('has the title of its widget, as a heading too', async () => {
+    await alone('', async (tab, server) => {
+      for (const { id, title } of h.schema) {
+        await tab.goto(`${server.url}/embed.html?w=${id.slice(1)}`);
         assert.equal(await tab.title(), title);
         assert.equal(await tab.getByRole('main').getByRole('heading', { level: 1 }).innerText(), title);
-        assert.deepEqual(await violations(tab), []);
-      });
-    }
+      }
+    });
   });
 
-  it('works under the strict policy', async () => {
+  it('works under the strict policy, and satisfies axe-core', async () => {
     await alone('?w=16.1&heading=abc', async (tab) => {
       await h.ready(tab);
       assert.ok(await tab.getByText('`heading` takes a number, not `abc`').isVisible());
-    }, { policy: h.STRICT_POLICY });
+      assert.deepEqual(await violations(tab), []);
+    }, { server: { policy: h.STRICT_POLICY } });
   });
 
   it('shows what its address says as text, never as HTML', async () => {
     const html = '<img src=x onerror="window.ran = true"><b id=made>';
     const part = encodeURIComponent(html);
-    for (const query of [`?w=${part}`, `?w=16.1&heading=${part}`, `?w=16.1&${part}=1`, `?w=16.1&theme=${part}`]) {
+    for (const [query, sentences] of [[`?w=${part}`, 1], [`?w=16.1&heading=${part}&${part}=1&theme=${part}`, 2]]) {
       await alone(query, async (tab) => {
         await h.ready(tab);
         const made = await tab.evaluate(() => {
@@ -231,8 +232,9 @@ describe('embed.html as a page', () => {
         });
         assert.deepEqual(made, []);
         assert.equal(await tab.evaluate(() => window.ran), undefined);
-        const told = await tab.locator('.problems').innerText();
-        if (!query.includes('theme')) assert.ok(told.includes('<img src=x'), told);
+        const told = await tab.locator('.problems p').allInnerTexts();
+        assert.equal(told.length, sentences);
+        for (const sentence of told) assert.ok(sentence.includes('<img src=x'), sentence);
       });
     }
   });

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { createReadStream, existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { extname, join } from 'node:path';
-import { after, before, it } from 'node:test';
+import { it } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import * as esbuild from '../../web/node_modules/esbuild/lib/main.js';
 import { violations } from './axe.mjs';
@@ -12,9 +12,7 @@ import { installPackage } from './package.mjs';
 
 const REVEAL = fileURLToPath(new URL('./node_modules/reveal.js/dist/', import.meta.url));
 
-let browser;
-before(async () => (browser = await h.launch()));
-after(() => browser.close());
+const visit = h.visitor();
 
 const TYPES = {
   '.css': 'text/css',
@@ -33,19 +31,13 @@ function send(file, response) {
 }
 
 /** Opens an example as it lies beside the widgets; axe has nothing against it at its end. */
-async function example(file, test) {
+function example(file, test) {
   const answer = (path, response) => path.startsWith('/examples/reveal/')
     && send(join(REVEAL, path.slice('/examples/reveal/'.length)), response);
-  const server = await h.serve({ answer });
-  const tab = await h.open(browser, `${server.url}/examples/${file}`);
-  try {
+  return visit('', async (tab) => {
     await test(tab);
     assert.deepEqual(await violations(tab), []);
-    assert.deepEqual(tab.troubles, []);
-  } finally {
-    await tab.context().close();
-    await server.close();
-  }
+  }, { path: `/examples/${file}`, server: { answer } });
 }
 
 it('plain.html: a widget, a link that sets it, and a prediction', async () => {
@@ -74,13 +66,8 @@ it('iframe.html: a sandboxed frame that is set and answers', async () => {
     // The page's own script makes the frame as high as it says it needs to be.
     const frame = tab.frames().find((candidate) => candidate !== tab.mainFrame());
     await h.ready(frame);
-    let needed;
-    let given;
-    for (let tries = 0; tries < 100 && (given === undefined || given !== needed); tries += 1) {
-      needed = await frame.evaluate(() => `${Math.ceil(document.querySelector('main').getBoundingClientRect().height)}px`);
-      given = await tab.evaluate(() => new Promise((resolve) => setTimeout(() => resolve(document.querySelector('#lap').style.height), 100)));
-    }
-    assert.equal(given, needed);
+    await frame.waitForFunction(
+      () => innerHeight === Math.ceil(document.querySelector('main').getBoundingClientRect().height));
     await tab.click('#noisy');
     await tab.waitForFunction(() => document.querySelector('#said').textContent.length > 10);
   });
@@ -187,23 +174,16 @@ it('myst.md: the widget runs from the file that MyST copies', async () => {
       widget.render({ model, el });
       window.inside = () => el.querySelector('slam-widget');
     </script></html>`;
-  let home;
-  const server = await h.serve({
-    pages: { '/t.html': page },
-    answer: (asked, response) => {
-      if (asked !== '/build/4f1c.mjs') return false;
-      response.setHeader('Content-Type', TYPES['.mjs']);
-      response.end(text(path).replace('http://localhost:8016', home));
-      return true;
-    },
-  });
-  home = server.url;
-  const tab = await h.open(browser, `${home}/t.html`);
-  await tab.waitForFunction(() => window.inside?.().state === 'running');
-  assert.equal(await tab.evaluate(() => inside().noise), JSON.parse(body).value.noise);
-  assert.deepEqual(tab.troubles, []);
-  await tab.context().close();
-  await server.close();
+  const answer = (asked, response, { headers }) => {
+    if (asked !== '/build/4f1c.mjs') return false;
+    response.setHeader('Content-Type', TYPES['.mjs']);
+    response.end(text(path).replace('localhost:8016', headers.host));
+    return true;
+  };
+  await visit('', async (tab) => {
+    await tab.waitForFunction(() => window.inside?.().state === 'running');
+    assert.equal(await tab.evaluate(() => inside().noise), JSON.parse(body).value.noise);
+  }, { server: { pages: { '/t.html': page }, answer } });
 });
 
 it('reveal.html: the widget runs on its slide and leaves the keys to the deck', async () => {
@@ -256,21 +236,18 @@ it('the npm package, packed and installed, works from a bundler and links to its
       return true;
     };
     const page = '<!doctype html><html lang="en"><title>App</title><link rel="icon" href="data:,"><script type="module" src="/app/main.js"></script><slam-widget name="w16.4" noise="2"></slam-widget></html>';
-    const server = await h.serve({ pages: { '/t.html': page }, answer });
-    const tab = await h.open(browser, `${server.url}/t.html`);
-    await h.ready(tab);
-    assert.deepEqual(await tab.evaluate(() => names), h.schema.map((widget) => widget.id));
-    assert.ok(await tab.evaluate(() => customElements.get('slam-predict') !== undefined));
-    await tab.context().grantPermissions(['clipboard-read', 'clipboard-write']);
-    await tab.getByRole('button', { name: 'Copy link' }).click();
-    await tab.getByText('The link is copied.').waitFor();
-    const link = await tab.evaluate(() => navigator.clipboard.readText());
-    assert.equal(link, `${server.url}/app/embed.html?w=16.4&noise=2`);
-    await tab.goto(link);
-    await h.ready(tab);
-    assert.deepEqual(tab.troubles, []);
-    await tab.context().close();
-    await server.close();
+    const options = { permissions: ['clipboard-read', 'clipboard-write'] };
+    await visit('', async (tab, server) => {
+      await h.ready(tab);
+      assert.deepEqual(await tab.evaluate(() => names), h.schema.map((widget) => widget.id));
+      assert.ok(await tab.evaluate(() => customElements.get('slam-predict') !== undefined));
+      await tab.getByRole('button', { name: 'Copy link' }).click();
+      await tab.getByText('The link is copied.').waitFor();
+      const link = await tab.evaluate(() => navigator.clipboard.readText());
+      assert.equal(link, `${server.url}/app/embed.html?w=16.4&noise=2`);
+      await tab.goto(link);
+      await h.ready(tab);
+    }, { server: { pages: { '/t.html': page }, answer }, options });
   } finally {
     project.remove();
   }

@@ -1,10 +1,13 @@
 // A server that can misbehave on purpose, a browser, and pages that remember their errors.
 
+import assert from 'node:assert/strict';
 import { createReadStream, existsSync, readFileSync, statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
+import { after, before } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
+import * as clock from './clock.mjs';
 
 export const DIST = fileURLToPath(new URL('../../dist/', import.meta.url));
 
@@ -26,14 +29,14 @@ const TYPES = {
 
 /**
  * Serves `dist/` and the pages given as text. `policy` is the Content-Security-Policy, `answer`
- * may answer a request itself and say so with true.
+ * may answer a request itself, from its path and all of it, and say so with true.
  */
 export async function serve({ pages = {}, policy, answer } = {}) {
   const server = createServer((request, response) => {
     const { pathname } = new URL(request.url, 'http://localhost');
     if (policy !== undefined) response.setHeader('Content-Security-Policy', policy);
     response.setHeader('Access-Control-Allow-Origin', '*');
-    if (answer?.(pathname, response) === true) return;
+    if (answer?.(pathname, response, request) === true) return;
     if (pages[pathname] !== undefined) {
       response.setHeader('Content-Type', TYPES['.html']);
       response.end(pages[pathname]);
@@ -61,44 +64,83 @@ export async function serve({ pages = {}, policy, answer } = {}) {
   };
 }
 
+/** Ends a wait that will never end, in a page that hangs; nothing is judged by it. */
+const LAST_RESORT_MS = 5 * 60_000;
+
+const HOW = {
+  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+  timeout: LAST_RESORT_MS,
+  args: [
+    '--no-sandbox',
+    '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader',
+    '--disable-quic',
+    '--no-first-run',
+    '--disable-background-networking',
+    '--disable-component-update',
+    '--disable-sync',
+    // A scroll that is animated needs frames, and software GL may owe them for long.
+    '--disable-smooth-scrolling',
+    // Drawing by software costs the most here, and no test is about how the browser puts a page together.
+    '--disable-gpu-compositing',
+    '--js-flags=--expose-gc',
+  ],
+};
+
+/** The Chromium that run.mjs started for all files, else one of this file's own; so with flags. */
 export function launch(extra = []) {
-  return chromium.launch({
-    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-    args: [
-      '--no-sandbox',
-      '--use-angle=swiftshader',
-      '--enable-unsafe-swiftshader',
-      '--disable-quic',
-      '--no-first-run',
-      '--disable-background-networking',
-      '--disable-component-update',
-      '--disable-sync',
-      // A scroll that is animated needs frames, and software GL may owe them for long.
-      '--disable-smooth-scrolling',
-      '--js-flags=--expose-gc',
-      ...extra,
-    ],
-  });
+  const shared = process.env.SLAM_CHROMIUM;
+  if (shared !== undefined && extra.length === 0) return chromium.connect(shared, { timeout: LAST_RESORT_MS });
+  return chromium.launch({ ...HOW, args: [...HOW.args, ...extra] });
 }
 
-/** A page that collects what a careful host would not want: errors, and requests elsewhere. */
-export async function open(browser, url, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1100, height: 900 }, ...options });
-  const page = await context.newPage();
-  page.troubles = [];
-  const home = new URL(url).origin;
-  page.on('console', (message) => {
-    if (message.type() === 'error') page.troubles.push(`console: ${message.text()}`);
+/** A Chromium that the files of the tests connect to. */
+export function launchServer() {
+  return chromium.launchServer(HOW);
+}
+
+/** A screen with few pixels: software draws each of them four times, were edges to be smoothed as well. */
+const SCREEN = { viewport: { width: 1100, height: 900 }, deviceScaleFactor: 0.5 };
+
+/** Runs in every page before its own scripts. */
+function drawWithoutSmoothing() {
+  const { getContext } = HTMLCanvasElement.prototype;
+  HTMLCanvasElement.prototype.getContext = function (type, given) {
+    return getContext.call(this, type, type === 'webgl2' ? { antialias: false, ...given } : given);
+  };
+}
+
+/**
+ * A tab that collects what a careful host would not want: errors, and requests to others than `home`.
+ * The clock of its pages counts frames, each of `stepMs`; the rest of the options are Playwright's.
+ */
+async function newTab(browser, { stepMs = clock.COARSE_MS, ...options } = {}) {
+  const context = await browser.newContext({ ...SCREEN, ...options });
+  context.setDefaultTimeout(LAST_RESORT_MS);
+  context.setDefaultNavigationTimeout(LAST_RESORT_MS);
+  await context.addInitScript(clock.install, { stepMs, lookMs: clock.LOOK_MS, patienceMs: clock.PATIENCE_MS });
+  await context.addInitScript(drawWithoutSmoothing);
+  const tab = await context.newPage();
+  tab.troubles = [];
+  tab.on('console', (message) => {
+    if (message.type() === 'error') tab.troubles.push(`console: ${message.text()}`);
   });
-  page.on('pageerror', (error) => page.troubles.push(`page: ${error.message}`));
-  page.on('request', (request) => {
+  tab.on('pageerror', (error) => tab.troubles.push(`page: ${error.message}`));
+  tab.on('request', (request) => {
     const { origin, protocol } = new URL(request.url());
-    if (protocol.startsWith('http') && origin !== home) {
-      page.troubles.push(`request: ${request.url()}`);
+    if (protocol.startsWith('http') && origin !== tab.home) {
+      tab.troubles.push(`request: ${request.url()}`);
     }
   });
-  await page.goto(url);
-  return page;
+  return tab;
+}
+
+/** Makes a tab that was used before as good as new: each visit brings an origin of its own. */
+async function tidy(tab, { viewport = SCREEN.viewport } = {}) {
+  await tab.mouse.move(0, 0);
+  await tab.goto('about:blank');
+  await tab.emulateMedia({ media: null, colorScheme: null, reducedMotion: null });
+  await tab.setViewportSize(viewport);
 }
 
 /** A page with nothing but what stands in `body` and the element. */
@@ -106,6 +148,65 @@ export function bare(body, head = '') {
   return `<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Test</title>
 <link rel="icon" href="data:,">${head}
 <script type="module" src="/slam-widget.js"></script></head><body>${body}</body></html>`;
+}
+
+/**
+ * For one file of tests: what opens a page for a test, a bare page with `body` at /t.html or any other
+ * `path` of the server. The browser starts with the first page and is closed after the last test.
+ *
+ * Tests with the same options have the same tab, one after the other: a new one costs more than most
+ * tests. A test that asks for a `fresh` one, or for another browser `with` other flags, gets it.
+ */
+export function visitor() {
+  const tabs = new Map();
+  let shared;
+  after(async () => (await shared)?.close());
+
+  const tabFor = async ({ options, fresh = false, with: other }) => {
+    const browser = other ?? (await (shared ??= launch()));
+    if (fresh || other !== undefined) return newTab(browser, options);
+    const key = JSON.stringify(options ?? {});
+    if (!tabs.has(key)) tabs.set(key, await newTab(browser, options));
+    return tabs.get(key);
+  };
+
+  const arrive = async (body, how) => {
+    const { head, path = '/t.html', server: its, options, fresh = false, with: other } = how;
+    const tab = await tabFor(how);
+    const server = await serve({ ...its, pages: { '/t.html': bare(body, head), ...its?.pages } });
+    const leave = async () => {
+      if (fresh || other !== undefined) await tab.context().close();
+      else await tidy(tab, options);
+      await server.close();
+    };
+    tab.troubles = [];
+    tab.home = server.url;
+    await tab.goto(`${server.url}${path}`);
+    return { tab, server, leave };
+  };
+
+  const visit = async (body, test, how = {}) => {
+    const { tab, server, leave } = await arrive(body, how);
+    try {
+      await test(tab, server);
+      if (how.quiet ?? true) assert.deepEqual(tab.troubles, []);
+    } finally {
+      await leave();
+    }
+  };
+
+  /** One page for all tests of a group: to start a widget costs more than most of them. */
+  visit.once = (body, how = {}) => {
+    const stay = {};
+    before(async () => Object.assign(stay, await arrive(body, how)));
+    after(async () => {
+      const { troubles } = stay.tab;
+      await stay.leave();
+      assert.deepEqual(troubles, []);
+    });
+    return stay;
+  };
+  return visit;
 }
 
 /** Waits until a widget has drawn its first frame. */
@@ -143,44 +244,38 @@ export function pointOf(page, panel, x, y, selector = 'slam-widget') {
 /** The widgets' own lists, as the build wrote them. */
 export const schema = JSON.parse(readFileSync(join(DIST, 'schema.json'), 'utf8'));
 
-/** Counts the animation frames that a page asks for from now on. */
-export async function countFrames(page, milliseconds) {
-  return page.evaluate(async (duration) => {
-    const real = window.requestAnimationFrame;
-    let asked = 0;
-    window.requestAnimationFrame = (callback) => {
-      asked += 1;
-      return real.call(window, callback);
-    };
-    await new Promise((resolve) => setTimeout(resolve, duration));
-    window.requestAnimationFrame = real;
-    return asked;
-  }, milliseconds);
+/** Counts the animation frames that a page asks for during so much time of its clock. */
+export function countFrames(page, milliseconds) {
+  return page.evaluate((ms) => frameClock.pass(ms), milliseconds);
 }
 
-/** Waits until no frame has been asked for during a second. */
-export async function quiet(page) {
-  for (let tries = 0; tries < 60; tries += 1) {
-    if ((await countFrames(page, 1000)) === 0) return;
-  }
-  throw new Error('frames are asked for again and again');
+/** Waits until no frame has been asked for during a second of the page's clock; says how many were. */
+export function quiet(page) {
+  return page.evaluate(() => frameClock.quiet(1000));
 }
 
-/** The share of pixels of a widget that are not its commonest colour. */
-export async function paintedShare(page, selector = 'slam-widget') {
+/** The bytes that a page gave the reader to save. */
+export async function bytesOf(download) {
+  const chunks = [];
+  for await (const chunk of await download.createReadStream()) chunks.push(chunk);
+  return Buffer.concat(chunks);
+}
+
+/** The commonest colour of a widget, the share of pixels of other colours, and how many colours there are. */
+export async function painted(page, selector = 'slam-widget') {
   return page.evaluate(async (css) => {
-    const widget = document.querySelector(css);
-    const canvas = widget.shadowRoot.querySelector('canvas');
-    const picture = await widget.snapshot();
-    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d');
+    const picture = await document.querySelector(css).snapshot();
+    const copy = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
     copy.drawImage(picture, 0, 0);
-    const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+    const { data } = copy.getImageData(0, 0, picture.width, picture.height);
+    const pixels = new Uint32Array(data.buffer);
     const counts = new Map();
-    for (let at = 0; at < data.length; at += 4) {
-      const color = (data[at] << 16) | (data[at + 1] << 8) | data[at + 2];
-      counts.set(color, (counts.get(color) ?? 0) + 1);
-    }
-    const total = data.length / 4;
-    return { share: 1 - Math.max(...counts.values()) / total, colors: counts.size };
+    for (const color of pixels) counts.set(color, (counts.get(color) ?? 0) + 1);
+    const [[paper, most]] = [...counts].sort(([, a], [, b]) => b - a);
+    return {
+      share: 1 - most / pixels.length,
+      colors: counts.size,
+      paper: [paper & 255, (paper >> 8) & 255, (paper >> 16) & 255],
+    };
   }, selector);
 }

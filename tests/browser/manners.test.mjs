@@ -2,7 +2,8 @@
 // eframe's own defaults (measured on 0.37).
 
 import assert from 'node:assert/strict';
-import { after, before, describe, it } from 'node:test';
+import { describe, it } from 'node:test';
+import { SMOOTH_MS } from './clock.mjs';
 import * as h from './harness.mjs';
 import { canvasBox, draggingSpot, restingSpot } from './spots.mjs';
 
@@ -11,22 +12,10 @@ const ONE = '<slam-widget name="w16.1"></slam-widget>';
 /** A widget that computes everything at once: w16.1 goes on filling its map for a while. */
 const CALM = '<slam-widget name="w16.2"></slam-widget>';
 
-let browser;
-before(async () => (browser = await h.launch()));
-after(() => browser.close());
+/** A finger that rests for long means something else: its time is that of a smooth display. */
+const TOUCH = { options: { hasTouch: true, stepMs: SMOOTH_MS } };
 
-async function on(body, test, { options, head, troubles = true } = {}) {
-  const server = await h.serve({ pages: { '/t.html': h.bare(body, head) } });
-  const tab = await h.open(browser, `${server.url}/t.html`, options);
-  try {
-    await test(tab);
-    if (troubles) assert.deepEqual(tab.troubles, []);
-  } finally {
-    await tab.context().close();
-    await server.close();
-  }
-}
-
+const on = h.visitor();
 const scrolled = (tab) => tab.evaluate(() => window.scrollY);
 
 describe('focus', () => {
@@ -102,7 +91,7 @@ describe('scrolling', () => {
       const [x, y] = await restingSpot(tab);
       await swipe(tab, [x, y], [x, y - 250]);
       await tab.waitForFunction(() => window.scrollY > 100);
-    }, { options: { hasTouch: true } });
+    }, TOUCH);
   });
 });
 
@@ -115,7 +104,7 @@ describe('touch', () => {
       await swipe(tab, [x, y], [x + 60, y - 60]);
       await tab.waitForFunction((old) => document.querySelector('slam-widget').query !== old, before);
       assert.equal(await scrolled(tab), 0);
-    }, { options: { hasTouch: true } });
+    }, TOUCH);
   });
 
   it('that is cancelled leaves no drag behind', async () => {
@@ -133,41 +122,7 @@ describe('touch', () => {
       await tab.mouse.move(x + 90, y + 40, { steps: 4 });
       await h.moreFrames(tab, 3);
       assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').query), before);
-    }, { options: { hasTouch: true } });
-  });
-});
-
-describe('frames', () => {
-  for (const { id } of h.schema) {
-    it(`of ${id} are not drawn, nor even asked for, while nothing changes`, async () => {
-      await on(`<slam-widget name="${id}"></slam-widget>`, async (tab) => {
-        await h.ready(tab);
-        await h.quiet(tab);
-        const drawn = await tab.evaluate(() => document.querySelector('slam-widget').frames);
-        assert.equal(await h.countFrames(tab, 1500), 0);
-        assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').frames), drawn);
-      });
-    });
-  }
-
-  it('are drawn while something plays, and stop when it is scrolled out of view', async () => {
-    await on(CALM + TALL, async (tab) => {
-      await h.ready(tab);
-      await h.quiet(tab);
-      await tab.evaluate(() => document.querySelector('slam-widget').press('play'));
-      const before = await tab.evaluate(() => document.querySelector('slam-widget').frames);
-      await tab.waitForFunction(
-        (old) => document.querySelector('slam-widget').frames > old + 5, before);
-      // Out of view, but near enough to go on living.
-      await tab.evaluate(() => {
-        const { height } = document.querySelector('slam-widget').getBoundingClientRect();
-        window.scrollTo(0, height + 100);
-      });
-      await h.quiet(tab);
-      const there = await tab.evaluate(() => document.querySelector('slam-widget').frames);
-      assert.equal(await h.countFrames(tab, 1000), 0);
-      assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').frames), there);
-    });
+    }, TOUCH);
   });
 });
 
@@ -202,7 +157,7 @@ describe('contexts', () => {
         return now !== null && now !== oldCanvas;
       });
       assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').heading), 77);
-      assert.ok((await h.paintedShare(tab)).share > 0.03);
+      assert.ok((await h.painted(tab)).share > 0.03);
       tab.troubles = tab.troubles.filter((text) => !text.includes('CONTEXT_LOST'));
     });
   });
@@ -227,14 +182,18 @@ describe('a panic', () => {
       assert.match(await note.locator('pre').textContent(), /crashed on purpose/);
       assert.equal((await tab.evaluate(() => errors))[0].kind, 'crash');
       // The other one goes on.
-      await tab.evaluate(() => (document.querySelector('#b').heading = 5));
-      const frames = await tab.evaluate(() => document.querySelector('#b').frames);
+      const frames = await tab.evaluate(() => {
+        const other = document.querySelector('#b');
+        const { frames: before } = other;
+        other.heading = 5;
+        return before;
+      });
       await tab.waitForFunction((old) => document.querySelector('#b').frames > old, frames);
       await tab.evaluate(() => document.querySelector('#a').scrollIntoView());
       await tab.getByRole('button', { name: 'Restart with these settings' }).click();
       await h.ready(tab, '#a');
       assert.equal(await tab.evaluate(() => document.querySelector('#a').heading), 61);
-    }, { troubles: false });
+    }, { quiet: false });
   });
 });
 
@@ -293,31 +252,6 @@ describe('looks', () => {
       }
     });
   });
-
-  for (const { id } of h.schema) {
-    it(`of ${id} show the end of a run at once where the reader wants no motion`, async () => {
-      await on(`<slam-widget name="${id}"></slam-widget>`, async (tab) => {
-        await h.ready(tab);
-        const play = (from) => tab.evaluate(async (start) => {
-          const widget = document.querySelector('slam-widget');
-          const { param } = widget.timeline;
-          widget.set(param, start);
-          await widget.press('play');
-          const { playing, last } = widget.timeline;
-          return { playing, shown: Math.min(widget.get(param), last), last };
-        }, from);
-        // The wish may come while the page is open.
-        assert.ok((await play(0)).playing);
-        await tab.emulateMedia({ reducedMotion: 'reduce' });
-        await tab.waitForFunction(() => !document.querySelector('slam-widget').timeline.playing);
-        const { playing, shown, last } = await play(0);
-        assert.equal(playing, false);
-        assert.equal(shown, last);
-        await h.quiet(tab);
-        assert.equal(await h.countFrames(tab, 500), 0);
-      });
-    });
-  }
 });
 
 /** Presses a key until the element with that id has the focus; gives up after 120 stops. */

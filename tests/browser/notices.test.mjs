@@ -1,30 +1,13 @@
 // The page of licences and notices, as a reader gets it from the foot of the chapter.
 
 import assert from 'node:assert/strict';
-import { after, before, describe, it } from 'node:test';
+import { describe, it } from 'node:test';
 import { violations } from './axe.mjs';
 import * as h from './harness.mjs';
 
-let browser;
-let server;
-before(async () => {
-  browser = await h.launch();
-  server = await h.serve({ policy: h.STRICT_POLICY });
-});
-after(async () => {
-  await browser.close();
-  await server.close();
-});
-
-async function reading(test, options) {
-  const tab = await h.open(browser, `${server.url}/notices.html`, options);
-  try {
-    await test(tab);
-    assert.deepEqual(tab.troubles, []);
-  } finally {
-    await tab.context().close();
-  }
-}
+const visit = h.visitor();
+const reading = (test, options) =>
+  visit('', test, { path: '/notices.html', server: { policy: h.STRICT_POLICY }, options });
 
 describe('the page of notices', () => {
   for (const colorScheme of ['light', 'dark']) {

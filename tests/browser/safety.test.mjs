@@ -3,28 +3,14 @@
 import assert from 'node:assert/strict';
 import { createReadStream, readdirSync, readFileSync, statSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, describe, it } from 'node:test';
+import { describe, it } from 'node:test';
+import { FROZEN_MS } from './clock.mjs';
 import * as h from './harness.mjs';
 
 const ONE = '<slam-widget name="w16.2"></slam-widget>';
 const WASM = readdirSync(h.DIST).find((file) => file.endsWith('.wasm'));
 
-let browser;
-before(async () => (browser = await h.launch()));
-after(() => browser.close());
-
-async function on(body, test, { server: serverOptions, path = '/t.html', options, quiet = true, with: other, head } = {}) {
-  const server = await h.serve({ ...serverOptions, pages: { '/t.html': h.bare(body, head) } });
-  const tab = await h.open(other ?? browser, `${server.url}${path}`, options);
-  try {
-    await test(tab, server);
-    if (quiet) assert.deepEqual(tab.troubles, []);
-  } finally {
-    await tab.context().close();
-    await server.close();
-  }
-}
-
+const on = h.visitor();
 const failure = (tab) => tab.locator('slam-widget .failure');
 
 /** One sentence with the reason, and the static picture in place of the canvas. */
@@ -40,14 +26,7 @@ async function fallsBack(tab, reason) {
   assert.ok(picture.alt.length > 40, picture.alt);
 }
 
-it('works under the strict policy, and nothing is refused by it', async () => {
-  await on(ONE, async (tab) => {
-    await h.ready(tab);
-    assert.ok((await h.paintedShare(tab)).share > 0.03);
-  }, { server: { policy: h.STRICT_POLICY } });
-});
-
-it('predicts, and saves picture and data, under the strict policy', async () => {
+it('paints, predicts, and saves picture and data under the strict policy', async () => {
   const body = `<script type="module" src="/slam-predict.js"></script>
     <slam-predict widget="w16.1" state="heading=90&dx=0&dy=0">
       <p>Where does it end?</p>
@@ -56,6 +35,7 @@ it('predicts, and saves picture and data, under the strict policy', async () => 
     </slam-predict><slam-widget name="w16.1"></slam-widget>`;
   await on(body, async (tab) => {
     await h.ready(tab);
+    assert.ok((await h.painted(tab)).share > 0.03);
     await tab.getByLabel('at the truth').check();
     await tab.getByRole('button', { name: 'Commit and see' }).click();
     await tab.getByText('The room is almost square.').waitFor();
@@ -64,7 +44,7 @@ it('predicts, and saves picture and data, under the strict policy', async () => 
         tab.waitForEvent('download'),
         tab.getByRole('button', { name }).click(),
       ]);
-      const bytes = readFileSync(await download.path());
+      const bytes = await h.bytesOf(download);
       assert.ok(bytes.length > 100 && bytes.toString('latin1').startsWith(start), `${name}: ${bytes.length} bytes`);
     }
   }, { server: { policy: h.STRICT_POLICY } });
@@ -151,6 +131,87 @@ describe('a wasm file', () => {
     }, { server, quiet: false });
   });
 
+  for (const [what, share] of [['never comes', 0], ['stops half way', 0.5]]) {
+    it(`that ${what} is given up after ten seconds of silence, and comes after "Try again"`, async () => {
+      const bytes = readFileSync(join(h.DIST, WASM));
+      let asked = 0;
+      let heard;
+      const silent = new Promise((resolve) => (heard = resolve));
+      const server = {
+        answer: (path, response) => {
+          if (!path.endsWith('.wasm') || (asked += 1) > 1) return false;
+          response.setHeader('Content-Type', 'application/wasm');
+          response.setHeader('Content-Length', bytes.length);
+          if (share > 0) response.write(bytes.subarray(0, share * bytes.length));
+          heard();
+          return true;
+        },
+      };
+      await on(ONE, async (tab) => {
+        await silent;
+        await tab.waitForFunction((part) => {
+          const { value } = document.querySelector('slam-widget').shadowRoot.querySelector('progress');
+          return value > 0.99 * part;
+        }, share - 0.01);
+        await tab.evaluate(() => frameClock.skip(9_900));
+        assert.equal(await failure(tab).count(), 0);
+        await tab.evaluate(() => frameClock.skip(200));
+        await fallsBack(tab, /the server of the program does not answer/);
+        await tab.getByRole('button', { name: 'Try again' }).click();
+        await h.ready(tab);
+        assert.equal(asked, 2);
+      }, { server });
+    });
+  }
+
+  it('that comes late reaches a widget that moved meanwhile, and the preset that was pressed', async () => {
+    let heard;
+    const asked = new Promise((resolve) => (heard = resolve));
+    const server = { answer: (path, response) => path.endsWith('.wasm') && (heard(response), true) };
+    const [{ id: preset }] = h.schema.find(({ id }) => id === 'w16.2').presets;
+    await on(`${ONE}<div id="there"></div>`, async (tab) => {
+      const response = await asked;
+      await tab.evaluate((button) => {
+        const widget = document.querySelector('slam-widget');
+        widget.shadowRoot.querySelector(`[data-control="${button}"]`).click();
+        document.querySelector('#there').append(widget);
+      }, preset);
+      response.setHeader('Content-Type', 'application/wasm');
+      createReadStream(join(h.DIST, WASM)).pipe(response);
+      await h.ready(tab);
+      assert.equal(await failure(tab).count(), 0);
+      const [shown, expected] = await tab.evaluate(async (button) => {
+        const fresh = document.createElement('slam-widget');
+        fresh.name = 'w16.2';
+        await fresh.press(button);
+        return [document.querySelector('slam-widget').value, fresh.value];
+      }, preset);
+      assert.deepEqual(shown, expected);
+    }, { server, options: { stepMs: FROZEN_MS } });
+  });
+
+  it('of another build is told in a sentence, and fetched afresh', async () => {
+    // It has all that the glue links to, and lacks one of the names that the glue calls.
+    const bytes = readFileSync(join(h.DIST, WASM));
+    const other = Buffer.from(bytes.toString('latin1').replace('widget_new', 'widget_old'), 'latin1');
+    assert.notDeepEqual(other, bytes);
+    let asked = 0;
+    const server = {
+      answer: (path, response) => {
+        if (!path.endsWith('.wasm') || (asked += 1) > 1) return false;
+        response.setHeader('Content-Type', 'application/wasm');
+        response.end(other);
+        return true;
+      },
+    };
+    await on(ONE, async (tab) => {
+      await fallsBack(tab, /does not fit the rest of the page/);
+      await tab.getByRole('button', { name: 'Try again' }).click();
+      await h.ready(tab);
+      assert.equal(asked, 2);
+    }, { server, quiet: false });
+  });
+
   it('that is another program runs once "Try again" fetches the right one', async () => {
     // A module without a function: it compiles, and no glue fits it.
     const empty = Buffer.from([0, 97, 115, 109, 1, 0, 0, 0]);
@@ -190,7 +251,7 @@ describe('a wasm file', () => {
       finish();
       await h.ready(tab);
       assert.equal(await progress(), 0);
-    }, { server: answerWasm(answer) });
+    }, { server: answerWasm(answer), options: { stepMs: FROZEN_MS } });
   });
 });
 

@@ -4,12 +4,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { it } from 'node:test';
-import { fileURLToPath } from 'node:url';
-
-const ROOT = fileURLToPath(new URL('../../', import.meta.url));
-const { createGlue } = await import('../../web/pkg/glue.js');
-const wasm = createGlue({ request: () => 0, cancel: () => {}, deviceSize: () => [] });
-wasm.initSync({ module: readFileSync(`${ROOT}web/pkg/slam_web_bg.wasm`) });
+import { ROOT, afterEachPreset, schema, wasm } from './module.mjs';
 
 /** The characters of the font's own table (format 4 or 12 of `cmap`). */
 function charactersOf(file) {
@@ -39,11 +34,10 @@ function charactersOf(file) {
 it('the font has every character of every widget', () => {
   const font = charactersOf(`${ROOT}web/fonts/dejavu-sans-condensed-subset.ttf`);
   assert.ok(font.has('a'.codePointAt(0)) && font.has('χ'.codePointAt(0)) && !font.has('漢'.codePointAt(0)));
-  const schema = JSON.parse(wasm.widgetSchemas());
   for (const { id } of schema) {
     const widget = new wasm.Widget(id);
     const pictureText = [...widget.picture(900, 'light').matchAll(/<text[^>]*>([^<]*)/g)].map(([, text]) => text);
-    const shown = [JSON.stringify(schema.find((found) => found.id === id)), wasm.afterEachPreset(id), ...pictureText];
+    const shown = [JSON.stringify(schema.find((found) => found.id === id)), afterEachPreset(id), ...pictureText];
     const missing = new Set([...shown.join('')].filter((char) => char >= ' ' && !font.has(char.codePointAt(0))));
     assert.deepEqual([...missing], [], `${id} shows characters that the font lacks`);
     widget.free();

@@ -2,16 +2,9 @@
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, it } from 'node:test';
-import { fileURLToPath } from 'node:url';
-
-const ROOT = fileURLToPath(new URL('../../', import.meta.url));
-const { createGlue } = await import('../../web/pkg/glue.js');
-const wasm = createGlue({ request: () => 0, cancel: () => {}, deviceSize: () => [] });
-wasm.initSync({ module: readFileSync(`${ROOT}web/pkg/slam_web_bg.wasm`) });
-const schema = JSON.parse(wasm.widgetSchemas());
+import { ROOT, afterEachPreset, schema, wasm } from './module.mjs';
 
 /**
  * The output of a native program of the workspace. The suite says in which folder it has compiled
@@ -42,7 +35,7 @@ describe('a lap', () => {
 describe('every widget', () => {
   for (const { id } of schema) {
     it(`${id} says the same after each preset`, () => {
-      const lines = wasm.afterEachPreset(id).split('\n');
+      const lines = afterEachPreset(id).split('\n');
       const expected = native('states', id).split('\n');
       assert.equal(lines.length, expected.length);
       lines.forEach((line, at) => assert.equal(line, expected[at]));

@@ -2,16 +2,9 @@
 // of the core, for every parameter of every widget.
 
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
 import { it } from 'node:test';
-import { fileURLToPath } from 'node:url';
 import * as esbuild from '../../web/node_modules/esbuild/lib/main.js';
-
-const ROOT = fileURLToPath(new URL('../../', import.meta.url));
-const { createGlue } = await import('../../web/pkg/glue.js');
-const wasm = createGlue({ request: () => 0, cancel: () => {}, deviceSize: () => [] });
-wasm.initSync({ module: readFileSync(`${ROOT}web/pkg/slam_web_bg.wasm`) });
-const schema = JSON.parse(wasm.widgetSchemas());
+import { ROOT, schema, wasm } from './module.mjs';
 
 async function load(file) {
   const { outputFiles } = await esbuild.build({
