@@ -2,8 +2,9 @@
 //!
 //! Supernode by supernode, children first: its panel and the square of rows below (the update)
 //! start from the blocks of H and the updates of its children; the panel's columns are
-//! factorized; what they take from the square waits on a stack for the parent. All arithmetic
-//! runs on dense, contiguous memory.
+//! factorized; what they take from the square waits on a stack for the parent. There are two stacks:
+//! an update is formed on the one that its children's are not on, and stays where it is. All
+//! arithmetic runs on dense, contiguous memory.
 //!
 //! Source: Liu, "The multifrontal method for sparse matrix solution: theory and practice", 1992.
 
@@ -24,15 +25,15 @@ pub struct BlockCholesky {
     values: Vec<f64>,
     /// One over every diagonal entry of L.
     reciprocal: Vec<f64>,
-    /// Updates that wait for their parents.
-    stack: Vec<f64>,
-    /// Where on the stack they are, the latest last.
+    /// Updates that wait for their parents; see [`Supernode::stack`].
+    stacks: [Vec<f64>; 2],
+    /// Where on their stacks they are, the latest last.
     waiting: Vec<Waiting>,
     /// Right-hand side of one front.
     local: Vec<f64>,
 }
 
-/// The update of a supernode on the stack.
+/// The update of a supernode on its stack.
 #[derive(Clone, Copy, Debug)]
 struct Waiting {
     supernode: u32,
@@ -49,7 +50,7 @@ impl BlockCholesky {
         Self {
             values: vec![0.0; supernodes.value_count],
             reciprocal: vec![0.0; 3 * structure.node_count()],
-            stack: vec![0.0; supernodes.stack_size],
+            stacks: supernodes.stack_size.map(|size| vec![0.0; size]),
             waiting: Vec::new(),
             local: vec![0.0; 3 * tallest.unwrap_or(0)],
             supernodes,
@@ -92,14 +93,18 @@ impl BlockCholesky {
         damping: f64,
     ) -> Result<(), OptimizeError> {
         self.waiting.clear();
-        (0..self.supernodes.list.len())
-            .try_for_each(|number| self.factorize_front(number, structure, equations, damping))
+        let mut tops = [0; 2];
+        (0..self.supernodes.list.len()).try_for_each(|number| {
+            self.factorize_front(number, &mut tops, structure, equations, damping)
+        })
     }
 
-    /// Factorizes one supernode and leaves its update on the stack in place of its children's.
+    /// Factorizes one supernode, takes its children's updates off their stack and leaves its own on
+    /// the other; `tops` is how high the two are filled.
     fn factorize_front(
         &mut self,
         number: usize,
+        tops: &mut [usize; 2],
         structure: &Structure,
         equations: &NormalEquations,
         damping: f64,
@@ -108,8 +113,9 @@ impl BlockCholesky {
         let supernode = list[number];
         // Children come right before their parent: theirs are the last updates that wait.
         let first_child = self.waiting.len() - supernode.child_count as usize;
-        let top = self.waiting.last().map_or(0, |last| last.end);
-        let (below, above) = self.stack.split_at_mut(top);
+        let own = supernode.stack as usize;
+        let [even, odd] = &mut self.stacks;
+        let (below, above) = if own == 0 { (odd, even) } else { (even, odd) };
         let children = self.waiting[first_child..].iter().map(|waiting| {
             let child = &list[waiting.supernode as usize];
             ChildUpdate {
@@ -139,23 +145,23 @@ impl BlockCholesky {
             }
         })?;
         let size = update_size(&supernode);
-        let update = &mut above[..size];
+        let update = &mut above[tops[own]..tops[own] + size];
         form_update(update, panel, &supernode);
         for child in children {
             child.add_to_update(update, &supernode);
         }
 
-        let start = self
-            .waiting
-            .get(first_child)
-            .map_or(top, |child| child.start);
+        if let Some(child) = self.waiting.get(first_child) {
+            tops[1 - own] = child.start;
+        }
         self.waiting.truncate(first_child);
         if supernode.parent != NO_PARENT {
-            self.stack.copy_within(top..top + size, start);
+            let start = tops[own];
+            tops[own] += size;
             self.waiting.push(Waiting {
                 supernode: number as u32,
                 start,
-                end: start + size,
+                end: tops[own],
             });
         }
         Ok(())

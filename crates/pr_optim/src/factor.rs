@@ -68,6 +68,15 @@ impl PreparedPose {
             rotation: pose.rotation(),
         }
     }
+
+    /// `T ⊞ δ = T exp(δ)`, the same bits as [`SE2::boxplus`].
+    #[inline]
+    #[must_use]
+    pub fn boxplus(&self, delta: &Vector3<f64>) -> SE2 {
+        let motion = SE2::exp(delta);
+        let (x, y) = self.rotation.rotate(motion.x(), motion.y());
+        SE2::new(x + self.x, y + self.y, self.theta + motion.theta())
+    }
 }
 
 /// What one factor adds to the normal equations `H δ = −g`.

@@ -15,7 +15,7 @@ use pr_geom::{SE2, math};
 
 use crate::damping::{DAMPING_LIMIT, Damping};
 use crate::error::OptimizeError;
-use crate::factor::JacobianModel;
+use crate::factor::{JacobianModel, PreparedPose};
 use crate::kernel::RobustKernel;
 use crate::linear::{Factorization, LinearSolver};
 use crate::marginals::JointCovariance;
@@ -99,7 +99,7 @@ impl Optimizer {
             predicted_decrease += damping * self.equations.diagonal_square(&self.delta);
         }
         let largest_step = move_poses(
-            problem.poses(),
+            self.equations.prepared_poses(),
             linear.structure(),
             &self.delta,
             &mut self.trial,
@@ -289,7 +289,12 @@ fn analysed<'a>(
 }
 
 /// Writes `T exp(δ)` of every pose to `moved`; returns the largest `‖(v_x, v_y)‖ + |ω|`.
-fn move_poses(poses: &[SE2], structure: &Structure, delta: &[f64], moved: &mut Vec<SE2>) -> f64 {
+fn move_poses(
+    poses: &[PreparedPose],
+    structure: &Structure,
+    delta: &[f64],
+    moved: &mut Vec<SE2>,
+) -> f64 {
     let mut largest: f64 = 0.0;
     moved.clear();
     for (pose, &position) in poses.iter().zip(&structure.position_of) {

@@ -27,6 +27,8 @@ pub struct Supernode {
     pub parent: u32,
     /// How many supernodes have this one as their parent.
     pub child_count: u32,
+    /// Which of the two stacks its update waits on: the one on which its children's do not.
+    pub stack: u8,
 }
 
 impl Supernode {
@@ -68,8 +70,8 @@ pub struct Supernodes {
     pub row_of_slot: Vec<u32>,
     /// Number of values of all panels.
     pub value_count: usize,
-    /// Number of values of all updates that wait at the same time, at most.
-    pub stack_size: usize,
+    /// Number of values of all updates that wait at the same time, at most, on each stack.
+    pub stack_size: [usize; 2],
 }
 
 /// A front in which two block columns meet.
@@ -81,10 +83,17 @@ pub struct SharedFront {
     pub rows: [usize; 2],
 }
 
-/// A supernode under construction. Its rows are owned: merging throws the child's away.
+/// A supernode under construction.
 struct Draft {
     first: u32,
     width: u32,
+    /// Where its rows below the run are among all.
+    rows: core::ops::Range<usize>,
+}
+
+/// All of them, with their rows one after the other; merging leaves a child's unused.
+struct Drafts {
+    list: Vec<Draft>,
     rows: Vec<u32>,
 }
 
@@ -94,7 +103,7 @@ impl Supernodes {
     pub fn new(structure: &Structure) -> Self {
         let parent = elimination_tree(structure);
         let drafts = merge(find_fundamental(structure, &parent));
-        let mut supernodes = Self::lay_out(drafts, structure.node_count());
+        let mut supernodes = Self::lay_out(&drafts, structure.node_count());
         supernodes.locate_rows(structure);
         supernodes
     }
@@ -137,33 +146,36 @@ impl Supernodes {
     }
 
     /// Stores the drafts one after the other, and finds every parent.
-    fn lay_out(drafts: Vec<Draft>, nodes: usize) -> Self {
+    fn lay_out(drafts: &Drafts, nodes: usize) -> Self {
         let mut supernode_of = vec![NO_PARENT; nodes];
-        for (number, draft) in (0_u32..).zip(&drafts) {
+        for (number, draft) in (0_u32..).zip(&drafts.list) {
             supernode_of[draft.first as usize..(draft.first + draft.width) as usize].fill(number);
         }
         let mut supernodes = Self::default();
-        for draft in drafts {
+        for draft in &drafts.list {
+            let rows = &drafts.rows[draft.rows.clone()];
             let supernode = Supernode {
                 first: draft.first,
                 width: draft.width,
                 rows_start: supernodes.rows.len() as u32,
-                rows_len: draft.rows.len() as u32,
+                rows_len: rows.len() as u32,
                 panel_start: supernodes.value_count,
-                parent: draft
-                    .rows
+                parent: rows
                     .first()
                     .map_or(NO_PARENT, |&row| supernode_of[row as usize]),
                 child_count: 0,
+                stack: 0,
             };
             supernodes.value_count = supernode.panel().end;
-            supernodes.rows.extend(draft.rows);
+            supernodes.rows.extend_from_slice(rows);
             supernodes.list.push(supernode);
         }
-        for number in 0..supernodes.list.len() {
+        for number in (0..supernodes.list.len()).rev() {
             let parent = supernodes.list[number].parent;
             if parent != NO_PARENT {
                 supernodes.list[parent as usize].child_count += 1;
+                // Parents come later, so theirs is known.
+                supernodes.list[number].stack = 1 - supernodes.list[parent as usize].stack;
             }
         }
         supernodes
@@ -172,15 +184,11 @@ impl Supernodes {
     /// Finds the place of every row in the parent's panel, and of every slot in its own.
     fn locate_rows(&mut self, structure: &Structure) {
         let mut place = vec![0_u32; structure.node_count()];
-        let mut children = vec![Vec::new(); self.list.len()];
-        for (number, supernode) in self.list.iter().enumerate() {
-            if supernode.parent != NO_PARENT {
-                children[supernode.parent as usize].push(number);
-            }
-        }
         self.row_in_parent = vec![0; self.rows.len()];
         self.row_of_slot = vec![0; structure.row.len()];
-        let mut waiting = 0;
+        // Children come right before their parent: theirs are the last that wait.
+        let mut waiting: Vec<usize> = Vec::new();
+        let mut height = [0; 2];
         for (number, supernode) in self.list.iter().enumerate() {
             let below = self.rows[supernode.rows()].iter().copied();
             let rows = (supernode.first..supernode.first + supernode.width).chain(below);
@@ -192,15 +200,21 @@ impl Supernodes {
                     self.row_of_slot[slot] = place[structure.row[slot] as usize];
                 }
             }
-            let own = update_size(supernode);
-            self.stack_size = self.stack_size.max(waiting + own);
-            waiting += own;
-            for &child in &children[number] {
+            let stack = supernode.stack as usize;
+            height[stack] += update_size(supernode);
+            self.stack_size[stack] = self.stack_size[stack].max(height[stack]);
+            let first_child = waiting.len() - supernode.child_count as usize;
+            for child in waiting.drain(first_child..) {
                 let child = &self.list[child];
                 for entry in child.rows() {
                     self.row_in_parent[entry] = place[self.rows[entry] as usize];
                 }
-                waiting -= update_size(child);
+                height[1 - stack] -= update_size(child);
+            }
+            if supernode.parent == NO_PARENT {
+                height[stack] -= update_size(supernode);
+            } else {
+                waiting.push(number);
             }
         }
     }
@@ -213,61 +227,80 @@ pub fn update_size(supernode: &Supernode) -> usize {
 }
 
 /// Maximal runs of columns with exactly the same rows, each the only child of the next.
-fn find_fundamental(structure: &Structure, parent: &[u32]) -> Vec<Draft> {
+fn find_fundamental(structure: &Structure, parent: &[u32]) -> Drafts {
     let nodes = structure.node_count();
-    let mut drafts: Vec<Draft> = Vec::new();
-    // Rows of a column wait here until its parent takes them.
-    let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); nodes];
+    let mut list: Vec<Draft> = Vec::new();
+    let mut rows: Vec<u32> = Vec::new();
+    // The drafts that wait for a column to take their rows, as a chain from the last to the first.
+    let mut last_waiting = vec![NO_PARENT; nodes];
+    let mut waiting_before: Vec<u32> = Vec::new();
     let mut mark = vec![NO_PARENT; nodes];
     for column in 0..nodes {
+        let start = rows.len();
         mark[column] = column as u32;
-        let mut rows: Vec<u32> = Vec::new();
-        let mut add = |row: u32| {
+        let mut add = |rows: &mut Vec<u32>, row: u32| {
             if mark[row as usize] != column as u32 {
                 mark[row as usize] = column as u32;
                 rows.push(row);
             }
         };
-        structure.rows_of(column).iter().copied().for_each(&mut add);
-        let children = core::mem::take(&mut waiting[column]);
-        for &child in &children {
-            drafts[child].rows.iter().copied().for_each(&mut add);
+        for &row in structure.rows_of(column) {
+            add(&mut rows, row);
         }
-        let continues = match (children.as_slice(), drafts.last()) {
-            (&[only], Some(last)) => only + 1 == drafts.len() && last.rows.len() == rows.len() + 1,
-            _ => false,
-        };
-        if continues {
-            let last = drafts.last_mut().expect("it continues a supernode");
-            last.width += 1;
-            last.rows.retain(|&row| row != column as u32);
-        } else {
-            rows.sort_unstable();
-            drafts.push(Draft {
-                first: column as u32,
-                width: 1,
-                rows,
-            });
+        let newest = last_waiting[column];
+        let mut child = newest;
+        while child != NO_PARENT {
+            for entry in list[child as usize].rows.clone() {
+                let row = rows[entry];
+                add(&mut rows, row);
+            }
+            child = waiting_before[child as usize];
+        }
+        let is_only = newest != NO_PARENT && waiting_before[newest as usize] == NO_PARENT;
+        let height = rows.len() - start;
+        match list.last_mut() {
+            Some(last)
+                if is_only
+                    && newest as usize + 1 == waiting_before.len()
+                    && last.rows.len() == height + 1 =>
+            {
+                // The column is the first of the rows below it: what is left are the others.
+                rows.truncate(start);
+                last.width += 1;
+                last.rows.start += 1;
+            }
+            _ => {
+                rows[start..].sort_unstable();
+                list.push(Draft {
+                    first: column as u32,
+                    width: 1,
+                    rows: start..rows.len(),
+                });
+                waiting_before.push(NO_PARENT);
+            }
         }
         if parent[column] != NO_PARENT {
-            waiting[parent[column] as usize].push(drafts.len() - 1);
+            let slot = &mut last_waiting[parent[column] as usize];
+            let number = list.len() - 1;
+            waiting_before[number] = *slot;
+            *slot = number as u32;
         }
     }
-    drafts
+    Drafts { list, rows }
 }
 
 /// Merges a supernode into the one after it where that is its parent and the work falls.
-fn merge(drafts: Vec<Draft>) -> Vec<Draft> {
-    let mut merged: Vec<Draft> = Vec::with_capacity(drafts.len());
-    for mut draft in drafts {
+fn merge(drafts: Drafts) -> Drafts {
+    let Drafts { list, rows } = drafts;
+    let mut merged: Vec<Draft> = Vec::with_capacity(list.len());
+    for mut draft in list {
         while let Some(child) = merged.last() {
-            let is_child = child
-                .rows
+            let is_child = rows[child.rows.clone()]
                 .first()
                 .is_some_and(|&row| (draft.first..draft.first + draft.width).contains(&row));
-            let (rows, width) = (draft.rows.len() as u32, draft.width + child.width);
-            let apart = work(child.width, child.rows.len() as u32) + work(draft.width, rows);
-            if !is_child || work(width, rows) > apart {
+            let (height, width) = (draft.rows.len() as u32, draft.width + child.width);
+            let apart = work(child.width, child.rows.len() as u32) + work(draft.width, height);
+            if !is_child || work(width, height) > apart {
                 break;
             }
             draft.first = child.first;
@@ -276,7 +309,7 @@ fn merge(drafts: Vec<Draft>) -> Vec<Draft> {
         }
         merged.push(draft);
     }
-    merged
+    Drafts { list: merged, rows }
 }
 
 /// Estimated work of a front with `width` columns and `rows` rows below, in block products.
@@ -288,9 +321,9 @@ fn work(width: u32, rows: u32) -> u64 {
     // 64 bits: the products of two thousand columns over two thousand rows pass 2³².
     let (width, rows) = (u64::from(width), u64::from(rows));
     let update_blocks = rows * (rows + 1) / 2;
-    let panel_products: u64 = (0..width)
-        .map(|done| (done + 1) * (width - done + rows))
-        .sum();
+    // Σ (k + 1)(width − k + rows) over the columns k.
+    let columns = width * (width + 1) / 2;
+    let panel_products = columns * (width + 2) / 3 + columns * rows;
     PER_FRONT + panel_products + update_blocks * (width + PER_UPDATE_BLOCK)
 }
 

@@ -68,10 +68,25 @@ impl NormalEquations {
         problem.cost_and_chi2_at(&self.poses, kernel).0
     }
 
-    /// Fills the workspace of poses with their sines and cosines.
+    /// Fills the workspace of poses with their sines and cosines; headings that are there already
+    /// keep theirs.
     fn prepare(&mut self, poses: &[SE2]) {
-        self.poses.clear();
-        self.poses.extend(poses.iter().map(PreparedPose::new));
+        let kept = self.poses.len().min(poses.len());
+        self.poses.truncate(kept);
+        for (prepared, pose) in self.poses.iter_mut().zip(poses) {
+            if prepared.theta.to_bits() == pose.theta().to_bits() {
+                (prepared.x, prepared.y) = (pose.x(), pose.y());
+            } else {
+                *prepared = PreparedPose::new(pose);
+            }
+        }
+        self.poses
+            .extend(poses[kept..].iter().map(PreparedPose::new));
+    }
+
+    /// The poses of the last assembly or cost, with their sines and cosines.
+    pub(crate) fn prepared_poses(&self) -> &[PreparedPose] {
+        &self.poses
     }
 
     /// `vᵀDv` with the diagonal entries D of H, `vector` in elimination order.

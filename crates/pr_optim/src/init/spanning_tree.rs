@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use pr_geom::SE2;
 
+use crate::factor::Between;
 use crate::problem::Problem;
 
 /// The pose of every node along a breadth-first tree of measurements from the fixed nodes.
@@ -17,17 +18,23 @@ pub fn spanning_tree(problem: &Problem) -> Vec<SE2> {
     let mut queue: VecDeque<usize> = (0..poses.len()).filter(|&node| reached[node]).collect();
     while let Some(node) = queue.pop_front() {
         for &factor in neighbours.of(node) {
-            let factor = &problem.factors()[factor as usize];
-            let (next, motion) = if factor.from == node {
-                (factor.to, factor.measurement)
-            } else {
-                (factor.from, factor.measurement.inverse())
-            };
-            if !reached[next] {
-                reached[next] = true;
-                poses[next] = poses[node] * motion;
-                queue.push_back(next);
+            let Between {
+                from,
+                to,
+                measurement,
+                ..
+            } = &problem.factors()[factor as usize];
+            let next = if *from == node { *to } else { *from };
+            if reached[next] {
+                continue;
             }
+            reached[next] = true;
+            poses[next] = if *from == node {
+                poses[node] * *measurement
+            } else {
+                poses[node] * measurement.inverse()
+            };
+            queue.push_back(next);
         }
     }
     poses
@@ -75,7 +82,6 @@ impl Neighbours {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::factor::Between;
     use nalgebra::Matrix3;
 
     #[test]

@@ -34,8 +34,8 @@ fn eliminating_a_node_ties_its_neighbours_together() {
     // A star with its centre first: all others become one dense block.
     let structure = graph(4, &[(0, 1), (0, 2), (0, 3)]);
     let drafts = find_fundamental(&structure, &elimination_tree(&structure));
-    assert_eq!(drafts.len(), 1);
-    assert_eq!(drafts[0].width, 4);
+    assert_eq!(drafts.list.len(), 1);
+    assert_eq!(drafts.list[0].width, 4);
 }
 
 #[test]
@@ -53,7 +53,7 @@ fn rows_are_placed_in_the_panel_of_the_parent() {
     // Two arms, 0–1 and 2–3, that meet in 4.
     let structure = graph(5, &[(0, 1), (1, 4), (2, 3), (3, 4)]);
     let drafts = find_fundamental(&structure, &elimination_tree(&structure));
-    let mut supernodes = Supernodes::lay_out(drafts, 5);
+    let mut supernodes = Supernodes::lay_out(&drafts, 5);
     supernodes.locate_rows(&structure);
     let shapes: Vec<_> = supernodes
         .list
@@ -79,7 +79,7 @@ fn two_columns_share_a_front_where_the_factor_has_their_block() {
     // Two arms, 0–1 and 2–3, that meet in 4.
     let structure = graph(5, &[(0, 1), (1, 4), (2, 3), (3, 4)]);
     let drafts = find_fundamental(&structure, &elimination_tree(&structure));
-    let supernodes = Supernodes::lay_out(drafts, 5);
+    let supernodes = Supernodes::lay_out(&drafts, 5);
     let shared = |a, b| supernodes.shared_front([a, b]);
     let front = |supernode, rows| Some(SharedFront { supernode, rows });
     assert_eq!(shared(1, 4), front(1, [0, 1]));
