@@ -44,5 +44,5 @@ pub use marginals::JointCovariance;
 pub use optimizer::Optimizer;
 pub use problem::Problem;
 pub use report::{Report, StepReport, StopReason};
-pub use session::{Outcome, SUSPICIOUS_TURN_RAD, Session, Start};
+pub use session::{Outcome, SUSPICIOUS_TURN_RAD, Session, Start, Trial};
 pub use settings::{Method, Settings};

@@ -81,7 +81,12 @@ impl Optimizer {
     /// # Errors
     /// Where the normal equations are not positive definite or not finite; the poses stay.
     pub fn step(&mut self, problem: &mut Problem) -> Result<StepReport, OptimizeError> {
-        let damping = self.damping();
+        self.linearize(problem)?;
+        self.solve_linearized(problem)
+    }
+
+    /// The first half of a step: adds up the normal equations, and so knows the cost.
+    fn linearize(&mut self, problem: &Problem) -> Result<f64, OptimizeError> {
         let linear = analysed(&mut self.linear, problem, self.settings.factorization);
         let settings = &self.settings;
         self.equations.assemble(
@@ -96,6 +101,18 @@ impl Optimizer {
         if !(cost.is_finite() && chi2.is_finite()) {
             return Err(OptimizeError::NotFinite);
         }
+        Ok(cost)
+    }
+
+    /// The second half: solves the normal equations that were added up at the present poses, and moves.
+    fn solve_linearized(&mut self, problem: &mut Problem) -> Result<StepReport, OptimizeError> {
+        let damping = self.damping();
+        let settings = &self.settings;
+        let (cost, chi2) = (self.equations.cost, self.equations.chi2);
+        let linear = self
+            .linear
+            .as_mut()
+            .expect("the graph was analysed for the equations");
         linear.factorize(&self.equations, damping)?;
         self.delta.clear();
         self.delta
@@ -183,11 +200,29 @@ impl Optimizer {
         problem: &mut Problem,
         steps: &mut Vec<StepReport>,
     ) -> Option<StopReason> {
+        self.advance_unless(problem, steps, |_, _| None)
+    }
+
+    /// The same, unless `give_up` has a reason to stop: it sees the steps so far, and the cost that
+    /// the last of them led to, before a system is solved there.
+    pub(crate) fn advance_unless(
+        &mut self,
+        problem: &mut Problem,
+        steps: &mut Vec<StepReport>,
+        give_up: impl FnOnce(&[StepReport], f64) -> Option<StopReason>,
+    ) -> Option<StopReason> {
         let limit = self.settings.max_iterations;
         if steps.len() >= limit {
             return Some(StopReason::IterationLimit { limit });
         }
-        match self.step(problem) {
+        let step = match self.linearize(problem) {
+            Ok(cost) => match give_up(steps, cost) {
+                Some(stop) => return Some(stop),
+                None => self.solve_linearized(problem),
+            },
+            Err(error) => Err(error),
+        };
+        match step {
             Ok(step) => {
                 steps.push(step);
                 self.stop_after(&step)

@@ -28,6 +28,22 @@ pub enum StopReason {
         /// Cost after it.
         after: f64,
     },
+    /// The first step won so much less than it promised that the start is not trusted: a
+    /// [`Session`](crate::Session) looks for another.
+    PromiseBroken {
+        /// Decrease of the cost that the linear model promised.
+        promised: f64,
+        /// Decrease of the cost.
+        won: f64,
+    },
+    /// A step that kept its promise showed that this attempt of a [`Session`](crate::Session) ends
+    /// no lower than one before.
+    Hopeless {
+        /// Cost at the minimum of the linear model.
+        reachable: f64,
+        /// Cost at which an attempt before converged.
+        best: f64,
+    },
     /// The iterations ran out first.
     IterationLimit {
         /// How many were allowed.
@@ -67,6 +83,18 @@ impl core::fmt::Display for StopReason {
             } => write!(f, "relative decrease {decrease:.2e} below {tolerance:.2e}"),
             Self::CostRose { before, after } => {
                 write!(f, "the cost rose from {before:.6e} to {after:.6e}")
+            }
+            Self::PromiseBroken { promised, won } => {
+                write!(
+                    f,
+                    "the first step won {won:.6e} of the {promised:.6e} it promised"
+                )
+            }
+            Self::Hopeless { reachable, best } => {
+                write!(
+                    f,
+                    "it leads to {reachable:.6e} at best, {best:.6e} is found"
+                )
             }
             Self::IterationLimit { limit } => write!(f, "limit of {limit} iterations"),
             Self::DampingLimit { damping, limit } => {

@@ -1,21 +1,30 @@
 //! A solve from a first guess to the optimum: which guess, and what to do where it fails.
 //!
 //! Gauss–Newton finds the minimum in whose basin it starts. [`Start::Auto`] takes the better of
-//! two guesses that cost next to nothing, the poses as given and a spanning tree. Where the cost
-//! rises on the way, the steps do not converge, or a measurement ends up turned by more than
-//! [`SUSPICIOUS_TURN_RAD`], that basin is not trusted: the solve begins again from the chordal
-//! relaxation, and once more with damped steps where the result is not to be trusted either. The
-//! best of what converged is kept, unless it costs more than the poses as given: then the best of
-//! all. This is a rule of thumb, not a proof of a global optimum.
+//! two guesses that cost next to nothing, the poses as given and a spanning tree, and looks how its
+//! first step keeps its promise. Where that is broken, the cost rises on the way, the steps do not
+//! converge, or a measurement ends up turned by more than [`SUSPICIOUS_TURN_RAD`], that basin is not
+//! trusted: the solve begins again from the chordal relaxation, unless that costs more than what is
+//! reached. Where the result is not to be trusted either, damped steps follow from there, if full
+//! ones climbed or did not converge. An attempt that leads to no lower cost than one before is given
+//! up on the way. The best of what converged is kept, unless it costs more than the poses as given:
+//! then the best of all. This is a rule of thumb, not a proof of a global optimum.
+//! [`Outcome::tried`] lists what was tried.
 //!
 //! A robust kernel has many more false minima: from a poor guess it switches right measurements off.
 //! With one, [`Start::Auto`] goes on to solve the same graph without it, and from there once more
 //! with it: plain, and with damped steps where the cost rises. The lower robust cost is kept.
 
+mod attempt;
+mod guess;
+mod watch;
+
 use pr_geom::SE2;
 
+pub use self::attempt::Trial;
+use self::attempt::{Attempt, best_of};
+use self::watch::Watch;
 use crate::error::OptimizeError;
-use crate::init::{chordal, spanning_tree};
 use crate::kernel::RobustKernel;
 use crate::optimizer::Optimizer;
 use crate::problem::Problem;
@@ -57,14 +66,8 @@ pub struct Outcome {
     pub start: Start,
     /// Linear systems solved by Gauss–Newton or Levenberg–Marquardt in all attempts.
     pub total_iterations: usize,
-}
-
-/// One attempt that ended.
-#[derive(Clone, Debug)]
-struct Attempt {
-    report: Report,
-    start: Start,
-    poses: Vec<SE2>,
+    /// Every start that was looked at, in this order.
+    pub tried: Vec<Trial>,
 }
 
 /// Which cost is lowered, and from where. Without a kernel there is only the first round.
@@ -76,6 +79,17 @@ enum Round {
     LeastSquares,
     /// The caller's kernel, from the least-squares solution.
     Refine,
+}
+
+/// How far a round has got.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// From what costs next to nothing, or where the caller wants.
+    First,
+    /// From the chordal relaxation, or from the first guess again where that costs less.
+    Second,
+    /// With damped steps.
+    Damped,
 }
 
 /// A solve that goes on step by step.
@@ -97,8 +111,10 @@ pub struct Session<'a> {
     /// Where the refinement starts: the least-squares solution.
     origin: Vec<SE2>,
     round: Round,
+    stage: Stage,
     automatic: bool,
     start: Start,
+    tried: Vec<Trial>,
     steps: Vec<StepReport>,
     last_step: Option<StepReport>,
     /// The attempts of this round that have ended.
@@ -129,10 +145,12 @@ impl<'a> Session<'a> {
             given_cost: None,
             origin: Vec::new(),
             round: Round::Guess,
+            stage: Stage::First,
             automatic,
             optimizer,
             problem,
             start,
+            tried: Vec::new(),
             steps: Vec::new(),
             last_step: None,
             ended: Vec::new(),
@@ -154,9 +172,13 @@ impl<'a> Session<'a> {
             return false;
         }
         let done = self.steps.len();
-        let stop = self.optimizer.advance(self.problem, &mut self.steps);
+        let watch = self.watch();
+        let stop = self
+            .optimizer
+            .advance_unless(self.problem, &mut self.steps, |steps, cost| {
+                watch.judge(steps, cost)
+            });
         self.total_iterations += self.steps.len() - done;
-        let stop = stop.or_else(|| self.watch());
         self.last_step = self.steps.last().copied();
         if let Some(stop) = stop {
             self.end_attempt(stop);
@@ -212,70 +234,29 @@ impl<'a> Session<'a> {
             report: best.report,
             start: best.start,
             total_iterations: self.total_iterations,
+            tried: core::mem::take(&mut self.tried),
         }
     }
 
-    /// Takes the better of the given poses and the spanning tree.
-    fn start_cheaply(&mut self) {
-        self.steps.clear();
-        self.optimizer.restart();
-        let tree = spanning_tree(self.problem);
-        let given = self.optimizer.cost_at(self.problem, self.problem.poses());
-        if self.round == Round::Guess {
-            self.given_cost = Some(given);
+    /// What the attempt that goes on is given up for.
+    fn watch(&self) -> Watch {
+        let settings = &self.optimizer.settings;
+        let is_plain = settings.kernel == RobustKernel::None;
+        if !self.automatic {
+            return Watch::Nothing;
         }
-        let of_tree = self.optimizer.cost_at(self.problem, &tree);
-        if of_tree < given || (given.is_nan() && of_tree.is_finite()) {
-            self.problem.poses_mut().copy_from_slice(&tree);
-            self.start = Start::SpanningTree;
-        } else {
-            self.start = Start::Given;
+        if self.stage == Stage::First {
+            return Watch::Climbs {
+                and_promise: is_plain && settings.method == Method::GaussNewton,
+            };
         }
-    }
-
-    fn start_from(&mut self, start: Start) -> Result<(), OptimizeError> {
-        match start {
-            Start::Auto | Start::Given => {}
-            Start::SpanningTree => {
-                let poses = spanning_tree(self.problem);
-                self.move_to(&poses)?;
-            }
-            Start::Chordal => {
-                let linear = self.optimizer.linear_for(self.problem);
-                let poses = chordal(self.problem, linear)?;
-                self.move_to(&poses)?;
-            }
-            Start::LeastSquares => self.problem.poses_mut().copy_from_slice(&self.origin),
-        }
-        self.start = start;
-        self.steps.clear();
-        self.optimizer.restart();
-        Ok(())
-    }
-
-    /// Moves to a guess whose cost is finite.
-    fn move_to(&mut self, guess: &[SE2]) -> Result<(), OptimizeError> {
-        if !self.optimizer.cost_at(self.problem, guess).is_finite() {
-            return Err(OptimizeError::NotFinite);
-        }
-        self.problem.poses_mut().copy_from_slice(guess);
-        Ok(())
-    }
-
-    /// A reason to give up the first attempt of a round: its last step began at a higher cost than the one before.
-    fn watch(&self) -> Option<StopReason> {
-        match self.steps.as_slice() {
-            [.., before, last]
-                if self.automatic
-                    && self.ended.is_empty()
-                    && last.cost_before > before.cost_before =>
-            {
-                Some(StopReason::CostRose {
-                    before: before.cost_before,
-                    after: last.cost_before,
-                })
-            }
-            _ => None,
+        let converged = self.ended.iter().filter(|attempt| attempt.is_converged());
+        let best = converged
+            .map(|attempt| attempt.report.cost)
+            .min_by(f64::total_cmp);
+        match best {
+            Some(best) if is_plain => Watch::Beats(best),
+            _ => Watch::Nothing,
         }
     }
 
@@ -286,28 +267,56 @@ impl<'a> Session<'a> {
             start: self.start,
             poses: self.problem.poses().to_vec(),
         };
-        let trusted = is_converged(&attempt) && !self.is_twisted();
+        self.tried.push(Trial {
+            start: attempt.start,
+            method: self.optimizer.settings.method,
+            kernel: self.optimizer.settings.kernel,
+            iterations: attempt.report.iterations,
+            cost_initial: attempt.cost_initial(),
+            cost: attempt.report.cost,
+            stop: Some(stop),
+        });
+        let trusted = attempt.is_converged() && !self.is_twisted();
         self.ended.push(attempt);
         let goes_on =
             self.automatic && (!trusted && self.begin_next_attempt() || self.begin_next_round());
         self.finished = !goes_on;
     }
 
-    /// From the chordal relaxation; then the same with damped steps; then no more. A refinement goes
-    /// on from where it began, with damped steps.
+    /// From the chordal relaxation; then damped steps from there; then no more. A refinement goes on
+    /// from where it began, with damped steps.
     fn begin_next_attempt(&mut self) -> bool {
+        let may_damp = self.method == Method::GaussNewton;
         let damped = Method::LevenbergMarquardt {
             initial_damping: FALLBACK_DAMPING,
         };
-        let (start, method) = match (self.round, self.ended.len(), self.method) {
-            (Round::Refine, 1, Method::GaussNewton) => (Start::LeastSquares, damped),
-            (Round::Refine, ..) => return false,
-            (_, 1, method) => (Start::Chordal, method),
-            (_, 2, Method::GaussNewton) => (Start::Chordal, damped),
-            _ => return false,
-        };
-        self.optimizer.settings.method = method;
-        self.start_from(start).is_ok()
+        match (self.round, self.stage) {
+            (Round::Refine, Stage::First) if may_damp => {
+                self.stage = Stage::Damped;
+                self.optimizer.settings.method = damped;
+                self.start_from(Start::LeastSquares).is_ok()
+            }
+            (Round::Refine, _) => false,
+            (_, Stage::First) => {
+                self.stage = Stage::Second;
+                self.start_from(Start::Chordal).is_ok() && {
+                    self.keep_on_where_chordal_costs_more();
+                    true
+                }
+            }
+            (_, Stage::Second) if may_damp => {
+                let last = self.ended.last().expect("the second attempt has ended");
+                let (steady, start) = (last.is_converged() && !last.climbed(), last.start);
+                // Where full steps only descended to a minimum, damped ones lead there, too.
+                if steady && start == Start::Chordal {
+                    return false;
+                }
+                self.stage = Stage::Damped;
+                self.optimizer.settings.method = damped;
+                self.start_from(Start::Chordal).is_ok()
+            }
+            _ => false,
+        }
     }
 
     /// With a kernel: the least-squares solution, then the caller's cost from there; then no more.
@@ -328,6 +337,7 @@ impl<'a> Session<'a> {
 
     fn begin_least_squares(&mut self) {
         self.round = Round::LeastSquares;
+        self.stage = Stage::First;
         self.optimizer.settings.kernel = RobustKernel::None;
         self.optimizer.settings.method = self.method;
         self.problem.poses_mut().copy_from_slice(&self.given);
@@ -336,6 +346,7 @@ impl<'a> Session<'a> {
 
     fn begin_refinement(&mut self) {
         self.round = Round::Refine;
+        self.stage = Stage::First;
         self.optimizer.settings.kernel = self.kernel;
         self.optimizer.settings.method = self.method;
         self.origin = best_of(core::mem::take(&mut self.ended), None).poses;
@@ -365,27 +376,4 @@ impl Drop for Session<'_> {
         self.optimizer.settings.kernel = self.kernel;
         self.optimizer.restart();
     }
-}
-
-/// The lowest cost of what converged at no more than `bound`; of all where nothing did.
-fn best_of(attempts: Vec<Attempt>, bound: Option<f64>) -> Attempt {
-    let is_good = |attempt: &Attempt| {
-        let climbed = bound.is_some_and(|bound| attempt.report.cost > bound);
-        is_converged(attempt) && !climbed
-    };
-    let any_good = attempts.iter().any(is_good);
-    attempts
-        .into_iter()
-        .filter(|attempt| is_good(attempt) || !any_good)
-        .min_by(|a, b| rank(a).total_cmp(&rank(b)))
-        .expect("at least one attempt has ended")
-}
-
-/// The cost; a cost that is out of the range of numbers comes last, whatever the sign of its NaN.
-fn rank(attempt: &Attempt) -> f64 {
-    attempt.report.cost_or_nan().abs()
-}
-
-fn is_converged(attempt: &Attempt) -> bool {
-    attempt.report.stop.is_converged()
 }

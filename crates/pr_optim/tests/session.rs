@@ -67,6 +67,30 @@ fn automatic_start_leaves_the_false_minimum_of_a_ring_wound_twice() {
     }
 }
 
+/// A ring whose headings add up to so much too much, with poses that say nothing: the tree leaves
+/// all of it to one measurement.
+fn ring_opened_by(radians: f64) -> Problem {
+    let mut problem = ring_measured(1.0, (TAU + radians) / TAU);
+    problem.poses_mut().fill(SE2::identity());
+    problem
+}
+
+#[test]
+fn a_start_whose_first_step_keeps_its_promise_is_followed() {
+    let outcome = solve(&mut ring_opened_by(0.1), Start::Auto, RobustKernel::None);
+    assert_eq!(outcome.start, Start::SpanningTree);
+    let [given, tree] = outcome.tried.as_slice() else {
+        panic!("{:?}", outcome.tried);
+    };
+    assert_eq!((given.start, given.stop), (Start::Given, None));
+    assert_eq!(
+        (tree.start, tree.cost),
+        (Start::SpanningTree, outcome.report.cost)
+    );
+    assert!(tree.cost_initial < given.cost_initial);
+    assert_eq!(outcome.total_iterations, tree.iterations);
+}
+
 #[test]
 fn a_graph_without_any_contradiction_is_solved_at_once() {
     let mut problem = Problem::new();
@@ -175,12 +199,9 @@ fn a_session_dropped_during_the_fallback_gives_the_method_back() {
     assert_eq!(step.damping, 0.0);
 }
 
-/// A ring whose headings add up to 0.5 rad too much, with poses that say nothing. The tree leaves
-/// all of it to one measurement.
+/// The same by 0.5 rad.
 fn open_ring() -> Problem {
-    let mut problem = ring_measured(1.0, (TAU + 0.5) / TAU);
-    problem.poses_mut().fill(SE2::identity());
-    problem
+    ring_opened_by(0.5)
 }
 
 const DCS: RobustKernel = RobustKernel::Dcs { phi: 1.0 };

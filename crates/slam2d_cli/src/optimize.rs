@@ -2,17 +2,19 @@
 
 mod args;
 mod solve;
+mod tried;
 mod whole_file;
 
 use std::path::{Path, PathBuf};
 
 use pr_optim::g2o::{G2oError, G2oFile};
-use pr_optim::{OptimizeError, RobustKernel, Start};
+use pr_optim::{OptimizeError, RobustKernel};
 use serde::Serialize;
 use thiserror::Error;
 
 pub use self::args::OptimizeArgs;
 use self::solve::solve_repeatedly;
+use self::tried::{Tried, start_name};
 use self::whole_file::write_whole;
 use crate::output::{print_json, say};
 
@@ -82,6 +84,8 @@ struct Summary {
     /// What was lowered: χ² where there is no kernel.
     cost: f64,
     stop: String,
+    /// Every start that was looked at, in this order.
+    tried: Vec<Tried>,
     cpu_ms: f64,
     cpu_ms_first: f64,
 }
@@ -135,6 +139,7 @@ fn solve_file(args: &OptimizeArgs) -> Result<(G2oFile, Summary), OptimizeFailure
         chi2: report.chi2,
         cost: report.cost,
         stop: report.stop.to_string(),
+        tried: solved.outcome.tried.iter().map(Tried::from).collect(),
         cpu_ms: solved.best_ms,
         cpu_ms_first: solved.first_ms,
     };
@@ -179,6 +184,9 @@ fn print_summary(summary: &Summary, args: &OptimizeArgs) {
     }
     say!("nodes         {}", summary.nodes);
     say!("edges         {}", summary.edges);
+    for tried in &summary.tried {
+        say!("tried         {tried}");
+    }
     say!("init          {}", summary.init);
     say!("iterations    {}", summary.iterations);
     say!("chi2 initial  {:.6}", summary.chi2_initial);
@@ -192,14 +200,4 @@ fn print_summary(summary: &Summary, args: &OptimizeArgs) {
         summary.cpu_ms,
         summary.cpu_ms_first
     );
-}
-
-fn start_name(start: Start) -> &'static str {
-    match start {
-        Start::Auto => "auto",
-        Start::Given => "file",
-        Start::SpanningTree => "spanning-tree",
-        Start::Chordal => "chordal",
-        Start::LeastSquares => "least-squares",
-    }
 }

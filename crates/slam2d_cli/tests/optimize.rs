@@ -98,6 +98,7 @@ fn json_has_the_keys_that_are_promised() {
         "nodes",
         "stop",
         "total_iterations",
+        "tried",
     ];
     assert_eq!(keys, promised);
     assert_eq!(
@@ -108,6 +109,21 @@ fn json_has_the_keys_that_are_promised() {
     assert!(number(&summary, "cpu_ms") <= number(&summary, "cpu_ms_first"));
     assert_eq!(number(&summary, "cost"), number(&summary, "chi2"));
     assert!(summary["stop"].as_str().unwrap().contains("below"));
+}
+
+#[test]
+fn what_was_tried_is_told_with_its_cost() {
+    let summary = Graph::new(SQUARE).solve(&[]);
+    let tried = summary["tried"].as_array().unwrap();
+    let starts: Vec<&Value> = tried.iter().map(|trial| &trial["init"]).collect();
+    // The better of two guesses is followed, and told after the other.
+    assert!(starts == ["file", "spanning-tree"] || starts == ["spanning-tree", "file"]);
+    assert_eq!(starts[1], &summary["init"]);
+    assert!(number(&tried[1], "cost_initial") <= number(&tried[0], "cost_initial"));
+    assert_eq!(number(&tried[1], "cost"), number(&summary, "cost"));
+    let iterations: f64 = tried.iter().map(|trial| number(trial, "iterations")).sum();
+    assert_eq!(iterations, number(&summary, "total_iterations"));
+    assert!(tried[0]["stop"].as_str().unwrap().contains("not followed"));
 }
 
 #[test]

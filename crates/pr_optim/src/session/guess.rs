@@ -1,0 +1,90 @@
+//! Where the attempts of a session begin.
+
+use pr_geom::SE2;
+
+use super::attempt::Trial;
+use super::{Round, Session, Start};
+use crate::error::OptimizeError;
+use crate::init::{chordal, spanning_tree};
+use crate::report::StopReason;
+
+impl Session<'_> {
+    /// Takes the better of the given poses and the spanning tree.
+    pub(super) fn start_cheaply(&mut self) {
+        self.steps.clear();
+        self.optimizer.restart();
+        let tree = spanning_tree(self.problem);
+        let given = self.optimizer.cost_at(self.problem, self.problem.poses());
+        if self.round == Round::Guess {
+            self.given_cost = Some(given);
+        }
+        let of_tree = self.optimizer.cost_at(self.problem, &tree);
+        let takes_tree = of_tree < given || (given.is_nan() && of_tree.is_finite());
+        let (start, other, cost) = if takes_tree {
+            self.problem.poses_mut().copy_from_slice(&tree);
+            (Start::SpanningTree, Start::Given, given)
+        } else {
+            (Start::Given, Start::SpanningTree, of_tree)
+        };
+        self.start = start;
+        self.pass_over(other, cost);
+    }
+
+    /// Notes a guess that costs so much and is not followed.
+    fn pass_over(&mut self, start: Start, cost: f64) {
+        self.tried.push(Trial {
+            start,
+            method: self.optimizer.settings.method,
+            kernel: self.optimizer.settings.kernel,
+            iterations: 0,
+            cost_initial: cost,
+            cost,
+            stop: None,
+        });
+    }
+
+    pub(super) fn start_from(&mut self, start: Start) -> Result<(), OptimizeError> {
+        match start {
+            Start::Auto | Start::Given => {}
+            Start::SpanningTree => {
+                let poses = spanning_tree(self.problem);
+                self.move_to(&poses)?;
+            }
+            Start::Chordal => {
+                let linear = self.optimizer.linear_for(self.problem);
+                let poses = chordal(self.problem, linear)?;
+                self.move_to(&poses)?;
+            }
+            Start::LeastSquares => self.problem.poses_mut().copy_from_slice(&self.origin),
+        }
+        self.start = start;
+        self.steps.clear();
+        self.optimizer.restart();
+        Ok(())
+    }
+
+    /// Moves to a guess whose cost is finite.
+    fn move_to(&mut self, guess: &[SE2]) -> Result<(), OptimizeError> {
+        if !self.optimizer.cost_at(self.problem, guess).is_finite() {
+            return Err(OptimizeError::NotFinite);
+        }
+        self.problem.poses_mut().copy_from_slice(guess);
+        Ok(())
+    }
+
+    /// Goes on where the first attempt was given up, if the chordal relaxation costs more than that.
+    pub(super) fn keep_on_where_chordal_costs_more(&mut self) {
+        let cost = self.optimizer.cost_at(self.problem, self.problem.poses());
+        let first = self.ended.last().expect("the first attempt has ended");
+        let was_given_up = matches!(first.report.stop, StopReason::PromiseBroken { .. });
+        if !was_given_up || cost < first.report.cost {
+            return;
+        }
+        let first = self.ended.pop().expect("the first attempt has ended");
+        self.tried.pop();
+        self.pass_over(Start::Chordal, cost);
+        self.problem.poses_mut().copy_from_slice(&first.poses);
+        self.start = first.start;
+        self.steps = first.report.steps;
+    }
+}

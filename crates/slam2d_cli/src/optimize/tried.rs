@@ -1,0 +1,74 @@
+//! What was tried on the way to the optimum: one line, and one JSON object, for every start.
+
+use core::fmt;
+
+use pr_optim::{Method, RobustKernel, Start, Trial};
+use serde::Serialize;
+
+/// One start that the solver looked at.
+#[derive(Clone, Debug, Serialize)]
+pub struct Tried {
+    init: &'static str,
+    /// `gn` or `lm`.
+    method: &'static str,
+    /// Whether the robust kernel was on.
+    robust: bool,
+    iterations: usize,
+    /// What was lowered, at the start.
+    cost_initial: f64,
+    /// The same at the end.
+    cost: f64,
+    /// Why it ended, or was not followed.
+    stop: String,
+}
+
+impl From<&Trial> for Tried {
+    fn from(trial: &Trial) -> Self {
+        Self {
+            init: start_name(trial.start),
+            method: match trial.method {
+                Method::GaussNewton => "gn",
+                Method::LevenbergMarquardt { .. } => "lm",
+            },
+            robust: trial.kernel != RobustKernel::None,
+            iterations: trial.iterations,
+            cost_initial: trial.cost_initial,
+            cost: trial.cost,
+            stop: trial.stop.map_or_else(
+                || "not followed, another start costs less".to_owned(),
+                |stop| stop.to_string(),
+            ),
+        }
+    }
+}
+
+impl fmt::Display for Tried {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            init,
+            method,
+            iterations,
+            cost_initial,
+            cost,
+            stop,
+            ..
+        } = self;
+        let kernel = if self.robust { ", robust" } else { "" };
+        write!(f, "{init} ({method}{kernel}): cost {cost_initial:.6e}")?;
+        if *iterations > 0 {
+            write!(f, " to {cost:.6e}, iterations {iterations}")?;
+        }
+        write!(f, ": {stop}")
+    }
+}
+
+/// The name of a start on the command line.
+pub fn start_name(start: Start) -> &'static str {
+    match start {
+        Start::Auto => "auto",
+        Start::Given => "file",
+        Start::SpanningTree => "spanning-tree",
+        Start::Chordal => "chordal",
+        Start::LeastSquares => "least-squares",
+    }
+}
