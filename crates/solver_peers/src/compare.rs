@@ -8,7 +8,7 @@ use pr_optim::{Problem, Start};
 
 use crate::arael_peer::Arael;
 use crate::factrs_peer::Factrs;
-use crate::ours::Ours;
+use crate::ours::{Ours, chi2_below};
 use crate::{Peer, Solve};
 
 /// The head of the table in Markdown.
@@ -16,14 +16,29 @@ pub const HEAD: &str = "\
 | graph | solver | warm | ratio | cold | ratio | iterations | χ² |
 |---|---|--:|--:|--:|--:|--:|--:|";
 
+/// How far apart two values of χ² at one optimum may lie, relative: solves stop at 1e-8.
+const SAME_CHI2: f64 = 1e-6;
+
+/// How far above the optimum a solver with another residual may end, relative: on eight recorded
+/// graphs the residuals of the peers shift it by less than a thousandth.
+const SAME_BASIN: f64 = 1e-2;
+
 /// The fastest of one solver's runs on a graph.
 struct Row {
     name: &'static str,
-    /// χ² at the poses of the first run; none where that failed or left the range of numbers.
-    chi2: Option<f64>,
+    end: End,
     iterations: Option<usize>,
     cold_ms: f64,
     warm_ms: Option<f64>,
+}
+
+/// Where the first run of a solver ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum End {
+    /// At these poses χ² is so much, and has a minimum of so much right below.
+    At { chi2: f64, minimum: f64 },
+    /// It gave up, or left the range of numbers.
+    Failed,
 }
 
 /// Solves one file with all solvers in `rounds` interleaved rounds; returns the rows in Markdown.
@@ -64,7 +79,7 @@ impl Row {
         } = peer.solve_cold();
         Self {
             name: peer.name(),
-            chi2: poses.and_then(|poses| chi2_at(problem, &poses)),
+            end: poses.map_or(End::Failed, |poses| End::at(problem, &poses)),
             iterations,
             cold_ms: cpu_ms,
             warm_ms: peer.solve_warm().map(|solve| solve.cpu_ms),
@@ -78,34 +93,53 @@ impl Row {
         }
     }
 
-    /// The row with ratios of `ours` to it; a failure has neither times nor ratios to compare.
+    /// The row, with ratios of `ours` to it where both ended at the same optimum.
     fn markdown(&self, graph: &str, ours: &Self) -> String {
         let name = self.name;
-        let (Some(chi2), Some(_)) = (self.chi2, ours.chi2) else {
-            let state = if self.chi2.is_none() { "failed" } else { "–" };
-            return format!("| {graph} | {name} | – | – | – | – | – | {state} |");
+        let End::At { chi2, .. } = self.end else {
+            return format!("| {graph} | {name} | – | – | – | – | – | failed |");
         };
         let shown = |value: Option<f64>, decimals: usize| {
             value.map_or("–".to_owned(), |value| format!("{value:.decimals$}"))
         };
-        let warm_ratio = ours.warm_ms.zip(self.warm_ms).map(|(a, b)| a / b);
+        let comparable = self.end.is_at_the_optimum_of(&ours.end);
+        let ratio = |ours: f64, theirs: f64| comparable.then_some(ours / theirs);
+        let warm = ours.warm_ms.zip(self.warm_ms);
         format!(
-            "| {graph} | {name} | {} | {} | {:.3} | {:.2} | {} | {chi2:.6} |",
+            "| {graph} | {name} | {} | {} | {:.3} | {} | {} | {chi2:.6} |",
             shown(self.warm_ms, 3),
-            shown(warm_ratio, 2),
+            shown(warm.and_then(|(a, b)| ratio(a, b)), 2),
             self.cold_ms,
-            ours.cold_ms / self.cold_ms,
+            shown(ratio(ours.cold_ms, self.cold_ms), 2),
             self.iterations
                 .map_or("–".to_owned(), |count| count.to_string()),
         )
     }
 }
 
-/// Our χ² at somebody's poses; none where it is not finite.
-fn chi2_at(problem: &Problem, poses: &[SE2]) -> Option<f64> {
-    let mut problem = problem.clone();
-    problem.poses_mut().copy_from_slice(poses);
-    Some(problem.chi2()).filter(|chi2| chi2.is_finite())
+impl End {
+    /// Judges somebody's poses by our χ², and by where our own steps lead from there.
+    fn at(problem: &Problem, poses: &[SE2]) -> Self {
+        let mut problem = problem.clone();
+        problem.poses_mut().copy_from_slice(poses);
+        let chi2 = problem.chi2();
+        if !chi2.is_finite() {
+            return Self::Failed;
+        }
+        let minimum = chi2_below(problem);
+        Self::At { chi2, minimum }
+    }
+
+    /// Whether this end lies close above the minimum that the other lies in.
+    fn is_at_the_optimum_of(&self, other: &Self) -> bool {
+        let near = |a: f64, b: f64, share: f64| (a - b).abs() <= share * b.abs().max(1e-9);
+        match (self, other) {
+            (Self::At { chi2, minimum }, Self::At { minimum: best, .. }) => {
+                near(*minimum, *best, SAME_CHI2) && near(*chi2, *best, SAME_BASIN)
+            }
+            _ => false,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -155,22 +189,38 @@ EDGE_SE2 3 0 1 0 1.6 50 0 0 50 0 100
         }
     }
 
-    #[test]
-    fn a_failure_has_no_ratio() {
-        let row = |chi2| Row {
+    fn row(end: End) -> Row {
+        Row {
             name: "peer",
-            chi2,
+            end,
             iterations: Some(3),
             cold_ms: 2.0,
             warm_ms: None,
-        };
-        let ours = row(Some(1.0));
-        let solved = row(Some(1.5)).markdown("graph", &ours);
+        }
+    }
+
+    #[test]
+    fn only_solvers_at_the_same_optimum_have_a_ratio() {
+        let at = |chi2, minimum| row(End::At { chi2, minimum });
+        let ours = at(1.0, 1.0);
         assert_eq!(
-            solved,
-            "| graph | peer | – | – | 2.000 | 1.00 | 3 | 1.500000 |"
+            at(1.001, 1.0).markdown("graph", &ours),
+            "| graph | peer | – | – | 2.000 | 1.00 | 3 | 1.001000 |"
         );
-        let failed = row(None).markdown("graph", &ours);
+        // Another minimum, and a stop high above the same one.
+        for other in [at(1.001, 1.001), at(1.5, 1.0)] {
+            let line = other.markdown("graph", &ours);
+            assert!(line.contains("| 2.000 | – | 3 |"), "{line}");
+        }
+    }
+
+    #[test]
+    fn a_failure_has_neither_times_nor_ratios() {
+        let ours = row(End::At {
+            chi2: 1.0,
+            minimum: 1.0,
+        });
+        let failed = row(End::Failed).markdown("graph", &ours);
         assert_eq!(failed, "| graph | peer | – | – | – | – | – | failed |");
     }
 }

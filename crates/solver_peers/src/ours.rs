@@ -1,6 +1,8 @@
 //! This project's solver.
 
-use pr_optim::{JacobianModel, Optimizer, Problem, Session, Settings, Start};
+use pr_optim::{
+    JacobianModel, OptimizeError, Optimizer, Outcome, Problem, Session, Settings, Start,
+};
 
 use crate::clock::timed;
 use crate::{Peer, Solve};
@@ -35,15 +37,30 @@ impl Ours {
     }
 }
 
+fn solve_at(
+    optimizer: &mut Optimizer,
+    problem: &mut Problem,
+    start: Start,
+) -> Result<Outcome, OptimizeError> {
+    Session::new(optimizer, problem, start).map(Session::run)
+}
+
 fn solve(optimizer: &mut Optimizer, problem: &Problem, start: Start) -> Solve {
     let mut problem = problem.clone();
-    let (outcome, cpu_ms) =
-        timed(|| Session::new(optimizer, &mut problem, start).map(Session::run));
+    let (outcome, cpu_ms) = timed(|| solve_at(optimizer, &mut problem, start));
     Solve {
         cpu_ms,
         iterations: outcome.as_ref().map(|found| found.total_iterations).ok(),
         poses: outcome.map(|_| problem.poses().to_vec()).ok(),
     }
+}
+
+/// χ² where full steps from the present poses end.
+#[must_use]
+pub fn chi2_below(mut problem: Problem) -> f64 {
+    // Where no step can be computed, the poses stay, and their χ² counts.
+    let _ = solve_at(&mut Optimizer::new(settings()), &mut problem, Start::Given);
+    problem.chi2()
 }
 
 impl Peer for Ours {
