@@ -85,7 +85,9 @@ function table(found) {
     const cells = [what, ...[Math.min(...ms), median(ms)].map(told), isBare ? '–' : told(over), isBare ? '–' : told(LIMIT_MS)];
     return `| ${cells.join(' | ')} |`;
   });
-  const browser = execFileSync(process.env.CHROMIUM ?? '/usr/bin/chromium', ['--version'], { encoding: 'utf8' });
+  const browser = execFileSync(process.env.CHROMIUM ?? '/usr/bin/chromium', ['--version'], {
+    encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'],
+  });
   return [
     `Measured on ${processor()}, ${cpus().length} cores, ${platform()}, ${browser.trim()}, WebGL by software, ${rounds} rounds.`,
     '',
