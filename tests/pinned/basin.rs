@@ -3,7 +3,7 @@
 use ch16_lab::basin::{BasinScene, BasinStart};
 use ch16_slam2d::cloud::{DenseMap, NearestMap, PointCloud, VoxelMap};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace, icp};
-use pr_geom::{SE2, Vector2};
+use pr_geom::{Point2, SE2};
 use serde::Deserialize;
 use slam2d_tests::{assert_close, reference};
 
@@ -49,7 +49,7 @@ impl Run {
 }
 
 fn cloud(points: &[[f64; 2]]) -> PointCloud {
-    points.iter().map(|&[x, y]| Vector2::new(x, y)).collect()
+    points.iter().map(|&[x, y]| Point2::new(x, y)).collect()
 }
 
 fn check_all_runs<M: NearestMap>(map: impl Fn(&PointCloud) -> M) {

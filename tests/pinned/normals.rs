@@ -1,7 +1,7 @@
 //! The normals of the target of `basin.json`.
 
 use ch16_slam2d::cloud::PointCloud;
-use pr_geom::Vector2;
+use pr_geom::{Point2, Vector2};
 use serde::Deserialize;
 use slam2d_tests::{assert_close, reference};
 
@@ -17,7 +17,7 @@ fn normals_of_the_target_are_those_of_the_reference_up_to_sign() {
     let mut cloud: PointCloud = expected
         .target
         .iter()
-        .map(|&[x, y]| Vector2::new(x, y))
+        .map(|&[x, y]| Point2::new(x, y))
         .collect();
     cloud.estimate_normals(0.3);
     assert_eq!(cloud.len(), expected.normals.len());

@@ -53,7 +53,7 @@ fn maps(c: &mut Criterion) {
     let scan = sample.scan.transformed(&sample.guess);
     c.bench_function("nearest of 5000 in a voxel map, 720 queries", |b| {
         b.iter(|| {
-            let found = scan.iter().map(|query| voxel.nearest(query, 0.5));
+            let found = scan.iter().map(|query| voxel.neighbor(query, 0.5));
             found
                 .map(|found| found.map_or(0, |found| found.index))
                 .sum::<usize>()

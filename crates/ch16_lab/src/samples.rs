@@ -35,7 +35,7 @@ pub fn sweep(world_from_sensor: &SE2, beams: usize, rng: &mut Rng) -> PointCloud
 #[must_use]
 pub fn apartment_map() -> PointCloud {
     let mut rng = Rng::new(5);
-    let mut points = PointCloud::new();
+    let mut points = PointCloud::default();
     for k in 0..14 {
         let (column, row) = (f64::from(k % 7), f64::from(k / 7));
         let pose = SE2::new(0.9 + 1.7 * column, 2.2 + 4.6 * row, 0.3 * column);

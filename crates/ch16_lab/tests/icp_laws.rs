@@ -8,7 +8,7 @@ use ch16_slam2d::icp::{
     IcpWorkspace, Pair, StopReason, centroid, correspondences, icp, icp_information,
     icp_information_along, move_information, regularize,
 };
-use pr_geom::{Matrix3, SE2, Vector2, Vector3};
+use pr_geom::{Matrix3, Point2, SE2, Vector2, Vector3};
 use pr_sim::Rng;
 use proptest::prelude::*;
 
@@ -31,7 +31,7 @@ fn walls(seed: u32) -> PointCloud {
     edges
         .flat_map(|(a, b)| (0..15).map(move |k| (a, b, f64::from(k) / 15.0)))
         .map(|(a, b, t)| {
-            Vector2::new(
+            Point2::new(
                 a.0 + t * (b.0 - a.0) + rng.uniform(-0.03, 0.03),
                 a.1 + t * (b.1 - a.1) + rng.uniform(-0.03, 0.03),
             )
@@ -146,12 +146,18 @@ fn trimming_keeps_the_nearest_share_of_the_pairs() {
 fn a_huber_width_keeps_outliers_from_pulling_the_pose() {
     // A wall whose last points belong to something else, 0.5 m in front of it.
     let wall: PointCloud = (0..60)
-        .map(|k| Vector2::new(0.05 * f64::from(k % 30), if k < 30 { 0.0 } else { 3.0 }))
+        .map(|k| Point2::new(0.05 * f64::from(k % 30), if k < 30 { 0.0 } else { 3.0 }))
         .collect();
     let seen: PointCloud = wall
         .iter()
         .enumerate()
-        .map(|(k, p)| if k % 10 == 0 { p.add_scalar(0.4) } else { p })
+        .map(|(k, p)| {
+            if k % 10 == 0 {
+                p + Vector2::repeat(0.4)
+            } else {
+                p
+            }
+        })
         .collect();
     let map = VoxelMap::from_cloud(&wall, 0.25, 8);
     let error = |huber_width_m: f64| {
@@ -206,7 +212,7 @@ fn the_corridors_point_to_plane_matrix_has_rank_two_and_the_rooms_three() {
     let mut corridor: PointCloud = (0..40)
         .flat_map(|k| {
             let x = 0.1 * f64::from(k);
-            [Vector2::new(x, 0.0), Vector2::new(x, 1.2)]
+            [Point2::new(x, 0.0), Point2::new(x, 1.2)]
         })
         .collect();
     corridor.estimate_normals(0.3);
@@ -333,22 +339,22 @@ fn the_threshold_adapts_after_three_deviations() {
 
 #[test]
 fn clouds_keep_their_order_and_turn_their_normals() {
-    let mut cloud = PointCloud::from_points(&[
-        Vector2::new(0.05, 0.0),
-        Vector2::new(-0.05, 0.0),
-        Vector2::new(0.15, 0.1),
+    let mut cloud = PointCloud::from_iter([
+        Point2::new(0.05, 0.0),
+        Point2::new(-0.05, 0.0),
+        Point2::new(0.15, 0.1),
     ]);
     let thin = cloud.downsample(0.2);
     assert_eq!(thin.len(), 2);
-    assert!((thin.point(0) - Vector2::new(0.1, 0.05)).norm() < 1e-15);
+    assert!((thin.point(0) - Point2::new(0.1, 0.05)).norm() < 1e-15);
     cloud.clear();
-    cloud.push(Vector2::new(1.0, 0.0));
-    cloud.push_with_normal(Vector2::new(2.0, 0.0), Some(Vector2::new(0.0, 1.0)));
+    cloud.push(Point2::new(1.0, 0.0));
+    cloud.push_with_normal(Point2::new(2.0, 0.0), Some(Vector2::y()));
     let turned = cloud.transformed(&SE2::new(0.0, 3.0, std::f64::consts::FRAC_PI_2));
     assert_eq!(turned.normal(0), None);
     let normal = turned.normal(1).expect("the second point has a normal");
-    assert!((normal - Vector2::new(-1.0, 0.0)).norm() < 1e-15);
-    assert!((turned.point(1) - Vector2::new(0.0, 5.0)).norm() < 1e-15);
+    assert!((normal + Vector2::x()).norm() < 1e-15);
+    assert!((turned.point(1) - Point2::new(0.0, 5.0)).norm() < 1e-15);
     let map = DenseMap::from_cloud(&turned, 0.25, 8);
     assert_eq!(map.normal(0).is_some(), map.source_index(0) == 1);
 }

@@ -1,8 +1,8 @@
 //! The point-to-plane step against finite differences of the cost that it lowers.
 
 use ch16_lab::basin::BasinScene;
-use ch16_slam2d::icp::{IcpConfig, IcpVariant, Pair, correspondences, icp};
-use pr_geom::{Matrix3, SE2, Vector2, Vector3};
+use ch16_slam2d::icp::{IcpConfig, IcpVariant, Pair, centroid, correspondences, icp};
+use pr_geom::{Matrix3, Point2, SE2, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
@@ -17,22 +17,21 @@ fn axes() -> [Vector3<f64>; 3] {
 /// The pairs that have normals, frozen: the points move, what they are paired with does not.
 struct FrozenPairs {
     pairs: Vec<Pair>,
-    centroid: Vector2<f64>,
+    centroid: Point2<f64>,
 }
 
 impl FrozenPairs {
     fn new(mut pairs: Vec<Pair>) -> Self {
         pairs.retain(|pair| pair.normal.is_some());
-        let sum: Vector2<f64> = pairs.iter().map(|pair| pair.source).sum();
-        let centroid = sum / pairs.len() as f64;
+        let centroid = centroid(&pairs);
         Self { pairs, centroid }
     }
 
     /// The distance along the normal with the point turned by ω about the centroid and then moved
     /// by `(t_x, t_y)`, m.
     fn residual(&self, pair: &Pair, step: Vector3<f64>) -> f64 {
-        let turned = SE2::new(0.0, 0.0, step.z).transform(pair.source - self.centroid);
-        let moved = turned + self.centroid + step.xy();
+        let turn = SE2::new(0.0, 0.0, step.z).rotation_matrix();
+        let moved = self.centroid + turn * (pair.source - self.centroid) + step.xy();
         pair.normal
             .expect("kept for its normal")
             .dot(&(moved - pair.target))

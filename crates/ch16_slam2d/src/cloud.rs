@@ -1,7 +1,7 @@
 //! Point clouds and the maps that find a point's nearest neighbour.
 //!
 //! - [`PointCloud`] keeps points, and normals where they were estimated, as one array a coordinate.
-//! - [`VoxelMap`] is the chapter's map: hashed cells, points added one at a time, no bound on the extent.
+//! - [`VoxelMap`] is the chapter's map: hashed cells, points added at any time, no bound on the extent.
 //! - [`DenseMap`] is the same map frozen: built at once from a cloud, faster to ask, same answers.
 //! - [`NearestTable`] writes the answers down beforehand, for one map and very many queries.
 //!

@@ -5,7 +5,7 @@
 //! mapped on the way out and what was seen on the way back. It cannot see a map that is bent but
 //! agrees with itself.
 
-use pr_geom::{SE2, Vector2, math};
+use pr_geom::{Point2, SE2, math};
 
 use crate::cloud::{DenseMap, PointCloud};
 
@@ -77,7 +77,7 @@ impl MapDisagreement {
     pub fn new(config: DisagreementConfig) -> Self {
         Self {
             config,
-            first_pass: PointCloud::new(),
+            first_pass: PointCloud::default(),
             map: DenseMap::new(config.cell_m, config.max_per_cell),
             sum_of_squares_m2: 0.0,
             count: 0,
@@ -101,9 +101,9 @@ impl MapDisagreement {
         let mut hint = None;
         for (&x, &y) in cloud.xs().iter().zip(cloud.ys()) {
             let (x, y) = rotation.rotate(x, y);
-            let point = Vector2::new(x + world_from_body.x(), y + world_from_body.y());
+            let point = Point2::new(x + world_from_body.x(), y + world_from_body.y());
             let reach_m = self.config.reach_m;
-            if let Some(found) = self.map.nearest_from(point, reach_m, hint) {
+            if let Some(found) = self.map.neighbor_from(point, reach_m, hint) {
                 self.sum_of_squares_m2 += found.distance_squared_m2;
                 self.count += 1;
                 // The next beam hits close by.
@@ -125,7 +125,7 @@ mod tests {
 
     fn wall() -> PointCloud {
         (0..50)
-            .map(|k| Vector2::new(0.05 * f64::from(k), 0.0))
+            .map(|k| Point2::new(0.05 * f64::from(k), 0.0))
             .collect()
     }
 

@@ -1,27 +1,27 @@
 //! The chapter's worked example and the two increments.
 
 use ch16_slam2d::icp::{closed_form, point_to_plane_step, svd_align};
-use pr_geom::{SE2, Translation, Vector2};
+use pr_geom::{Point2, SE2, Translation, Vector2};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
 /// Four points a metre from the origin along the axes.
-fn square() -> [Vector2<f64>; 4] {
+fn square() -> [Point2<f64>; 4] {
     [
-        Vector2::new(1.0, 0.0),
-        Vector2::new(0.0, 1.0),
-        Vector2::new(-1.0, 0.0),
-        Vector2::new(0.0, -1.0),
+        Point2::new(1.0, 0.0),
+        Point2::new(0.0, 1.0),
+        Point2::new(-1.0, 0.0),
+        Point2::new(0.0, -1.0),
     ]
 }
 
 /// The same four, turned by the angle of the 3-4-5 triangle and moved by (2, 1).
-fn moved_square() -> [Vector2<f64>; 4] {
+fn moved_square() -> [Point2<f64>; 4] {
     [
-        Vector2::new(2.8, 1.6),
-        Vector2::new(1.4, 1.8),
-        Vector2::new(1.2, 0.4),
-        Vector2::new(2.6, 0.2),
+        Point2::new(2.8, 1.6),
+        Point2::new(1.4, 1.8),
+        Point2::new(1.2, 0.4),
+        Point2::new(2.6, 0.2),
     ]
 }
 
@@ -39,7 +39,7 @@ fn four_points_give_two_one_and_36_8699_degrees_with_trace_bound_four() {
 
 #[test]
 fn a_reflection_is_not_taken_for_a_rotation() {
-    let mirrored = square().map(|p| Vector2::new(-p.x, p.y));
+    let mirrored = square().map(|p| Point2::new(-p.x, p.y));
     let found = closed_form(&square(), &mirrored);
     // About the axes of a mirrored square every rotation is as good as any: tr(R H) = 0.
     assert!(found.trace_bound < 1e-12);
@@ -54,14 +54,14 @@ fn without_pairs_nothing_moves() {
 #[test]
 fn along_a_corridor_the_damped_step_is_zero() {
     // Two walls along x; the cloud is off by (0.5, 0.1), and no normal sees the 0.5.
-    let walls: Vec<Vector2<f64>> = (0..20)
+    let walls: Vec<Point2<f64>> = (0..20)
         .flat_map(|k| {
             let x = 0.1 * f64::from(k);
-            [Vector2::new(x, 0.0), Vector2::new(x, 1.2)]
+            [Point2::new(x, 0.0), Point2::new(x, 1.2)]
         })
         .collect();
     let source: Vec<_> = walls.iter().map(|p| p + Vector2::new(0.5, 0.1)).collect();
-    let normals = vec![Some(Vector2::new(0.0, 1.0)); walls.len()];
+    let normals = vec![Some(Vector2::y()); walls.len()];
     let step = point_to_plane_step(&source, &walls, &normals);
     let twist = step.translation();
     assert!(twist.x.abs() < 1e-12, "{step:?}");
@@ -70,7 +70,12 @@ fn along_a_corridor_the_damped_step_is_zero() {
     assert!(step.theta().abs() < 1e-12, "{step:?}");
 }
 
-fn cost(pose: &SE2, src: &[Vector2<f64>], dst: &[Vector2<f64>]) -> f64 {
+fn mean(points: &[Point2<f64>]) -> Point2<f64> {
+    let sum: Vector2<f64> = points.iter().map(|p| p.coords).sum();
+    (sum / points.len() as f64).into()
+}
+
+fn cost(pose: &SE2, src: &[Point2<f64>], dst: &[Point2<f64>]) -> f64 {
     let pairs = src.iter().zip(dst);
     pairs
         .map(|(p, q)| (pose.transform(*p) - q).norm_squared())
@@ -79,8 +84,8 @@ fn cost(pose: &SE2, src: &[Vector2<f64>], dst: &[Vector2<f64>]) -> f64 {
 
 fn plane_cost(
     pose: &SE2,
-    src: &[Vector2<f64>],
-    dst: &[Vector2<f64>],
+    src: &[Point2<f64>],
+    dst: &[Point2<f64>],
     normals: &[Vector2<f64>],
 ) -> f64 {
     let pairs = src.iter().zip(dst).zip(normals);
@@ -92,9 +97,9 @@ fn plane_cost(
 prop_compose! {
     fn pairs()(count in 4_usize..30)(
         numbers in prop::collection::vec((-3.0..3.0, -3.0..3.0, -3.0..3.0, -3.0..3.0, 0.0..TAU), count)
-    ) -> (Vec<Vector2<f64>>, Vec<Vector2<f64>>, Vec<Vector2<f64>>) {
-        let src = numbers.iter().map(|n| Vector2::new(n.0, n.1)).collect();
-        let dst = numbers.iter().map(|n| Vector2::new(n.2, n.3)).collect();
+    ) -> (Vec<Point2<f64>>, Vec<Point2<f64>>, Vec<Vector2<f64>>) {
+        let src = numbers.iter().map(|n| Point2::new(n.0, n.1)).collect();
+        let dst = numbers.iter().map(|n| Point2::new(n.2, n.3)).collect();
         let normals = numbers.iter().map(|n: &(f64, f64, f64, f64, f64)| {
             Vector2::new(n.4.cos(), n.4.sin())
         }).collect();
@@ -117,8 +122,8 @@ proptest! {
     #[test]
     fn the_cost_of_the_closed_form_follows_from_its_trace_bound((src, dst, _) in pairs()) {
         let found = closed_form(&src, &dst);
-        let spread = |points: &[Vector2<f64>]| {
-            let mean = points.iter().sum::<Vector2<f64>>() / points.len() as f64;
+        let spread = |points: &[Point2<f64>]| {
+            let mean = mean(points);
             points.iter().map(|p| (p - mean).norm_squared()).sum::<f64>()
         };
         let expected = spread(&src) + spread(&dst) - 2.0 * found.trace_bound;
@@ -130,10 +135,10 @@ proptest! {
     #[test]
     fn the_plane_step_goes_down_the_numeric_gradient((src, far, normals) in pairs()) {
         // Targets a few centimetres away, so that the step stays in the reach of linearization.
-        let dst: Vec<_> = src.iter().zip(&far).map(|(p, q)| p + 0.01 * q).collect();
+        let dst: Vec<_> = src.iter().zip(&far).map(|(p, q)| p + 0.01 * q.coords).collect();
         let wrapped: Vec<_> = normals.iter().copied().map(Some).collect();
         let step = point_to_plane_step(&src, &dst, &wrapped);
-        let center = src.iter().sum::<Vector2<f64>>() / src.len() as f64;
+        let center = mean(&src);
         let about = |x: f64, y: f64, turn: f64| {
             SE2::translation(center.x + x, center.y + y)
                 * SE2::new(0.0, 0.0, turn)

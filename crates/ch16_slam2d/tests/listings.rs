@@ -9,9 +9,10 @@ use ch16_slam2d::prelude::*;
 fn corner() -> PointCloud {
     let walls = |k: i32| {
         let along = 0.05 * f64::from(k);
-        [Vector2::new(along, 0.0), Vector2::new(0.0, along)]
+        [Point2::new(along, 0.0), Point2::new(0.0, along)]
     };
-    (1..=40).flat_map(walls).collect()
+    let points: Vec<Point2<f64>> = (1..=40).flat_map(walls).collect();
+    PointCloud::new(points, 0.25)
 }
 
 #[test]
@@ -37,23 +38,27 @@ fn the_listings_on_registration_compile() {
     let mut target: PointCloud = corner();
     target.estimate_normals(0.2);
     let mut map = VoxelMap::new(0.25, 8);
-    for point in target.iter() {
-        assert!(map.insert(point));
-    }
-    let neighbor: Neighbor = map
-        .nearest(Vector2::new(1.0, 0.1), 0.3)
-        .expect("0.1 m away");
-    assert!((neighbor.distance_squared_m2 - 0.01).abs() < 1e-12);
-    map.clear();
-    map.insert_cloud(&target);
+    let points: Vec<Point2<f64>> = target.iter().collect();
+    let normals: Vec<Option<Vector2<f64>>> = (0..target.len()).map(|k| target.normal(k)).collect();
+    map.insert(&points, &normals);
+    let query: Point2<f64> = Point2::new(1.0, 0.1);
+    let nearest: Option<u32> = map.nearest(&query, 0.3);
+    let index = nearest.expect("0.1 m away") as usize;
+    assert!((map.point(index) - Point2::new(1.0, 0.0)).norm() < 1e-12);
+    let neighbor: Option<Neighbor> = map.neighbor(query, 0.3);
+    assert_eq!(neighbor.map(|found| found.index), Some(index));
+    assert_eq!(map.nearest(&query, 0.1), None);
 
     // No point is off by half the distance to its neighbour, so every pair is right at once.
     let offset = SE2::new(0.01, -0.008, 0.004);
     let cloud: PointCloud = target.transformed(&offset.inverse());
+    assert_eq!(cloud.stamp_s(), 0.25);
     for variant in [IcpVariant::PointToPoint, IcpVariant::PointToPlane] {
+        let tau = 0.5;
         let cfg = IcpConfig {
             variant,
-            ..IcpConfig::default()
+            tau,
+            ..Default::default()
         };
         let result: IcpResult = icp(&cloud, &map, SE2::identity(), &cfg);
         let IcpResult {
@@ -77,13 +82,13 @@ fn the_listings_on_registration_compile() {
 
 #[test]
 fn the_listings_on_single_steps_compile() {
-    let src = [Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0)];
+    let src: [Point2<f64>; 2] = [Point2::new(1.0, 0.0), Point2::new(0.0, 1.0)];
     let dst = src.map(|p| SE2::new(2.0, 1.0, 0.3).transform(p));
     let aligned: SE2 = svd_align(&src, &dst);
     assert!(aligned.between(&SE2::new(2.0, 1.0, 0.3)).step_size() < 1e-12);
 
-    let wall: Vec<Vector2<f64>> = corner().iter().collect();
-    let lifted: Vec<Vector2<f64>> = wall.iter().map(|p| p + Vector2::new(0.0, 0.1)).collect();
+    let wall: Vec<Point2<f64>> = corner().iter().collect();
+    let lifted: Vec<Point2<f64>> = wall.iter().map(|p| p + Vector2::new(0.0, 0.1)).collect();
     let normals = vec![Some(Vector2::y()); wall.len()];
     let step: SE2 = point_to_plane_step(&wall, &lifted, &normals);
     // 1e-4 is the share by which the step is damped.

@@ -2,7 +2,7 @@
 //!
 //! A pose is `(x, y, θ)`, in metres and radians, with θ in (−π, π]. A tangent vector is
 //! `(v_x, v_y, ω)`: **translation first**, everywhere in this workspace. Perturbations act on the
-//! right: `T ⊞ δ = T exp(δ)`.
+//! right: `T ⊞ δ = T exp(δ)`. A place is a `Point2`, a displacement or a direction a `Vector2`.
 //!
 //! Source: Solà, Deray, Atchuthan, "A micro Lie theory for state estimation in robotics", 2018.
 #![no_std]
@@ -15,5 +15,5 @@ pub mod math;
 pub mod se2;
 
 pub use angle::wrap_angle;
-pub use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+pub use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
 pub use se2::{Rotation, SE2, Translation};

@@ -2,7 +2,7 @@
 
 use core::ops::Mul;
 
-use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
 
 use crate::angle::wrap_angle;
 use crate::math;
@@ -107,6 +107,13 @@ impl SE2 {
         self.y
     }
 
+    /// Where the body's origin is, in the world frame, m.
+    #[inline]
+    #[must_use]
+    pub fn position(&self) -> Point2<f64> {
+        Point2::new(self.x, self.y)
+    }
+
     /// Heading in radians, in (−π, π].
     #[inline]
     #[must_use]
@@ -138,9 +145,9 @@ impl SE2 {
     /// `R p + t`: a point of the body frame in the world frame.
     #[inline]
     #[must_use]
-    pub fn transform(&self, point: Vector2<f64>) -> Vector2<f64> {
+    pub fn transform(&self, point: Point2<f64>) -> Point2<f64> {
         let (x, y) = self.rotation().rotate(point.x, point.y);
-        Vector2::new(x + self.x, y + self.y)
+        Point2::new(x + self.x, y + self.y)
     }
 
     /// `self ∘ other`: first `other`, then `self`.

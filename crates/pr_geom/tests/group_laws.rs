@@ -1,6 +1,6 @@
 //! The laws of SE(2), on random motions, and the angles where implementations break.
 
-use pr_geom::{Matrix3, SE2, Translation, Vector2, Vector3};
+use pr_geom::{Matrix3, Point2, SE2, Translation, Vector2, Vector3};
 use proptest::prelude::*;
 
 /// Rounding of a handful of products of numbers up to 30.
@@ -65,7 +65,7 @@ proptest! {
 
     #[test]
     fn transform_follows_composition(a in motions(), b in motions(), x in -5.0..5.0, y in -5.0..5.0) {
-        let point = Vector2::new(x, y);
+        let point = Point2::new(x, y);
         let gap = (a * b).transform(point) - a.transform(b.transform(point));
         prop_assert!(gap.norm() < 10.0 * ROUNDING);
     }
@@ -110,5 +110,6 @@ fn a_quarter_turn_of_unit_arc_ends_where_geometry_says() {
 fn translation_is_both_constructor_and_accessor() {
     let pose = SE2::translation(1.5, -2.0);
     assert_eq!(pose.translation(), Vector2::new(1.5, -2.0));
+    assert_eq!(pose.position(), Point2::new(1.5, -2.0));
     assert_eq!(pose.theta(), 0.0);
 }

@@ -1,6 +1,6 @@
 //! The grid: dense log odds over a rectangle, updated one sweep at a time.
 
-use pr_geom::{SE2, Vector2, math};
+use pr_geom::{Point2, SE2, Vector2, math};
 
 use crate::beams::Beams;
 use crate::bresenham::{Cell, bresenham};
@@ -10,9 +10,9 @@ use crate::sensor_model::InverseSensorModel;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridConfig {
     /// Lower left corner in metres, world frame.
-    pub min_m: Vector2<f64>,
+    pub min_m: Point2<f64>,
     /// Upper right corner in metres; the last row and column may reach beyond it.
-    pub max_m: Vector2<f64>,
+    pub max_m: Point2<f64>,
     /// Side of a cell in metres.
     pub cell_m: f64,
     /// What a reading says about a cell.
@@ -24,8 +24,8 @@ pub struct GridConfig {
 impl Default for GridConfig {
     fn default() -> Self {
         Self {
-            min_m: Vector2::new(0.0, 0.0),
-            max_m: Vector2::new(12.0, 9.0),
+            min_m: Point2::new(0.0, 0.0),
+            max_m: Point2::new(12.0, 9.0),
             cell_m: 0.15,
             sensor: InverseSensorModel::default(),
             clamp_log_odds: 12.0,
@@ -121,7 +121,7 @@ impl OccupancyGrid {
         let sensor = self.config.sensor;
         let cos_half_width = math::cos(sensor.beam_width_rad / 2.0);
         let heading = world_from_sensor.rotation();
-        let origin = Vector2::new(world_from_sensor.x(), world_from_sensor.y());
+        let origin = world_from_sensor.position();
         let from = self.cell_at(origin);
         for (beam, (range, direction)) in ranges_m.iter().zip(beams.directions()).enumerate() {
             let reach = (range + sensor.obstacle_thickness_m / 2.0).min(sensor.max_range_m);
@@ -152,7 +152,7 @@ impl OccupancyGrid {
 
     /// The cell that holds a point in metres, world frame; may lie outside of the grid.
     #[must_use]
-    pub fn cell_at(&self, point: Vector2<f64>) -> Cell {
+    pub fn cell_at(&self, point: Point2<f64>) -> Cell {
         let index = |coordinate: f64, min: f64| ((coordinate - min) / self.config.cell_m).floor();
         Cell {
             column: index(point.x, self.config.min_m.x) as i32,
@@ -162,9 +162,9 @@ impl OccupancyGrid {
 
     /// Center of a cell in metres, world frame.
     #[must_use]
-    pub fn center(&self, cell: Cell) -> Vector2<f64> {
+    pub fn center(&self, cell: Cell) -> Point2<f64> {
         let center = |k: i32, min: f64| min + (f64::from(k) + 0.5) * self.config.cell_m;
-        Vector2::new(
+        Point2::new(
             center(cell.column, self.config.min_m.x),
             center(cell.row, self.config.min_m.y),
         )
@@ -188,7 +188,7 @@ mod tests {
     /// A robot in the middle of a 2 m × 2 m grid, four beams of 0.6 m.
     fn cross() -> OccupancyGrid {
         let mut grid = OccupancyGrid::new(GridConfig {
-            max_m: Vector2::new(2.0, 2.0),
+            max_m: Point2::new(2.0, 2.0),
             cell_m: 0.1,
             ..GridConfig::default()
         });
@@ -198,7 +198,7 @@ mod tests {
     }
 
     fn at(grid: &OccupancyGrid, x: f64, y: f64) -> f64 {
-        let cell = grid.cell_at(Vector2::new(x, y));
+        let cell = grid.cell_at(Point2::new(x, y));
         grid.log_odds()[grid.index(cell).unwrap()]
     }
 

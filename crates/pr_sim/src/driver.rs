@@ -1,6 +1,6 @@
 //! The driver: turns toward the next way point on the true pose, then drives to it.
 
-use pr_geom::{SE2, Vector2, math, wrap_angle};
+use pr_geom::{Point2, SE2, math, wrap_angle};
 
 use crate::motion::VelocityCommand;
 
@@ -8,7 +8,7 @@ use crate::motion::VelocityCommand;
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriverConfig {
     /// Way points in metres, world frame, visited in order.
-    pub waypoints: Vec<Vector2<f64>>,
+    pub waypoints: Vec<Point2<f64>>,
     /// Largest forward speed in m/s.
     pub max_speed_mps: f64,
     /// Largest turn rate in rad/s.
@@ -26,7 +26,7 @@ pub struct DriverConfig {
 impl Default for DriverConfig {
     fn default() -> Self {
         Self {
-            waypoints: vec![Vector2::new(10.6, 4.42), Vector2::new(1.35, 4.42)],
+            waypoints: vec![Point2::new(10.6, 4.42), Point2::new(1.35, 4.42)],
             max_speed_mps: 0.62,
             max_turn_rate_radps: 1.1,
             heading_gain: 2.2,

@@ -3,7 +3,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use pr_geom::{Rotation, SE2, Translation, Vector2};
+use pr_geom::{Point2, Rotation, SE2};
 
 use crate::rng::Rng;
 use crate::world::{Viewpoint, World};
@@ -87,7 +87,7 @@ impl Lidar {
             ..
         } = self;
         let heading_rad = world_from_sensor.theta();
-        viewpoint.stand_at(world, world_from_sensor.translation(), config.max_range_m);
+        viewpoint.stand_at(world, world_from_sensor.position(), config.max_range_m);
         ranges_m.clear();
         ranges_m.extend(
             bearings_rad
@@ -125,13 +125,13 @@ impl Lidar {
 
     /// The points of a sweep in the sensor frame, in beam order; beams that hit nothing are left
     /// out.
-    pub fn project<'a>(&'a self, ranges_m: &'a [f64]) -> impl Iterator<Item = Vector2<f64>> + 'a {
+    pub fn project<'a>(&'a self, ranges_m: &'a [f64]) -> impl Iterator<Item = Point2<f64>> + 'a {
         let limit = RETURN_SHARE * self.config.max_range_m;
         ranges_m
             .iter()
             .zip(&self.directions)
             .filter(move |(range, _)| **range < limit)
-            .map(|(range, direction)| Vector2::new(range * direction.cos, range * direction.sin))
+            .map(|(range, direction)| Point2::new(range * direction.cos, range * direction.sin))
     }
 }
 
@@ -183,8 +183,8 @@ mod tests {
         // 0.995 · 6 = 5.97: the first and the last beam saw nothing.
         let points: Vec<_> = lidar.project(&[5.97, 2.0, 3.0, 6.0]).collect();
         assert_eq!(points.len(), 2);
-        assert!((points[0] - Vector2::new(0.0, -2.0)).norm() < 1e-12);
-        assert!((points[1] - Vector2::new(3.0, 0.0)).norm() < 1e-12);
+        assert!((points[0] - Point2::new(0.0, -2.0)).norm() < 1e-12);
+        assert!((points[1] - Point2::new(3.0, 0.0)).norm() < 1e-12);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Walls as line segments, the Apartment among them, and the ray cast against them.
 
-use pr_geom::{Vector2, math};
+use pr_geom::{Point2, math};
 
 /// Below this |d × (s2 − s1)| a ray counts as parallel to a wall.
 const PARALLEL: f64 = 1e-12;
@@ -12,23 +12,23 @@ const RANGE_ROUNDING_M: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall {
     /// One end.
-    pub start: Vector2<f64>,
+    pub start: Point2<f64>,
     /// The other end.
-    pub end: Vector2<f64>,
+    pub end: Point2<f64>,
 }
 
 impl Wall {
     pub(crate) fn horizontal(y: f64, x_from: f64, x_to: f64) -> Self {
         Self {
-            start: Vector2::new(x_from, y),
-            end: Vector2::new(x_to, y),
+            start: Point2::new(x_from, y),
+            end: Point2::new(x_to, y),
         }
     }
 
     pub(crate) fn vertical(x: f64, y_from: f64, y_to: f64) -> Self {
         Self {
-            start: Vector2::new(x, y_from),
-            end: Vector2::new(x, y_to),
+            start: Point2::new(x, y_from),
+            end: Point2::new(x, y_to),
         }
     }
 }
@@ -37,9 +37,9 @@ impl Wall {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Lower left corner.
-    pub min: Vector2<f64>,
+    pub min: Point2<f64>,
     /// Upper right corner.
-    pub max: Vector2<f64>,
+    pub max: Point2<f64>,
 }
 
 /// A room of the Apartment, for labels.
@@ -126,7 +126,7 @@ impl World {
 
     /// Distance in metres from `origin` along `angle_rad` to the first wall, at most `max_range_m`.
     #[must_use]
-    pub fn cast(&self, origin: Vector2<f64>, angle_rad: f64, max_range_m: f64) -> f64 {
+    pub fn cast(&self, origin: Point2<f64>, angle_rad: f64, max_range_m: f64) -> f64 {
         let mut viewpoint = Viewpoint::default();
         viewpoint.stand_at(self, origin, max_range_m);
         viewpoint.cast(angle_rad)
@@ -135,8 +135,8 @@ impl World {
 
 pub(crate) fn rectangle(x_from: f64, y_from: f64, x_to: f64, y_to: f64) -> Bounds {
     Bounds {
-        min: Vector2::new(x_from, y_from),
-        max: Vector2::new(x_to, y_to),
+        min: Point2::new(x_from, y_from),
+        max: Point2::new(x_to, y_to),
     }
 }
 
@@ -157,7 +157,7 @@ pub struct Viewpoint {
 impl Viewpoint {
     /// Moves the viewpoint to `origin` and leaves out walls beyond `max_range_m`; its buffers are
     /// used again.
-    pub fn stand_at(&mut self, world: &World, origin: Vector2<f64>, max_range_m: f64) {
+    pub fn stand_at(&mut self, world: &World, origin: Point2<f64>, max_range_m: f64) {
         self.max_range_m = max_range_m;
         for buffer in [
             &mut self.to_start_x,
@@ -229,7 +229,7 @@ mod tests {
     fn rays_along_the_axes_of_room_a_measure_its_walls() {
         // Room A is 4.0 m × 3.8 m; from (1, 1) the ray north passes no door.
         let world = World::apartment();
-        let origin = Vector2::new(1.0, 1.0);
+        let origin = Point2::new(1.0, 1.0);
         for (angle, range) in [(0.0, 3.0), (FRAC_PI_2, 2.8), (PI, 1.0), (-FRAC_PI_2, 1.0)] {
             assert!((world.cast(origin, angle, 6.0) - range).abs() < 1e-12);
         }
@@ -238,7 +238,7 @@ mod tests {
     #[test]
     fn a_ray_through_a_door_passes_the_wall() {
         // The door of room A is x 1.6…2.5; the ray north at x = 2 meets the corridor's north wall.
-        let range = World::apartment().cast(Vector2::new(2.0, 1.9), FRAC_PI_2, 6.0);
+        let range = World::apartment().cast(Point2::new(2.0, 1.9), FRAC_PI_2, 6.0);
         assert!((range - 3.1).abs() < 1e-12);
     }
 
@@ -247,7 +247,7 @@ mod tests {
         let world = World::apartment();
         for k in 0..500 {
             let step = f64::from(k);
-            let origin = Vector2::new(0.5 + 0.021 * step, 0.4 + 0.016 * step);
+            let origin = Point2::new(0.5 + 0.021 * step, 0.4 + 0.016 * step);
             let angle = 0.7 * step;
             let far = world.cast(origin, angle, 100.0);
             assert_eq!(world.cast(origin, angle, 3.0), far.min(3.0));
@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn a_wall_beyond_the_range_returns_the_range() {
         assert_eq!(
-            World::apartment().cast(Vector2::new(1.35, 4.42), 0.0, 6.0),
+            World::apartment().cast(Point2::new(1.35, 4.42), 0.0, 6.0),
             6.0
         );
     }

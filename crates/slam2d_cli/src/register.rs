@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace, StopReason};
 use clap::{Args, ValueEnum};
-use pr_geom::{SE2, Vector2};
+use pr_geom::{Point2, SE2, Vector2};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -188,7 +188,7 @@ fn read_points(path: &Path) -> Result<PointCloud, RegisterFailure> {
         path: path.to_owned(),
         source,
     })?;
-    let mut cloud = PointCloud::new();
+    let mut cloud = PointCloud::default();
     let lines = text.lines().enumerate();
     for (index, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
         let (point, normal) = parse_point(line).ok_or_else(|| RegisterFailure::Line {
@@ -206,16 +206,16 @@ fn read_points(path: &Path) -> Result<PointCloud, RegisterFailure> {
 }
 
 /// `x,y` or `x,y,nx,ny`; a normal of (0, 0) is none, any other is scaled to length 1.
-fn parse_point(line: &str) -> Option<(Vector2<f64>, Option<Vector2<f64>>)> {
+fn parse_point(line: &str) -> Option<(Point2<f64>, Option<Vector2<f64>>)> {
     let numbers: Vec<f64> = line
         .split(',')
         .map(|field| field.trim().parse().ok().filter(|v: &f64| v.is_finite()))
         .collect::<Option<_>>()?;
     match numbers[..] {
-        [x, y] => Some((Vector2::new(x, y), None)),
+        [x, y] => Some((Point2::new(x, y), None)),
         [x, y, nx, ny] => {
             let normal = Vector2::new(nx, ny).try_normalize(0.0);
-            Some((Vector2::new(x, y), normal))
+            Some((Point2::new(x, y), normal))
         }
         _ => None,
     }
@@ -227,7 +227,7 @@ mod tests {
 
     #[test]
     fn a_line_is_a_point_with_or_without_its_normal() {
-        let point = Vector2::new(1.0, -2.5);
+        let point = Point2::new(1.0, -2.5);
         assert_eq!(parse_point("1, -2.5"), Some((point, None)));
         let up = Some(Vector2::new(0.0, 1.0));
         assert_eq!(parse_point("1,-2.5,0,2"), Some((point, up)));

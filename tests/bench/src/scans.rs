@@ -7,8 +7,7 @@ use ch16_slam2d::cloud::{DenseMap, NearestMap, NormalEstimator, PointCloud};
 use ch16_slam2d::digest::Digest;
 use ch16_slam2d::icp::{IcpConfig, IcpVariant, IcpWorkspace};
 use ch16_slam2d::ndt::{NdtConfig, NdtMap, ndt_align};
-use nalgebra::Vector2;
-use pr_geom::SE2;
+use pr_geom::{Point2, SE2};
 use pr_sim::Rng;
 
 use crate::{Run, prepared};
@@ -105,7 +104,7 @@ pub(crate) fn ndt_build() -> Box<dyn Run> {
             for cell in map.iter().flat_map(NdtMap::cells) {
                 digest.add_all([cell.cell.0, cell.cell.1].map(f64::from).iter());
                 digest.add_bits(cell.count as u64);
-                digest.add_all(&cell.mean);
+                digest.add_all(&cell.mean.coords);
                 digest.add_all(&cell.covariance);
                 digest.add_all(&cell.information);
             }
@@ -137,12 +136,12 @@ pub(crate) fn nearest() -> Box<dyn Run> {
     let pose = SE2::new(3.4, 4.4, 0.2);
     let near = pose * SE2::new(0.1, 0.1, 0.03);
     let cloud = samples::sweep(&pose, QUERIES, &mut Rng::new(77)).transformed(&near);
-    let queries: Vec<Vector2<f64>> = (0..QUERIES).map(|k| cloud.point(k % cloud.len())).collect();
+    let queries: Vec<Point2<f64>> = (0..QUERIES).map(|k| cloud.point(k % cloud.len())).collect();
     prepared(
         (map, queries, Vec::with_capacity(QUERIES)),
         |(map, queries, found)| {
             found.clear();
-            found.extend(queries.iter().map(|query| map.nearest(*query, 0.5)));
+            found.extend(queries.iter().map(|query| map.neighbor(*query, 0.5)));
         },
         |(_, _, found), digest| {
             for found in found {

@@ -162,7 +162,7 @@ impl Sensor {
             lidar: Lidar::new(config.lidar),
             downsampler: Downsampler::default(),
             normals: NormalEstimator::default(),
-            points: PointCloud::new(),
+            points: PointCloud::default(),
             cell_m: config.sweep_cell_m,
             normal_radius_m: config.normal_radius_m,
         }

@@ -63,7 +63,7 @@ impl FrontEnd {
                 config.threshold.min_motion_m,
                 config.threshold.max_range_m,
             ),
-            local_cloud: PointCloud::new(),
+            local_cloud: PointCloud::default(),
             local_map: DenseMap::new(config.local_map.cell_m, config.local_map.max_per_cell),
             icp: IcpWorkspace::new(),
             pairs: Vec::new(),

@@ -60,7 +60,7 @@ impl LapTrace {
     ) -> Option<RegistrationView> {
         let recorded = &self.report(tick)?.registration;
         let window = self.window(tick, config);
-        let mut local_cloud = PointCloud::new();
+        let mut local_cloud = PointCloud::default();
         local_cloud_into(&window, drive, &mut local_cloud);
         let map = DenseMap::from_cloud(
             &local_cloud,

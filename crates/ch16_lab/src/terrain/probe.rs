@@ -1,6 +1,6 @@
 //! Cost, score and their slopes at single shifts.
 
-use pr_geom::{Vector2, math};
+use pr_geom::{Point2, Vector2, math};
 
 use super::{TerrainScene, TerrainSettings};
 use ch16_slam2d::cloud::NearestMap;
@@ -76,7 +76,7 @@ impl<'a> TerrainProbe<'a> {
         let map = self.scene.map();
         let (mut value, mut gradient) = (0.0, Vector2::zeros());
         for point in self.moved(offset_m) {
-            if let Some(nearest) = map.nearest(point, self.tau_m) {
+            if let Some(nearest) = map.neighbor(point, self.tau_m) {
                 value += nearest.distance_squared_m2;
                 gradient += 2.0 * (point - map.point(nearest.index));
             } else {
@@ -104,9 +104,9 @@ impl<'a> TerrainProbe<'a> {
         }
     }
 
-    fn moved(&self, offset_m: Vector2<f64>) -> impl Iterator<Item = Vector2<f64>> + '_ {
+    fn moved(&self, offset_m: Vector2<f64>) -> impl Iterator<Item = Point2<f64>> + '_ {
         let points = self.xs.iter().zip(&self.ys);
-        points.map(move |(x, y)| Vector2::new(x + offset_m.x, y + offset_m.y))
+        points.map(move |(x, y)| Point2::new(x + offset_m.x, y + offset_m.y))
     }
 
     fn count(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! The map for speed: the same cells as a dense table, points of a column side by side.
 
-use nalgebra::Vector2;
+use nalgebra::{Point2, Vector2};
 use pr_geom::math;
 use rustc_hash::FxHashMap;
 
@@ -116,14 +116,14 @@ impl DenseMap {
         self.table.starts[0] = 0;
     }
 
-    /// As [`NearestMap::nearest`], looking first near the point `hint`.
+    /// As [`NearestMap::neighbor`], looking first near the point `hint`.
     ///
     /// The hint changes the time, never the answer.
     #[inline]
     #[must_use]
-    pub fn nearest_from(
+    pub fn neighbor_from(
         &self,
-        query: Vector2<f64>,
+        query: Point2<f64>,
         radius_m: f64,
         hint: Option<usize>,
     ) -> Option<Neighbor> {
@@ -161,12 +161,7 @@ impl DenseMap {
 
     /// Calls `visit` with the index of every point within `radius_m`, inclusive.
     #[inline]
-    pub fn for_each_within(
-        &self,
-        query: Vector2<f64>,
-        radius_m: f64,
-        mut visit: impl FnMut(usize),
-    ) {
+    pub fn for_each_within(&self, query: Point2<f64>, radius_m: f64, mut visit: impl FnMut(usize)) {
         let reach = radius_m + self.margin();
         self.table.for_each_run(query.x, query.y, reach, |run| {
             for index in run {
@@ -352,8 +347,8 @@ impl NearestMap for DenseMap {
         self.xs.len()
     }
 
-    fn point(&self, index: usize) -> Vector2<f64> {
-        Vector2::new(self.xs[index], self.ys[index])
+    fn point(&self, index: usize) -> Point2<f64> {
+        Point2::new(self.xs[index], self.ys[index])
     }
 
     fn normal(&self, index: usize) -> Option<Vector2<f64>> {
@@ -362,16 +357,16 @@ impl NearestMap for DenseMap {
     }
 
     #[inline]
-    fn nearest(&self, query: Vector2<f64>, radius_m: f64) -> Option<Neighbor> {
-        self.nearest_from(query, radius_m, None)
+    fn neighbor(&self, query: Point2<f64>, radius_m: f64) -> Option<Neighbor> {
+        self.neighbor_from(query, radius_m, None)
     }
 
     /// After the query moved by m, the point it remembers is still the nearest if its distance
     /// plus m is below the clearance: every other point was at least that far from the anchor.
     #[inline]
-    fn nearest_again(
+    fn neighbor_again(
         &self,
-        query: Vector2<f64>,
+        query: Point2<f64>,
         radius_m: f64,
         memory: &mut Memory,
     ) -> Option<Neighbor> {

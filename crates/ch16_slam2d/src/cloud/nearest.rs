@@ -1,6 +1,6 @@
 //! What every map can be asked.
 
-use nalgebra::Vector2;
+use nalgebra::{Point2, Vector2};
 
 /// The nearest point of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,23 +63,23 @@ pub trait NearestMap {
     }
 
     /// Point `index`, m.
-    fn point(&self, index: usize) -> Vector2<f64>;
+    fn point(&self, index: usize) -> Point2<f64>;
 
     /// Unit normal of point `index`, where it has one.
     fn normal(&self, index: usize) -> Option<Vector2<f64>>;
 
     /// The nearest point strictly closer than `radius_m`.
-    fn nearest(&self, query: Vector2<f64>, radius_m: f64) -> Option<Neighbor>;
+    fn neighbor(&self, query: Point2<f64>, radius_m: f64) -> Option<Neighbor>;
 
-    /// As [`NearestMap::nearest`], for a query that moves a little from call to call.
+    /// As [`NearestMap::neighbor`], for a query that moves a little from call to call.
     #[inline]
-    fn nearest_again(
+    fn neighbor_again(
         &self,
-        query: Vector2<f64>,
+        query: Point2<f64>,
         radius_m: f64,
         memory: &mut Memory,
     ) -> Option<Neighbor> {
         let _ = memory;
-        self.nearest(query, radius_m)
+        self.neighbor(query, radius_m)
     }
 }

@@ -1,6 +1,6 @@
 //! The map for very many queries: the answer to each is all but written down beforehand.
 
-use nalgebra::Vector2;
+use nalgebra::{Point2, Vector2};
 use pr_geom::math;
 
 use super::{DenseMap, Memory, NearestMap, Neighbor};
@@ -75,8 +75,8 @@ impl NearestTable {
 
     /// Kept out of line, so that the look-up itself is short.
     #[cold]
-    fn off_table(&self, query: Vector2<f64>, radius_m: f64) -> Option<Neighbor> {
-        self.map.nearest(query, radius_m)
+    fn off_table(&self, query: Point2<f64>, radius_m: f64) -> Option<Neighbor> {
+        self.map.neighbor(query, radius_m)
     }
 
     fn fill(&mut self, square_m: f64) {
@@ -84,12 +84,12 @@ impl NearestTable {
         let mut near = Vec::new();
         for column in 0..self.columns {
             for row in 0..self.rows {
-                let low = Vector2::new(
+                let low = Point2::new(
                     self.origin.0 + column as f64 * square_m,
                     self.origin.1 + row as f64 * square_m,
                 );
-                let center = low.add_scalar(0.5 * square_m);
-                let Some(nearest) = self.map.nearest(center, f64::INFINITY) else {
+                let center = low + Vector2::repeat(0.5 * square_m);
+                let Some(nearest) = self.map.neighbor(center, f64::INFINITY) else {
                     continue;
                 };
                 // A point nearest to q in the square is within |q − c| of being nearest to c.
@@ -117,7 +117,7 @@ impl NearestTable {
 ///
 /// The difference of two squared distances is affine in the query, so it is enough to compare at
 /// the four corners.
-fn keep_candidates(map: &DenseMap, low: Vector2<f64>, square_m: f64, near: &mut Vec<u32>) {
+fn keep_candidates(map: &DenseMap, low: Point2<f64>, square_m: f64, near: &mut Vec<u32>) {
     let corners = |index: u32| {
         let dx = map.xs()[index as usize] - low.x;
         let dy = map.ys()[index as usize] - low.y;
@@ -161,7 +161,7 @@ impl NearestMap for NearestTable {
         self.map.len()
     }
 
-    fn point(&self, index: usize) -> Vector2<f64> {
+    fn point(&self, index: usize) -> Point2<f64> {
         self.map.point(index)
     }
 
@@ -170,7 +170,7 @@ impl NearestMap for NearestTable {
     }
 
     #[inline]
-    fn nearest(&self, query: Vector2<f64>, radius_m: f64) -> Option<Neighbor> {
+    fn neighbor(&self, query: Point2<f64>, radius_m: f64) -> Option<Neighbor> {
         let column = (query.x - self.origin.0) * self.per_metre;
         let row = (query.y - self.origin.1) * self.per_metre;
         let on_table =

@@ -1,6 +1,6 @@
 //! Normals from the scatter of a point's neighbours.
 
-use nalgebra::Vector2;
+use nalgebra::{Point2, Vector2};
 use pr_geom::math;
 
 use super::{DenseMap, PointCloud};
@@ -61,7 +61,7 @@ impl NormalEstimator {
 
     /// The normal of the prepared cloud at one of its points.
     #[must_use]
-    pub fn normal_at(&mut self, point: Vector2<f64>) -> Option<Vector2<f64>> {
+    pub fn normal_at(&mut self, point: Point2<f64>) -> Option<Vector2<f64>> {
         let map = self.map.as_ref()?;
         let neighbors = &mut self.neighbors;
         neighbors.clear();

@@ -1,12 +1,12 @@
 //! The cloud itself: one array a coordinate, normals kept beside the points.
 
-use nalgebra::Vector2;
+use nalgebra::{Point2, Vector2};
 use pr_geom::{Rotation, SE2};
 use rustc_hash::FxHashMap;
 
 use super::{NormalEstimator, cell_index};
 
-/// Points in metres in one frame, with unit normals where they are known.
+/// Points in metres in one frame, with unit normals where they are known, and the time of the sweep.
 ///
 /// A normal of `(0, 0)` in the arrays means that the point has none; [`PointCloud::normal`] hides it.
 /// The sign of a normal is arbitrary.
@@ -16,19 +16,23 @@ pub struct PointCloud {
     ys: Vec<f64>,
     normal_xs: Vec<f64>,
     normal_ys: Vec<f64>,
+    stamp_s: f64,
 }
 
 impl PointCloud {
-    /// A cloud without points.
+    /// A cloud of these points without normals, taken at `stamp_s` (s). The default is an empty one.
     #[must_use]
-    pub fn new() -> Self {
-        Self::default()
+    pub fn new(points: Vec<Point2<f64>>, stamp_s: f64) -> Self {
+        Self {
+            stamp_s,
+            ..points.into_iter().collect()
+        }
     }
 
-    /// A cloud of these points, without normals.
+    /// When the points were measured, s; 0 where nobody said.
     #[must_use]
-    pub fn from_points(points: &[Vector2<f64>]) -> Self {
-        points.iter().copied().collect()
+    pub fn stamp_s(&self) -> f64 {
+        self.stamp_s
     }
 
     /// Number of points.
@@ -57,16 +61,16 @@ impl PointCloud {
 
     /// Point `index`.
     #[must_use]
-    pub fn point(&self, index: usize) -> Vector2<f64> {
-        Vector2::new(self.xs[index], self.ys[index])
+    pub fn point(&self, index: usize) -> Point2<f64> {
+        Point2::new(self.xs[index], self.ys[index])
     }
 
     /// The points in order.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = Vector2<f64>> + Clone + '_ {
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Point2<f64>> + Clone + '_ {
         self.xs
             .iter()
             .zip(&self.ys)
-            .map(|(&x, &y)| Vector2::new(x, y))
+            .map(|(&x, &y)| Point2::new(x, y))
     }
 
     /// The unit normal of point `index`, where one is known.
@@ -93,12 +97,12 @@ impl PointCloud {
     }
 
     /// Adds a point without a normal.
-    pub fn push(&mut self, point: Vector2<f64>) {
+    pub fn push(&mut self, point: Point2<f64>) {
         self.push_raw(point.x, point.y, 0.0, 0.0);
     }
 
     /// Adds a point with its normal.
-    pub fn push_with_normal(&mut self, point: Vector2<f64>, normal: Option<Vector2<f64>>) {
+    pub fn push_with_normal(&mut self, point: Point2<f64>, normal: Option<Vector2<f64>>) {
         let normal = normal.unwrap_or_default();
         self.push_raw(point.x, point.y, normal.x, normal.y);
     }
@@ -125,7 +129,10 @@ impl PointCloud {
     /// The cloud moved by `target_from_source`; its normals turn with it.
     #[must_use]
     pub fn transformed(&self, target_from_source: &SE2) -> Self {
-        let mut moved = Self::new();
+        let mut moved = Self {
+            stamp_s: self.stamp_s,
+            ..Self::default()
+        };
         moved.extend_transformed(self, target_from_source);
         moved
     }
@@ -156,7 +163,7 @@ impl PointCloud {
     /// The order is that of the first point that fell into each cell.
     #[must_use]
     pub fn downsample(&self, cell_m: f64) -> Self {
-        let mut thinned = Self::new();
+        let mut thinned = Self::default();
         Downsampler::default().downsample_into(self, cell_m, &mut thinned);
         thinned
     }
@@ -179,9 +186,9 @@ impl PointCloud {
     }
 }
 
-impl FromIterator<Vector2<f64>> for PointCloud {
-    fn from_iter<I: IntoIterator<Item = Vector2<f64>>>(points: I) -> Self {
-        let mut cloud = Self::new();
+impl FromIterator<Point2<f64>> for PointCloud {
+    fn from_iter<I: IntoIterator<Item = Point2<f64>>>(points: I) -> Self {
+        let mut cloud = Self::default();
         for point in points {
             cloud.push(point);
         }
@@ -213,6 +220,7 @@ impl Downsampler {
             *count += 1.0;
         }
         thinned.clear();
+        thinned.stamp_s = cloud.stamp_s;
         for &(sum_x, sum_y, count) in &self.sums {
             thinned.xs.push(sum_x / count);
             thinned.ys.push(sum_y / count);

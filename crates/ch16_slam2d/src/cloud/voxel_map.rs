@@ -1,6 +1,6 @@
 //! The chapter's map: a hash of cells, a short bucket of points in each.
 
-use nalgebra::Vector2;
+use nalgebra::{Point2, Vector2};
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
@@ -33,7 +33,7 @@ impl VoxelMap {
             cell_m,
             max_per_cell,
             buckets: FxHashMap::default(),
-            points: PointCloud::new(),
+            points: PointCloud::default(),
         }
     }
 
@@ -45,35 +45,35 @@ impl VoxelMap {
         map
     }
 
-    /// Adds a point without a normal. Returns whether it was kept.
-    pub fn insert(&mut self, point: Vector2<f64>) -> bool {
-        self.insert_with_normal(point, None)
-    }
-
-    /// Adds a point with its normal. Returns whether it was kept.
+    /// Adds points in order, each with its unit normal where it has one.
     ///
-    /// A point is ignored where its cell is full or a coordinate is not finite.
-    pub fn insert_with_normal(
-        &mut self,
-        point: Vector2<f64>,
-        normal: Option<Vector2<f64>>,
-    ) -> bool {
-        if !(point.x.is_finite() && point.y.is_finite()) {
-            return false;
+    /// A point is ignored where its cell is full or a coordinate is not finite. The points that
+    /// were kept are numbered from 0 in the order of insertion.
+    ///
+    /// # Panics
+    /// If the slices differ in length.
+    pub fn insert(&mut self, points: &[Point2<f64>], normals: &[Option<Vector2<f64>>]) {
+        assert_eq!(points.len(), normals.len(), "every point has an entry");
+        for (point, normal) in points.iter().zip(normals) {
+            self.insert_point(*point, *normal);
         }
-        let bucket = self.buckets.entry(self.cell_of(point)).or_default();
-        if bucket.len() >= self.max_per_cell {
-            return false;
-        }
-        bucket.push(self.points.len() as u32);
-        self.points.push_with_normal(point, normal);
-        true
     }
 
     /// Adds the points of a cloud in order, with their normals.
     pub fn insert_cloud(&mut self, cloud: &PointCloud) {
         for index in 0..cloud.len() {
-            self.insert_with_normal(cloud.point(index), cloud.normal(index));
+            self.insert_point(cloud.point(index), cloud.normal(index));
+        }
+    }
+
+    fn insert_point(&mut self, point: Point2<f64>, normal: Option<Vector2<f64>>) {
+        if !(point.x.is_finite() && point.y.is_finite()) {
+            return;
+        }
+        let bucket = self.buckets.entry(self.cell_of(point)).or_default();
+        if bucket.len() < self.max_per_cell {
+            bucket.push(self.points.len() as u32);
+            self.points.push_with_normal(point, normal);
         }
     }
 
@@ -95,13 +95,14 @@ impl VoxelMap {
         &self.points
     }
 
-    /// The nearest point strictly closer than `radius_m`; see [`NearestMap::nearest`].
+    /// Number of the nearest point strictly closer than `tau` (m); see [`NearestMap::neighbor`].
     #[must_use]
-    pub fn nearest(&self, query: Vector2<f64>, radius_m: f64) -> Option<Neighbor> {
-        NearestMap::nearest(self, query, radius_m)
+    pub fn nearest(&self, query: &Point2<f64>, tau: f64) -> Option<u32> {
+        let neighbor = self.neighbor(*query, tau)?;
+        Some(neighbor.index as u32)
     }
 
-    fn cell_of(&self, point: Vector2<f64>) -> (i32, i32) {
+    fn cell_of(&self, point: Point2<f64>) -> (i32, i32) {
         (
             cell_index(point.x, self.cell_m),
             cell_index(point.y, self.cell_m),
@@ -118,7 +119,7 @@ struct Best {
 
 impl Best {
     #[inline]
-    fn consider(&mut self, points: &PointCloud, query: Vector2<f64>, cell: (i32, i32), index: u32) {
+    fn consider(&mut self, points: &PointCloud, query: Point2<f64>, cell: (i32, i32), index: u32) {
         let dx = points.xs()[index as usize] - query.x;
         let dy = points.ys()[index as usize] - query.y;
         let distance_squared_m2 = dx * dx + dy * dy;
@@ -135,7 +136,7 @@ impl Best {
 }
 
 impl VoxelMap {
-    fn scan(&self, cell: (i32, i32), query: Vector2<f64>, best: &mut Best) {
+    fn scan(&self, cell: (i32, i32), query: Point2<f64>, best: &mut Best) {
         let Some(bucket) = self.buckets.get(&cell) else {
             return;
         };
@@ -144,7 +145,7 @@ impl VoxelMap {
         }
     }
 
-    fn scan_all(&self, query: Vector2<f64>, best: &mut Best) {
+    fn scan_all(&self, query: Point2<f64>, best: &mut Best) {
         for index in 0..self.points.len() {
             let cell = self.cell_of(self.points.point(index));
             best.consider(&self.points, query, cell, index as u32);
@@ -152,7 +153,7 @@ impl VoxelMap {
     }
 
     /// A distance that no point of a cell `ring` or more cells away can undercut.
-    fn ring_distance(&self, ring: i32, query: Vector2<f64>, (ci, cj): (i32, i32)) -> f64 {
+    fn ring_distance(&self, ring: i32, query: Point2<f64>, (ci, cj): (i32, i32)) -> f64 {
         let to_edge = |coordinate: f64, cell: i32| {
             let low = coordinate - f64::from(cell) * self.cell_m;
             low.min(self.cell_m - low)
@@ -169,7 +170,7 @@ impl NearestMap for VoxelMap {
         self.points.len()
     }
 
-    fn point(&self, index: usize) -> Vector2<f64> {
+    fn point(&self, index: usize) -> Point2<f64> {
         self.points.point(index)
     }
 
@@ -177,7 +178,7 @@ impl NearestMap for VoxelMap {
         self.points.normal(index)
     }
 
-    fn nearest(&self, query: Vector2<f64>, radius_m: f64) -> Option<Neighbor> {
+    fn neighbor(&self, query: Point2<f64>, radius_m: f64) -> Option<Neighbor> {
         let center = self.cell_of(query);
         let (ci, cj) = center;
         let last_ring = ((radius_m / self.cell_m).ceil() as i32).max(1);

@@ -1,6 +1,6 @@
 //! The two increments: the best rigid motion for given pairs.
 
-use nalgebra::{Matrix3, Vector2, Vector3};
+use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 use pr_geom::{Rotation, SE2, math};
 
 /// Pairs with normals that a point-to-plane step needs: one for every degree of freedom.
@@ -26,7 +26,7 @@ pub struct Alignment {
 /// # Panics
 /// If the slices differ in length.
 #[must_use]
-pub fn svd_align(src: &[Vector2<f64>], dst: &[Vector2<f64>]) -> SE2 {
+pub fn svd_align(src: &[Point2<f64>], dst: &[Point2<f64>]) -> SE2 {
     closed_form(src, dst).pose
 }
 
@@ -37,7 +37,7 @@ pub fn svd_align(src: &[Vector2<f64>], dst: &[Vector2<f64>]) -> SE2 {
 /// # Panics
 /// If the slices differ in length.
 #[must_use]
-pub fn closed_form(src: &[Vector2<f64>], dst: &[Vector2<f64>]) -> Alignment {
+pub fn closed_form(src: &[Point2<f64>], dst: &[Point2<f64>]) -> Alignment {
     assert_eq!(src.len(), dst.len(), "points come in pairs");
     let pairs = src.iter().zip(dst);
     point_to_point(pairs.map(|(p, q)| PointPair {
@@ -59,8 +59,8 @@ pub fn closed_form(src: &[Vector2<f64>], dst: &[Vector2<f64>]) -> Alignment {
 /// If the slices differ in length.
 #[must_use]
 pub fn point_to_plane_step(
-    src: &[Vector2<f64>],
-    dst: &[Vector2<f64>],
+    src: &[Point2<f64>],
+    dst: &[Point2<f64>],
     normals: &[Option<Vector2<f64>>],
 ) -> SE2 {
     assert_eq!(src.len(), dst.len(), "points come in pairs");

@@ -39,7 +39,7 @@ pub fn icp_information_along(
     let mut hessian = PlaneHessian::default();
     let weight = 1.0 / (sigma * sigma * inflate);
     for pair in pairs {
-        let arm = pair.source - centroid.coords;
+        let arm = pair.source - centroid;
         let mut add = |direction: Vector2<f64>| {
             let (nx, ny) = axes.unrotate(direction.x, direction.y);
             let lever = arm.x * direction.y - arm.y * direction.x;
@@ -61,7 +61,7 @@ pub fn icp_information_along(
 pub fn centroid(pairs: &[Pair]) -> Point2<f64> {
     let sum = pairs
         .iter()
-        .fold(Vector2::zeros(), |sum, pair| sum + pair.source);
+        .fold(Vector2::zeros(), |sum, pair| sum + pair.source.coords);
     (sum / pairs.len().max(1) as f64).into()
 }
 

@@ -1,6 +1,6 @@
 //! Data association: which map point each cloud point is paired with.
 
-use nalgebra::Vector2;
+use nalgebra::{Point2, Vector2};
 use pr_geom::{SE2, math};
 
 use super::align::{PlanePair, PointPair, point_to_plane, point_to_point};
@@ -15,9 +15,9 @@ pub struct Pair {
     /// Index in the map.
     pub target_index: usize,
     /// The cloud point, moved into the map's frame, m.
-    pub source: Vector2<f64>,
+    pub source: Point2<f64>,
     /// The map point, m.
-    pub target: Vector2<f64>,
+    pub target: Point2<f64>,
     /// Unit normal of the map point, where it has one.
     pub normal: Option<Vector2<f64>>,
 }
@@ -121,8 +121,8 @@ impl IcpWorkspace {
         self.pairs.iter().map(|pair| Pair {
             source_index: pair.source_index as usize,
             target_index: pair.target_index as usize,
-            source: Vector2::new(pair.source.0, pair.source.1),
-            target: Vector2::new(pair.target.0, pair.target.1),
+            source: Point2::new(pair.source.0, pair.source.1),
+            target: Point2::new(pair.target.0, pair.target.1),
             normal: map.normal(pair.target_index as usize),
         })
     }
@@ -163,8 +163,8 @@ impl IcpWorkspace {
                 // Neighbours in a sweep are neighbours in the map.
                 *memory = Memory::near(index);
             }
-            let query = Vector2::new(source.0, source.1);
-            let Some(nearest) = map.nearest_again(query, config.tau, memory) else {
+            let query = Point2::new(source.0, source.1);
+            let Some(nearest) = map.neighbor_again(query, config.tau, memory) else {
                 cost += tau_squared;
                 continue;
             };

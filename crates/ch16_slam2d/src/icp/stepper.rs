@@ -96,12 +96,12 @@ pub struct IcpResult {
 /// ```
 /// use ch16_slam2d::cloud::{PointCloud, VoxelMap};
 /// use ch16_slam2d::icp::{IcpConfig, icp};
-/// use pr_geom::{SE2, Vector2};
+/// use pr_geom::{Point2, SE2};
 ///
 /// // Two walls that meet in a corner.
 /// let walls = |k: i32| {
 ///     let along = 0.1 * f64::from(k);
-///     [Vector2::new(along, 0.0), Vector2::new(0.0, along)]
+///     [Point2::new(along, 0.0), Point2::new(0.0, along)]
 /// };
 /// let target: PointCloud = (1..20).flat_map(walls).collect();
 /// let map = VoxelMap::from_cloud(&target, 0.25, 8);

@@ -99,8 +99,8 @@ impl LoopWorkspace {
     #[must_use]
     pub fn new(submap: &MapConfig) -> Self {
         Self {
-            world: PointCloud::new(),
-            submap: PointCloud::new(),
+            world: PointCloud::default(),
+            submap: PointCloud::default(),
             map: DenseMap::new(submap.cell_m, submap.max_per_cell),
             icp: IcpWorkspace::new(),
             pairs: Vec::new(),

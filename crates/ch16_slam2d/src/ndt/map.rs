@@ -1,6 +1,6 @@
 //! The cells of an NDT map and the score of a point.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, Point2, Vector2};
 use pr_geom::{SE2, math};
 use rustc_hash::FxHashMap;
 
@@ -23,7 +23,7 @@ pub struct NdtCell {
     /// Points that fell into it.
     pub count: usize,
     /// Their mean, m.
-    pub mean: Vector2<f64>,
+    pub mean: Point2<f64>,
     /// Their covariance with its eigenvalues raised to the floor, m².
     pub covariance: Matrix2<f64>,
     /// The inverse of the covariance, 1/m².
@@ -176,16 +176,16 @@ impl Moments {
         }
     }
 
-    fn count_in(&mut self, point: Vector2<f64>) {
+    fn count_in(&mut self, point: Point2<f64>) {
         self.count += 1;
-        self.sum += point;
+        self.sum += point.coords;
     }
 
-    fn mean(&self) -> Vector2<f64> {
-        self.sum / self.count as f64
+    fn mean(&self) -> Point2<f64> {
+        (self.sum / self.count as f64).into()
     }
 
-    fn spread(&mut self, point: Vector2<f64>) {
+    fn spread(&mut self, point: Point2<f64>) {
         let d = point - self.mean();
         self.scatter[0] += d.x * d.x;
         self.scatter[1] += d.x * d.y;

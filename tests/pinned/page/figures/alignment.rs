@@ -2,7 +2,7 @@
 
 use ch16_slam2d::icp::closed_form;
 use nalgebra::Matrix2;
-use pr_geom::Vector2;
+use pr_geom::{Point2, Vector2};
 
 /// Source points, and their partners in the target.
 const POINTS: [([f64; 2], [f64; 2]); 4] = [
@@ -14,12 +14,14 @@ const POINTS: [([f64; 2], [f64; 2]); 4] = [
 
 /// `theta_deg`, `trace_bound`: results by name; `p0x` or `q3y`: a coordinate of a point.
 pub fn value(what: &str) -> Option<f64> {
-    let source = POINTS.map(|(p, _)| Vector2::from(p));
-    let target = POINTS.map(|(_, q)| Vector2::from(q));
+    let source = POINTS.map(|(p, _)| Point2::from(p));
+    let target = POINTS.map(|(_, q)| Point2::from(q));
     let aligned = closed_form(&source, &target);
-    let centroid = |points: &[Vector2<f64>; 4]| points.iter().sum::<Vector2<f64>>() / 4.0;
+    let centroid = |points: &[Point2<f64>; 4]| {
+        Point2::from(points.iter().map(|p| p.coords).sum::<Vector2<f64>>() / 4.0)
+    };
     let (p_mean, q_mean) = (centroid(&source), centroid(&target));
-    let spread = |points: &[Vector2<f64>; 4], mean: Vector2<f64>| -> f64 {
+    let spread = |points: &[Point2<f64>; 4], mean: Point2<f64>| -> f64 {
         points.iter().map(|p| (p - mean).norm_squared()).sum()
     };
     let moments: Matrix2<f64> = source
@@ -28,7 +30,7 @@ pub fn value(what: &str) -> Option<f64> {
         .map(|(p, q)| (p - p_mean) * (q - q_mean).transpose())
         .sum();
     let residual =
-        |(p, q): (&Vector2<f64>, &Vector2<f64>)| (aligned.pose.transform(*p) - q).norm_squared();
+        |(p, q): (&Point2<f64>, &Point2<f64>)| (aligned.pose.transform(*p) - q).norm_squared();
     Some(match what {
         "x" => aligned.pose.x(),
         "y" => aligned.pose.y(),

@@ -6,7 +6,7 @@ use ch16_lab::terrain::TerrainSettings;
 use ch16_slam2d::chi_squared::{cdf3, gate_threshold};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, IcpVariant};
-use pr_geom::{SE2, Vector2};
+use pr_geom::{Point2, SE2};
 use pr_sim::World;
 
 use super::basin::{TAU_M, WIDE_TAU_M};
@@ -64,7 +64,7 @@ pub fn value(path: &[&str]) -> Option<f64> {
 /// The fewest points in a line that give each other normals.
 fn min_neighbors() -> usize {
     let has_normals = |count: &usize| {
-        let line = (0..*count).map(|k| Vector2::new(0.05 * k as f64, 0.0));
+        let line = (0..*count).map(|k| Point2::new(0.05 * k as f64, 0.0));
         let mut cloud: PointCloud = line.collect();
         cloud.estimate_normals(0.3);
         cloud.normal(0).is_some()

@@ -1,7 +1,7 @@
 //! What the reader takes hold of: the source by its points, its turning handle, a basin map.
 
 use kit::model::Handle;
-use pr_geom::{SE2, Vector2, math};
+use pr_geom::{Point2, SE2, math};
 
 use super::basins::start_at;
 use super::{BasinExplorer, panel};
@@ -17,8 +17,8 @@ mod thing {
 }
 
 /// Where the handle that turns the source stands, at the iteration that is shown.
-pub fn turn_handle(explorer: &BasinExplorer) -> Vector2<f64> {
-    let arm = Vector2::new(TURN_ARM_M, 0.0);
+pub fn turn_handle(explorer: &BasinExplorer) -> Point2<f64> {
+    let arm = Point2::new(TURN_ARM_M, 0.0);
     explorer.shown().pose.transform(arm)
 }
 
@@ -44,10 +44,10 @@ pub fn grab(
 
 /// The turning handle, or the source by any of its points or its sensor.
 fn grab_source(explorer: &BasinExplorer, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-    let near = |spot: Vector2<f64>| {
+    let near = |spot: Point2<f64>| {
         (spot.x - at[0]).abs() <= reach[0] && (spot.y - at[1]).abs() <= reach[1]
     };
-    let take = |id, spot: Vector2<f64>| Handle {
+    let take = |id, spot: Point2<f64>| Handle {
         panel: panel::SWEEPS,
         id,
         offset: [at[0] - spot.x, at[1] - spot.y],
@@ -57,7 +57,7 @@ fn grab_source(explorer: &BasinExplorer, at: [f64; 2], reach: [f64; 2]) -> Optio
         return Some(take(thing::TURN, turn));
     }
     let pose = explorer.shown().pose;
-    let sensor = Vector2::new(pose.x(), pose.y());
+    let sensor = pose.position();
     let mut points = explorer.scene.source().iter();
     let touched = near(sensor) || points.any(|p| near(pose.transform(p)));
     touched.then(|| take(thing::SOURCE, sensor))

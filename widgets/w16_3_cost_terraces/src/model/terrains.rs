@@ -100,7 +100,7 @@ impl Terrains {
             settings,
             scene,
             grids: Terrain::default(),
-            turned: PointCloud::new(),
+            turned: PointCloud::default(),
             map_points_m: Vec::new(),
         };
         terrains.renew(Stale::EVERYTHING);
@@ -181,7 +181,7 @@ impl Terrains {
     pub fn pairs_at(&self, shift_m: [f64; 2]) -> Vec<[[f64; 2]; 2]> {
         let map = self.scene.map();
         let pair = |from: [f64; 2]| {
-            let nearest = map.nearest(from.into(), self.settings.tau_m)?;
+            let nearest = map.neighbor(from.into(), self.settings.tau_m)?;
             Some([from, map.point(nearest.index).into()])
         };
         self.sweep_at(shift_m)

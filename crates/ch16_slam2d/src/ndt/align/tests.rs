@@ -1,4 +1,4 @@
-use nalgebra::Vector2;
+use nalgebra::Point2;
 
 use super::*;
 use crate::cloud::cell_index;
@@ -24,7 +24,7 @@ fn room() -> (PointCloud, PointCloud) {
         (-2.3, 1.7),
         (-2.3, -1.6),
     ];
-    let (mut target, mut source) = (PointCloud::new(), PointCloud::new());
+    let (mut target, mut source) = (PointCloud::default(), PointCloud::default());
     for wall in corners.windows(2) {
         let ((x0, y0), (x1, y1)) = (wall[0], wall[1]);
         let length = math::norm2(x1 - x0, y1 - y0);
@@ -33,7 +33,7 @@ fn room() -> (PointCloud, PointCloud) {
             let share = step as f64 / steps as f64;
             let off = 0.002 * ((step * 7919 % 11) as f64 - 5.0);
             let (nx, ny) = ((y0 - y1) / length, (x1 - x0) / length);
-            let point = Vector2::new(
+            let point = Point2::new(
                 x0 + share * (x1 - x0) + off * nx,
                 y0 + share * (y1 - y0) + off * ny,
             );
