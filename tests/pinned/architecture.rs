@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::page::document::source;
 
 /// Every package with its layer; a package may use only packages of lower layers.
-const LAYERS: [(&str, u8); 15] = [
+const LAYERS: [(&str, u8); 16] = [
     ("crates/pr_geom", 0),
     ("crates/pr_sim", 1),
     ("crates/pr_grid", 1),
@@ -15,6 +15,7 @@ const LAYERS: [(&str, u8); 15] = [
     ("crates/ch16_lab", 3),
     ("crates/slam2d_cli", 4),
     ("crates/solver_peers", 3),
+    ("crates/measuring", 0),
     ("crates/xtask", 0),
     ("widgets/kit", 1),
     ("widgets/w16_1_basin_explorer", 4),
@@ -167,6 +168,15 @@ fn the_estimator_does_not_know_the_simulator() {
     assert!(manifest.contains("pr_optim"));
     for name in ["pr_sim", "ch16_lab"] {
         assert!(!manifest.contains(name), "the estimator uses {name}");
+    }
+}
+
+#[test]
+fn only_tests_use_the_package_of_the_tests() {
+    let packages = LAYERS.iter().map(|(package, _)| *package);
+    for package in packages.chain(["tests/bench"]) {
+        let uses = dependencies(package).contains(&"slam2d_tests".to_owned());
+        assert!(!uses, "{package} needs it outside of its tests");
     }
 }
 

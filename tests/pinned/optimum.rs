@@ -7,9 +7,9 @@
 
 use std::path::PathBuf;
 
+use measuring::skip::skip;
 use pr_optim::g2o::G2oFile;
 use pr_optim::{JacobianModel, Optimizer, Session, Settings, Start, StopReason};
-use slam2d_tests::skip::skip;
 
 const NO_DATA: &str = "the folder with the reference data is absent";
 

@@ -3,9 +3,6 @@
 //! The JSON files in `reference/` were computed by an independent implementation of the same
 //! system; nothing in the code is copied from them.
 
-pub mod generated;
-pub mod skip;
-
 use std::fs;
 use std::path::Path;
 

@@ -4,7 +4,6 @@
 //! files that cannot be used end in one line on standard error and exit code 2.
 
 mod basin;
-mod cpu_clock;
 mod lap;
 mod numbers;
 mod optimize;

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace, StopReason};
 use clap::{Args, ValueEnum};
+use measuring::timed;
 use pr_geom::{Point2, SE2, Vector2};
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::cpu_clock::CpuClock;
 use crate::numbers;
 use crate::output::{pose, print_json, say};
 
@@ -174,12 +174,7 @@ fn why(stop: &StopReason) -> String {
 /// The fastest of `repeat` calls in microseconds of this thread's time.
 fn fastest_us(repeat: NonZeroU32, mut call: impl FnMut()) -> f64 {
     (0..repeat.get())
-        .map(|_| {
-            let mut clock = CpuClock::start();
-            call();
-            clock.pause();
-            1e3 * clock.elapsed_ms()
-        })
+        .map(|_| 1e3 * timed(&mut call).1)
         .fold(f64::INFINITY, f64::min)
 }
 

@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::support::{assert_refused, json, slam2d};
+use measuring::skip::skip;
 use pr_optim::g2o::G2oFile;
 use serde_json::Value;
-use slam2d_tests::skip::skip;
 use tempfile::TempDir;
 
 const SQUARE: &str = "\

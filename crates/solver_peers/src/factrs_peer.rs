@@ -8,9 +8,9 @@ use factrs::optimizers::{BaseOptParams, OptError};
 use factrs::traits::Optimizer;
 use factrs::utils::load_g20;
 use factrs::variables;
+use measuring::timed;
 use pr_geom::SE2;
 
-use crate::clock::timed;
 use crate::{Peer, Solve};
 
 /// factrs with the path of a graph: it keeps nothing from one solve to the next.

@@ -7,7 +7,6 @@
 //! of the heading residual only. Their optima lie a little beside.
 
 pub mod arael_peer;
-pub mod clock;
 pub mod compare;
 pub mod factrs_peer;
 pub mod ours;

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use slam2d_tests::generated;
+use measuring::generated;
 use solver_peers::compare::{HEAD, compare};
 
 const USAGE: &str = "usage: solver_peers [--rounds N] [--write PAGE.md] FILE.g2o…";

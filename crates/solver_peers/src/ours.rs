@@ -1,10 +1,10 @@
 //! This project's solver.
 
+use measuring::timed;
 use pr_optim::{
     JacobianModel, OptimizeError, Optimizer, Outcome, Problem, Session, Settings, Start,
 };
 
-use crate::clock::timed;
 use crate::{Peer, Solve};
 
 /// The settings of `slam2d optimize` without options.

@@ -10,8 +10,8 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use measuring::skip::tell;
 use slam2d_bench::workloads;
-use slam2d_tests::skip::tell;
 
 /// A count may rise by this share over the recorded one.
 const ALLOWED_RISE: f64 = 0.10;

@@ -14,11 +14,11 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use measuring::skip::tell;
 use page::{Block, write_into};
 use report::Figures;
 use serde::Serialize;
 use slam2d_bench::{measure::measure, workloads};
-use slam2d_tests::skip::tell;
 
 const USAGE: &str = "\
 slam2d_bench measure [SECONDS_EACH]      medians of all workloads as JSON

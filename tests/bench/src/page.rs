@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use slam2d_tests::generated;
+use measuring::generated;
 
 /// A part of `docs/performance.md` that a command writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

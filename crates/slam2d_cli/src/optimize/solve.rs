@@ -1,13 +1,13 @@
 //! The solve of `slam2d optimize`: settings, repeats, times, progress.
 
 use indicatif::{ProgressBar, ProgressStyle};
+use measuring::CpuClock;
 use pr_optim::{
     JacobianModel, Method, OptimizeError, Optimizer, Outcome, Problem, Session, Settings, Start,
     StopReason,
 };
 
 use super::args::{MethodName, OptimizeArgs};
-use crate::cpu_clock::CpuClock;
 
 /// First damping of `--method lm`, relative to the diagonal.
 const INITIAL_DAMPING: f64 = 1e-6;

@@ -34,6 +34,14 @@ impl CpuClock {
     }
 }
 
+/// The result of `work`, and the milliseconds that it kept this thread busy.
+pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let mut clock = CpuClock::start();
+    let result = work();
+    clock.pause();
+    (result, clock.elapsed_ms())
+}
+
 #[cfg(unix)]
 fn now_s() -> f64 {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
@@ -46,4 +54,35 @@ fn now_s() -> f64 {
     use std::time::Instant;
     static START: OnceLock<Instant> = OnceLock::new();
     START.get_or_init(Instant::now).elapsed().as_secs_f64()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Keeps the thread busy for at least that long by its own clock.
+    fn work(milliseconds: f64) {
+        let mut clock = CpuClock::start();
+        while clock.elapsed_ms() < milliseconds {
+            clock.pause();
+            clock.resume();
+        }
+    }
+
+    #[test]
+    fn work_counts_and_a_pause_does_not() {
+        let (found, busy_ms) = timed(|| {
+            work(5.0);
+            7
+        });
+        assert_eq!(found, 7);
+        assert!(busy_ms >= 5.0, "{busy_ms} ms");
+
+        let mut clock = CpuClock::start();
+        clock.pause();
+        work(40.0);
+        clock.resume();
+        clock.pause();
+        assert!(clock.elapsed_ms() < 40.0, "{} ms", clock.elapsed_ms());
+    }
 }
