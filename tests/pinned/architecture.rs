@@ -117,13 +117,15 @@ fn core_files() -> Vec<String> {
         .collect()
 }
 
+fn widgets() -> impl Iterator<Item = &'static str> {
+    let packages = LAYERS.iter().map(|(package, _)| *package);
+    packages.filter(|package| package.starts_with("widgets/w16"))
+}
+
 /// Files with the rules of the widgets: a widget's model, its parameters, and the kit's first half.
 fn model_files() -> Vec<String> {
-    let widgets = LAYERS
-        .iter()
-        .filter(|(path, _)| path.starts_with("widgets/w16"));
-    let mut files: Vec<String> = widgets
-        .flat_map(|(path, _)| rust_files(&format!("{path}/src")))
+    let mut files: Vec<String> = widgets()
+        .flat_map(|path| rust_files(&format!("{path}/src")))
         .filter(|path| path.contains("/model") || path.ends_with("/spec.rs"))
         .collect();
     files.extend(KIT_WITHOUT_EGUI.map(|name| format!("widgets/kit/src/{name}.rs")));
@@ -207,6 +209,29 @@ fn models_know_neither_egui_nor_the_browser_nor_a_clock() {
         "SystemTime",
     ];
     assert_eq!(occurrences(&files, &words), Vec::<String>::new());
+}
+
+#[test]
+fn every_widget_has_the_same_files_for_the_same_things() {
+    let files = [
+        "lib.rs",
+        "main.rs",
+        "spec.rs",
+        "model.rs",
+        "model/settings.rs",
+        "model/picture.rs",
+        "model/words.rs",
+        "model/tables.rs",
+        "view.rs",
+    ];
+    let guide = source("ARCHITECTURE.md");
+    for file in files {
+        assert!(guide.contains(&format!("`{file}`")), "{file} is missing");
+        for widget in widgets() {
+            let path = format!("{widget}/src/{file}");
+            assert!(root().join(&path).exists(), "{path} is missing");
+        }
+    }
 }
 
 #[test]

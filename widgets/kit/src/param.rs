@@ -192,27 +192,6 @@ impl ParamSpec {
         }
     }
 
-    /// The value as a reader sees it: `60°`, `0.70 m`, `point to plane`.
-    #[must_use]
-    pub fn to_label(&self, value: f64) -> String {
-        match self.kind {
-            ParamKind::Choice { options } => options
-                .get(value as usize)
-                .map_or_else(|| value.to_string(), |choice| choice.label.to_owned()),
-            ParamKind::Switch => if value == 0.0 { "off" } else { "on" }.to_owned(),
-            _ => {
-                let space = if self.unit.is_empty() || self.unit == "°" {
-                    ""
-                } else {
-                    "\u{202f}"
-                };
-                let decimals = self.decimals();
-                let number = format!("{value:.decimals$}");
-                format!("{number}{space}{}", self.unit)
-            }
-        }
-    }
-
     /// Reads what [`ParamSpec::to_text`] writes, checked against the range.
     ///
     /// # Errors

@@ -4,19 +4,19 @@ mod basins;
 mod hands;
 mod letters;
 mod picture;
-mod report;
 mod settings;
+mod tables;
+mod words;
 
 use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart};
 use ch16_slam2d::icp::{IcpTrace, IcpWorkspace, Pair, correspondences};
 use kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark,
-    unknown_button,
+    Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
 };
 use kit::param::{Changed, ParamError, Values};
 use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
-use kit::spec::WidgetSpec;
+use kit::spec::{DEFAULTS, WidgetSpec};
 
 use crate::spec::{OFFSET_SPAN_M, PARAMS, SPEC};
 use basins::Basins;
@@ -184,35 +184,18 @@ impl Model for BasinExplorer {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let last = self.last() as f64;
-        let here = self.iteration() as f64;
-        match id {
-            "play" => {
-                let from = self.playback.toggle(here, last);
-                self.store("iteration", from);
-            }
-            "step" => {
-                self.playback.pause();
-                self.store("iteration", (here + 1.0).min(last));
-            }
-            "reset" => {
-                self.playback.pause();
-                self.store("iteration", 0.0);
-            }
-            "defaults" => {
-                self.playback.pause();
-                for spec in PARAMS {
-                    self.set(spec.id, spec.default)?;
-                }
-            }
-            _ => {
-                let Some(preset) = SPEC.presets.iter().find(|preset| preset.id == id) else {
-                    return Err(unknown_button(&SPEC, id));
-                };
-                kit::model::apply_preset(self, preset)?;
-            }
+        let (here, last) = (self.iteration() as f64, self.last() as f64);
+        if let Some(position) = self.playback.press(id, here, last) {
+            self.store("iteration", position);
+            return Ok(());
         }
-        Ok(())
+        if id != DEFAULTS.id {
+            return press_preset(self, id);
+        }
+        self.playback.pause();
+        PARAMS
+            .iter()
+            .try_for_each(|spec| self.set(spec.id, spec.default))
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
@@ -235,17 +218,17 @@ impl Model for BasinExplorer {
     }
 
     fn outcome(&self) -> Outcome {
-        report::outcome(self)
+        words::outcome(self)
     }
 
     fn summary(&self) -> String {
-        report::summary(self)
+        words::summary(self)
     }
 
     fn timeline(&self) -> Option<Timeline> {
         let last = self.last() as f64;
         let minimum = self.run.outcome.minimum;
-        let standing = report::standing(minimum);
+        let standing = words::standing(minimum);
         let name = minimum.name();
         Some(Timeline {
             param: "iteration",
@@ -263,11 +246,11 @@ impl Model for BasinExplorer {
     }
 
     fn tables(&self) -> Vec<Table> {
-        report::tables(self)
+        tables::all(self)
     }
 
     fn shown_tables(&self) -> Vec<Table> {
-        vec![report::variants(self)]
+        tables::shown(self)
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {

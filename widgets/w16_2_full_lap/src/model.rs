@@ -2,21 +2,17 @@
 //!
 //! Any parameter that changes the lap recomputes all of it at once; the moment shown stays.
 
-mod closeup;
 mod gates;
-mod map;
 mod moment;
-mod plots;
+mod picture;
 mod runs;
-mod say;
+mod settings;
 mod tables;
 mod track;
 mod transition;
 mod words;
 
-use ch16_lab::lap::{LoopAttempt, LoopClosure};
-use ch16_slam2d::chi_squared::gate_threshold;
-use ch16_slam2d::loops::GateModel;
+use ch16_lab::lap::LoopAttempt;
 use kit::chart::{dragged_to, grab_now};
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
@@ -26,10 +22,10 @@ use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 
-pub use words::SPEC;
-
+use crate::spec::SPEC;
 use moment::Moment;
-use runs::{LapSettings, Results, Runs};
+use runs::{Results, Runs};
+use settings::LapSettings;
 use transition::Transition;
 
 /// Ticks a second at speed 1: twice as fast as the robot.
@@ -55,7 +51,7 @@ impl FullLap {
     #[must_use]
     pub fn new() -> Self {
         let values = Values::defaults(SPEC.params);
-        let runs = Runs::new(&settings(&values));
+        let runs = Runs::new(&LapSettings::read(&values));
         Self {
             canonical: runs.results(),
             values,
@@ -117,7 +113,7 @@ impl FullLap {
     }
 
     fn recompute(&mut self) {
-        self.runs.update(&settings(&self.values));
+        self.runs.update(&LapSettings::read(&self.values));
         self.transition = None;
         if self.values.get("t") > self.last() {
             self.go_to(self.runs.ticks());
@@ -144,24 +140,6 @@ impl FullLap {
     fn moment(&self) -> Moment<'_> {
         let share = self.transition.as_ref().map_or(1.0, Transition::share);
         Moment::new(&self.runs, self.tick(), share)
-    }
-}
-
-fn settings(values: &Values) -> LapSettings {
-    LapSettings {
-        seed: values.get("seed") as u32,
-        noise_factor: values.get("noise"),
-        loop_closure: if values.get("loops") == 0.0 {
-            LoopClosure::Off
-        } else {
-            LoopClosure::On
-        },
-        gate_chi2: gate_threshold(values.get("gate")),
-        gate_model: if values.get("gate-model") == 0.0 {
-            GateModel::PathApproximation
-        } else {
-            GateModel::ExactMarginal
-        },
     }
 }
 
@@ -221,24 +199,15 @@ impl Model for FullLap {
     }
 
     fn scene(&self) -> Scene {
-        let (runs, tick) = (&self.runs, self.tick());
-        Scene {
-            panels: vec![
-                map::map(&self.moment()),
-                closeup::closeup(runs, tick),
-                plots::errors(runs, tick),
-                plots::disagreement(runs, tick),
-                plots::gate(runs, tick),
-            ],
-        }
+        picture::scene(&self.moment())
     }
 
     fn outcome(&self) -> Outcome {
-        say::outcome(&self.runs, self.tick())
+        words::outcome(&self.runs, self.tick())
     }
 
     fn summary(&self) -> String {
-        say::summary(&self.runs, self.tick())
+        words::summary(&self.runs, self.tick())
     }
 
     fn timeline(&self) -> Option<Timeline> {
@@ -246,7 +215,7 @@ impl Model for FullLap {
         let mark = |attempt: &LoopAttempt| TimelineMark {
             at: attempt.tick as f64,
             label: lap.loop_headline(attempt),
-            standing: say::standing(lap.judge(attempt)),
+            standing: words::standing(lap.judge(attempt)),
         };
         Some(Timeline {
             param: "t",
@@ -257,9 +226,7 @@ impl Model for FullLap {
     }
 
     fn tables(&self) -> Vec<Table> {
-        let mut tables = self.shown_tables();
-        tables.extend(tables::exported(&self.runs));
-        tables
+        tables::all(&self.runs, &self.canonical)
     }
 
     fn shown_tables(&self) -> Vec<Table> {
@@ -268,7 +235,7 @@ impl Model for FullLap {
 
     /// The line at the moment shown, in every plot over time.
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        let panel = *plots::OVER_TIME.iter().find(|id| **id == panel)?;
+        let panel = *picture::OVER_TIME.iter().find(|id| **id == panel)?;
         grab_now(panel, self.values.get("t"), at, reach)
     }
 

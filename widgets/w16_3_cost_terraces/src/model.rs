@@ -5,25 +5,24 @@
 //! What a parameter does not touch is not computed again: see [`terrains`].
 
 mod landscape;
-mod params;
 mod picture;
+mod settings;
 mod tables;
 mod terrains;
 mod words;
 
-use kit::model::{Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark};
-use kit::model::{Standing, apply_preset, unknown_button};
+use kit::model::{
+    Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
+};
 use kit::param::{Changed, ParamError, Values};
 use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 
-use params::{ID, MAX_BALL_STEPS, PARAMS, SPEC, Settings};
+use crate::spec::{HALF_SPAN_M, MAX_BALL_STEPS, PARAMS, SPEC};
 use picture::Moment;
+use settings::Settings;
 use terrains::Terrains;
-
-/// The maps reach this far from the truth in every direction, m.
-const HALF_SPAN_M: f64 = 1.3;
 
 /// Steps of the balls in a second at speed ×1.
 const STEPS_PER_S: f64 = 24.0;
@@ -82,7 +81,7 @@ impl CostTerraces {
 
     /// Sets a parameter of the own list to a value of its range.
     fn put(&mut self, id: &'static str, value: f64) {
-        if let Err(error) = self.values.set(ID, id, value) {
+        if let Err(error) = self.values.set(SPEC.id, id, value) {
             unreachable!("the widget's own value was refused: {error}");
         }
     }
@@ -90,13 +89,6 @@ impl CostTerraces {
     fn drop_balls(&mut self) {
         self.playback.pause();
         let start = self.playback.toggle(0.0, self.last_step() as f64);
-        self.go_to(start);
-    }
-
-    fn play(&mut self) {
-        let start = self
-            .playback
-            .toggle(self.step() as f64, self.last_step() as f64);
         self.go_to(start);
     }
 
@@ -120,33 +112,26 @@ impl Model for CostTerraces {
     }
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
-        if self.values.set(ID, id, value)? == Changed::Yes {
+        if self.values.set(SPEC.id, id, value)? == Changed::Yes {
             self.terrains.update(self.settings());
         }
         Ok(())
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        let (here, last) = (self.step() as f64, self.last_step() as f64);
+        if let Some(position) = self.playback.press(id, here, last) {
+            self.go_to(position);
+            return Ok(());
+        }
         match id {
             "drop" => self.drop_balls(),
-            "play" => self.play(),
-            "step" => {
-                self.playback.pause();
-                self.go_to(self.step() as f64 + 1.0);
-            }
-            "reset" => {
-                self.playback.pause();
-                self.go_to(0.0);
-            }
             "defaults" => {
                 self.playback.pause();
                 self.values = Values::defaults(PARAMS);
                 self.terrains.update(self.settings());
             }
-            _ => {
-                let preset = SPEC.presets.iter().find(|preset| preset.id == id);
-                return apply_preset(self, preset.ok_or_else(|| unknown_button(&SPEC, id))?);
-            }
+            _ => return press_preset(self, id),
         }
         Ok(())
     }

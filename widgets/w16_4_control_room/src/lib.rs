@@ -3,6 +3,7 @@
 //! [`model`] holds every rule and no pixel, [`view`] every pixel and no rule.
 
 pub mod model;
+pub mod spec;
 pub mod view;
 
 use kit::shell::Shell;

@@ -6,25 +6,24 @@ mod grid;
 mod history;
 mod log;
 mod picture;
+mod settings;
+mod tables;
 mod words;
 
-use ch16_lab::lap::{LapRecord, LapRunner, RegistrationView, SlamConfig, SlamReport};
-use ch16_slam2d::icp::IcpSummary;
+use ch16_lab::lap::{LapRecord, LapRunner, RegistrationView, SlamReport};
 use kit::chart::{dragged_to, grab_now};
-use kit::model::{
-    Activity, Fact, Handle, Model, Motion, Outcome, Standing, Table, Timeline, press_preset,
-};
+use kit::model::{Activity, Handle, Model, Motion, Outcome, Table, Timeline, press_preset};
 use kit::param::{Changed, ParamError, Values};
 use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use pr_sim::World;
 
-pub use words::SPEC;
-
+use crate::spec::SPEC;
 use grid::GridView;
 use history::History;
 use log::Event;
+use settings::config;
 
 /// Ticks a second at speed 1: twice as fast as the robot.
 const TICKS_PER_S: f64 = 8.0;
@@ -129,15 +128,6 @@ impl ControlRoom {
     }
 }
 
-fn config(values: &Values) -> SlamConfig {
-    let config = SlamConfig::with_seed_and_noise(values.get("seed") as u32, values.get("noise"));
-    if values.get("loops") == 0.0 {
-        config.without_loops()
-    } else {
-        config
-    }
-}
-
 impl Model for ControlRoom {
     fn spec(&self) -> &'static WidgetSpec {
         &SPEC
@@ -187,41 +177,15 @@ impl Model for ControlRoom {
     }
 
     fn scene(&self) -> Scene {
-        let now = self.tick();
-        Scene {
-            panels: vec![
-                picture::map(&self.record, now, self.grid.raster(), &self.world),
-                picture::registration(&self.record, now, self.registration.as_ref()),
-                self.history.threshold_plot(now),
-                self.history.error_plot(now),
-            ],
-        }
+        picture::scene(self)
     }
 
     fn outcome(&self) -> Outcome {
-        let event = self.loop_event();
-        let attempt = self.now().and_then(|report| report.loop_attempt.as_ref());
-        let verdict = match attempt {
-            Some(attempt) => self.record.lap.judge(attempt).to_string(),
-            None if self.tick() == self.record.ticks() => "run finished".to_owned(),
-            None => "on the way".to_owned(),
-        };
-        let sentence = event.map_or_else(|| self.tick_sentence(), |event| event.text.clone());
-        Outcome {
-            standing: event.map_or(Standing::Neutral, |event| event.standing),
-            verdict,
-            sentence,
-            facts: self.facts(),
-        }
+        words::outcome(self)
     }
 
     fn summary(&self) -> String {
-        format!(
-            "{} {} The newest sweep is paired with the local map by {} pairs.",
-            self.grid.words(),
-            self.tick_sentence(),
-            self.now().map_or(0, |r| r.registration.icp.inliers),
-        )
+        words::summary(self)
     }
 
     fn timeline(&self) -> Option<Timeline> {
@@ -234,19 +198,16 @@ impl Model for ControlRoom {
     }
 
     fn tables(&self) -> Vec<Table> {
-        let mut tables = self.shown_tables();
-        tables.push(history::full_log(&self.events));
-        tables.push(self.history.table(&self.record.lap.reports));
-        tables
+        tables::all(self)
     }
 
     fn shown_tables(&self) -> Vec<Table> {
-        vec![history::event_table(&self.events, self.tick())]
+        tables::shown(self)
     }
 
     /// The line at the moment shown, in both plots over time.
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        let panel = *history::OVER_TIME.iter().find(|id| **id == panel)?;
+        let panel = *picture::OVER_TIME.iter().find(|id| **id == panel)?;
         grab_now(panel, self.values.get("t"), at, reach)
     }
 
@@ -261,51 +222,5 @@ impl Model for ControlRoom {
         if let Some(end) = self.playback.set_motion(motion, self.last()) {
             self.go_to(end);
         }
-    }
-}
-
-impl ControlRoom {
-    fn tick_sentence(&self) -> String {
-        let Some(report) = self.now() else {
-            return "The run stands at its start, with one sweep sensed.".to_owned();
-        };
-        format!(
-            "Tick {} of {}: keyframe {}, the estimate is {:.2} m off, odometry {:.2} m.",
-            report.tick,
-            self.record.ticks(),
-            self.record.lap.node_count(report.tick) - 1,
-            report.metrics.estimate_error_m,
-            report.metrics.odometry_error_m,
-        )
-    }
-
-    fn facts(&self) -> Vec<Fact> {
-        let report = self.now();
-        let of = |value: &dyn Fn(&SlamReport) -> f64| report.map_or(f64::NAN, value);
-        // The start is known: nothing is off there.
-        let error = |value: &dyn Fn(&SlamReport) -> f64| report.map_or(0.0, value);
-        let icp = |value: fn(&IcpSummary) -> f64| of(&|r| value(&r.registration.icp));
-        let disagreement = |r: &SlamReport| r.metrics.map_disagreement_m.unwrap_or(f64::NAN);
-        let mut facts = vec![
-            Fact::metres("tau_m", "threshold τ", of(&|r| r.registration.tau_m)),
-            Fact::count("pairs", "pairs", icp(|icp| icp.inliers as f64)),
-            Fact::metres("rmse_m", "rmse", icp(|icp| icp.rmse)),
-            Fact::count("iterations", "iterations", icp(|icp| icp.iterations as f64)),
-        ];
-        facts.extend(self.grid.facts());
-        facts.extend([
-            Fact::metres(
-                "estimate_error_m",
-                "estimate off by",
-                error(&|r| r.metrics.estimate_error_m),
-            ),
-            Fact::metres(
-                "odometry_error_m",
-                "odometry off by",
-                error(&|r| r.metrics.odometry_error_m),
-            ),
-            Fact::metres("map_disagreement_m", "map disagreement", of(&disagreement)),
-        ]);
-        facts
     }
 }

@@ -2,7 +2,8 @@
 
 use kit::model::{Activity, Model as _, Motion, Standing};
 use kit::scene::{Layer, Tone};
-use w16_4_control_room::model::{ControlRoom, SPEC};
+use w16_4_control_room::model::ControlRoom;
+use w16_4_control_room::spec::SPEC;
 
 /// The run of the reference file with that seed, noise factor and loop closure.
 fn reference(seed: u64, noise: f64, loops: bool) -> serde_json::Value {

@@ -1,7 +1,8 @@
 //! What the control room's notes and presets promise, against the runs that they set.
 
 use kit::model::{Activity, Model as _, Standing};
-use w16_4_control_room::model::{ControlRoom, SPEC};
+use w16_4_control_room::model::ControlRoom;
+use w16_4_control_room::spec::SPEC;
 
 fn after(preset: &str) -> ControlRoom {
     let mut room = ControlRoom::new();

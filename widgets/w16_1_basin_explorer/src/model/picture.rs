@@ -9,8 +9,8 @@ use pr_geom::SE2;
 
 use super::basins::{class, spot_of};
 use super::hands::turn_handle;
-use super::report::error_m;
 use super::settings::{axis, start, variant, variant_name};
+use super::words::error_m;
 use super::{BasinExplorer, panel};
 use crate::spec::OFFSET_SPAN_M;
 

@@ -2,39 +2,13 @@
 
 use std::sync::Arc;
 
-use ch16_lab::lap::{
-    Drive, LapRecord, LapRunner, LapSummary, LoopAttempt, LoopClosure, SlamConfig,
-};
-use ch16_slam2d::loops::{GateModel, LoopConfig};
+use ch16_lab::lap::{Drive, LapRecord, LapRunner, LapSummary, LoopAttempt, SlamConfig};
+use ch16_slam2d::loops::LoopConfig;
 use pr_geom::SE2;
 
 use super::gates::Gates;
+use super::settings::LapSettings;
 use super::track::Track;
-
-/// What a lap depends on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LapSettings {
-    /// Seed of all noise.
-    pub seed: u32,
-    /// Multiplies the variances of the wheels.
-    pub noise_factor: f64,
-    /// Whether loops are closed.
-    pub loop_closure: LoopClosure,
-    /// Largest squared innovation that is believed.
-    pub gate_chi2: f64,
-    /// What the gate takes for the drift.
-    pub gate_model: GateModel,
-}
-
-impl LapSettings {
-    fn config(&self) -> SlamConfig {
-        let mut config = SlamConfig::with_seed_and_noise(self.seed, self.noise_factor);
-        config.loop_closure = self.loop_closure;
-        config.loops.gate_chi2 = self.gate_chi2;
-        config.loops.gate_model = self.gate_model;
-        config
-    }
-}
 
 /// A drive with both estimators that ran over it, and the errors over time.
 pub struct Runs {

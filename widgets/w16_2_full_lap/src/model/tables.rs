@@ -5,7 +5,7 @@ use ch16_slam2d::loops::LoopRejection;
 use kit::model::{Table, TablePlace};
 
 use super::runs::{Results, Runs};
-use super::say::{ends, model_name};
+use super::words::{ends, model_name};
 
 /// The tables beside the picture.
 pub fn shown(runs: &Runs, canonical: &Results) -> Vec<Table> {
@@ -16,9 +16,11 @@ pub fn shown(runs: &Runs, canonical: &Results) -> Vec<Table> {
     ]
 }
 
-/// The data of the plots, for the export alone.
-pub fn exported(runs: &Runs) -> Vec<Table> {
-    vec![loop_attempts(runs), over_time(runs), keyframes(runs)]
+/// All tables, the shown ones first.
+pub fn all(runs: &Runs, canonical: &Results) -> Vec<Table> {
+    let mut tables = shown(runs, canonical);
+    tables.extend([loop_attempts(runs), over_time(runs), keyframes(runs)]);
+    tables
 }
 
 fn results(id: &'static str, title: &str, results: &Results) -> Table {

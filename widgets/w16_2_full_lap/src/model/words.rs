@@ -1,160 +1,215 @@
-//! What the widget says of itself: its words, parameters, buttons and presets.
+//! The result in words and numbers.
 
-use ch16_lab::lap;
-use ch16_slam2d::chi_squared::CHAPTER_QUANTILE;
-use kit::param::{Choice, ParamKind, ParamSpec};
-use kit::playback::SPEED;
-use kit::run::{LOOPS, NOISE, seed};
-use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use ch16_lab::lap::{LoopAttempt, LoopEffect, LoopJudgement};
+use ch16_slam2d::loops::GateModel;
+use kit::model::{Fact, Outcome, Standing};
 
-/// Ticks of a lap.
-pub const LAP_TICKS: f64 = lap::LAP_TICKS as f64;
+use super::runs::Runs;
 
-/// Where the widget starts: the tick of the canonical run's first loop.
-const FIRST_LOOP_TICK: f64 = 92.0;
+/// `29 to 7`: the new node and the old one.
+pub fn ends(attempt: &LoopAttempt) -> String {
+    let loop_ = &attempt.verification;
+    format!("{} to {}", loop_.from_node, loop_.candidate.node)
+}
 
-const PARAMS: &[ParamSpec] = &[
-    NOISE,
-    LOOPS,
-    seed(lap::CANONICAL_SEED),
-    ParamSpec {
-        id: "gate",
-        label: "gate quantile",
-        unit: "",
-        kind: ParamKind::Slider {
-            min: 0.90,
-            max: 0.999,
-            step: 0.001,
-        },
-        default: CHAPTER_QUANTILE,
-        help: "Share of right loops that the χ² gate lets pass, 3 degrees of freedom: 0.95 is χ² up to 7.815.",
-    },
-    ParamSpec {
-        id: "gate-model",
-        label: "drift in the gate",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "path",
-                    label: "path",
-                },
-                Choice {
-                    id: "exact",
-                    label: "exact",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "Path: the chapter's, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. An outline holds the positions that pass at the registered heading.",
-    },
-    ParamSpec {
-        id: "t",
-        label: "tick",
-        unit: "",
-        kind: ParamKind::Timeline { max: LAP_TICKS },
-        default: FIRST_LOOP_TICK,
-        help: "The moment shown; a tick is a quarter of a second, and the marks are loops.",
-    },
-    SPEED,
-];
+/// `path` or `exact`.
+pub fn model_name(model: GateModel) -> &'static str {
+    match model {
+        GateModel::PathApproximation => "path",
+        GateModel::ExactMarginal => "exact",
+    }
+}
 
-/// One tick before the loop.
-const BEFORE: ButtonSpec = ButtonSpec {
-    id: "before",
-    label: "Before the loop",
-    help: "One tick before the loop is tried.",
-};
+/// Good is an accepted loop that is right, bad an accepted one that is wrong.
+pub fn standing(judgement: LoopJudgement) -> Standing {
+    match judgement {
+        LoopJudgement::Right => Standing::Good,
+        LoopJudgement::FalseAcceptance => Standing::Bad,
+        LoopJudgement::Rejected => Standing::Neutral,
+    }
+}
 
-/// The tick of the loop, with its animation.
-const AT: ButtonSpec = ButtonSpec {
-    id: "at",
-    label: "At the loop",
-    help: "The tick of the loop: watch the history move.",
-};
+/// The result at a tick: of the loop where one is tried in it, of the estimates where none is.
+pub fn outcome(runs: &Runs, tick: usize) -> Outcome {
+    let lap = runs.graph.lap();
+    let (standing, verdict, sentence) = match runs.graph.attempt_at(tick) {
+        Some(attempt) => {
+            let judgement = lap.judge(attempt);
+            let verdict = judgement.to_string();
+            (standing(judgement), verdict, lap.loop_sentence(attempt))
+        }
+        None if tick == runs.ticks() => (
+            Standing::Neutral,
+            "lap finished".to_owned(),
+            lap_sentence(runs),
+        ),
+        None => (
+            Standing::Neutral,
+            "on the way".to_owned(),
+            tick_sentence(runs, tick),
+        ),
+    };
+    let mut facts = moment_facts(runs, tick);
+    facts.extend(loop_facts(runs, tick));
+    Outcome {
+        standing,
+        verdict,
+        sentence,
+        facts,
+    }
+}
 
-/// One tick after the loop.
-const AFTER: ButtonSpec = ButtonSpec {
-    id: "after",
-    label: "After the loop",
-    help: "One tick after the loop was tried.",
-};
+fn tick_sentence(runs: &Runs, tick: usize) -> String {
+    format!(
+        "tick {tick} of {}: odometry is {:.2} m off, the front end alone {:.2} m, the pose graph {:.2} m",
+        runs.ticks(),
+        runs.odometry_errors_m[tick],
+        runs.front_end.errors_m[tick],
+        runs.graph.errors_m[tick],
+    )
+}
 
-/// On to the next loop.
-const NEXT: ButtonSpec = ButtonSpec {
-    id: "next",
-    label: "Next loop",
-    help: "On to the next loop; after the last one, to the first.",
-};
+fn lap_sentence(runs: &Runs) -> String {
+    let summary = runs.graph.summary();
+    format!(
+        "lap finished with {}: end error {:.2} m, rms over the keyframes {:.2} m, largest {:.2} m, map disagreement {:.2} m",
+        loops_in_words(summary.loops),
+        summary.keyframe_end_error_m,
+        summary.keyframe_rms_m,
+        summary.keyframe_max_m,
+        summary.map_disagreement_m.unwrap_or(f64::NAN),
+    )
+}
 
-/// Everything about the widget that never changes.
-pub const SPEC: WidgetSpec = WidgetSpec {
-    id: "w16.2",
-    title: "The full lap",
-    misconception: "Closing a loop does not put the whole path right: it makes the map agree with itself.",
-    notice: &[
-        "The walls seen on the way out and on the way back stand apart, and one loop brings them together: the map's disagreement falls to about a third over the lap.",
-        "The typical error over the keyframes hardly changes, and the largest even grows a little: the corridor comes out almost a metre too short, and no loop sees that.",
-        "A loop moves poses that the robot left long ago. A filter that keeps only the newest pose could not.",
-        "A small χ² alone does not pass: the sweep must also fit the old walls to 0.16 m, with at least 25 pairs.",
-        "The exact gate adds up what the edges say of themselves, and knows the truth no better. Over seeds 1 to 50 at four times the noise the chapter's closes 78 loops, 3 of them wrong; the exact one closes 123, 7 of them wrong. Wrong is more than 0.3 m or 5° off the truth.",
-    ],
-    params: PARAMS,
-    buttons: &[PLAY, STEP, RESET, BEFORE, AT, AFTER, NEXT, DEFAULTS],
-    presets: &[
-        Preset {
-            id: "first-loop",
-            label: "Watch the first loop",
-            help: "Node 29 recognises the corridor at node 7. The robot's own error falls, the error over all keyframes rises.",
-            set: &[("t", FIRST_LOOP_TICK)],
-            then: &["at"],
-        },
-        Preset {
-            id: "rejected",
-            label: "Seed 6: a loop is turned away",
-            help: "The χ² is below the gate, but the sweep fits the old walls badly; four keyframes later a better match passes.",
-            set: &[("seed", 6.0), ("t", 90.0)],
-            then: &[],
-        },
-        Preset {
-            id: "no-loops",
-            label: "Switch the loops off",
-            help: "The front end alone: the same sweeps, and a map whose two passes end 0.24 m apart instead of 0.08 m.",
-            set: &[("loops", 0.0), ("t", LAP_TICKS)],
-            then: &[],
-        },
-        Preset {
-            id: "noisy",
-            label: "Four times the noise",
-            help: "Odometry ends almost 5 m off, the front end holds, and the last loop closes in the last tick.",
-            set: &[("noise", 4.0), ("t", LAP_TICKS)],
-            then: &[],
-        },
-        Preset {
-            id: "tight-gate",
-            label: "A tight gate on a noisy lap",
-            help: "At the 0.90 quantile the gate turns away a loop that the chapter's gate accepts.",
-            set: &[("noise", 4.0), ("gate", 0.90), ("t", 116.0)],
-            then: &[],
-        },
-        Preset {
-            id: "locked-out",
-            label: "Right loops, locked out",
-            help: "Seed 2 at three times the noise drifts more than the gate allows for: it turns away three right loops, and the drift goes on.",
-            set: &[("seed", 2.0), ("noise", 3.0), ("t", LAP_TICKS)],
-            then: &[],
-        },
-        Preset {
-            id: "let-in",
-            label: "The same lap, exact gate",
-            help: "The chapter's gate turns the first loop away by its heading alone. The edges are less sure of the heading: the exact gate lets all three loops in, and the lap ends more than a metre closer.",
-            set: &[
-                ("seed", 2.0),
-                ("noise", 3.0),
-                ("gate-model", 1.0),
-                ("t", 94.0),
-            ],
-            then: &[],
-        },
-    ],
-};
+fn loops_in_words(count: usize) -> String {
+    match count {
+        0 => "no loop closed".to_owned(),
+        1 => "1 loop closed".to_owned(),
+        _ => format!("{count} loops closed"),
+    }
+}
+
+fn moment_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
+    vec![
+        Fact::metres(
+            "odometry_error_m",
+            "odometry error now",
+            runs.odometry_errors_m[tick],
+        ),
+        Fact::metres(
+            "front_end_error_m",
+            "front end error now",
+            runs.front_end.errors_m[tick],
+        ),
+        Fact::metres(
+            "graph_error_m",
+            "pose graph error now",
+            runs.graph.errors_m[tick],
+        ),
+        Fact::metres(
+            "keyframe_rms_m",
+            "rms over keyframes",
+            runs.graph.keyframe_rms_m[tick],
+        ),
+        Fact::metres(
+            "map_disagreement_m",
+            "map disagreement",
+            runs.graph.disagreement_m[tick],
+        ),
+        Fact::count(
+            "keyframes",
+            "keyframes",
+            runs.graph.keyframes_until(tick) as f64,
+        ),
+        Fact::count(
+            "loops_closed",
+            "loops closed",
+            runs.graph.accepted_until(tick) as f64,
+        ),
+        Fact::new("gate_chi2", "gate χ²", runs.gate_chi2(), "", 3),
+    ]
+}
+
+/// Of the newest attempt; not finite before the first one, so that the list never changes.
+fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
+    let attempt = runs.graph.newest_attempt(tick);
+    let of = |read: &dyn Fn(&LoopAttempt) -> f64| attempt.map_or(f64::NAN, read);
+    let of_effect = |read: &dyn Fn(&LoopEffect) -> f64| {
+        let effect = attempt.and_then(|attempt| attempt.effect.as_ref());
+        effect.map_or(f64::NAN, read)
+    };
+    let error = |attempt: &LoopAttempt| runs.graph.lap().loop_error(attempt);
+    let chi2 = of(&|attempt| attempt.verification.gate.chi2);
+    let path = of(&|attempt| runs.gates(attempt).path.test.chi2);
+    let exact = of(&|attempt| runs.gates(attempt).exact.test.chi2);
+    let pairs = of(&|attempt| attempt.verification.inliers as f64);
+    vec![
+        Fact::new("chi2", "last loop: χ²", chi2, "", 3),
+        Fact::new("chi2_path", "last loop: χ², path gate", path, "", 3),
+        Fact::new("chi2_exact", "last loop: χ², exact gate", exact, "", 3),
+        Fact::metres(
+            "loop_rmse_m",
+            "last loop: rmse",
+            of(&|attempt| attempt.verification.rmse_m),
+        ),
+        Fact::count("loop_pairs", "last loop: pairs", pairs),
+        Fact::metres(
+            "loop_error_m",
+            "last loop: off the truth",
+            of(&|attempt| error(attempt).position_m),
+        ),
+        Fact::new(
+            "loop_turn_deg",
+            "last loop: turned off the truth",
+            of(&|attempt| error(attempt).heading_deg),
+            "°",
+            1,
+        ),
+        Fact::metres(
+            "shift_m",
+            "last loop: history moved",
+            of_effect(&|effect| effect.max_shift_m),
+        ),
+        Fact::metres(
+            "rms_before_m",
+            "last loop: keyframe rms before",
+            of_effect(&|effect| effect.keyframe_rms_m.before),
+        ),
+        Fact::metres(
+            "rms_after_m",
+            "last loop: keyframe rms after",
+            of_effect(&|effect| effect.keyframe_rms_m.after),
+        ),
+    ]
+}
+
+/// A text that stands for the picture.
+pub fn summary(runs: &Runs, tick: usize) -> String {
+    let truth = runs.truth(tick);
+    let way = if runs.is_way_back(tick) {
+        "on its way back"
+    } else {
+        "on its way out"
+    };
+    let loops: Vec<_> = runs
+        .graph
+        .attempts()
+        .iter()
+        .filter(|attempt| attempt.tick <= tick)
+        .map(|attempt| runs.graph.lap().loop_sentence(attempt))
+        .collect();
+    let loops = if loops.is_empty() {
+        "No loop was tried so far".to_owned()
+    } else {
+        format!("So far: {}", loops.join("; "))
+    };
+    format!(
+        "Map of the Apartment, 12 m by 9 m, with a corridor along its middle. \
+         The robot is at x {:.1} m, y {:.1} m, {way}; {}. \
+         The pose graph has {} keyframes. {loops}.",
+        truth.x(),
+        truth.y(),
+        tick_sentence(runs, tick),
+        runs.graph.keyframes_until(tick),
+    )
+}

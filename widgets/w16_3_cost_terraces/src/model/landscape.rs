@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use kit::scene::{Bounds, Cell, Raster};
 
-use super::HALF_SPAN_M;
-use super::params::Colors;
+use super::settings::Colors;
+use crate::spec::HALF_SPAN_M;
 
 /// A ball that rests this near to the truth has come home, m: the limit that counts as success in
 /// the chapter's basin runs.

@@ -6,9 +6,9 @@ mod sweep;
 
 use kit::scene::{Axis, Scene};
 
-use super::HALF_SPAN_M;
-use super::params::Colors;
+use super::settings::Colors;
 use super::terrains::Terrains;
+use crate::spec::HALF_SPAN_M;
 use plots::{Along, Measure};
 
 /// What the picture shows besides the landscapes.

@@ -4,7 +4,7 @@ use kit::model::{Table, TablePlace};
 use kit::ticks::signed;
 
 use super::landscape::{Ball, Landscape, shift_m};
-use super::params::Settings;
+use super::settings::Settings;
 use super::terrains::Terrains;
 
 /// The tables beside the picture.

@@ -7,9 +7,9 @@ use ch16_lab::terrain::{
 use ch16_slam2d::cloud::{NearestMap, PointCloud};
 use pr_geom::{SE2, Vector2, math};
 
-use super::HALF_SPAN_M;
 use super::landscape::{Ball, End, Landscape};
-use super::params::{MAX_BALL_STEPS, Place, Settings};
+use super::settings::{Place, Settings};
+use crate::spec::{HALF_SPAN_M, MAX_BALL_STEPS};
 
 /// The ellipse is drawn as if at least this were known of every direction, 1/m²: no axis is longer
 /// than a metre.

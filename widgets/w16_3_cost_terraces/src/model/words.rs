@@ -4,7 +4,7 @@ use kit::model::{Fact, Outcome, Standing};
 use kit::ticks::signed;
 
 use super::landscape::{Ball, End};
-use super::params::{Place, Settings};
+use super::settings::{Place, Settings};
 use super::terrains::Terrains;
 
 /// What became of the balls, with the numbers.

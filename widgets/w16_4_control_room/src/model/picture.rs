@@ -1,17 +1,38 @@
-//! The two pictures: the map with its graph, and the registration of the newest sweep.
+//! The panels: the map with its graph, the registration of the newest sweep, the plots over time.
+
+mod plots;
 
 use ch16_lab::lap::{LapRecord, RegistrationView};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::graph::EdgeKind;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Raster, Stroke, Tone, Weight};
+use kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Raster, Scene, Stroke, Tone, Weight,
+};
 use pr_geom::SE2;
 use pr_sim::World;
+
+use super::ControlRoom;
+
+pub use plots::OVER_TIME;
 
 /// Half the side of the close-up, in metres.
 const CLOSE_UP_M: f64 = 4.0;
 
+/// The whole picture.
+pub fn scene(room: &ControlRoom) -> Scene {
+    let (record, now) = (&room.record, room.tick());
+    Scene {
+        panels: vec![
+            map(record, now, room.grid.raster(), &room.world),
+            registration(record, now, room.registration.as_ref()),
+            plots::threshold(&room.history, now),
+            plots::errors(&room.history, now),
+        ],
+    }
+}
+
 /// The map at a tick: grid, graph, truth and robot.
-pub fn map(record: &LapRecord, tick: usize, raster: &Raster, world: &World) -> Panel {
+fn map(record: &LapRecord, tick: usize, raster: &Raster, world: &World) -> Panel {
     let bounds = world.bounds();
     let truth = |tick| record.drive.truth(tick);
     let layers = vec![
@@ -58,7 +79,7 @@ pub fn map(record: &LapRecord, tick: usize, raster: &Raster, world: &World) -> P
 ///
 /// At the start there is nothing to register on: the first sweep stands at the known pose. A loop
 /// that is closed in the same tick moves the estimate afterwards.
-pub fn registration(record: &LapRecord, tick: usize, view: Option<&RegistrationView>) -> Panel {
+fn registration(record: &LapRecord, tick: usize, view: Option<&RegistrationView>) -> Panel {
     let start = record.drive.truth(0);
     let (center, layers) = match view {
         Some(view) => (view.icp.pose, registration_layers(record, tick, view)),

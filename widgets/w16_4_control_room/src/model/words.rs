@@ -1,92 +1,79 @@
-//! What the widget says of itself: its words, parameters, buttons and presets.
+//! The result in words and numbers.
 
-use ch16_lab::lap;
-use kit::param::{ParamKind, ParamSpec};
-use kit::playback::SPEED;
-use kit::run::{LOOPS, NOISE, seed};
-use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use ch16_lab::lap::SlamReport;
+use ch16_slam2d::icp::IcpSummary;
+use kit::model::{Fact, Outcome, Standing};
 
-/// Ticks of a lap.
-const LAP_TICKS: f64 = lap::LAP_TICKS as f64;
+use super::ControlRoom;
 
-const PARAMS: &[ParamSpec] = &[
-    NOISE,
-    LOOPS,
-    seed(lap::CANONICAL_SEED),
-    ParamSpec {
-        id: "t",
-        label: "tick",
-        unit: "",
-        kind: ParamKind::Timeline { max: LAP_TICKS },
-        default: 60.0,
-        help: "The moment shown; a tick is a quarter of a second, and the marks are loops.",
-    },
-    SPEED,
-];
+/// The result at a tick: of the loop where one is tried in it, of the estimates where none is.
+pub fn outcome(room: &ControlRoom) -> Outcome {
+    let event = room.loop_event();
+    let attempt = room.now().and_then(|report| report.loop_attempt.as_ref());
+    let verdict = match attempt {
+        Some(attempt) => room.record.lap.judge(attempt).to_string(),
+        None if room.tick() == room.record.ticks() => "run finished".to_owned(),
+        None => "on the way".to_owned(),
+    };
+    let sentence = event.map_or_else(|| tick_sentence(room), |event| event.text.clone());
+    Outcome {
+        standing: event.map_or(Standing::Neutral, |event| event.standing),
+        verdict,
+        sentence,
+        facts: facts(room),
+    }
+}
 
-/// On to the next event of the log.
-const NEXT_EVENT: ButtonSpec = ButtonSpec {
-    id: "next-event",
-    label: "Next event",
-    help: "On to the next keyframe, loop test or way point; after the last one, to the first.",
-};
+/// A text that stands for the picture.
+pub fn summary(room: &ControlRoom) -> String {
+    format!(
+        "{} {} The newest sweep is paired with the local map by {} pairs.",
+        room.grid.words(),
+        tick_sentence(room),
+        room.now().map_or(0, |r| r.registration.icp.inliers),
+    )
+}
 
-/// Everything about the widget that never changes.
-pub const SPEC: WidgetSpec = WidgetSpec {
-    id: "w16.4",
-    title: "Control room",
-    misconception: "A SLAM system is not one algorithm that runs: a fast front end and a slow back end pass poses and constraints to each other, and the map is only drawn from them.",
-    notice: &[
-        "The front end works at every tick: it predicts by odometry and corrects by one registration. The threshold τ follows how wrong the predictions were.",
-        "The back end works only at keyframes, and its big moment is a loop: then old poses move.",
-        "The grid stores no poses. After an accepted loop it is thrown away and drawn again from every keyframe's sweep.",
-        "A cell takes the ink of these words where it is likely occupied, and the colour of the paper where it is likely free. Of the tinted rest nothing was seen.",
-        "Walls blur where two passes disagree. At the first loop they sharpen: the cells that are more than 90 % likely to be occupied go from 110 to 156.",
-    ],
-    params: PARAMS,
-    buttons: &[PLAY, STEP, RESET, NEXT_EVENT, DEFAULTS],
-    presets: &[
-        Preset {
-            id: "watch",
-            label: "Watch the whole run",
-            help: "From the first sweep to the end of the lap, over three loops.",
-            set: &[("t", 0.0)],
-            then: &["play"],
-        },
-        Preset {
-            id: "blurred",
-            label: "Just before the first loop",
-            help: "The corridor has been mapped twice, and the two passes disagree by 0.12 m.",
-            set: &[("t", 91.0)],
-            then: &[],
-        },
-        Preset {
-            id: "rebuilt",
-            label: "The grid drawn again",
-            help: "One tick and one loop later the passes disagree by 0.08 m, and the walls are sharper.",
-            set: &[("t", 92.0)],
-            then: &[],
-        },
-        Preset {
-            id: "noisy",
-            label: "Four times the noise",
-            help: "The threshold τ opens up from 0.77 m to 1.51 m: predictions are worse, so pairs are looked for farther away.",
-            set: &[("noise", 4.0), ("t", 60.0)],
-            then: &[],
-        },
-        Preset {
-            id: "wrong-loop",
-            label: "A wrong loop gets in",
-            help: "Seed 6 at twice the noise: the first loop passes every test, and is 0.36 m off. Only the truth tells, and no robot knows it.",
-            set: &[("seed", 6.0), ("noise", 2.0), ("t", 92.0)],
-            then: &[],
-        },
-        Preset {
-            id: "open",
-            label: "No loops",
-            help: "Without loops nothing ever moves a pose again. The two passes end 0.24 m apart instead of 0.08 m, and 104 cells are surely occupied instead of 175.",
-            set: &[("loops", 0.0), ("t", LAP_TICKS)],
-            then: &[],
-        },
-    ],
-};
+fn tick_sentence(room: &ControlRoom) -> String {
+    let Some(report) = room.now() else {
+        return "The run stands at its start, with one sweep sensed.".to_owned();
+    };
+    format!(
+        "Tick {} of {}: keyframe {}, the estimate is {:.2} m off, odometry {:.2} m.",
+        report.tick,
+        room.record.ticks(),
+        room.record.lap.node_count(report.tick) - 1,
+        report.metrics.estimate_error_m,
+        report.metrics.odometry_error_m,
+    )
+}
+
+fn facts(room: &ControlRoom) -> Vec<Fact> {
+    let report = room.now();
+    let of = |value: &dyn Fn(&SlamReport) -> f64| report.map_or(f64::NAN, value);
+    // The start is known: nothing is off there.
+    let error = |value: &dyn Fn(&SlamReport) -> f64| report.map_or(0.0, value);
+    let icp = |value: fn(&IcpSummary) -> f64| of(&|r| value(&r.registration.icp));
+    let disagreement = |r: &SlamReport| r.metrics.map_disagreement_m.unwrap_or(f64::NAN);
+    let mut facts = vec![
+        Fact::metres("tau_m", "threshold τ", of(&|r| r.registration.tau_m)),
+        Fact::count("pairs", "pairs", icp(|icp| icp.inliers as f64)),
+        Fact::metres("rmse_m", "rmse", icp(|icp| icp.rmse)),
+        Fact::count("iterations", "iterations", icp(|icp| icp.iterations as f64)),
+    ];
+    facts.extend(room.grid.facts());
+    facts.extend([
+        Fact::metres(
+            "estimate_error_m",
+            "estimate off by",
+            error(&|r| r.metrics.estimate_error_m),
+        ),
+        Fact::metres(
+            "odometry_error_m",
+            "odometry off by",
+            error(&|r| r.metrics.odometry_error_m),
+        ),
+        Fact::metres("map_disagreement_m", "map disagreement", of(&disagreement)),
+    ]);
+    facts
+}

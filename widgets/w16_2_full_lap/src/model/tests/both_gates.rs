@@ -1,7 +1,7 @@
 //! Both gates of every loop: their verdicts, their regions, and what each lets through.
 
 use ch16_lab::lap::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopJudgement};
-use ch16_slam2d::loops::LoopVerification;
+use ch16_slam2d::loops::{GateModel, LoopVerification};
 use kit::scene::Stroke;
 
 use super::*;
@@ -68,7 +68,7 @@ fn the_measured_position_lies_in_a_gates_region_exactly_where_that_gate_passes()
             for (which, gate) in [gates.path, gates.exact].iter().enumerate() {
                 let region = gate.region(loop_);
                 let inside = region.is_some_and(|region| holds(&region, loop_));
-                assert_eq!(inside, gate.test.passes(), "{}", say::ends(attempt));
+                assert_eq!(inside, gate.test.passes(), "{}", words::ends(attempt));
                 seen[which][usize::from(inside)] += 1;
             }
         }
@@ -85,7 +85,9 @@ fn the_gate_that_decides_is_solid_and_the_other_one_dotted() {
         (1.0, Stroke::Dotted, Stroke::Solid),
     ] {
         let model = at(&[("gate-model", value)]);
-        let panel = closeup::closeup(&model.runs, model.tick());
+        let scene = model.scene();
+        let mut panels = scene.panels.iter();
+        let panel = panels.find(|panel| panel.id == "loop").unwrap();
         let drawn = panel.layers.iter().filter_map(|layer| match layer {
             Layer::Ellipse { stroke, .. } => Some(*stroke),
             _ => None,

@@ -224,7 +224,7 @@ fn the_corners_of_the_settings_have_a_picture_at_every_tick() {
         for noise in [0.25, 4.0] {
             for gate in [0.9, 0.999] {
                 let mut model = at(&[("seed", seed), ("noise", noise), ("gate", gate)]);
-                assert_eq!(model.last(), words::LAP_TICKS);
+                assert_eq!(model.last(), crate::spec::LAP_TICKS);
                 for tick in 0..=model.runs.ticks() {
                     model.set("t", tick as f64).unwrap();
                     let shown = shown_nodes(&model);

@@ -3,9 +3,9 @@
 use kit::scene::{Aspect, ColorBar, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
 use super::{Moment, shift_axis};
-use crate::model::HALF_SPAN_M;
 use crate::model::landscape::Landscape;
-use crate::model::params::Colors;
+use crate::model::settings::Colors;
+use crate::spec::HALF_SPAN_M;
 
 /// ICP's cost; dark is low.
 pub fn icp(landscape: &Landscape, moment: Moment) -> Panel {

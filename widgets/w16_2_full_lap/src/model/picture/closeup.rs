@@ -5,9 +5,9 @@ use ch16_lab::lap::LoopAttempt;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::SE2;
 
-use super::gates::{Gate, Region};
-use super::runs::Runs;
-use super::say::{ends, model_name};
+use crate::model::gates::{Gate, Region};
+use crate::model::runs::Runs;
+use crate::model::words::{ends, model_name};
 
 /// Half width and half height of the view, m: the corridor is 1.2 m wide.
 const HALF_VIEW_M: [f64; 2] = [2.0, 1.3];

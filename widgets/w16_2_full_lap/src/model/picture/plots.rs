@@ -4,8 +4,8 @@ use ch16_lab::lap::LoopAttempt;
 use kit::chart::{Series, TimeChart, axis_from_zero};
 use kit::scene::{Aspect, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
-use super::runs::Runs;
-use super::say::ends;
+use crate::model::runs::Runs;
+use crate::model::words::ends;
 
 /// The panels whose horizontal axis is the time.
 pub const OVER_TIME: [&str; 3] = ["errors", "disagreement", "gate"];

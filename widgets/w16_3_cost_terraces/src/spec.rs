@@ -1,10 +1,11 @@
-//! The one list of what a reader can change, and the words of the widget.
+//! The widget's words and its one list of parameters.
 
-use kit::param::{Choice, ParamKind, ParamSpec, Values};
+use kit::param::{Choice, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
-use super::HALF_SPAN_M;
+/// The maps reach this far from the truth in every direction, m.
+pub const HALF_SPAN_M: f64 = 1.3;
 
 /// Fewest and most cells a side; both odd, so that one cell lies on the truth.
 const CELLS: (f64, f64) = (49.0, 161.0);
@@ -12,10 +13,7 @@ const CELLS: (f64, f64) = (49.0, 161.0);
 /// Most steps that a ball may take; the timeline never gets longer.
 pub const MAX_BALL_STEPS: usize = 400;
 
-/// The number of the widget in links.
-pub const ID: &str = "w16.3";
-
-/// All parameters, in the order of their controls.
+/// What the reader can change.
 pub const PARAMS: &[ParamSpec] = &[
     ParamSpec {
         id: "scene",
@@ -207,9 +205,9 @@ const PRESETS: &[Preset] = &[
     },
 ];
 
-/// The widget in words.
+/// What never changes.
 pub const SPEC: WidgetSpec = WidgetSpec {
-    id: ID,
+    id: "w16.3",
     title: "Cost terraces",
     misconception: "Where ICP sticks, a better solver would stick too: the terraces are in the cost.",
     notice: &[
@@ -223,72 +221,3 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     buttons: &[DROP, PLAY, STEP, RESET, DEFAULTS],
     presets: PRESETS,
 };
-
-/// Which of the two sweeps of the Apartment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// Room A: walls in both directions.
-    Room,
-    /// The corridor: walls along x alone.
-    Corridor,
-}
-
-/// What decides a cell's colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Colors {
-    /// Its height, evenly from dark to bright.
-    ByHeight,
-    /// The share of cells that lie lower.
-    ByRank,
-}
-
-/// The parameters as the model uses them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Where the sweep was taken.
-    pub place: Place,
-    /// Largest distance of a pair, m.
-    pub tau_m: f64,
-    /// Where the range noise of the sweep starts.
-    pub seed: u32,
-    /// Width of an NDT cell, m.
-    pub ndt_cell_m: f64,
-    /// Turn of the sweep, degrees.
-    pub heading_deg: f64,
-    /// Samples along each axis, odd.
-    pub cells: usize,
-    /// What decides a cell's colour.
-    pub colors: Colors,
-    /// Shift under the cross hair, m.
-    pub probe_m: [f64; 2],
-}
-
-impl Settings {
-    /// Reads the list.
-    pub fn read(values: &Values) -> Self {
-        Self {
-            place: if values.get("scene") == 0.0 {
-                Place::Room
-            } else {
-                Place::Corridor
-            },
-            tau_m: values.get("tau"),
-            seed: values.get("seed") as u32,
-            ndt_cell_m: values.get("ndt-cell"),
-            heading_deg: values.get("heading"),
-            cells: odd(values.get("cells")),
-            colors: if values.get("colours") == 0.0 {
-                Colors::ByHeight
-            } else {
-                Colors::ByRank
-            },
-            probe_m: [values.get("probe-x"), values.get("probe-y")],
-        }
-    }
-}
-
-/// The nearest odd number, so that the grid has a cell on the truth.
-fn odd(value: f64) -> usize {
-    let half = ((value - 1.0) / 2.0).round();
-    2 * half as usize + 1
-}

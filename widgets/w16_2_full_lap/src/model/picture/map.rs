@@ -5,7 +5,7 @@ use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, We
 use pr_geom::{SE2, math};
 use pr_sim::World;
 
-use super::moment::Moment;
+use crate::model::moment::Moment;
 
 /// Room around the Apartment, m.
 const MARGIN_M: f64 = 0.4;

@@ -1,0 +1,51 @@
+//! What the values of the parameter list mean to the core.
+
+use ch16_lab::lap::{LoopClosure, SlamConfig};
+use ch16_slam2d::chi_squared::gate_threshold;
+use ch16_slam2d::loops::GateModel;
+use kit::param::Values;
+
+/// What a lap depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LapSettings {
+    /// Seed of all noise.
+    pub seed: u32,
+    /// Multiplies the variances of the wheels.
+    pub noise_factor: f64,
+    /// Whether loops are closed.
+    pub loop_closure: LoopClosure,
+    /// Largest squared innovation that is believed.
+    pub gate_chi2: f64,
+    /// What the gate takes for the drift.
+    pub gate_model: GateModel,
+}
+
+impl LapSettings {
+    /// Reads the list.
+    pub fn read(values: &Values) -> Self {
+        Self {
+            seed: values.get("seed") as u32,
+            noise_factor: values.get("noise"),
+            loop_closure: if values.get("loops") == 0.0 {
+                LoopClosure::Off
+            } else {
+                LoopClosure::On
+            },
+            gate_chi2: gate_threshold(values.get("gate")),
+            gate_model: if values.get("gate-model") == 0.0 {
+                GateModel::PathApproximation
+            } else {
+                GateModel::ExactMarginal
+            },
+        }
+    }
+
+    /// What the core runs with.
+    pub fn config(&self) -> SlamConfig {
+        let mut config = SlamConfig::with_seed_and_noise(self.seed, self.noise_factor);
+        config.loop_closure = self.loop_closure;
+        config.loops.gate_chi2 = self.gate_chi2;
+        config.loops.gate_model = self.gate_model;
+        config
+    }
+}

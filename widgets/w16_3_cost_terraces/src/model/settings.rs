@@ -1,0 +1,72 @@
+//! What the values of the parameter list mean to the core.
+
+use kit::param::Values;
+
+/// Which of the two sweeps of the Apartment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Room A: walls in both directions.
+    Room,
+    /// The corridor: walls along x alone.
+    Corridor,
+}
+
+/// What decides a cell's colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Colors {
+    /// Its height, evenly from dark to bright.
+    ByHeight,
+    /// The share of cells that lie lower.
+    ByRank,
+}
+
+/// The parameters as the model uses them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Where the sweep was taken.
+    pub place: Place,
+    /// Largest distance of a pair, m.
+    pub tau_m: f64,
+    /// Where the range noise of the sweep starts.
+    pub seed: u32,
+    /// Width of an NDT cell, m.
+    pub ndt_cell_m: f64,
+    /// Turn of the sweep, degrees.
+    pub heading_deg: f64,
+    /// Samples along each axis, odd.
+    pub cells: usize,
+    /// What decides a cell's colour.
+    pub colors: Colors,
+    /// Shift under the cross hair, m.
+    pub probe_m: [f64; 2],
+}
+
+impl Settings {
+    /// Reads the list.
+    pub fn read(values: &Values) -> Self {
+        Self {
+            place: if values.get("scene") == 0.0 {
+                Place::Room
+            } else {
+                Place::Corridor
+            },
+            tau_m: values.get("tau"),
+            seed: values.get("seed") as u32,
+            ndt_cell_m: values.get("ndt-cell"),
+            heading_deg: values.get("heading"),
+            cells: odd(values.get("cells")),
+            colors: if values.get("colours") == 0.0 {
+                Colors::ByHeight
+            } else {
+                Colors::ByRank
+            },
+            probe_m: [values.get("probe-x"), values.get("probe-y")],
+        }
+    }
+}
+
+/// The nearest odd number, so that the grid has a cell on the truth.
+fn odd(value: f64) -> usize {
+    let half = ((value - 1.0) / 2.0).round();
+    2 * half as usize + 1
+}
