@@ -2,6 +2,7 @@
 
 use kit::model::Model;
 use kit::shell::Shell;
+use slam_web::registry::WIDGETS;
 
 /// One of each widget.
 pub struct Widgets(pub Vec<Shell>);
@@ -9,12 +10,7 @@ pub struct Widgets(pub Vec<Shell>);
 impl Widgets {
     /// All of them, at their defaults.
     pub fn new() -> Self {
-        Self(vec![
-            w16_1_basin_explorer::widget(),
-            w16_2_full_lap::widget(),
-            w16_3_cost_terraces::widget(),
-            w16_4_control_room::widget(),
-        ])
+        Self(WIDGETS.iter().map(|(_, maker)| maker()).collect())
     }
 
     /// Puts a widget into a state such as `heading=40&dx=0`, from its defaults.
