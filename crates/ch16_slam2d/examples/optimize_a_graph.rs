@@ -1,0 +1,55 @@
+//! A robot drives round a square, its wheels turn a little too far, and one loop puts it right.
+//!
+//! `cargo run -p ch16_slam2d --example optimize_a_graph`
+
+use ch16_slam2d::prelude::*;
+
+/// Four sides of 2 m: how much each turn of a quarter is too wide, rad.
+const DRIFT_RAD: f64 = 0.04;
+
+/// The graph of odometry alone, each pose put where the wheels say.
+pub fn drive() -> (PoseGraph, Vec<NodeId>) {
+    let mut graph = PoseGraph::new();
+    let mut nodes = vec![graph.add_fixed_node(SE2::identity())];
+    // 5 cm and 2°, as information 1/σ².
+    let omega = Matrix3::from_diagonal(&Vector3::new(400.0, 400.0, 820.0));
+    let side = SE2::new(2.0, 0.0, std::f64::consts::FRAC_PI_2 + DRIFT_RAD);
+    for k in 0..4 {
+        let node = graph.add_node(graph.pose(nodes[k]) * side);
+        graph.add_edge(nodes[k], node, side, omega, EdgeKind::Odometry);
+        nodes.push(node);
+    }
+    (graph, nodes)
+}
+
+/// The robot recognizes where it started: the last node stands on the first.
+pub fn close_the_loop(graph: &mut PoseGraph, nodes: &[NodeId]) {
+    let omega = Matrix3::from_diagonal_element(2500.0);
+    let (first, last) = (nodes[0], nodes[4]);
+    graph.add_edge(first, last, SE2::identity(), omega, EdgeKind::Loop);
+    graph.optimize(20, 1e-9);
+}
+
+/// Distance of the last node from the start, m.
+pub fn gap_m(graph: &PoseGraph, nodes: &[NodeId]) -> f64 {
+    graph.pose(nodes[4]).translation().norm()
+}
+
+/// Prints the end of the drive without and with the loop.
+pub fn main() {
+    let (mut graph, nodes) = drive();
+    println!(
+        "The wheels end {:.3} m from the start.",
+        gap_m(&graph, &nodes)
+    );
+    close_the_loop(&mut graph, &nodes);
+    println!(
+        "With the loop it is {:.3} m, and χ² is {:.2}.",
+        gap_m(&graph, &nodes),
+        graph.chi2()
+    );
+    for (_, node) in graph.nodes() {
+        let at = node.pose.translation();
+        println!("x {:.3} m, y {:.3} m", at.x, at.y);
+    }
+}
