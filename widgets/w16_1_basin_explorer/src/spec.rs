@@ -1,5 +1,6 @@
 //! The widget's words and its one list of parameters.
 
+use ch16_lab::basin::BasinScene;
 use kit::param::{Choice, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
@@ -11,7 +12,7 @@ pub const OFFSET_SPAN_M: f64 = 1.5;
 pub const HUBER_OFF_M: f64 = 1.6;
 
 /// Iterations at which a registration ends in any case.
-pub const MAX_ITERS: f64 = 30.0;
+pub const MAX_ITERS: f64 = BasinScene::MAX_ITERS as f64;
 
 /// What the reader can change.
 pub const PARAMS: &[ParamSpec] = &[
@@ -108,7 +109,7 @@ pub const PARAMS: &[ParamSpec] = &[
         label: "seed of the sweeps",
         unit: "",
         kind: ParamKind::SEED,
-        default: 457.0,
+        default: BasinScene::SEED as f64,
         help: "Where the range noise of both sweeps starts; 457 is the chapter's.",
     },
     ParamSpec {

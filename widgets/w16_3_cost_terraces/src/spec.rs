@@ -1,5 +1,6 @@
 //! The widget's words and its one list of parameters.
 
+use ch16_lab::terrain::TerrainScene;
 use kit::param::{Choice, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
@@ -55,7 +56,7 @@ pub const PARAMS: &[ParamSpec] = &[
             max: 1.2,
             step: 0.05,
         },
-        default: 0.55,
+        default: TerrainScene::DEFAULT_NDT_CELL_M,
         help: "NDT fits one Gaussian to the map points of each cell of this width.",
     },
     ParamSpec {
@@ -106,7 +107,7 @@ pub const PARAMS: &[ParamSpec] = &[
         label: "seed of the sweep",
         unit: "",
         kind: ParamKind::SEED,
-        default: 1472.0,
+        default: TerrainScene::SEED as f64,
         help: "Where the range noise of the sweep starts; 1472 is the chapter's.",
     },
     ParamSpec {

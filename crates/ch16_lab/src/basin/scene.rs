@@ -10,7 +10,6 @@ use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace};
 /// A registration counts as right closer than this to the truth, m.
 pub const SUCCESS_RADIUS_M: f64 = 0.12;
 
-const SEED: u32 = 0x1C9;
 const BEAMS: usize = 180;
 const RANGE_SIGMA_M: f64 = 0.012;
 const TARGET_VOXEL_M: f64 = 0.06;
@@ -21,7 +20,6 @@ const NORMAL_RADIUS_M: f64 = 0.3;
 /// A basin map asks the target about a million times, so the answers are tabulated.
 const TABLE_SQUARE_M: f64 = 0.08;
 const TABLE_REACH_M: f64 = 2.0;
-const MAX_ITERS: usize = 30;
 
 /// An initial guess, relative to the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,10 +59,15 @@ impl Default for BasinScene {
 }
 
 impl BasinScene {
+    /// Seed of the chapter's range noise.
+    pub const SEED: u32 = 0x1C9;
+    /// Iterations at which a registration of the scene ends in any case.
+    pub const MAX_ITERS: usize = 30;
+
     /// The chapter's scene.
     #[must_use]
     pub fn new() -> Self {
-        Self::with_seed(SEED)
+        Self::with_seed(Self::SEED)
     }
 
     /// The chapter's scene with other range noise.
@@ -103,7 +106,7 @@ impl BasinScene {
         IcpConfig {
             variant,
             tau,
-            max_iters: MAX_ITERS,
+            max_iters: Self::MAX_ITERS,
             ..IcpConfig::default()
         }
     }

@@ -8,7 +8,6 @@ use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{IcpConfig, correspondences};
 use ch16_slam2d::ndt::NdtMap;
 
-const SEED: u32 = 0x5C0;
 const BEAMS: usize = 180;
 const MAX_RANGE_M: f64 = 3.0;
 const RANGE_SIGMA_M: f64 = 0.01;
@@ -81,6 +80,8 @@ pub struct TerrainScene {
 }
 
 impl TerrainScene {
+    /// Seed of the chapter's range noise.
+    pub const SEED: u32 = 0x5C0;
     /// The chapter's size of an NDT cell, m.
     pub const DEFAULT_NDT_CELL_M: f64 = 0.55;
 
@@ -90,7 +91,7 @@ impl TerrainScene {
     /// If the cell size is not positive and finite.
     #[must_use]
     pub fn new(kind: SceneKind, ndt_cell_m: f64) -> Self {
-        Self::with_seed(kind, ndt_cell_m, SEED)
+        Self::with_seed(kind, ndt_cell_m, Self::SEED)
     }
 
     /// The same place with other range noise.
