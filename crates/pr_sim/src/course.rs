@@ -9,7 +9,7 @@ mod error;
 mod file;
 mod ring;
 
-use pr_geom::{SE2, Translation, Vector2, math};
+use pr_geom::{Point2, SE2, math};
 
 use crate::driver::DriverConfig;
 use crate::world::World;
@@ -40,7 +40,7 @@ pub const CLEARANCE_M: f64 = 0.3;
 pub struct Course {
     world: World,
     start: SE2,
-    way_points: Vec<Vector2<f64>>,
+    way_points: Vec<Point2<f64>>,
     turn: Option<usize>,
 }
 
@@ -55,7 +55,7 @@ impl Course {
     pub fn new(
         world: World,
         start: SE2,
-        way_points: Vec<Vector2<f64>>,
+        way_points: Vec<Point2<f64>>,
         turn: Option<usize>,
     ) -> Result<Self, CourseError> {
         let course = Self {
@@ -90,12 +90,12 @@ impl Course {
             world: World::ring(),
             start: SE2::new(2.0, south, 0.0),
             way_points: vec![
-                Vector2::new(east, south),
-                Vector2::new(east, north),
-                Vector2::new(west, north),
-                Vector2::new(west, south),
-                Vector2::new(2.0, south),
-                Vector2::new(8.0, south),
+                Point2::new(east, south),
+                Point2::new(east, north),
+                Point2::new(west, north),
+                Point2::new(west, south),
+                Point2::new(2.0, south),
+                Point2::new(8.0, south),
             ],
             turn: Some(4),
         }
@@ -115,7 +115,7 @@ impl Course {
 
     /// Way points in metres, world frame, in the order in which they are visited.
     #[must_use]
-    pub fn way_points(&self) -> &[Vector2<f64>] {
+    pub fn way_points(&self) -> &[Point2<f64>] {
         &self.way_points
     }
 
@@ -162,7 +162,7 @@ impl Course {
     }
 
     fn check_numbers(&self) -> Result<(), CourseError> {
-        let within = |point: &Vector2<f64>| {
+        let within = |point: &Point2<f64>| {
             let limit = limits::COORDINATE_M;
             (-limit..=limit).contains(&point.x) && (-limit..=limit).contains(&point.y)
         };
@@ -229,9 +229,9 @@ impl Course {
     }
 
     /// The start and every way point.
-    fn stops(&self) -> impl Iterator<Item = (Place, Vector2<f64>)> {
+    fn stops(&self) -> impl Iterator<Item = (Place, Point2<f64>)> {
         let way_points = self.way_points.iter().enumerate();
-        core::iter::once((Place::Start, self.start.translation()))
+        core::iter::once((Place::Start, self.start.position()))
             .chain(way_points.map(|(index, &point)| (Place::WayPoint(index + 1), point)))
     }
 }

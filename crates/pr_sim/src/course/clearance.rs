@@ -1,19 +1,19 @@
 //! Distances from places and straight ways to walls.
 
-use pr_geom::Vector2;
+use pr_geom::Point2;
 
 use crate::world::{Wall, World, distance_to_segment};
 
 /// The wall nearest to a point: its index and its distance in metres.
-pub(super) fn nearest_wall(world: &World, point: Vector2<f64>) -> (usize, f64) {
+pub(super) fn nearest_wall(world: &World, point: Point2<f64>) -> (usize, f64) {
     nearest(world, |wall| distance_to(wall, point))
 }
 
 /// The wall nearest to the segment between two points: its index and its distance in metres.
 pub(super) fn nearest_wall_to_leg(
     world: &World,
-    from: Vector2<f64>,
-    to: Vector2<f64>,
+    from: Point2<f64>,
+    to: Point2<f64>,
 ) -> (usize, f64) {
     let leg = Wall {
         start: from,
@@ -29,7 +29,7 @@ fn nearest(world: &World, distance_m: impl Fn(&Wall) -> f64) -> (usize, f64) {
     })
 }
 
-fn distance_to(wall: &Wall, point: Vector2<f64>) -> f64 {
+fn distance_to(wall: &Wall, point: Point2<f64>) -> f64 {
     let (to_start, edge) = (wall.start - point, wall.end - wall.start);
     distance_to_segment(to_start.x, to_start.y, edge.x, edge.y)
 }
@@ -51,7 +51,7 @@ fn distance_between(one: &Wall, other: &Wall) -> f64 {
 /// Whether the ends of `other` lie on different sides of the line through `line`.
 fn separates(line: &Wall, other: &Wall) -> bool {
     let edge = line.end - line.start;
-    let side = |point: Vector2<f64>| {
+    let side = |point: Point2<f64>| {
         let from_start = point - line.start;
         edge.x * from_start.y - edge.y * from_start.x
     };

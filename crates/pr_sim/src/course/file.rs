@@ -1,6 +1,6 @@
 //! Courses as JSON: `docs/worlds.md` shows one and says what its fields are.
 
-use pr_geom::{SE2, Vector2};
+use pr_geom::{Point2, SE2};
 use serde::Deserialize;
 use serde_json::error::Category;
 
@@ -51,8 +51,8 @@ impl Course {
             .walls_m
             .iter()
             .map(|&[x_from, y_from, x_to, y_to]| Wall {
-                start: Vector2::new(x_from, y_from),
-                end: Vector2::new(x_to, y_to),
+                start: Point2::new(x_from, y_from),
+                end: Point2::new(x_to, y_to),
             })
             .collect();
         let start = SE2::new(
@@ -60,7 +60,7 @@ impl Course {
             file.start.y_m,
             file.start.heading_deg.to_radians(),
         );
-        let way_points = file.way_points_m.iter().map(|&[x, y]| Vector2::new(x, y));
+        let way_points = file.way_points_m.iter().map(|&[x, y]| Point2::new(x, y));
         Self::new(
             World::new(extent(&walls), walls),
             start,
@@ -79,8 +79,8 @@ fn extent(walls: &[Wall]) -> Bounds {
             .fold(f64::NEG_INFINITY, f64::max)
     };
     Bounds {
-        min: Vector2::new(lowest(0), lowest(1)),
-        max: Vector2::new(highest(0), highest(1)),
+        min: Point2::new(lowest(0), lowest(1)),
+        max: Point2::new(highest(0), highest(1)),
     }
 }
 

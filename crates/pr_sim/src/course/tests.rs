@@ -23,7 +23,7 @@ fn clearance_of_drive(course: &Course) -> Option<f64> {
     for _ in 0..MAX_TICKS {
         let step = driver.step(&pose);
         let next = drive_exactly(&pose, step.command, DT_S);
-        let (from, to) = (pose.translation(), next.translation());
+        let (from, to) = (pose.position(), next.position());
         least_m = least_m.min(nearest_wall_to_leg(course.world(), from, to).1);
         pose = next;
         if step.finished {
@@ -53,12 +53,12 @@ fn room(replace: &str, with: &str) -> String {
 fn a_file_is_read_as_it_is_written() {
     let course = read(&room("", "")).unwrap();
     assert_eq!(course.world().walls().len(), 5);
-    assert_eq!(course.world().bounds().max, Vector2::new(8.0, 8.0));
+    assert_eq!(course.world().bounds().max, Point2::new(8.0, 8.0));
     assert_eq!(
         course.start(),
         SE2::new(1.0, 1.0, core::f64::consts::FRAC_PI_2)
     );
-    assert_eq!(course.way_points()[2], Vector2::new(1.0, 7.0));
+    assert_eq!(course.way_points()[2], Point2::new(1.0, 7.0));
     assert_eq!(course.turn(), Some(3));
     let with_mark = format!("\u{feff}{}", room(",\n  \"turn_at\": 4", ""));
     assert_eq!(read(&with_mark).unwrap().turn(), None);
@@ -245,7 +245,7 @@ fn numbers_that_are_not_finite_are_refused() {
         })
     ));
     assert!(matches!(
-        with(course.start(), vec![Vector2::new(2.0, f64::INFINITY)]),
+        with(course.start(), vec![Point2::new(2.0, f64::INFINITY)]),
         Err(CourseError::TooFar {
             place: Place::WayPoint(1),
             ..
@@ -265,7 +265,7 @@ fn the_built_in_courses_pass_their_own_checks_and_are_driven() {
 /// The cells of 0.2 m that can be reached from one on straight steps between points inside them, of
 /// which none lies on a wall.
 fn reachable(world: &World, from: (i32, i32)) -> BTreeSet<(i32, i32)> {
-    let inside = |(x, y)| Vector2::new(0.2 * f64::from(x) + 0.07, 0.2 * f64::from(y) + 0.07);
+    let inside = |(x, y)| Point2::new(0.2 * f64::from(x) + 0.07, 0.2 * f64::from(y) + 0.07);
     let mut found = BTreeSet::from([from]);
     let mut open = vec![from];
     while let Some((x, y)) = open.pop() {
@@ -310,16 +310,16 @@ proptest! {
         heading in -3.1..3.1,
     ) {
         let bounds = Bounds {
-            min: Vector2::new(0.0, 0.0),
-            max: Vector2::new(10.0, 10.0),
+            min: Point2::new(0.0, 0.0),
+            max: Point2::new(10.0, 10.0),
         };
         let wall = |&(x, y, dx, dy): &(f64, f64, f64, f64)| Wall {
-            start: Vector2::new(x, y),
-            end: Vector2::new(x + dx, y + dy),
+            start: Point2::new(x, y),
+            end: Point2::new(x + dx, y + dy),
         };
         let world = World::new(bounds, walls.iter().map(wall).collect());
         let start = SE2::new(stops[0].0, stops[0].1, heading);
-        let way_points = stops[1..].iter().map(|&(x, y)| Vector2::new(x, y)).collect();
+        let way_points = stops[1..].iter().map(|&(x, y)| Point2::new(x, y)).collect();
         // A third of them is accepted.
         if let Ok(course) = Course::new(world, start, way_points, None) {
             let clearance_m = clearance_of_drive(&course);
@@ -332,11 +332,11 @@ proptest! {
 fn the_longest_drive_that_is_accepted_ends() {
     // 50 way points and 200 m: back and forth, with a turn around at each.
     let bounds = Bounds {
-        min: Vector2::new(0.0, 0.0),
-        max: Vector2::new(10.0, 4.0),
+        min: Point2::new(0.0, 0.0),
+        max: Point2::new(10.0, 4.0),
     };
     let walls = vec![Wall::horizontal(0.0, 0.0, 10.0)];
-    let ends = [Vector2::new(5.0, 2.0), Vector2::new(1.01, 2.0)];
+    let ends = [Point2::new(5.0, 2.0), Point2::new(1.01, 2.0)];
     let course = Course::new(
         World::new(bounds, walls),
         SE2::new(1.0, 2.0, 0.0),
@@ -352,15 +352,10 @@ fn the_distance_to_a_wall_is_that_to_its_nearest_part() {
         Course::apartment().world().bounds(),
         vec![Wall::horizontal(0.0, 0.0, 4.0)],
     );
-    assert_eq!(nearest_wall(&world, Vector2::new(2.0, 1.5)), (0, 1.5));
-    assert_eq!(nearest_wall(&world, Vector2::new(7.0, 4.0)), (0, 5.0));
+    assert_eq!(nearest_wall(&world, Point2::new(2.0, 1.5)), (0, 1.5));
+    assert_eq!(nearest_wall(&world, Point2::new(7.0, 4.0)), (0, 5.0));
     let leg = |x_from, y_from, x_to, y_to| {
-        nearest_wall_to_leg(
-            &world,
-            Vector2::new(x_from, y_from),
-            Vector2::new(x_to, y_to),
-        )
-        .1
+        nearest_wall_to_leg(&world, Point2::new(x_from, y_from), Point2::new(x_to, y_to)).1
     };
     assert_eq!(leg(1.0, 1.0, 3.0, -1.0), 0.0);
     assert_eq!(leg(1.0, 2.0, 3.0, 1.0), 1.0);
