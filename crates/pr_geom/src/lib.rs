@@ -5,10 +5,6 @@
 //! right: `T ⊞ δ = T exp(δ)`. A place is a `Point2`, a displacement or a direction a `Vector2`.
 //!
 //! Source: Solà, Deray, Atchuthan, "A micro Lie theory for state estimation in robotics", 2018.
-#![no_std]
-
-#[cfg(test)]
-extern crate std;
 
 pub mod angle;
 pub mod math;
