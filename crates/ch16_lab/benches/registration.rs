@@ -7,7 +7,7 @@ use std::hint::black_box;
 
 use ch16_lab::samples::{self, RegistrationSample};
 use ch16_lab::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
-use ch16_slam2d::cloud::{DenseMap, PointCloud, VoxelMap};
+use ch16_slam2d::cloud::{DenseMap, NearestMap, PointCloud, VoxelMap};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace};
 use criterion::{Criterion, criterion_group, criterion_main};
 use pr_geom::SE2;
