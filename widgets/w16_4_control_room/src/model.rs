@@ -8,8 +8,8 @@ mod log;
 mod picture;
 mod words;
 
-use ch16_lab::lap::{LapRecord, LapRunner, RegistrationView, SlamConfig, SlamReport};
-use ch16_slam2d::icp::IcpSummary;
+use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, RegistrationView, TickReport};
+use ch16_slam2d::matching::MatchSummary;
 use kit::chart::{dragged_to, grab_now};
 use kit::model::{
     Activity, Fact, Handle, Model, Motion, Outcome, Standing, Table, Timeline, press_preset,
@@ -79,7 +79,7 @@ impl ControlRoom {
         self.record.ticks() as f64
     }
 
-    fn now(&self) -> Option<&SlamReport> {
+    fn now(&self) -> Option<&TickReport> {
         self.record.lap.report(self.tick())
     }
 
@@ -129,8 +129,8 @@ impl ControlRoom {
     }
 }
 
-fn config(values: &Values) -> SlamConfig {
-    let config = SlamConfig::with_seed_and_noise(values.get("seed") as u32, values.get("noise"));
+fn config(values: &Values) -> LapConfig {
+    let config = LapConfig::with_seed_and_noise(values.get("seed") as u32, values.get("noise"));
     if values.get("loops") == 0.0 {
         config.without_loops()
     } else {
@@ -220,7 +220,7 @@ impl Model for ControlRoom {
             "{} {} The newest sweep is paired with the local map by {} pairs.",
             self.grid.words(),
             self.tick_sentence(),
-            self.now().map_or(0, |r| r.registration.icp.inliers),
+            self.now().map_or(0, |r| r.registration.matched.inliers),
         )
     }
 
@@ -281,16 +281,20 @@ impl ControlRoom {
 
     fn facts(&self) -> Vec<Fact> {
         let report = self.now();
-        let of = |value: &dyn Fn(&SlamReport) -> f64| report.map_or(f64::NAN, value);
+        let of = |value: &dyn Fn(&TickReport) -> f64| report.map_or(f64::NAN, value);
         // The start is known: nothing is off there.
-        let error = |value: &dyn Fn(&SlamReport) -> f64| report.map_or(0.0, value);
-        let icp = |value: fn(&IcpSummary) -> f64| of(&|r| value(&r.registration.icp));
-        let disagreement = |r: &SlamReport| r.metrics.map_disagreement_m.unwrap_or(f64::NAN);
+        let error = |value: &dyn Fn(&TickReport) -> f64| report.map_or(0.0, value);
+        let matched = |value: fn(&MatchSummary) -> f64| of(&|r| value(&r.registration.matched));
+        let disagreement = |r: &TickReport| r.metrics.map_disagreement_m.unwrap_or(f64::NAN);
         let mut facts = vec![
             Fact::metres("tau_m", "threshold τ", of(&|r| r.registration.tau_m)),
-            Fact::count("pairs", "pairs", icp(|icp| icp.inliers as f64)),
-            Fact::metres("rmse_m", "rmse", icp(|icp| icp.rmse)),
-            Fact::count("iterations", "iterations", icp(|icp| icp.iterations as f64)),
+            Fact::count("pairs", "pairs", matched(|found| found.inliers as f64)),
+            Fact::metres("rmse_m", "rmse", matched(|found| found.rmse_m)),
+            Fact::count(
+                "iterations",
+                "iterations",
+                matched(|found| found.iterations as f64),
+            ),
         ];
         facts.extend(self.grid.facts());
         facts.extend([

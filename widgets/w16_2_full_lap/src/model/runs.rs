@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use ch16_lab::lap::{
-    Drive, LapRecord, LapRunner, LapSummary, LoopAttempt, LoopClosure, SlamConfig,
-};
+use ch16_lab::lap::{Drive, LapConfig, LapRecord, LapRunner, LapSummary, LoopAttempt, LoopClosure};
 use ch16_slam2d::loops::{GateModel, LoopConfig};
 use pr_geom::SE2;
 
@@ -27,11 +25,11 @@ pub struct LapSettings {
 }
 
 impl LapSettings {
-    fn config(&self) -> SlamConfig {
-        let mut config = SlamConfig::with_seed_and_noise(self.seed, self.noise_factor);
-        config.loop_closure = self.loop_closure;
-        config.loops.gate_chi2 = self.gate_chi2;
-        config.loops.gate_model = self.gate_model;
+    fn config(&self) -> LapConfig {
+        let mut config = LapConfig::with_seed_and_noise(self.seed, self.noise_factor);
+        config.slam.loop_closure = self.loop_closure;
+        config.slam.loops.gate_chi2 = self.gate_chi2;
+        config.slam.loops.gate_model = self.gate_model;
         config
     }
 }
@@ -39,7 +37,7 @@ impl LapSettings {
 /// A drive with both estimators that ran over it, and the errors over time.
 pub struct Runs {
     runner: LapRunner,
-    config: SlamConfig,
+    config: LapConfig,
     drive: Arc<Drive>,
     /// Of each attempt of `graph`, in order.
     gates: Vec<Gates>,
@@ -85,7 +83,7 @@ impl Runs {
         let start = config.drive.start;
         let gates = lap
             .loop_attempts()
-            .map(|attempt| Gates::of(&lap, attempt, &config.loops))
+            .map(|attempt| Gates::of(&lap, attempt, &config.slam.loops))
             .collect();
         Self {
             odometry_errors_m: core::iter::once(0.0).chain(errors).collect(),
@@ -105,12 +103,12 @@ impl Runs {
 
     /// The settings of loop detection.
     pub fn loop_config(&self) -> &LoopConfig {
-        &self.config.loops
+        &self.config.slam.loops
     }
 
     /// Largest squared innovation that is believed.
     pub fn gate_chi2(&self) -> f64 {
-        self.config.loops.gate_chi2
+        self.config.slam.loops.gate_chi2
     }
 
     /// Both gates over an attempt of the pose graph.

@@ -1,6 +1,6 @@
 //! The course of a run: one sample a tick, for plots and for export.
 
-use ch16_lab::lap::{LapRecord, SlamReport};
+use ch16_lab::lap::{LapRecord, TickReport};
 use kit::chart::{Series, TimeChart};
 use kit::model::{Table, TablePlace};
 use kit::scene::{Mark, Panel, Tone};
@@ -25,13 +25,15 @@ impl History {
     /// The samples of a finished lap.
     pub fn new(record: &LapRecord) -> Self {
         let reports = &record.lap.reports;
-        let samples = |first: f64, value: &dyn Fn(&SlamReport) -> f64| {
+        let samples = |first: f64, value: &dyn Fn(&TickReport) -> f64| {
             core::iter::once(first)
                 .chain(reports.iter().map(value))
                 .collect()
         };
         Self {
-            tau_m: samples(record.config.threshold.initial_m, &|r| r.registration.tau_m),
+            tau_m: samples(record.config.slam.threshold.initial_m, &|r| {
+                r.registration.tau_m
+            }),
             odometry_error_m: samples(0.0, &|r| r.metrics.odometry_error_m),
             estimate_error_m: samples(0.0, &|r| r.metrics.estimate_error_m),
             disagreement_m: samples(f64::NAN, &|r| {
@@ -71,7 +73,7 @@ impl History {
     }
 
     /// All samples, for the export.
-    pub fn table(&self, reports: &[SlamReport]) -> Table {
+    pub fn table(&self, reports: &[TickReport]) -> Table {
         let head = [
             "tick",
             "tau (m)",
@@ -83,14 +85,14 @@ impl History {
             "map disagreement (m)",
         ];
         let rows = reports.iter().map(|report| {
-            let icp = &report.registration.icp;
+            let matched = &report.registration.matched;
             let tick = report.tick;
             vec![
                 tick.to_string(),
                 self.tau_m[tick].to_string(),
-                icp.inliers.to_string(),
-                icp.rmse.to_string(),
-                icp.iterations.to_string(),
+                matched.inliers.to_string(),
+                matched.rmse_m.to_string(),
+                matched.iterations.to_string(),
                 self.odometry_error_m[tick].to_string(),
                 self.estimate_error_m[tick].to_string(),
                 finite(self.disagreement_m[tick]),
