@@ -12,6 +12,7 @@
 //! Nothing here reads a clock, depends on hash order or calls the platform's mathematics: the same
 //! input gives the same bits natively and in WebAssembly.
 
+mod best;
 pub mod block_cholesky;
 mod damping;
 mod dense_kernel;

@@ -8,11 +8,14 @@
 //! `cost + 2 gᵀδ + δᵀHδ`. The step has `δᵀHδ = −gᵀδ − λ δᵀDδ`. The model so promises a decrease of
 //! `−gᵀδ + λ δᵀDδ`, against which the damping schedule measures what a step won.
 //!
+//! Full Gauss–Newton steps may climb. A whole run never ends above its start: see [`Optimizer::run`].
+//!
 //! Source: Nocedal & Wright, "Numerical Optimization", 2006, chapter 10.
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::{SE2, math};
 
+use crate::best::BestPoses;
 use crate::damping::{DAMPING_LIMIT, Damping};
 use crate::error::OptimizeError;
 use crate::factor::JacobianModel;
@@ -39,6 +42,8 @@ pub struct Optimizer {
     schedule: Damping,
     /// What the last accepted step promised, times `1 + λ`; 0 before the first.
     last_promise: f64,
+    /// Where the steps came from, as far as they led uphill.
+    best: BestPoses,
 }
 
 impl Optimizer {
@@ -60,6 +65,7 @@ impl Optimizer {
             Method::LevenbergMarquardt { initial_damping } => Damping::new(initial_damping),
         };
         self.last_promise = 0.0;
+        self.best.forget();
     }
 
     /// λ of the next step. Gauss–Newton has none, also where the last steps were damped ones.
@@ -86,7 +92,8 @@ impl Optimizer {
             settings.ridge,
         );
         let (cost, chi2) = (self.equations.cost, self.equations.chi2);
-        if !cost.is_finite() {
+        self.best.arrived(cost, &self.trial);
+        if !(cost.is_finite() && chi2.is_finite()) {
             return Err(OptimizeError::NotFinite);
         }
         linear.factorize(&self.equations, damping)?;
@@ -116,8 +123,10 @@ impl Optimizer {
                 self.schedule.update(cost - trial_cost, predicted_decrease)
             }
         };
+        self.best.left(cost, accepted);
         if accepted {
-            problem.poses_mut().copy_from_slice(&self.trial);
+            // From now on `trial` holds where this step came from.
+            problem.swap_poses(&mut self.trial);
         }
         Ok(StepReport {
             chi2_before: chi2,
@@ -130,6 +139,11 @@ impl Optimizer {
     }
 
     /// Iterates from the present poses until a stop rule of the [`Settings`] is met.
+    ///
+    /// The cost at the end is finite and not above that at the start, where that is finite. Steps
+    /// that climb beyond it, and steps that climb and do not converge, are taken back:
+    /// [`Report::went_back_to`] says how far. Where not even the first step can be computed, the
+    /// poses stay and the report holds the error.
     pub fn run(&mut self, problem: &mut Problem) -> Report {
         self.restart();
         let mut steps = Vec::new();
@@ -138,7 +152,29 @@ impl Optimizer {
                 break stop;
             }
         };
-        Report::new(steps, problem, self.settings.kernel, stop)
+        self.settle(problem, steps, stop)
+    }
+
+    /// The report on steps that ended for that reason, with the poses that [`run`](Self::run)
+    /// promises in `problem`.
+    pub(crate) fn settle(
+        &mut self,
+        problem: &mut Problem,
+        steps: Vec<StepReport>,
+        stop: StopReason,
+    ) -> Report {
+        let kernel = self.settings.kernel;
+        let mut report = Report::new(steps, problem, kernel, stop);
+        self.best.arrived(report.cost_or_nan(), &self.trial);
+        if report.ended_well() {
+            return report;
+        }
+        if let Some((step, poses)) = self.best.cheaper_than(report.cost_or_nan()) {
+            problem.poses_mut().copy_from_slice(poses);
+            report = Report::new(report.steps, problem, kernel, stop);
+            report.went_back_to = Some(step);
+        }
+        report
     }
 
     /// One iteration, whose report is added to `steps`; the reason to stop, if there is one.

@@ -80,6 +80,12 @@ impl Problem {
         &mut self.poses
     }
 
+    /// Takes other poses for the same nodes, and leaves the present ones in `poses`.
+    pub(crate) fn swap_poses(&mut self, poses: &mut Vec<SE2>) {
+        debug_assert_eq!(poses.len(), self.poses.len());
+        core::mem::swap(&mut self.poses, poses);
+    }
+
     /// Which poses stay where they are.
     #[must_use]
     pub fn fixed(&self) -> &[bool] {

@@ -111,6 +111,9 @@ pub struct Report {
     pub stop: StopReason,
     /// One entry per iteration.
     pub steps: Vec<StepReport>,
+    /// The entry of `steps` at whose poses the solve ended after all, because the later ones climbed;
+    /// `None` where it ended where the last step led.
+    pub went_back_to: Option<usize>,
 }
 
 impl Report {
@@ -130,6 +133,25 @@ impl Report {
             cost,
             stop,
             steps,
+            went_back_to: None,
         }
+    }
+
+    /// The cost at the end; not a number where it or χ² is out of the range of numbers.
+    pub(crate) fn cost_or_nan(&self) -> f64 {
+        if self.cost.is_finite() && self.chi2.is_finite() {
+            self.cost
+        } else {
+            f64::NAN
+        }
+    }
+
+    /// Whether the solve converged, and not above its start.
+    pub(crate) fn ended_well(&self) -> bool {
+        let start = self
+            .steps
+            .first()
+            .map_or(self.cost, |step| step.cost_before);
+        self.stop.is_converged() && self.cost_or_nan() <= start
     }
 }

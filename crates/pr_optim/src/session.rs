@@ -5,7 +5,8 @@
 //! rises on the way, the steps do not converge, or a measurement ends up turned by more than
 //! [`SUSPICIOUS_TURN_RAD`], that basin is not trusted: the solve begins again from the chordal
 //! relaxation, and once more with damped steps where the result is not to be trusted either. The
-//! best of what converged is kept. This is a rule of thumb, not a proof of a global optimum.
+//! best of what converged is kept, unless it costs more than the poses as given: then the best of
+//! all. This is a rule of thumb, not a proof of a global optimum.
 //!
 //! A robust kernel has many more false minima: from a poor guess it switches right measurements off.
 //! With one, [`Start::Auto`] goes on to solve the same graph without it, and from there once more
@@ -89,7 +90,11 @@ pub struct Session<'a> {
     method: Method,
     /// What the caller asked for; dropping restores it.
     kernel: RobustKernel,
-    /// Where the later rounds start: the poses as they came, then the least-squares solution.
+    /// The poses as they came.
+    given: Vec<SE2>,
+    /// Cost of the poses as they came, where [`Start::Auto`] began with them as one of its guesses.
+    given_cost: Option<f64>,
+    /// Where the refinement starts: the least-squares solution.
     origin: Vec<SE2>,
     round: Round,
     automatic: bool,
@@ -108,7 +113,7 @@ impl<'a> Session<'a> {
     /// Moves `problem` to its first guess.
     ///
     /// # Errors
-    /// Where the chordal relaxation is asked for and cannot be computed.
+    /// Where the start that is asked for cannot be computed or is not finite; the poses stay.
     pub fn new(
         optimizer: &'a mut Optimizer,
         problem: &'a mut Problem,
@@ -120,11 +125,9 @@ impl<'a> Session<'a> {
         let mut session = Self {
             method,
             kernel,
-            origin: if automatic && is_robust {
-                problem.poses().to_vec()
-            } else {
-                Vec::new()
-            },
+            given: problem.poses().to_vec(),
+            given_cost: None,
+            origin: Vec::new(),
             round: Round::Guess,
             automatic,
             optimizer,
@@ -176,6 +179,10 @@ impl<'a> Session<'a> {
 
     /// Ends here, and leaves the best poses so far in the problem.
     ///
+    /// Their cost is finite, and not above that of the start: of the poses as they came, and of the
+    /// spanning tree, with [`Start::Auto`]. Where no start has a finite cost, the poses stay as they
+    /// came and the report says [`OptimizeError::NotFinite`].
+    ///
     /// Attempts that converged go before others, then the lower cost. An attempt that is cut off
     /// is reported with [`StopReason::IterationLimit`].
     #[must_use]
@@ -192,7 +199,14 @@ impl<'a> Session<'a> {
         }
         let mut attempts = core::mem::take(&mut self.kept);
         attempts.append(&mut self.ended);
-        let best = best_of(attempts);
+        let mut best = best_of(attempts, self.given_cost);
+        if best.report.cost_or_nan().is_nan() {
+            // No guess was one to start from.
+            best.poses.clone_from(&self.given);
+            best.report.stop = StopReason::Failed {
+                error: OptimizeError::NotFinite,
+            };
+        }
         self.problem.poses_mut().copy_from_slice(&best.poses);
         Outcome {
             report: best.report,
@@ -207,7 +221,11 @@ impl<'a> Session<'a> {
         self.optimizer.restart();
         let tree = spanning_tree(self.problem);
         let given = self.optimizer.cost_at(self.problem, self.problem.poses());
-        if self.optimizer.cost_at(self.problem, &tree) < given {
+        if self.round == Round::Guess {
+            self.given_cost = Some(given);
+        }
+        let of_tree = self.optimizer.cost_at(self.problem, &tree);
+        if of_tree < given || (given.is_nan() && of_tree.is_finite()) {
             self.problem.poses_mut().copy_from_slice(&tree);
             self.start = Start::SpanningTree;
         } else {
@@ -220,18 +238,27 @@ impl<'a> Session<'a> {
             Start::Auto | Start::Given => {}
             Start::SpanningTree => {
                 let poses = spanning_tree(self.problem);
-                self.problem.poses_mut().copy_from_slice(&poses);
+                self.move_to(&poses)?;
             }
             Start::Chordal => {
                 let linear = self.optimizer.linear_for(self.problem);
                 let poses = chordal(self.problem, linear)?;
-                self.problem.poses_mut().copy_from_slice(&poses);
+                self.move_to(&poses)?;
             }
             Start::LeastSquares => self.problem.poses_mut().copy_from_slice(&self.origin),
         }
         self.start = start;
         self.steps.clear();
         self.optimizer.restart();
+        Ok(())
+    }
+
+    /// Moves to a guess whose cost is finite.
+    fn move_to(&mut self, guess: &[SE2]) -> Result<(), OptimizeError> {
+        if !self.optimizer.cost_at(self.problem, guess).is_finite() {
+            return Err(OptimizeError::NotFinite);
+        }
+        self.problem.poses_mut().copy_from_slice(guess);
         Ok(())
     }
 
@@ -255,7 +282,7 @@ impl<'a> Session<'a> {
     fn end_attempt(&mut self, stop: StopReason) {
         let steps = core::mem::take(&mut self.steps);
         let attempt = Attempt {
-            report: Report::new(steps, self.problem, self.optimizer.settings.kernel, stop),
+            report: self.optimizer.settle(self.problem, steps, stop),
             start: self.start,
             poses: self.problem.poses().to_vec(),
         };
@@ -303,7 +330,7 @@ impl<'a> Session<'a> {
         self.round = Round::LeastSquares;
         self.optimizer.settings.kernel = RobustKernel::None;
         self.optimizer.settings.method = self.method;
-        self.problem.poses_mut().copy_from_slice(&self.origin);
+        self.problem.poses_mut().copy_from_slice(&self.given);
         self.start_cheaply();
     }
 
@@ -311,7 +338,7 @@ impl<'a> Session<'a> {
         self.round = Round::Refine;
         self.optimizer.settings.kernel = self.kernel;
         self.optimizer.settings.method = self.method;
-        self.origin = best_of(core::mem::take(&mut self.ended)).poses;
+        self.origin = best_of(core::mem::take(&mut self.ended), None).poses;
         self.start_from(Start::LeastSquares)
             .expect("poses that are known need no solution");
     }
@@ -340,14 +367,23 @@ impl Drop for Session<'_> {
     }
 }
 
-/// The lowest cost of what converged; of all where nothing did.
-fn best_of(attempts: Vec<Attempt>) -> Attempt {
-    let converged = attempts.iter().any(is_converged);
+/// The lowest cost of what converged at no more than `bound`; of all where nothing did.
+fn best_of(attempts: Vec<Attempt>, bound: Option<f64>) -> Attempt {
+    let is_good = |attempt: &Attempt| {
+        let climbed = bound.is_some_and(|bound| attempt.report.cost > bound);
+        is_converged(attempt) && !climbed
+    };
+    let any_good = attempts.iter().any(is_good);
     attempts
         .into_iter()
-        .filter(|attempt| is_converged(attempt) || !converged)
-        .min_by(|a, b| a.report.cost.total_cmp(&b.report.cost))
+        .filter(|attempt| is_good(attempt) || !any_good)
+        .min_by(|a, b| rank(a).total_cmp(&rank(b)))
         .expect("at least one attempt has ended")
+}
+
+/// The cost; a cost that is out of the range of numbers comes last, whatever the sign of its NaN.
+fn rank(attempt: &Attempt) -> f64 {
+    attempt.report.cost_or_nan().abs()
 }
 
 fn is_converged(attempt: &Attempt) -> bool {

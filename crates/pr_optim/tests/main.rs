@@ -3,5 +3,6 @@
 mod block_against_faer;
 mod damped_steps;
 mod marginals_against_dense;
+mod promise;
 mod properties;
 mod session;
