@@ -5,11 +5,14 @@
 //! was. [`model`] holds every rule and no pixel, [`view`] every pixel and no rule.
 
 pub mod model;
+#[cfg(feature = "view")]
 pub mod view;
 
+#[cfg(feature = "view")]
 use kit::shell::Shell;
 
 /// The widget, ready to be drawn.
+#[cfg(feature = "view")]
 #[must_use]
 pub fn widget() -> Shell {
     Shell::new(Box::new(model::FullLap::new()), Box::new(view::FullLapView))

@@ -3,11 +3,14 @@
 //! [`model`] holds every rule and no pixel, [`view`] every pixel and no rule.
 
 pub mod model;
+#[cfg(feature = "view")]
 pub mod view;
 
+#[cfg(feature = "view")]
 use kit::shell::Shell;
 
 /// The widget, ready to be drawn.
+#[cfg(feature = "view")]
 #[must_use]
 pub fn widget() -> Shell {
     Shell::new(
