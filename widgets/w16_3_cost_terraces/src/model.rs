@@ -18,7 +18,8 @@ use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 
-use params::{ID, MAX_BALL_STEPS, PARAMS, SPEC, Settings};
+pub use params::SPEC;
+use params::{ID, MAX_BALL_STEPS, PARAMS, Settings};
 use picture::Moment;
 use terrains::Terrains;
 
