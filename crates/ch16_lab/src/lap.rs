@@ -14,10 +14,12 @@ mod drive;
 mod front_end;
 mod loop_error;
 mod loop_words;
+mod ranges;
 mod record;
 mod replay;
 mod report;
 mod runner;
+mod soundness;
 
 use std::sync::Arc;
 
@@ -30,6 +32,7 @@ pub use digest::lap_digest;
 pub use drive::{Drive, DriveTick, Sweep};
 pub use front_end::{FrontEnd, Registration, WindowSweep};
 pub use loop_error::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopError, LoopJudgement};
+pub use ranges::{ConfigRange, RANGES, random_config};
 pub use record::{Epoch, LAST_KEYFRAMES, LapRecord, LapSummary, LapTrace, RecordedEdge};
 pub use replay::RegistrationView;
 pub use report::{Change, Keyframe, LoopAttempt, LoopEffect, SlamReport, TickMetrics};

@@ -3,4 +3,5 @@
 mod exact_gate;
 mod icp_laws;
 mod plane_step;
+mod random_laps;
 mod terrain_rows;

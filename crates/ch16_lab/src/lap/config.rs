@@ -22,7 +22,8 @@ pub enum LoopClosure {
     Off,
 }
 
-/// What is driven and sensed: all that the estimator cannot change.
+/// What is driven and sensed: all that the estimator cannot change; ranges in
+/// [`RANGES`](super::RANGES).
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveConfig {
     /// Seed of the generator that all noise of the lap comes from.
@@ -87,7 +88,7 @@ pub struct ThresholdConfig {
     pub max_range_m: f64,
 }
 
-/// The lap's parameters.
+/// The lap's parameters; the range of each is in [`RANGES`](super::RANGES).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlamConfig {
     /// The simulated drive.
