@@ -5,10 +5,6 @@
 //! right: `T ⊞ δ = T exp(δ)`.
 //!
 //! Source: Solà, Deray, Atchuthan, "A micro Lie theory for state estimation in robotics", 2018.
-#![no_std]
-
-#[cfg(test)]
-extern crate std;
 
 pub mod angle;
 pub mod math;

@@ -124,7 +124,10 @@ impl OccupancyGrid {
         let origin = Vector2::new(world_from_sensor.x(), world_from_sensor.y());
         let from = self.cell_at(origin);
         for (beam, (range, direction)) in ranges_m.iter().zip(beams.directions()).enumerate() {
-            let reach = (range + sensor.obstacle_thickness_m / 2.0).min(sensor.max_range_m);
+            let reach = math::min(
+                range + sensor.obstacle_thickness_m / 2.0,
+                sensor.max_range_m,
+            );
             let (dx, dy) = heading.rotate(reach * direction.cos, reach * direction.sin);
             let to = self.cell_at(origin + Vector2::new(dx, dy));
             let mut nearest_beam = beam;

@@ -43,7 +43,7 @@ impl InverseSensorModel {
     #[must_use]
     pub fn log_odds(&self, distance_m: f64, range_m: f64) -> f64 {
         let half = self.obstacle_thickness_m / 2.0;
-        if distance_m > (range_m + half).min(self.max_range_m) {
+        if distance_m > math::min(range_m + half, self.max_range_m) {
             0.0
         } else if range_m < self.max_range_m && (distance_m - range_m).abs() < half {
             self.occupied_log_odds

@@ -6,6 +6,8 @@
 //! sorted by x, yields the intervals (Felzenszwalb & Huttenlocher 2012); the samples of an interval
 //! are then a plain loop.
 
+use pr_geom::math;
+
 use super::TerrainSettings;
 use ch16_slam2d::cloud::DenseMap;
 
@@ -159,8 +161,8 @@ impl Slabs {
         self.sorted
             .sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
         let ys = || self.sorted.iter().map(|point| point.1);
-        self.south = ys().fold(f64::INFINITY, f64::min) - tau_m;
-        let north = ys().fold(f64::NEG_INFINITY, f64::max) + tau_m;
+        self.south = ys().fold(f64::INFINITY, math::min) - tau_m;
+        let north = ys().fold(f64::NEG_INFINITY, math::max) + tau_m;
         let count = ((north - self.south) / SLAB_M).ceil() as usize;
         self.points.clear();
         self.starts.clear();

@@ -31,7 +31,7 @@ pub(super) struct CellTable {
 pub(super) fn free_cell_m(cloud: &PointCloud) -> Option<f64> {
     let span = |values: &[f64]| {
         let finite = || values.iter().copied().filter(|value| value.is_finite());
-        finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min)
+        finite().fold(f64::NEG_INFINITY, math::max) - finite().fold(f64::INFINITY, math::min)
     };
     let (width, height) = (span(cloud.xs()), span(cloud.ys()));
     let cells = CHOSEN_CELLS_PER_POINT * cloud.len() as f64;

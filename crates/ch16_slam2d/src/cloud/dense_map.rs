@@ -190,9 +190,9 @@ impl DenseMap {
         let mut reach = if let Some(&hint_x) = self.xs.get(hint as usize) {
             let hint_y = self.ys[hint as usize];
             let distance = math::norm2(hint_x - x, hint_y - y);
-            distance.min(radius_m)
+            math::min(distance, radius_m)
         } else {
-            self.table.cell_m.min(radius_m)
+            math::min(self.table.cell_m, radius_m)
         };
         loop {
             let covered = reach + self.margin();
@@ -200,14 +200,15 @@ impl DenseMap {
             let nearest = math::sqrt(scan.best);
             if nearest <= covered || reach >= radius_m {
                 let within = scan.best < radius_m * radius_m;
+                let next = if within {
+                    math::sqrt(scan.second)
+                } else {
+                    nearest
+                };
                 return Found {
                     index: if within { scan.index } else { NONE },
                     distance_squared_m2: scan.best,
-                    clearance_m: if within {
-                        math::sqrt(scan.second).min(covered)
-                    } else {
-                        nearest.min(covered)
-                    },
+                    clearance_m: math::min(next, covered),
                 };
             }
             // A point beyond the box bounds the search; an empty box says to look twice as far.
@@ -216,7 +217,7 @@ impl DenseMap {
             } else {
                 nearest
             };
-            reach = next.min(radius_m);
+            reach = math::min(next, radius_m);
         }
     }
 
@@ -235,13 +236,9 @@ impl DenseMap {
                 let squared = dx * dx + dy * dy;
                 // Selections instead of branches: which point is nearer cannot be predicted.
                 let nearer = squared < scan.best;
-                let loser = if nearer { scan.best } else { squared };
-                scan.second = if loser < scan.second {
-                    loser
-                } else {
-                    scan.second
-                };
-                scan.best = if nearer { squared } else { scan.best };
+                let loser = math::max(squared, scan.best);
+                scan.second = math::min(loser, scan.second);
+                scan.best = math::min(squared, scan.best);
                 scan.index = if nearer {
                     (first + offset) as u32
                 } else {

@@ -146,7 +146,7 @@ fn extent(map: &DenseMap) -> Option<Extent> {
             .iter()
             .fold(None, |range: Option<(f64, f64)>, &value| {
                 let (low, high) = range.unwrap_or((value, value));
-                Some((low.min(value), high.max(value)))
+                Some((math::min(value, low), math::max(value, high)))
             })
     };
     let ((west, east), (south, north)) = (range(map.xs())?, range(map.ys())?);

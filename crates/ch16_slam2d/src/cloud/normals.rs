@@ -94,7 +94,7 @@ fn normal_of(neighbors: &[(f64, f64)]) -> Option<Vector2<f64>> {
     let half_gap = math::norm2(0.5 * (xx - yy), xy);
     let center = 0.5 * (xx + yy);
     let (smallest, largest) = (center - half_gap, center + half_gap);
-    if smallest / largest.max(1e-12) > MAX_FLATNESS {
+    if smallest / math::max(largest, 1e-12) > MAX_FLATNESS {
         return None;
     }
     // Both rows of (S − λ_min I) are orthogonal to the eigenvector; the longer one rounds less.

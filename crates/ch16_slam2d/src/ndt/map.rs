@@ -221,8 +221,8 @@ impl NdtCell {
 fn floored(xx: f64, xy: f64, yy: f64) -> (Matrix2<f64>, Matrix2<f64>) {
     let center = 0.5 * (xx + yy);
     let half_gap = math::norm2(0.5 * (xx - yy), xy);
-    let largest = (center + half_gap).max(MIN_VARIANCE_M2);
-    let smallest = (center - half_gap).max(MIN_VARIANCE_RATIO * largest);
+    let largest = math::max(center + half_gap, MIN_VARIANCE_M2);
+    let smallest = math::max(center - half_gap, MIN_VARIANCE_RATIO * largest);
     // With the unit axis u of the larger variance, f(Σ) = f(λ_max) u uᵀ + f(λ_min) (I − u uᵀ).
     let (ux, uy) = if xx > yy {
         (xx - center + half_gap, xy)
