@@ -65,6 +65,14 @@ pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
         figures.write_json(path)?;
     }
     show(
+        "The port in JavaScript",
+        program(binary("slam2d_bench"))
+            .arg("peer")
+            .arg(&figures.native)
+            .arg(PAGE),
+    )?;
+    tools::ensure_nanoflann();
+    show(
         "Registration of files",
         program(binary("slam2d_bench"))
             .arg("registration")

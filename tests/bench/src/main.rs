@@ -5,6 +5,7 @@
 mod clouds;
 mod counts;
 mod page;
+mod peer;
 mod registration;
 mod report;
 mod sweep;
@@ -17,7 +18,7 @@ use std::time::Instant;
 use page::{Block, write_into};
 use report::Figures;
 use serde::Serialize;
-use slam2d_bench::{measure::measure, workloads};
+use slam2d_bench::{calibration, measure::measure_all, workloads};
 use slam2d_tests::skip::tell;
 
 const USAGE: &str = "\
@@ -25,10 +26,14 @@ slam2d_bench measure [SECONDS_EACH]      medians of all workloads as JSON
 slam2d_bench count                       instructions of one repetition of each workload as JSON;
                                          an empty object without valgrind
 slam2d_bench table NATIVE.json WASM.json COUNTS.json PAGE.md
-                                         print the table of the workloads and write it into a page
+                                         print the table of the workloads and write it into a page;
+                                         fail where a row is beyond its limit on a quiet machine
+slam2d_bench peer NATIVE.json PAGE.md    check and time the port in JavaScript with Node,
+                                         print the table beside NATIVE.json and write it into a page
 slam2d_bench clouds FOLDER               write the clouds of the registration table, for slam2d register
 slam2d_bench registration SLAM2D FOLDER PAGE.md
-                                         write the clouds, register them with the program SLAM2D,
+                                         write the clouds, register them with the program SLAM2D and
+                                         with nanoflann, where a C++ compiler finds it,
                                          print the table and write it into a page
 slam2d_bench sweep SLAM2D PAGE.md        run the sweep of 4,000 laps with the program SLAM2D,
                                          print its distribution and write it into a page
@@ -46,6 +51,8 @@ fn main() -> ExitCode {
         ["table", native, wasm, counts, page] => {
             table([native, wasm, counts].map(Path::new), Path::new(page))
         }
+        ["peer", native, page] => peer::table(Path::new(native))
+            .and_then(|table| publish(Path::new(page), Block::Peer, &table)),
         ["clouds", folder] => clouds::write(Path::new(folder)).and_then(|files| {
             let mut names = files.iter().map(|file| file.display().to_string());
             names.try_for_each(|name| say(&name))
@@ -96,11 +103,7 @@ fn measure_all(seconds: &str) -> Result<(), String> {
     let seconds: f64 = seconds.parse().map_err(|_| USAGE.to_owned())?;
     let start = Instant::now();
     let now_ms = || 1e3 * start.elapsed().as_secs_f64();
-    let measured: Vec<_> = workloads()
-        .iter()
-        .map(|workload| measure(workload, 1e3 * seconds, &now_ms))
-        .collect();
-    say_json(&measured)
+    say_json(&measure_all(1e3 * seconds, &now_ms))
 }
 
 fn count() -> Result<(), String> {
@@ -117,10 +120,10 @@ fn count() -> Result<(), String> {
 fn table([native, wasm, counts]: [&Path; 3], page: &Path) -> Result<(), String> {
     let figures = Figures::read(native, wasm, counts)?;
     publish(page, Block::Workloads, &figures.table())?;
-    if figures.are_counted() {
-        return Ok(());
+    if !figures.are_counted() {
+        say("valgrind is not installed: no instructions were counted")?;
     }
-    say("valgrind is not installed: no instructions were counted")
+    figures.judge()
 }
 
 fn judge_counts(judge: impl FnOnce(&counts::Counts) -> Result<(), String>) -> Result<(), String> {
@@ -135,6 +138,7 @@ fn run(id: &str, times: &str) -> Result<(), String> {
     let times: u32 = times.parse().map_err(|_| USAGE.to_owned())?;
     let workload = workloads()
         .into_iter()
+        .chain([calibration::workload()])
         .find(|workload| workload.id == id)
         .ok_or_else(|| format!("there is no workload `{id}`"))?;
     let mut run = (workload.prepare)();

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::Workload;
+use crate::{Workload, calibration, workloads};
 
 /// A sample lasts at least this long: browsers round their clocks to a tenth of a millisecond.
 const SAMPLE_MS: f64 = 8.0;
@@ -57,6 +57,18 @@ pub fn measure(workload: &Workload, budget_ms: f64, now_ms: &dyn Fn() -> f64) ->
         samples: samples.len(),
         digest: format!("{digest:016x}"),
     }
+}
+
+/// Measures every workload, and before, amid and after them the calibration loop.
+pub fn measure_all(budget_ms: f64, now_ms: &dyn Fn() -> f64) -> Vec<Measured> {
+    let mut all = workloads();
+    for place in [0, all.len() / 2 + 1, all.len() + 2] {
+        all.insert(place, calibration::workload());
+    }
+    let measured = all.iter();
+    measured
+        .map(|workload| measure(workload, budget_ms, now_ms))
+        .collect()
 }
 
 #[cfg(test)]

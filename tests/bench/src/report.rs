@@ -6,13 +6,16 @@ use std::path::Path;
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
+use slam2d_bench::calibration::{ID, QUIET, slowdown};
 use slam2d_bench::{Limit, Workload, workloads};
 
 /// One entry of what `measure` prints.
 #[derive(Deserialize)]
-struct Entry {
-    id: String,
-    median_ms: f64,
+pub struct Entry {
+    /// Name of the workload.
+    pub id: String,
+    /// Median of one repetition, ms.
+    pub median_ms: f64,
     digest: String,
 }
 
@@ -50,7 +53,72 @@ impl Figures {
             "|---|--:|--:|--:|--:|--:|---|".to_owned(),
         ];
         lines.extend(workloads().iter().map(|workload| self.row(workload)));
+        lines.push(String::new());
+        lines.push(self.machine_words());
         lines.join("\n")
+    }
+
+    /// Fails where a row is beyond its limit in a build that ran on a quiet machine.
+    ///
+    /// # Errors
+    /// A line for each such row.
+    pub fn judge(&self) -> Result<(), String> {
+        let beyond = |build: &Build<'_>, workload: &Workload| {
+            let limit = build.limit(workload)?;
+            let ms = build.median_ms(workload).filter(|ms| *ms > limit)?;
+            Some(format!(
+                "{}: {} {}, and the limit is {}",
+                workload.id,
+                time(Some(ms)),
+                build.name,
+                time(Some(limit))
+            ))
+        };
+        let all = workloads();
+        let complaints: Vec<String> = self
+            .builds()
+            .iter()
+            .filter(|build| build.is_quiet())
+            .flat_map(|build| all.iter().filter_map(|workload| beyond(build, workload)))
+            .collect();
+        if complaints.is_empty() {
+            Ok(())
+        } else {
+            Err(complaints.join("\n"))
+        }
+    }
+
+    fn builds(&self) -> [Build<'_>; 2] {
+        [
+            Build {
+                name: "natively",
+                entries: &self.native,
+                limit_ms: |limit| limit.native_ms,
+            },
+            Build {
+                name: "in Chromium",
+                entries: &self.wasm,
+                limit_ms: |limit| limit.wasm_ms,
+            },
+        ]
+    }
+
+    /// What the calibration loop says of the machine.
+    fn machine_words(&self) -> String {
+        let words: Vec<String> = self
+            .builds()
+            .iter()
+            .filter_map(|build| Some(format!("{:.2} times {}", build.slowdown()?, build.name)))
+            .collect();
+        let verdict = if self.builds().iter().all(Build::is_quiet) {
+            "the machine was quiet"
+        } else {
+            "the machine was busy or is another one, so a time in bold is beyond its limit and no error"
+        };
+        format!(
+            "The calibration loop took its reference time {}: {verdict}.",
+            words.join(" and ")
+        )
     }
 
     fn row(&self, workload: &Workload) -> String {
@@ -64,16 +132,49 @@ impl Figures {
             (Some(_), Some(_)) => "**no**",
             _ => NOTHING,
         };
-        let limit = |of: fn(&Limit) -> f64| time(workload.limit.as_ref().map(of));
+        let [native, wasm] = self.builds().map(|build| build.cells(workload));
         format!(
-            "| {} | {} | {} | {} | {} | {} | {same} |",
+            "| {} | {native} | {wasm} | {} | {same} |",
             workload.what,
-            time(native.map(|(ms, _)| ms)),
-            limit(|limit| limit.native_ms),
-            time(wasm.map(|(ms, _)| ms)),
-            limit(|limit| limit.wasm_ms),
             instructions(self.instructions.get(workload.id).copied()),
         )
+    }
+}
+
+/// The medians of one build.
+struct Build<'a> {
+    name: &'static str,
+    entries: &'a [Entry],
+    limit_ms: fn(&Limit) -> f64,
+}
+
+impl Build<'_> {
+    fn median_ms(&self, workload: &Workload) -> Option<f64> {
+        let entry = self.entries.iter().find(|entry| entry.id == workload.id);
+        entry.map(|entry| entry.median_ms)
+    }
+
+    fn limit(&self, workload: &Workload) -> Option<f64> {
+        workload.limit.as_ref().map(self.limit_ms)
+    }
+
+    /// Median and limit of a row; the median in bold where it is beyond the limit.
+    fn cells(&self, workload: &Workload) -> String {
+        let (median, limit) = (self.median_ms(workload), self.limit(workload));
+        let shown = time(median);
+        match (median, limit) {
+            (Some(ms), Some(most)) if ms > most => format!("**{shown}** | {}", time(limit)),
+            _ => format!("{shown} | {}", time(limit)),
+        }
+    }
+
+    fn slowdown(&self) -> Option<f64> {
+        let calibrations = self.entries.iter().filter(|entry| entry.id == ID);
+        slowdown(calibrations.map(|entry| entry.median_ms))
+    }
+
+    fn is_quiet(&self) -> bool {
+        self.slowdown().is_some_and(|slowdown| slowdown <= QUIET)
     }
 }
 
@@ -81,7 +182,7 @@ impl Figures {
 const NOTHING: &str = "–";
 
 /// Three digits, in a unit that suits.
-fn time(milliseconds: Option<f64>) -> String {
+pub fn time(milliseconds: Option<f64>) -> String {
     match milliseconds {
         None => NOTHING.to_owned(),
         Some(ms) if ms >= 1.0 => format!("{} ms", three_digits(ms)),
@@ -109,7 +210,7 @@ fn three_digits(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-fn read<T: DeserializeOwned>(path: &Path) -> Result<T, String> {
+pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, String> {
     let say = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let text = fs::read_to_string(path).map_err(|error| say(&error))?;
     serde_json::from_str(&text).map_err(|error| say(&error))
@@ -117,6 +218,8 @@ fn read<T: DeserializeOwned>(path: &Path) -> Result<T, String> {
 
 #[cfg(test)]
 mod tests {
+    use slam2d_bench::calibration::REFERENCE_MS;
+
     use super::*;
 
     #[test]
@@ -159,10 +262,42 @@ mod tests {
             "10.2 ms | 12.0 ms | 21.0 ms | 25.0 ms | 114 M | yes |"
         );
         assert_eq!(
-            row("nearest neighbour"),
+            row("the same, dense map"),
             "44.0 ns | 90.0 ns | 102 ns | 150 ns | – | **no** |"
         );
         assert_eq!(row("occupancy grid"), "700 µs | – | – | – | – | – |");
-        assert_eq!(table.lines().count(), 2 + workloads().len());
+        assert_eq!(table.lines().count(), 2 + workloads().len() + 2);
+    }
+
+    /// A lap that took 13 ms where 12 are allowed, on a machine this much slower than the reference.
+    fn slow_lap(slowdown: f64) -> Figures {
+        let entry = |id: &str, median_ms| Entry {
+            id: id.to_owned(),
+            median_ms,
+            digest: String::new(),
+        };
+        let loop_ms = slowdown * REFERENCE_MS;
+        Figures {
+            native: vec![
+                entry(ID, REFERENCE_MS),
+                entry("lap", 13.0),
+                entry(ID, loop_ms),
+            ],
+            wasm: Vec::new(),
+            instructions: BTreeMap::new(),
+        }
+    }
+
+    #[test]
+    fn a_row_beyond_its_limit_fails_on_a_quiet_machine_and_is_marked_on_every_one() {
+        let message = slow_lap(1.0).judge().unwrap_err();
+        assert_eq!(message, "lap: 13.0 ms natively, and the limit is 12.0 ms");
+        assert_eq!(slow_lap(1.5).judge(), Ok(()));
+        for slowdown in [1.0, 1.5] {
+            let table = slow_lap(slowdown).table();
+            assert!(table.contains("| **13.0 ms** | 12.0 ms |"), "{table}");
+        }
+        let words = slow_lap(1.5).table();
+        assert!(words.contains("reference time 1.50 times natively: the machine was busy"));
     }
 }

@@ -6,10 +6,10 @@
 //! sorted by x, yields the intervals (Felzenszwalb & Huttenlocher 2012); the samples of an interval
 //! are then a plain loop.
 
+use ch16_slam2d::cloud::DenseMap;
 use pr_geom::math;
 
 use super::TerrainSettings;
-use ch16_slam2d::cloud::DenseMap;
 
 /// Height of the slabs by which the map points are looked up, m.
 const SLAB_M: f64 = 0.05;
