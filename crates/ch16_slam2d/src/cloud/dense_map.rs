@@ -345,14 +345,17 @@ fn finite_range(values: &[f64]) -> (f64, f64) {
 }
 
 impl NearestMap for DenseMap {
+    #[inline]
     fn len(&self) -> usize {
         self.xs.len()
     }
 
+    #[inline]
     fn point(&self, index: usize) -> Vector2<f64> {
         Vector2::new(self.xs[index], self.ys[index])
     }
 
+    #[inline]
     fn normal(&self, index: usize) -> Option<Vector2<f64>> {
         let &(x, y) = self.normals.get(index)?;
         (x != 0.0 || y != 0.0).then(|| Vector2::new(x, y))

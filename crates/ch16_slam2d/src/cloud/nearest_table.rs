@@ -157,14 +157,17 @@ fn extent(map: &DenseMap) -> Option<Extent> {
 }
 
 impl NearestMap for NearestTable {
+    #[inline]
     fn len(&self) -> usize {
         self.map.len()
     }
 
+    #[inline]
     fn point(&self, index: usize) -> Vector2<f64> {
         self.map.point(index)
     }
 
+    #[inline]
     fn normal(&self, index: usize) -> Option<Vector2<f64>> {
         self.map.normal(index)
     }
