@@ -156,7 +156,7 @@ impl Slam {
         &self.keyframes
     }
 
-    /// The newest keyframe's node when the first way point was reached.
+    /// The newest keyframe's node when the way point was reached from which on places are seen again.
     #[must_use]
     pub fn turn_node(&self) -> Option<usize> {
         self.turn_node
@@ -181,7 +181,7 @@ impl Slam {
     fn advance(&mut self) -> Option<PendingTick> {
         let driven = self.drive.ticks().get(self.tick)?;
         // The node to remember is the newest before this tick's keyframe.
-        if driven.reached == Some(0) {
+        if driven.reached.is_some() && driven.reached == self.config.drive.turn {
             self.turn_node = Some(self.keyframes.len() - 1);
             self.restart_disagreement();
         }

@@ -1,4 +1,4 @@
-//! `slam2d lap`: the Apartment's lap at one seed and noise factor.
+//! `slam2d lap`: a lap at one seed and noise factor, through the Apartment or another world.
 
 use ch16_lab::lap::{LapRecord, LapRunner, LoopAttempt, SlamConfig, SlamReport};
 use clap::Args;
@@ -6,8 +6,9 @@ use serde::Serialize;
 
 use crate::numbers;
 use crate::output::{print_json, say};
+use crate::world::{WorldFailure, WorldName};
 
-/// Drive the lap through the Apartment and estimate it.
+/// Drive the lap through the Apartment, or another world, and estimate it.
 #[derive(Args, Clone, Debug)]
 pub struct LapArgs {
     /// Seed of all noise, decimal or 0x….
@@ -16,6 +17,13 @@ pub struct LapArgs {
     /// Factor of the wheels' six noise parameters.
     #[arg(long, default_value = "1", value_parser = numbers::noise_factor, allow_hyphen_values = true)]
     noise: f64,
+    /// Where it drives: apartment, ring, or a file (docs/worlds.md).
+    #[arg(
+        long,
+        value_name = "apartment|ring|FILE.json",
+        default_value = "apartment"
+    )]
+    world: WorldName,
     /// The front end alone: no loop is closed.
     #[arg(long)]
     no_loops: bool,
@@ -75,8 +83,12 @@ struct TickJson {
 }
 
 /// Runs the lap and prints it.
-pub fn run(args: &LapArgs) {
-    let mut config = SlamConfig::with_seed_and_noise(args.seed, args.noise);
+///
+/// # Errors
+/// Where the world's file cannot be read or driven.
+pub fn run(args: &LapArgs) -> Result<(), WorldFailure> {
+    let mut config =
+        SlamConfig::with_seed_and_noise(args.seed, args.noise).on(&args.world.course()?);
     if args.no_loops {
         config = config.without_loops();
     }
@@ -86,6 +98,7 @@ pub fn run(args: &LapArgs) {
     } else {
         print_text(&record, args);
     }
+    Ok(())
 }
 
 impl LapJson {

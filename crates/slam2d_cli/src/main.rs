@@ -13,6 +13,7 @@ mod register;
 mod sweep;
 mod table;
 mod terrain;
+mod world;
 
 use std::process::ExitCode;
 
@@ -46,10 +47,6 @@ fn main() -> ExitCode {
         Err(error) => return refuse_arguments(&error),
     };
     let outcome = match &cli.command {
-        Command::Lap(args) => {
-            lap::run(args);
-            Ok(())
-        }
         Command::Basin(args) => {
             basin::run(args);
             Ok(())
@@ -62,6 +59,7 @@ fn main() -> ExitCode {
             table::run(args);
             Ok(())
         }
+        Command::Lap(args) => lap::run(args).map_err(|e| e.to_string()),
         Command::Register(args) => register::run(args).map_err(|e| e.to_string()),
         Command::Sweep(args) => sweep::run(args).map_err(|e| e.to_string()),
         Command::Optimize(args) => optimize::run(args).map_err(|e| e.to_string()),

@@ -6,12 +6,14 @@ use ch16_lab::lap::{LapRunner, SlamConfig};
 use ch16_lab::results::{Column, LapOutcome, LapStatistics, Row};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use pr_sim::Course;
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 
 use crate::numbers::{self, Seeds};
 use crate::output::{print_json, say};
+use crate::world::{WorldFailure, WorldName};
 
 /// Most laps of one sweep.
 const MAX_LAPS: u64 = 10_000_000;
@@ -34,6 +36,13 @@ pub struct SweepArgs {
         allow_hyphen_values = true
     )]
     noise: Vec<f64>,
+    /// Where it drives: apartment, ring, or a file (docs/worlds.md).
+    #[arg(
+        long,
+        value_name = "apartment|ring|FILE.json",
+        default_value = "apartment"
+    )]
+    world: WorldName,
     /// Number of threads, at most one for each seed; all cores without it.
     #[arg(long, value_parser = numbers::threads, allow_hyphen_values = true)]
     threads: Option<NonZeroUsize>,
@@ -51,6 +60,9 @@ pub enum SweepFailure {
         /// Seeds times noise factors.
         laps: u64,
     },
+    /// There is no such world.
+    #[error(transparent)]
+    World(#[from] WorldFailure),
     /// The threads could not be started.
     #[error(transparent)]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -91,18 +103,19 @@ struct Entry {
 /// Runs all laps and prints their distribution.
 ///
 /// # Errors
-/// Where the sweep is too large or the threads cannot be started.
+/// Where the sweep is too large, the world cannot be driven or the threads cannot be started.
 pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
     let laps = args.seeds.count() * args.noise.len() as u64;
     if laps > MAX_LAPS {
         return Err(SweepFailure::TooMany { laps });
     }
+    let course = args.world.course()?;
     let mut pool = rayon::ThreadPoolBuilder::new();
     if let Some(threads) = args.threads {
         let useful = usize::try_from(args.seeds.count()).unwrap_or(usize::MAX);
         pool = pool.num_threads(threads.get().min(useful).min(MAX_THREADS));
     }
-    let by_seed = pool.build()?.install(|| all_runs(args));
+    let by_seed = pool.build()?.install(|| all_runs(args, &course));
     let levels: Vec<Level> = args
         .noise
         .iter()
@@ -121,7 +134,7 @@ pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
 }
 
 /// The runs of every seed, in order of the seeds; each has one run for each noise factor.
-fn all_runs(args: &SweepArgs) -> Vec<Vec<LapOutcome>> {
+fn all_runs(args: &SweepArgs, course: &Course) -> Vec<Vec<LapOutcome>> {
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} seeds, {eta} left")
         .expect("the template is well formed");
     let bar = ProgressBar::new(args.seeds.count()).with_style(style);
@@ -129,7 +142,7 @@ fn all_runs(args: &SweepArgs) -> Vec<Vec<LapOutcome>> {
         .into_par_iter()
         .map_init(LapRunner::new, |runner, seed| {
             let at = |&noise: &f64| {
-                let config = SlamConfig::with_seed_and_noise(seed, noise);
+                let config = SlamConfig::with_seed_and_noise(seed, noise).on(course);
                 LapOutcome::of(&runner.run(&config))
             };
             let runs = args.noise.iter().map(at).collect();

@@ -1,7 +1,9 @@
 //! Every constant of the lap; the defaults are the chapter's.
 
+use std::sync::Arc;
+
 use pr_geom::SE2;
-use pr_sim::{DriverConfig, LidarConfig, OdometryNoise};
+use pr_sim::{Course, DriverConfig, LidarConfig, OdometryNoise, World};
 
 use ch16_slam2d::loops::{LoopConfig, MapConfig, TrustConfig};
 
@@ -29,12 +31,16 @@ pub struct DriveConfig {
     pub seed: u32,
     /// Multiplies all six α of the wheel odometry.
     pub noise_factor: f64,
+    /// The walls.
+    pub world: Arc<World>,
     /// True pose at the start, world frame.
     pub start: SE2,
     /// Duration of a tick in seconds.
     pub dt_s: f64,
     /// Way points and controller.
     pub driver: DriverConfig,
+    /// The way point from which on places are seen again, counted from 0.
+    pub turn: Option<usize>,
     /// Wheel odometry at noise factor 1.
     pub odometry_noise: OdometryNoise,
     /// The sensor.
@@ -49,12 +55,15 @@ pub struct DriveConfig {
 
 impl Default for DriveConfig {
     fn default() -> Self {
+        let course = Course::apartment();
         Self {
             seed: CANONICAL_SEED,
             noise_factor: 1.0,
-            start: SE2::new(1.35, 4.42, 0.0),
+            world: Arc::new(course.world().clone()),
+            start: course.start(),
             dt_s: 0.25,
             driver: DriverConfig::default(),
+            turn: course.turn(),
             odometry_noise: OdometryNoise::default(),
             lidar: LidarConfig::default(),
             sweep_cell_m: 0.12,
@@ -65,6 +74,16 @@ impl Default for DriveConfig {
 }
 
 impl DriveConfig {
+    /// The same drive on another course.
+    #[must_use]
+    pub fn on(mut self, course: &Course) -> Self {
+        self.world = Arc::new(course.world().clone());
+        self.start = course.start();
+        self.driver.waypoints = course.way_points().to_vec();
+        self.turn = course.turn();
+        self
+    }
+
     /// Whether both describe the same drive, up to the noise factor of the wheels.
     #[must_use]
     pub fn differs_only_in_noise_from(&self, other: &Self) -> bool {
@@ -159,6 +178,13 @@ impl SlamConfig {
         config.drive.seed = seed;
         config.drive.noise_factor = noise_factor;
         config
+    }
+
+    /// The same lap on another course.
+    #[must_use]
+    pub fn on(mut self, course: &Course) -> Self {
+        self.drive = self.drive.on(course);
+        self
     }
 
     /// The same lap with loop closure off.

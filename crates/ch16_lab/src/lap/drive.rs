@@ -48,16 +48,16 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Simulates the drive in the Apartment until its last way point is reached.
+    /// Simulates the drive until its last way point is reached.
     #[must_use]
     pub fn simulate(config: &DriveConfig) -> Self {
-        let world = World::apartment();
+        let world = &*config.world;
         let mut rng = Rng::new(config.seed);
         let mut sensor = Sensor::new(config);
         let mut driver = WaypointDriver::new(config.driver.clone());
         let noise = config.odometry_noise.scaled(config.noise_factor);
 
-        let first_sweep = sensor.sweep(&world, &config.start, &mut rng);
+        let first_sweep = sensor.sweep(world, &config.start, &mut rng);
         let mut ticks = Vec::new();
         let mut truth = config.start;
         let mut dead_reckoning = config.start;
@@ -77,7 +77,7 @@ impl Drive {
                 odometry,
                 dead_reckoning,
                 reached: step.reached,
-                sweep: sensor.sweep(&world, &truth, &mut rng),
+                sweep: sensor.sweep(world, &truth, &mut rng),
                 rng_before_odometry,
             });
             finished = step.finished;
@@ -187,6 +187,8 @@ impl Sensor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pr_sim::Course;
+
     use crate::lap::{CANONICAL_SEED, LAP_TICKS};
 
     #[test]
@@ -212,6 +214,21 @@ mod tests {
             });
             assert_eq!(drive.ticks().len(), LAP_TICKS, "seed {seed}");
         }
+    }
+
+    #[test]
+    fn a_drive_on_another_course_visits_its_way_points() {
+        let course = Course::ring();
+        let drive = Drive::simulate(&DriveConfig::default().on(&course));
+        let reached = drive.ticks().iter().filter_map(|tick| tick.reached);
+        assert!(reached.eq(0..course.way_points().len()));
+        assert_eq!(drive.truth(0), course.start());
+        // What it sees is the ring: the pillar at x = 2.9 m, 0.4 m below the way, 0.9 m ahead.
+        let nearest_m = |tick: usize| {
+            let ranges = &drive.sweep(tick).ranges_m;
+            ranges.iter().copied().fold(f64::INFINITY, f64::min)
+        };
+        assert!(nearest_m(0) < 0.8);
     }
 
     #[test]

@@ -38,7 +38,12 @@ impl LapRecord {
     #[must_use]
     pub fn occupancy_grid(&self, tick: usize) -> OccupancyGrid {
         let lidar = self.config.drive.lidar;
-        let mut config = GridConfig::default();
+        let bounds = self.config.drive.world.bounds();
+        let mut config = GridConfig {
+            min_m: bounds.min,
+            max_m: bounds.max,
+            ..GridConfig::default()
+        };
         config.sensor.max_range_m = lidar.max_range_m;
         let mut grid = OccupancyGrid::new(config);
         let beams = Beams::new(Lidar::new(lidar).bearings_rad());
