@@ -1,6 +1,6 @@
 //! The lap against `lap.json`: nine laps, tick by tick and keyframe by keyframe.
 
-use ch16_lab::lap::{LapRecord, LapRunner, SlamConfig};
+use ch16_lab::lap::{LapConfig, LapRecord, LapRunner};
 use pr_geom::{SE2, wrap_angle};
 use serde::Deserialize;
 use slam2d_tests::{assert_close, reference};
@@ -77,7 +77,7 @@ impl Run {
 fn runs() -> Vec<Run> {
     let mut runner = LapRunner::new();
     let run = |expected: Lap| {
-        let mut config = SlamConfig::with_seed_and_noise(expected.seed, expected.noise);
+        let mut config = LapConfig::with_seed_and_noise(expected.seed, expected.noise);
         if !expected.loops {
             config = config.without_loops();
         }
@@ -118,9 +118,9 @@ fn every_tick_of_every_lap_is_the_reference_tick() {
             );
             // The reference notes tau once it has seen the tick's correction.
             close("tau", registration.next_tau_m, expected.tau);
-            assert_eq!(registration.icp.iterations, expected.iterations, "{at}");
-            assert_eq!(registration.icp.inliers, expected.inliers, "{at}");
-            close("rmse", registration.icp.rmse, expected.rmse);
+            assert_eq!(registration.matched.iterations, expected.iterations, "{at}");
+            assert_eq!(registration.matched.inliers, expected.inliers, "{at}");
+            close("rmse", registration.matched.rmse_m, expected.rmse);
             assert_eq!(report.new_keyframe.is_some(), expected.keyframe, "{at}");
             pose("estimate", &report.estimate, &expected.estimate);
         }
@@ -222,7 +222,7 @@ fn every_occupancy_grid_has_the_reference_counts() {
 /// The chapter prints its results table with two to four digits; half a unit of the last.
 #[test]
 fn the_canonical_run_has_the_figures_that_the_chapter_prints() {
-    let record = LapRunner::new().run(&SlamConfig::default());
+    let record = LapRunner::new().run(&LapConfig::default());
     let (lap, front_end) = (&record.lap.summary, &record.front_end.summary);
     assert_eq!((lap.ticks, lap.keyframes, lap.loops), (129, 41, 3));
     assert_eq!(front_end.loops, 0);
@@ -292,7 +292,7 @@ fn the_canonical_run_has_the_figures_that_the_chapter_prints() {
 /// operations changes this number; then the figures above decide whether the change was right.
 #[test]
 fn the_bits_of_the_front_end_are_those_that_were_recorded() {
-    let record = LapRunner::new().run(&SlamConfig::default());
+    let record = LapRunner::new().run(&LapConfig::default());
     assert_eq!(
         format!("{:016x}", record.front_end.digest()),
         "225161fddc20f41b"

@@ -1,11 +1,11 @@
-//! The parts of the lap and what a drag repeats of it: `cargo bench -p ch16_slam2d --bench lap`.
+//! The parts of the lap and what a drag repeats of it: `cargo bench -p ch16_lab --bench lap`.
 //!
 //! The whole lap, its warm solve and its grid are workloads of `tests/bench`.
 
 use std::hint::black_box;
 use std::sync::Arc;
 
-use ch16_lab::lap::{Drive, LapRunner, Slam, SlamConfig};
+use ch16_lab::lap::{Drive, Lap, LapConfig, LapRunner};
 use ch16_lab::samples;
 use criterion::{Criterion, criterion_group, criterion_main};
 
@@ -13,17 +13,17 @@ use criterion::{Criterion, criterion_group, criterion_main};
 const DRAGGED: [f64; 4] = [0.9, 1.0, 1.1, 1.2];
 
 fn lap(criterion: &mut Criterion) {
-    let config = SlamConfig::default();
+    let config = LapConfig::default();
     let mut group = criterion.benchmark_group("lap");
     group.bench_function("drive, 129 ticks", |b| {
         b.iter(|| Drive::simulate(black_box(&config.drive)));
     });
     group.bench_function("canonical run without its front end alone", |b| {
-        b.iter(|| Slam::new(black_box(config.clone())).run());
+        b.iter(|| Lap::new(black_box(config.clone())).run());
     });
     let drive = Arc::new(Drive::simulate(&config.drive));
     group.bench_function("canonical run on a drive that is there", |b| {
-        b.iter(|| Slam::on_drive(black_box(config.clone()), Arc::clone(&drive)).run());
+        b.iter(|| Lap::on_drive(black_box(config.clone()), Arc::clone(&drive)).run());
     });
     group.bench_function(
         "a drag of the noise slider, front end alone included",
@@ -32,7 +32,7 @@ fn lap(criterion: &mut Criterion) {
             let mut steps = DRAGGED.iter().cycle();
             b.iter(|| {
                 let noise = *steps.next().unwrap_or(&1.0);
-                runner.run(&SlamConfig::with_seed_and_noise(config.drive.seed, noise))
+                runner.run(&LapConfig::with_seed_and_noise(config.drive.seed, noise))
             });
         },
     );

@@ -1,17 +1,13 @@
-//! The lap: a front end that registers sweeps, a graph that remembers, and loops that correct.
+//! The lap: a simulated drive, the estimator on its frames, and a judge who knows the truth.
 //!
-//! One tick: the wheels predict, ICP on the last six sweeps corrects, every 0.4 m or 0.35 rad a
-//! keyframe enters the pose graph, and now and then an old keyframe is recognized and the graph
-//! optimized. [`Slam::step`] does one tick and reports it, [`Slam::run`] all of them.
-//! [`LapRunner`] runs a lap together with its front end alone and keeps what a timeline needs.
-//!
-//! What it cannot fix: drift that no loop sees, such as the bend of the outbound half before the
-//! first loop, and a place that looks like another one within the gate.
+//! [`Lap::step`] hands one tick of a [`Drive`] to the estimator and reports what it did, with its
+//! errors; [`Lap::run`] does all of them. [`LapRunner`] runs a lap together with its front end alone
+//! and keeps what a timeline needs.
 
 mod config;
 mod digest;
 mod drive;
-mod front_end;
+mod judge;
 mod loop_error;
 mod loop_words;
 mod record;
@@ -21,92 +17,69 @@ mod runner;
 
 use std::sync::Arc;
 
-use pr_geom::SE2;
-
-pub use config::{
-    CANONICAL_SEED, DriveConfig, LAP_TICKS, LoopClosure, SlamConfig, ThresholdConfig,
-};
+pub use ch16_slam2d::slam::{Change, LoopClosure, Registration, SlamConfig};
+pub use config::{CANONICAL_SEED, DriveConfig, LAP_TICKS, LapConfig};
 pub use digest::lap_digest;
 pub use drive::{Drive, DriveTick, Sweep};
-pub use front_end::{FrontEnd, Registration, WindowSweep};
+pub use judge::Judge;
 pub use loop_error::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopError, LoopJudgement};
 pub use record::{Epoch, LAST_KEYFRAMES, LapRecord, LapSummary, LapTrace, RecordedEdge};
 pub use replay::RegistrationView;
-pub use report::{Change, Keyframe, LoopAttempt, LoopEffect, SlamReport, TickMetrics};
+pub use report::{Keyframe, LoopAttempt, LoopEffect, TickMetrics, TickReport, WindowSweep};
 pub use runner::LapRunner;
 
-use ch16_slam2d::cloud::PointCloud;
-use ch16_slam2d::graph::{EdgeKind, PoseGraph};
-use ch16_slam2d::loops::{
-    GateModel, KeyframeView, LoopVerification, LoopWorkspace, detect_loop_candidates,
-    marginal_information, path_information, verify_loop,
-};
-use ch16_slam2d::metrics::{
-    DisagreementConfig, MapDisagreement, position_error_m, trajectory_rms_m,
-};
+use ch16_slam2d::graph::PoseGraph;
+use ch16_slam2d::slam::{PendingFrame, Slam, SlamReport};
 
-/// The SLAM system on its lap, one tick at a time.
+/// The estimator on its lap, one tick at a time.
 #[derive(Clone)]
-pub struct Slam {
-    config: SlamConfig,
+pub struct Lap {
+    config: LapConfig,
     drive: Arc<Drive>,
     tick: usize,
-    front_end: FrontEnd,
-    graph: PoseGraph,
-    keyframes: Vec<Keyframe>,
-    turn_node: Option<usize>,
-    last_attempt_node: Option<usize>,
-    loop_workspace: LoopWorkspace,
-    disagreement: MapDisagreement,
-    odometry_squares_m2: f64,
-    chi2: f64,
+    slam: Slam,
+    judge: Judge,
 }
 
-impl Slam {
+impl Lap {
     /// Simulates the drive of `config` and stands at its start.
     #[must_use]
-    pub fn new(config: SlamConfig) -> Self {
+    pub fn new(config: LapConfig) -> Self {
         let drive = Arc::new(Drive::simulate(&config.drive));
         Self::on_drive(config, drive)
     }
 
     /// Stands at the start of a drive that is already simulated; `config.drive` must describe it.
+    ///
+    /// The first sweep is taken, and the map's frame is laid where the drive truly starts.
     #[must_use]
-    pub fn on_drive(config: SlamConfig, drive: Arc<Drive>) -> Self {
+    pub fn on_drive(config: LapConfig, drive: Arc<Drive>) -> Self {
         debug_assert_eq!(&config.drive, drive.config());
-        let mut graph = PoseGraph::new();
-        graph.add_fixed_node(config.drive.start);
+        let mut slam = Slam::new(SlamConfig {
+            start: config.drive.start,
+            scan: config.drive.scan,
+            ..config.slam.clone()
+        });
+        slam.step_prepared(&drive.prepared(0)).expect(USABLE);
         Self {
-            front_end: FrontEnd::new(&config),
-            graph,
-            keyframes: vec![Keyframe {
-                node: 0,
-                tick: 0,
-                truth: config.drive.start,
-            }],
-            turn_node: None,
-            last_attempt_node: None,
-            loop_workspace: LoopWorkspace::new(&config.loops.submap),
-            disagreement: MapDisagreement::new(DisagreementConfig::default()),
-            odometry_squares_m2: 0.0,
-            chi2: 0.0,
+            judge: Judge::new(),
             tick: 0,
+            slam,
             config,
             drive,
         }
     }
 
     /// Does one tick; nothing once the lap is finished.
-    pub fn step(&mut self) -> Option<SlamReport> {
-        let mut pending = self.advance()?;
-        if let Some(verification) = self.verify_loop(&pending) {
-            self.close_loop(&mut pending, verification);
-        }
+    pub fn step(&mut self) -> Option<TickReport> {
+        let mut pending = self.begin()?;
+        self.slam.verify_loops(&mut pending);
+        self.slam.close_loop(&mut pending);
         Some(self.finish(pending))
     }
 
     /// Steps to the end of the lap and returns the reports of all ticks.
-    pub fn run(&mut self) -> Vec<SlamReport> {
+    pub fn run(&mut self) -> Vec<TickReport> {
         let mut reports = Vec::with_capacity(self.drive.ticks().len() - self.tick);
         while let Some(report) = self.step() {
             reports.push(report);
@@ -116,7 +89,7 @@ impl Slam {
 
     /// The parameters.
     #[must_use]
-    pub fn config(&self) -> &SlamConfig {
+    pub fn config(&self) -> &LapConfig {
         &self.config
     }
 
@@ -138,245 +111,57 @@ impl Slam {
         self.tick == self.drive.ticks().len()
     }
 
-    /// Local map, window, threshold and estimate.
+    /// The estimator.
     #[must_use]
-    pub fn front_end(&self) -> &FrontEnd {
-        &self.front_end
+    pub fn slam(&self) -> &Slam {
+        &self.slam
     }
 
-    /// The pose graph; node k is keyframe k.
+    /// The estimator's pose graph; node k is keyframe k.
     #[must_use]
     pub fn graph(&self) -> &PoseGraph {
-        &self.graph
+        self.slam.graph()
     }
 
-    /// The keyframes in order.
-    #[must_use]
-    pub fn keyframes(&self) -> &[Keyframe] {
-        &self.keyframes
+    /// The keyframes with their truth.
+    pub fn keyframes(&self) -> impl ExactSizeIterator<Item = Keyframe> + '_ {
+        let keyframes = self.slam.keyframes().iter();
+        keyframes.map(|keyframe| Keyframe {
+            node: keyframe.node,
+            tick: keyframe.frame,
+            truth: self.drive.truth(keyframe.frame),
+        })
     }
 
-    /// The newest keyframe's node when the first way point was reached.
+    /// The newest keyframe's node when the drive's turn was reached.
     #[must_use]
     pub fn turn_node(&self) -> Option<usize> {
-        self.turn_node
-    }
-
-    /// Submap and pairs of the last attempt to close a loop.
-    #[must_use]
-    pub fn loop_workspace(&self) -> &LoopWorkspace {
-        &self.loop_workspace
+        self.judge.turn_node()
     }
 
     /// Position errors of all keyframes at their present poses, m.
     pub fn keyframe_errors_m(&self) -> impl Iterator<Item = f64> + '_ {
-        self.graph
-            .poses()
-            .iter()
-            .zip(&self.keyframes)
-            .map(|(pose, keyframe)| position_error_m(pose, &keyframe.truth))
+        judge::keyframe_errors_m(
+            self.slam.graph().poses(),
+            self.slam.keyframes(),
+            &self.drive,
+        )
     }
 
-    /// First part of a tick: drive, predict, register, and take a keyframe where one is due.
-    fn advance(&mut self) -> Option<PendingTick> {
-        let driven = self.drive.ticks().get(self.tick)?;
-        // The node to remember is the newest before this tick's keyframe.
-        if driven.reached == Some(0) {
-            self.turn_node = Some(self.keyframes.len() - 1);
-            self.restart_disagreement();
-        }
+    /// First part of a tick: the frame is registered, its loops are not yet looked for.
+    fn begin(&mut self) -> Option<PendingFrame> {
+        self.drive.ticks().get(self.tick)?;
         self.tick += 1;
-        let registration = self
-            .front_end
-            .register(&self.drive, self.tick, &self.config);
-        let new_keyframe = self.take_keyframe();
-        Some(PendingTick {
-            registration,
-            new_keyframe,
-            loop_attempt: None,
-        })
+        let frame = self.drive.prepared(self.tick);
+        Some(self.slam.begin(&frame).expect(USABLE))
     }
 
-    /// Adds a node where the estimate is far enough from the last keyframe.
-    fn take_keyframe(&mut self) -> Option<usize> {
-        let last_node = self.keyframes.len() - 1;
-        let last_pose = self.graph.pose(last_node);
-        let estimate = self.front_end.estimate();
-        let relative = last_pose.between(&estimate);
-        let distance = position_error_m(&relative, &SE2::identity());
-        if distance < self.config.keyframe_distance_m
-            && relative.theta().abs() < self.config.keyframe_turn_rad
-        {
-            return None;
-        }
-        let information = self.front_end.information(last_pose.theta(), &self.config);
-        let node = self.graph.add_node(estimate);
-        self.graph
-            .add_edge(last_node, node, relative, information, EdgeKind::Odometry);
-        self.keyframes.push(Keyframe {
-            node: node.index(),
-            tick: self.tick,
-            truth: self.drive.truth(self.tick),
-        });
-        self.chi2 = self.graph.chi2();
-        if self.turn_node.is_some() {
-            self.compare_keyframe(node.index());
-        }
-        Some(node.index())
-    }
-
-    /// Second part of a tick: looks for a loop at a new keyframe and verifies the best candidate.
-    fn verify_loop(&mut self, pending: &PendingTick) -> Option<LoopVerification> {
-        let node = pending.new_keyframe?;
-        if self.config.loop_closure == LoopClosure::Off {
-            return None;
-        }
-        let loops = &self.config.loops;
-        if let Some(last) = self.last_attempt_node
-            && node - last < loops.attempt_every_nodes
-        {
-            return None;
-        }
-        self.last_attempt_node = Some(node);
-        let candidate = *detect_loop_candidates(self.graph.poses(), node, loops).first()?;
-        let gate_information = match loops.gate_model {
-            GateModel::PathApproximation => path_information(node - candidate.node, loops),
-            GateModel::ExactMarginal => marginal_information(&mut self.graph, candidate.node, node),
-        };
-        let clouds: Vec<&PointCloud> = self
-            .keyframes
-            .iter()
-            .map(|keyframe| &self.drive.sweep(keyframe.tick).cloud)
-            .collect();
-        let keyframes = KeyframeView {
-            poses: self.graph.poses(),
-            clouds: &clouds,
-        };
-        Some(verify_loop(
-            keyframes,
-            node,
-            candidate,
-            &gate_information,
-            loops,
-            &mut self.loop_workspace,
-        ))
-    }
-
-    /// Third part: adds the edge of a loop that passed and spreads the correction.
-    fn close_loop(&mut self, pending: &mut PendingTick, verification: LoopVerification) {
-        let effect = verification
-            .accepted()
-            .then(|| self.optimize_with(&verification));
-        pending.loop_attempt = Some(LoopAttempt {
-            tick: self.tick,
-            verification,
-            effect,
-        });
-    }
-
-    fn optimize_with(&mut self, verification: &LoopVerification) -> LoopEffect {
-        let old_poses = self.graph.poses().to_vec();
-        let rms_before = self.keyframe_rms_m();
-        self.graph.add_edge(
-            verification.candidate.node,
-            verification.from_node,
-            verification.registered,
-            verification.information,
-            EdgeKind::Loop,
-        );
-        let chi2_before = self.graph.chi2();
-        let report = self.graph.optimize_robust(
-            self.config.optimizer_iterations,
-            self.config.optimizer_tolerance,
-            self.config.huber,
-        );
-        self.chi2 = self.graph.chi2();
-        let newest = verification.from_node;
-        let correction = self.graph.pose(newest) * old_poses[newest].inverse();
-        self.front_end.correct(&correction);
-        self.restart_disagreement();
-        let max_shift_m = old_poses
-            .iter()
-            .zip(self.graph.poses())
-            .map(|(old, new)| position_error_m(new, old))
-            .fold(0.0, f64::max);
-        LoopEffect {
-            correction,
-            max_shift_m,
-            iterations: report.iterations,
-            chi2: Change {
-                before: chi2_before,
-                after: self.chi2,
-            },
-            keyframe_rms_m: Change {
-                before: rms_before,
-                after: self.keyframe_rms_m(),
-            },
-        }
-    }
-
-    /// Last part of a tick: the metrics and the report.
-    fn finish(&mut self, pending: PendingTick) -> SlamReport {
-        let driven = &self.drive.ticks()[self.tick - 1];
-        let estimate = self.front_end.estimate();
-        let odometry_error_m = position_error_m(&driven.dead_reckoning, &driven.truth);
-        self.odometry_squares_m2 += odometry_error_m * odometry_error_m;
-        let newest = self.keyframes[self.keyframes.len() - 1];
-        SlamReport {
-            tick: self.tick,
-            time_s: self.tick as f64 * self.config.drive.dt_s,
-            command: driven.command,
-            truth: driven.truth,
-            dead_reckoning: driven.dead_reckoning,
-            registration: pending.registration,
-            estimate,
-            new_keyframe: pending.new_keyframe,
-            loop_attempt: pending.loop_attempt,
-            metrics: TickMetrics {
-                odometry_error_m,
-                estimate_error_m: position_error_m(&estimate, &driven.truth),
-                odometry_rms_m: pr_geom::math::sqrt(self.odometry_squares_m2 / self.tick as f64),
-                keyframe_rms_m: self.keyframe_rms_m(),
-                keyframe_error_m: position_error_m(&self.graph.pose(newest.node), &newest.truth),
-                map_disagreement_m: self.disagreement.value_m(),
-                chi2: self.chi2,
-            },
-            finished: self.is_finished(),
-        }
-    }
-
-    fn keyframe_rms_m(&self) -> f64 {
-        let truths = self.keyframes.iter().map(|keyframe| &keyframe.truth);
-        trajectory_rms_m(self.graph.poses(), truths)
-    }
-
-    /// Builds the map of the way out anew and compares all keyframes of the way back with it.
-    fn restart_disagreement(&mut self) {
-        let Some(turn_node) = self.turn_node else {
-            return;
-        };
-        let poses = self.graph.poses();
-        let cloud_of = |keyframe: &Keyframe| &self.drive.sweep(keyframe.tick).cloud;
-        self.disagreement.start(
-            poses
-                .iter()
-                .zip(self.keyframes[..=turn_node].iter().map(cloud_of)),
-        );
-        for node in turn_node + 1..self.keyframes.len() {
-            self.compare_keyframe(node);
-        }
-    }
-
-    fn compare_keyframe(&mut self, node: usize) {
-        let cloud = &self.drive.sweep(self.keyframes[node].tick).cloud;
-        self.disagreement.compare(&self.graph.pose(node), cloud);
+    /// Last part of a tick: the estimator's report is judged.
+    fn finish(&mut self, pending: PendingFrame) -> TickReport {
+        let report: SlamReport = self.slam.finish(pending);
+        self.judge.judge(&report, &self.slam, &self.drive)
     }
 }
 
-/// A tick under way.
-#[derive(Clone)]
-struct PendingTick {
-    registration: Registration,
-    new_keyframe: Option<usize>,
-    loop_attempt: Option<LoopAttempt>,
-}
+/// A drive stamps its frames in order and with finite numbers.
+const USABLE: &str = "frames of a drive are usable";

@@ -185,7 +185,7 @@ fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lap::{LapRunner, SlamConfig};
+    use crate::lap::{LapConfig, LapRunner};
 
     #[test]
     fn quantiles_lie_between_the_sorted_values() {
@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn shares_and_counts_are_of_laps_and_of_loops() {
-        let record = LapRunner::new().run(&SlamConfig::default());
+        let record = LapRunner::new().run(&LapConfig::default());
         let right = LapOutcome::of(&record);
         let mut wrong = right;
         wrong.lap.loops = 4;
@@ -219,7 +219,7 @@ mod tests {
 
     #[test]
     fn odometry_has_the_two_entries_that_need_no_keyframes() {
-        let record = LapRunner::new().run(&SlamConfig::default());
+        let record = LapRunner::new().run(&LapConfig::default());
         let outcome = LapOutcome::of(&record);
         let entries_of = |column| {
             let rows = Row::ALL.into_iter();

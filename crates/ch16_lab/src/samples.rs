@@ -7,7 +7,7 @@
 use pr_geom::SE2;
 use pr_sim::{Lidar, LidarConfig, Rng, World};
 
-use crate::lap::{Slam, SlamConfig};
+use crate::lap::{Lap, LapConfig};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::graph::PoseGraph;
 
@@ -91,14 +91,14 @@ impl RegistrationSample {
 /// place them.
 #[must_use]
 pub fn lap_graph() -> PoseGraph {
-    let mut slam = Slam::new(SlamConfig::default());
-    slam.run();
-    let mut graph = slam.graph().clone();
-    for (node, keyframe) in slam.keyframes().iter().enumerate() {
+    let mut lap = Lap::new(LapConfig::default());
+    lap.run();
+    let mut graph = lap.graph().clone();
+    for (node, keyframe) in lap.keyframes().enumerate() {
         // Tick 0 is the start, before anything moved.
         let driven = keyframe.tick.checked_sub(1);
-        let tick = driven.and_then(|index| slam.drive().ticks().get(index));
-        let pose = tick.map_or(slam.config().drive.start, |tick| tick.dead_reckoning);
+        let tick = driven.and_then(|index| lap.drive().ticks().get(index));
+        let pose = tick.map_or(lap.config().drive.start, |tick| tick.dead_reckoning);
         graph.set_pose(node, pose);
     }
     graph

@@ -1,32 +1,32 @@
 //! The second gate: the exact covariance of the relative pose instead of the path approximation.
 
-use ch16_lab::lap::{Slam, SlamConfig};
+use ch16_lab::lap::{Lap, LapConfig};
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::loops::{GateModel, LoopVerification};
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
 /// The canonical lap with a gate, and its first attempt to close a loop.
-fn lap(gate_model: GateModel) -> (Slam, LoopVerification) {
-    let mut config = SlamConfig::default();
-    config.loops.gate_model = gate_model;
-    let mut slam = Slam::new(config);
-    let attempt = slam
+fn lap(gate_model: GateModel) -> (Lap, LoopVerification) {
+    let mut config = LapConfig::default();
+    config.slam.loops.gate_model = gate_model;
+    let mut lap = Lap::new(config);
+    let attempt = lap
         .run()
         .into_iter()
         .find_map(|report| report.loop_attempt)
         .expect("the canonical lap tries to close a loop");
-    (slam, attempt.verification)
+    (lap, attempt.verification)
 }
 
 #[test]
 fn before_the_first_loop_the_exact_gate_adds_up_the_odometry_edges() {
-    let (slam, verification) = lap(GateModel::ExactMarginal);
+    let (lap, verification) = lap(GateModel::ExactMarginal);
     // No loop yet: the relative pose is a chain of measurements, and each one's covariance
     // reaches the end through the adjoint of the motion that follows it.
     let mut covariance = Matrix3::zeros();
     let mut end_from_edge = SE2::identity();
-    let mut edges: Vec<_> = slam
+    let mut edges: Vec<_> = lap
         .graph()
         .edges()
         .filter(|view| view.edge.kind == EdgeKind::Odometry)

@@ -1,6 +1,10 @@
 //! The experiments together with what they judge: one binary, one module for each.
 
+mod any_sensor;
 mod exact_gate;
 mod icp_laws;
+mod patience;
 mod plane_step;
+mod ring;
 mod terrain_rows;
+mod turned_frame;

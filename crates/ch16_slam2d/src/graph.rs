@@ -159,6 +159,13 @@ impl PoseGraph {
         )
     }
 
+    /// Takes the newest edge out again and returns it; none where there is none.
+    pub fn pop_edge(&mut self) -> Option<PoseEdge> {
+        let newest = self.edge_count().checked_sub(1)?;
+        self.problem.pop_factor();
+        self.graph.remove_edge(EdgeId::new(newest))
+    }
+
     /// The present pose of a node.
     ///
     /// # Panics

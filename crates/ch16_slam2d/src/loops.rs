@@ -1,7 +1,8 @@
 //! Loop closure: which old keyframes might show the same place, whether the sweeps agree, and
 //! whether the answer is believable.
 //!
-//! Three tests guard the graph, because one false loop ruins it: the registration has to fit
+//! A [`LoopDetector`] proposes, [`verify_loop`] registers and tests, and who proposes is never who
+//! decides. Three tests guard the graph, because one false loop ruins it: the registration has to fit
 //! (`rmse`), enough points have to take part (`inliers`), and the innovation
 //! `ν = log(T₀⁻¹ T̂)` between the graph's relative pose T₀ and the registered T̂ has to lie within
 //! what the odometry between the two nodes could have drifted: `νᵀ S⁻¹ ν ≤ χ²`.
@@ -11,10 +12,12 @@
 
 mod candidates;
 mod config;
+mod detector;
 mod gate;
 mod verify;
 
 pub use candidates::{LoopCandidate, detect_loop_candidates};
-pub use config::{GateModel, LoopConfig, MapConfig, TrustConfig};
+pub use config::{GateModel, LoopConfig};
+pub use detector::{CloneDetector, LoopDetector, LoopQuery, NearbyDetector};
 pub use gate::{GateTest, chi_squared_gate, marginal_information, path_information};
 pub use verify::{KeyframeView, LoopRejection, LoopVerification, LoopWorkspace, verify_loop};

@@ -63,6 +63,12 @@ impl Problem {
         self.factors.push(factor);
     }
 
+    /// Takes the newest measurement out again and returns it; none where there is none.
+    pub fn pop_factor(&mut self) -> Option<Between> {
+        self.prepared.pop();
+        self.factors.pop()
+    }
+
     /// Number of poses.
     #[must_use]
     pub fn node_count(&self) -> usize {

@@ -38,6 +38,39 @@ impl Default for LidarConfig {
     }
 }
 
+impl LidarConfig {
+    /// Bearing of the first beam relative to the heading, rad.
+    #[must_use]
+    pub fn first_angle_rad(&self) -> f64 {
+        match self.beams {
+            _ if self.is_full_circle() => -PI,
+            0 | 1 => 0.0,
+            _ => -self.field_of_view_rad / 2.0,
+        }
+    }
+
+    /// Bearing from one beam to the next, rad.
+    #[must_use]
+    pub fn angle_step_rad(&self) -> f64 {
+        let n = self.beams as f64;
+        match self.beams {
+            _ if self.is_full_circle() => TAU / n,
+            0 | 1 => self.field_of_view_rad,
+            _ => self.field_of_view_rad / (n - 1.0),
+        }
+    }
+
+    /// Ranges at or beyond this hit nothing, m.
+    #[must_use]
+    pub fn return_limit_m(&self) -> f64 {
+        RETURN_SHARE * self.max_range_m
+    }
+
+    fn is_full_circle(&self) -> bool {
+        self.field_of_view_rad > TAU - FULL_CIRCLE_TOLERANCE
+    }
+}
+
 /// A LiDAR with its bearings worked out and its buffers kept.
 #[derive(Clone, Debug)]
 pub struct Lidar {
@@ -51,7 +84,10 @@ impl Lidar {
     /// A sensor with these parameters.
     #[must_use]
     pub fn new(config: LidarConfig) -> Self {
-        let bearings_rad: Vec<f64> = (0..config.beams).map(|k| bearing(&config, k)).collect();
+        // Grouped as a step times a number: the beams abeam lie on an edge of the voxel grid, and the
+        // last bit of their bearing decides which voxel they fall into.
+        let (first, step) = (config.first_angle_rad(), config.angle_step_rad());
+        let bearings_rad: Vec<f64> = (0..config.beams).map(|k| first + k as f64 * step).collect();
         let directions = bearings_rad.iter().map(|&b| Rotation::new(b)).collect();
         Self {
             config,
@@ -126,26 +162,12 @@ impl Lidar {
     /// The points of a sweep in the sensor frame, in beam order; beams that hit nothing are left
     /// out.
     pub fn project<'a>(&'a self, ranges_m: &'a [f64]) -> impl Iterator<Item = Point2<f64>> + 'a {
-        let limit = RETURN_SHARE * self.config.max_range_m;
+        let limit = self.config.return_limit_m();
         ranges_m
             .iter()
             .zip(&self.directions)
             .filter(move |(range, _)| **range < limit)
             .map(|(range, direction)| Point2::new(range * direction.cos, range * direction.sin))
-    }
-}
-
-fn bearing(config: &LidarConfig, beam: usize) -> f64 {
-    // Grouped as a step times a number: the beams abeam lie on an edge of the voxel grid, and the
-    // last bit of their bearing decides which voxel they fall into.
-    let k = beam as f64;
-    let n = config.beams as f64;
-    if config.field_of_view_rad > TAU - FULL_CIRCLE_TOLERANCE {
-        -PI + k * (TAU / n)
-    } else if config.beams > 1 {
-        -config.field_of_view_rad / 2.0 + k * (config.field_of_view_rad / (n - 1.0))
-    } else {
-        0.0
     }
 }
 

@@ -12,6 +12,7 @@ mod register;
 mod sweep;
 mod table;
 mod terrain;
+mod world;
 
 use std::process::ExitCode;
 
@@ -45,10 +46,7 @@ fn main() -> ExitCode {
         Err(error) => return refuse_arguments(&error),
     };
     let outcome = match &cli.command {
-        Command::Lap(args) => {
-            lap::run(args);
-            Ok(())
-        }
+        Command::Lap(args) => lap::run(args).map_err(|e| e.to_string()),
         Command::Basin(args) => {
             basin::run(args);
             Ok(())

@@ -2,7 +2,7 @@
 
 use std::num::NonZeroUsize;
 
-use ch16_lab::lap::{LapRunner, SlamConfig};
+use ch16_lab::lap::{LapConfig, LapRunner};
 use ch16_lab::results::{Column, LapOutcome, LapStatistics, Row};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -129,7 +129,7 @@ fn all_runs(args: &SweepArgs) -> Vec<Vec<LapOutcome>> {
         .into_par_iter()
         .map_init(LapRunner::new, |runner, seed| {
             let at = |&noise: &f64| {
-                let config = SlamConfig::with_seed_and_noise(seed, noise);
+                let config = LapConfig::with_seed_and_noise(seed, noise);
                 LapOutcome::of(&runner.run(&config))
             };
             let runs = args.noise.iter().map(at).collect();

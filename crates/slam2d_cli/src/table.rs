@@ -1,6 +1,6 @@
 //! `slam2d table`: the chapter's results table, computed.
 
-use ch16_lab::lap::{LapRunner, LapSummary, SlamConfig};
+use ch16_lab::lap::{LapConfig, LapRunner, LapSummary};
 use clap::Args;
 use serde::Serialize;
 
@@ -59,7 +59,7 @@ impl ColumnJson {
 
 /// Runs the canonical lap and prints its table.
 pub fn run(args: &TableArgs) {
-    let config = SlamConfig::default();
+    let config = LapConfig::default();
     let record = LapRunner::new().run(&config);
     let lap = &record.lap.summary;
     let columns = [

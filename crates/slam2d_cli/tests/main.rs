@@ -3,3 +3,4 @@
 mod commands;
 mod optimize;
 mod support;
+mod worlds;

@@ -1,6 +1,6 @@
 //! The chapter's computations: the list of them, and the runs of the lap.
 
-use ch16_lab::lap::{LapRecord, LapRunner, SlamConfig};
+use ch16_lab::lap::{LapConfig, LapRecord, LapRunner};
 use ch16_lab::samples;
 use ch16_slam2d::icp::IcpVariant;
 
@@ -108,7 +108,7 @@ fn lap() -> Box<dyn Run> {
         None,
         // A runner that has driven before would leave the simulation out.
         |record: &mut Option<LapRecord>| {
-            *record = Some(LapRunner::new().run(&SlamConfig::default()));
+            *record = Some(LapRunner::new().run(&LapConfig::default()));
         },
         |record, digest| {
             if let Some(record) = record {
@@ -134,7 +134,7 @@ fn solve() -> Box<dyn Run> {
 }
 
 fn grid() -> Box<dyn Run> {
-    let record = LapRunner::new().run(&SlamConfig::default());
+    let record = LapRunner::new().run(&LapConfig::default());
     prepared(
         (record, None),
         |(record, grid)| *grid = Some(record.occupancy_grid(record.ticks())),

@@ -10,7 +10,7 @@ mod settings;
 mod tables;
 mod words;
 
-use ch16_lab::lap::{LapRecord, LapRunner, RegistrationView, SlamReport};
+use ch16_lab::lap::{LapRecord, LapRunner, RegistrationView, TickReport};
 use kit::chart::{dragged_to, grab_now};
 use kit::model::{Activity, Handle, Model, Motion, Outcome, Table, Timeline, press_preset};
 use kit::param::{Changed, ParamError, Values};
@@ -78,7 +78,7 @@ impl ControlRoom {
         self.record.ticks() as f64
     }
 
-    fn now(&self) -> Option<&SlamReport> {
+    fn now(&self) -> Option<&TickReport> {
         self.record.lap.report(self.tick())
     }
 

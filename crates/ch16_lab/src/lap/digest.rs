@@ -1,16 +1,16 @@
 //! One number for all bits of a lap, to compare machines.
 
 use super::record::{LapRecord, LapTrace};
-use super::{LapRunner, SlamConfig};
+use super::{LapConfig, LapRunner};
 use ch16_slam2d::digest::Digest;
 
 fn add_trace(digest: &mut Digest, trace: &LapTrace) {
     for report in &trace.reports {
         digest.add_pose(&report.truth);
         digest.add_pose(&report.dead_reckoning);
-        digest.add_pose(&report.registration.icp.pose);
+        digest.add_pose(&report.registration.matched.pose);
         digest.add_pose(&report.estimate);
-        digest.add(report.registration.icp.rmse);
+        digest.add(report.registration.matched.rmse_m);
         digest.add(report.metrics.map_disagreement_m.unwrap_or(-1.0));
         digest.add(report.metrics.chi2);
     }
@@ -46,7 +46,7 @@ impl LapRecord {
 #[must_use]
 pub fn lap_digest(seed: u32, noise_factor: f64) -> u64 {
     LapRunner::new()
-        .run(&SlamConfig::with_seed_and_noise(seed, noise_factor))
+        .run(&LapConfig::with_seed_and_noise(seed, noise_factor))
         .digest()
 }
 
@@ -56,10 +56,10 @@ mod tests {
 
     #[test]
     fn one_changed_bit_changes_the_digest() {
-        let mut record = LapRunner::new().run(&SlamConfig::default());
+        let mut record = LapRunner::new().run(&LapConfig::default());
         let before = record.digest();
         assert_eq!(before, record.clone().digest());
-        let rmse = &mut record.lap.reports[77].registration.icp.rmse;
+        let rmse = &mut record.lap.reports[77].registration.matched.rmse_m;
         *rmse = f64::from_bits(rmse.to_bits() ^ 1);
         assert_ne!(before, record.digest());
     }

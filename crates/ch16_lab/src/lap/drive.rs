@@ -3,12 +3,16 @@
 //! Nothing of it depends on the estimate, so it is simulated once and any number of estimators can
 //! run over it: with loops and without, with one gate and another.
 
+use std::sync::Arc;
+
+use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::scan::{Frame, LaserScan, PreparedFrame, ScanConfig, ScanPreparer};
+use nalgebra::Vector3;
 use pr_geom::SE2;
 use pr_sim::motion::{drive_exactly, sample_velocity_motion};
 use pr_sim::{Lidar, Rng, VelocityCommand, WaypointDriver, World};
 
 use super::config::DriveConfig;
-use ch16_slam2d::cloud::{Downsampler, NormalEstimator, PointCloud};
 
 /// One revolution of the sensor.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,7 +21,7 @@ pub struct Sweep {
     pub ranges_m: Vec<f64>,
     /// The returns as points in the sensor frame, thinned, with the normals that this sweep alone
     /// gives them: a map of several sweeps turns the normals with the points.
-    pub cloud: PointCloud,
+    pub cloud: Arc<PointCloud>,
 }
 
 /// One tick of the drive.
@@ -48,16 +52,16 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Simulates the drive in the Apartment until its last way point is reached.
+    /// Simulates the drive until its last way point is reached.
     #[must_use]
     pub fn simulate(config: &DriveConfig) -> Self {
-        let world = World::apartment();
+        let world = &config.world;
         let mut rng = Rng::new(config.seed);
         let mut sensor = Sensor::new(config);
         let mut driver = WaypointDriver::new(config.driver.clone());
         let noise = config.odometry_noise.scaled(config.noise_factor);
 
-        let first_sweep = sensor.sweep(&world, &config.start, &mut rng);
+        let first_sweep = sensor.sweep(world, &config.start, &mut rng);
         let mut ticks = Vec::new();
         let mut truth = config.start;
         let mut dead_reckoning = config.start;
@@ -77,7 +81,7 @@ impl Drive {
                 odometry,
                 dead_reckoning,
                 reached: step.reached,
-                sweep: sensor.sweep(&world, &truth, &mut rng),
+                sweep: sensor.sweep(world, &truth, &mut rng),
                 rng_before_odometry,
             });
             finished = step.finished;
@@ -136,6 +140,40 @@ impl Drive {
         }
     }
 
+    /// What the estimator is handed after `tick` ticks, as a robot would hand it; 0 is the start.
+    #[must_use]
+    pub fn frame(&self, tick: usize) -> Frame {
+        Frame {
+            stamp_s: self.stamp_s(tick),
+            odometry: self.odometry(tick),
+            scan: LaserScan {
+                ranges_m: self.sweep(tick).ranges_m.clone(),
+                ..empty_scan(&self.config)
+            },
+        }
+    }
+
+    /// The same with the scan already a cloud, so that a drive can be run many times.
+    #[must_use]
+    pub fn prepared(&self, tick: usize) -> PreparedFrame {
+        PreparedFrame {
+            stamp_s: self.stamp_s(tick),
+            odometry: self.odometry(tick),
+            cloud: Arc::clone(&self.sweep(tick).cloud),
+        }
+    }
+
+    /// What the wheels report of the motion in `tick`; nothing at the start.
+    #[must_use]
+    pub fn odometry(&self, tick: usize) -> Option<SE2> {
+        let before = tick.checked_sub(1)?;
+        Some(self.ticks[before].odometry)
+    }
+
+    fn stamp_s(&self, tick: usize) -> f64 {
+        tick as f64 * self.config.dt_s
+    }
+
     /// The sweep taken after `tick` ticks; 0 is the start.
     #[must_use]
     pub fn sweep(&self, tick: usize) -> &Sweep {
@@ -149,45 +187,50 @@ impl Drive {
 /// Sensing with its buffers kept.
 struct Sensor {
     lidar: Lidar,
-    downsampler: Downsampler,
-    normals: NormalEstimator,
-    points: PointCloud,
-    cell_m: f64,
-    normal_radius_m: f64,
+    scan: LaserScan,
+    preparer: ScanPreparer,
+    config: ScanConfig,
 }
 
 impl Sensor {
     fn new(config: &DriveConfig) -> Self {
         Self {
             lidar: Lidar::new(config.lidar),
-            downsampler: Downsampler::default(),
-            normals: NormalEstimator::default(),
-            points: PointCloud::default(),
-            cell_m: config.sweep_cell_m,
-            normal_radius_m: config.normal_radius_m,
+            scan: empty_scan(config),
+            preparer: ScanPreparer::new(),
+            config: config.scan,
         }
     }
 
     fn sweep(&mut self, world: &World, world_from_sensor: &SE2, rng: &mut Rng) -> Sweep {
-        let mut sweep = Sweep::default();
         self.lidar
-            .sense_into(world, world_from_sensor, rng, &mut sweep.ranges_m);
-        self.points.clear();
-        for point in self.lidar.project(&sweep.ranges_m) {
-            self.points.push(point);
+            .sense_into(world, world_from_sensor, rng, &mut self.scan.ranges_m);
+        // A sweep is one moment here, so no motion skews it.
+        let cloud = self
+            .preparer
+            .prepare(&self.scan, &Vector3::zeros(), &self.config);
+        Sweep {
+            ranges_m: self.scan.ranges_m.clone(),
+            cloud: Arc::new(cloud),
         }
-        self.downsampler
-            .downsample_into(&self.points, self.cell_m, &mut sweep.cloud);
-        self.normals
-            .estimate(&mut sweep.cloud, self.normal_radius_m);
-        sweep
+    }
+}
+
+/// The geometry of the simulated sensor.
+fn empty_scan(config: &DriveConfig) -> LaserScan {
+    LaserScan {
+        first_angle_rad: config.lidar.first_angle_rad(),
+        angle_step_rad: config.lidar.angle_step_rad(),
+        range_max_m: config.lidar.return_limit_m(),
+        ..LaserScan::default()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lap::{CANONICAL_SEED, LAP_TICKS};
+    use crate::lap::{CANONICAL_SEED, LAP_TICKS, Lap, LapConfig};
+    use ch16_slam2d::slam::{Slam, SlamConfig};
 
     #[test]
     fn other_noise_on_the_same_drive_gives_the_bits_of_a_new_simulation() {
@@ -225,5 +268,23 @@ mod tests {
             // is off by at most v ω dt²/2 = 2e-8 m.
             assert!(tick.truth.between(&tick.dead_reckoning).step_size() < 5e-6);
         }
+    }
+
+    #[test]
+    fn the_estimator_on_raw_frames_does_what_it_does_on_prepared_ones() {
+        let config = LapConfig::default();
+        let mut lap = Lap::new(config.clone());
+        let mut slam = Slam::new(SlamConfig {
+            start: config.drive.start,
+            ..config.slam
+        });
+        let drive = Arc::clone(lap.drive());
+        slam.step(&drive.frame(0)).unwrap();
+        while let Some(report) = lap.step() {
+            let raw = slam.step(&drive.frame(report.tick)).unwrap();
+            assert_eq!(raw.estimate, report.estimate);
+            assert_eq!(raw.registration, Some(report.registration));
+        }
+        assert_eq!(slam.graph().poses(), lap.graph().poses());
     }
 }

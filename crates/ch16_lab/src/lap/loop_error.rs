@@ -98,11 +98,11 @@ impl LapTrace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lap::{LapRunner, SlamConfig};
+    use crate::lap::{LapConfig, LapRunner};
 
     #[test]
     fn a_loop_is_false_by_distance_or_by_turn() {
-        let lap = LapRunner::new().run(&SlamConfig::default()).lap;
+        let lap = LapRunner::new().run(&LapConfig::default()).lap;
         assert_eq!(lap.false_acceptances().count(), 0);
         let tick = lap.loop_attempts().next().unwrap().tick;
         for offset in [SE2::translation(0.6, 0.0), SE2::new(0.0, 0.0, 0.2)] {
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn an_attempt_is_judged_by_how_far_it_was_moved_off_the_truth() {
-        let lap = LapRunner::new().run(&SlamConfig::default()).lap;
+        let lap = LapRunner::new().run(&LapConfig::default()).lap;
         let mut attempt = *lap.loop_attempts().next().unwrap();
         // Just within and just beyond 0.3 m and 5°, to either side.
         let turn = |degrees: f64| SE2::new(0.0, 0.0, degrees.to_radians());

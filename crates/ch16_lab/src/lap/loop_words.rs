@@ -62,6 +62,15 @@ impl LapTrace {
                 inliers,
                 min_inliers,
             }) => format!("{head}: {gate}, but only {inliers} pairs of {min_inliers}"),
+            Some(LoopRejection::NoCovariance(error)) => {
+                format!("{head}: the graph has no covariance to test against, {error}")
+            }
+            Some(LoopRejection::OptimizationFailed(stop)) => {
+                format!("{head}: {gate}, but with it the graph cannot be optimized, {stop}")
+            }
+            Some(LoopRejection::CostRose { before, after }) => format!(
+                "{head}: {gate}, but the optimization raised the cost from {before:.2} to {after:.2}"
+            ),
             Some(LoopRejection::OutsideGate(_)) | None => format!("{head}: {gate}"),
         }
     }
@@ -75,12 +84,12 @@ fn gate_words(gate: &GateTest) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lap::{LapRunner, SlamConfig};
+    use crate::lap::{LapConfig, LapRunner};
     use pr_geom::SE2;
 
     #[test]
     fn a_sentence_names_the_nodes_the_test_that_decided_and_what_it_measured() {
-        let lap = LapRunner::new().run(&SlamConfig::default()).lap;
+        let lap = LapRunner::new().run(&LapConfig::default()).lap;
         let mut attempt = *lap.loop_attempts().next().unwrap();
         assert_eq!(
             lap.loop_sentence(&attempt),

@@ -6,9 +6,8 @@
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
-use super::front_end::WindowSweep;
-use super::report::{Keyframe, LoopAttempt, SlamReport};
-use super::{Drive, Slam, SlamConfig};
+use super::report::{Keyframe, LoopAttempt, TickReport, WindowSweep};
+use super::{Drive, Lap, LapConfig, LoopClosure};
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::metrics::position_error_m;
 
@@ -45,7 +44,7 @@ pub struct Epoch {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LapTrace {
     /// Reports of all ticks; tick t is at index t − 1.
-    pub reports: Vec<SlamReport>,
+    pub reports: Vec<TickReport>,
     /// Keyframes in order; node k is keyframe k.
     pub keyframes: Vec<Keyframe>,
     /// Edges in the order in which they were added.
@@ -114,7 +113,7 @@ impl LapTrace {
 
     /// The report of `tick`, counted from 1; none at the start.
     #[must_use]
-    pub fn report(&self, tick: usize) -> Option<&SlamReport> {
+    pub fn report(&self, tick: usize) -> Option<&TickReport> {
         self.reports.get(tick.checked_sub(1)?)
     }
 
@@ -149,9 +148,19 @@ impl LapTrace {
 
     /// The sweeps of the local map on which the sweep of `tick` was registered, oldest first.
     #[must_use]
-    pub fn window(&self, tick: usize, config: &SlamConfig) -> Vec<WindowSweep> {
-        let first = tick.saturating_sub(config.window_sweeps);
-        (first..tick)
+    pub fn window(&self, tick: usize, config: &LapConfig) -> Vec<WindowSweep> {
+        let joined = |taken: &usize| {
+            self.report(*taken)
+                .is_none_or(|report| report.registration.joined_window)
+        };
+        let mut taken: Vec<usize> = (0..tick)
+            .rev()
+            .filter(joined)
+            .take(config.slam.window_sweeps)
+            .collect();
+        taken.reverse();
+        taken
+            .into_iter()
             .map(|taken| WindowSweep {
                 tick: taken,
                 pose: self.window_pose(taken, tick, config),
@@ -160,7 +169,7 @@ impl LapTrace {
     }
 
     /// Where the sweep of `taken` stood in the window of `tick`: loops in between have moved it.
-    fn window_pose(&self, taken: usize, tick: usize, config: &SlamConfig) -> SE2 {
+    fn window_pose(&self, taken: usize, tick: usize, config: &LapConfig) -> SE2 {
         let start = self
             .report(taken)
             .map_or(config.drive.start, |report| report.estimate);
@@ -174,16 +183,16 @@ impl LapTrace {
 /// A lap under way, writing down what [`LapTrace`] holds.
 #[derive(Clone)]
 pub(super) struct Recorder {
-    slam: Slam,
-    reports: Vec<SlamReport>,
+    lap: Lap,
+    reports: Vec<TickReport>,
     epochs: Vec<Epoch>,
 }
 
 impl Recorder {
-    pub(super) fn new(slam: Slam) -> Self {
+    pub(super) fn new(lap: Lap) -> Self {
         Self {
-            reports: Vec::with_capacity(slam.drive().ticks().len()),
-            slam,
+            reports: Vec::with_capacity(lap.drive().ticks().len()),
+            lap,
             epochs: vec![Epoch {
                 first_tick: 0,
                 poses: Vec::new(),
@@ -195,47 +204,48 @@ impl Recorder {
     /// loop: continued without loops it is the front end alone, with no need to start over.
     pub(super) fn run(mut self) -> (LapTrace, Option<Recorder>) {
         let mut front_end_alone = None;
-        while let Some(mut pending) = self.slam.advance() {
-            if let Some(verification) = self.slam.verify_loop(&pending) {
-                if verification.accepted() {
-                    if front_end_alone.is_none() {
-                        let mut alone = self.clone();
-                        alone.slam.config = alone.slam.config.without_loops();
-                        let report = alone.slam.finish(pending.clone());
-                        alone.reports.push(report);
-                        front_end_alone = Some(alone);
-                    }
-                    self.end_epoch();
-                }
-                self.slam.close_loop(&mut pending, verification);
+        while let Some(mut pending) = self.lap.begin() {
+            self.lap.slam.verify_loops(&mut pending);
+            if pending.has_loop() && front_end_alone.is_none() {
+                let mut alone = self.clone();
+                alone.lap.slam.set_loop_closure(LoopClosure::Off);
+                let report = alone.lap.finish(pending.clone().without_loops());
+                alone.reports.push(report);
+                front_end_alone = Some(alone);
             }
-            self.reports.push(self.slam.finish(pending));
+            self.lap.slam.close_loop(&mut pending);
+            if let Some(poses_before) = pending.poses_before_loop() {
+                self.end_epoch(poses_before.to_vec());
+            }
+            let report = self.lap.finish(pending);
+            self.reports.push(report);
         }
         (self.into_trace(), front_end_alone)
     }
 
-    /// Stores the poses that the coming optimization will change.
-    fn end_epoch(&mut self) {
-        self.store_poses();
+    /// Stores the poses that an optimization has changed.
+    fn end_epoch(&mut self, poses: Vec<SE2>) {
+        self.store_poses(poses);
         self.epochs.push(Epoch {
-            first_tick: self.slam.tick(),
+            first_tick: self.lap.tick(),
             poses: Vec::new(),
         });
     }
 
-    fn store_poses(&mut self) {
+    fn store_poses(&mut self, poses: Vec<SE2>) {
         if let Some(epoch) = self.epochs.last_mut() {
-            epoch.poses = self.slam.graph().poses().to_vec();
+            epoch.poses = poses;
         }
     }
 
     fn into_trace(mut self) -> LapTrace {
-        self.store_poses();
-        let slam = &self.slam;
-        let edges = slam.graph().edges().map(|view| {
+        self.store_poses(self.lap.graph().poses().to_vec());
+        let lap = &self.lap;
+        let keyframes: Vec<Keyframe> = lap.keyframes().collect();
+        let edges = lap.graph().edges().map(|view| {
             let (from, to) = (view.from.index(), view.to.index());
             RecordedEdge {
-                tick: slam.keyframes()[from.max(to)].tick,
+                tick: keyframes[from.max(to)].tick,
                 from,
                 to,
                 measurement: view.edge.measurement,
@@ -245,9 +255,9 @@ impl Recorder {
         });
         LapTrace {
             edges: edges.collect(),
-            keyframes: slam.keyframes().to_vec(),
-            turn_node: slam.turn_node(),
-            summary: LapSummary::of(slam, &self.reports),
+            turn_node: lap.turn_node(),
+            summary: LapSummary::of(lap, &self.reports),
+            keyframes,
             reports: self.reports,
             epochs: self.epochs,
         }
@@ -257,8 +267,8 @@ impl Recorder {
 impl LapSummary {
     /// The summary of a lap: its present state and the reports of its ticks.
     #[must_use]
-    pub fn of(slam: &Slam, reports: &[SlamReport]) -> Self {
-        let errors: Vec<f64> = slam.keyframe_errors_m().collect();
+    pub fn of(lap: &Lap, reports: &[TickReport]) -> Self {
+        let errors: Vec<f64> = lap.keyframe_errors_m().collect();
         let last = &errors[errors.len().saturating_sub(LAST_KEYFRAMES)..];
         let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
         let attempts = || reports.iter().filter_map(|report| report.loop_attempt);
@@ -287,7 +297,7 @@ impl LapSummary {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LapRecord {
     /// The parameters.
-    pub config: SlamConfig,
+    pub config: LapConfig,
     /// Truth, wheels and sweeps.
     pub drive: std::sync::Arc<Drive>,
     /// The lap as configured.

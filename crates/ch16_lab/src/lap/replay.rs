@@ -7,12 +7,11 @@ use pr_geom::SE2;
 use pr_grid::{Beams, GridConfig, OccupancyGrid};
 use pr_sim::Lidar;
 
-use super::front_end::{local_cloud_into, registration_config};
 use super::record::{LapRecord, LapTrace};
-use super::{Drive, LoopAttempt, SlamConfig, WindowSweep};
+use super::{Drive, LapConfig, LoopAttempt, WindowSweep};
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
-use ch16_slam2d::icp::{IcpResult, icp};
+use ch16_slam2d::icp::{IcpConfig, IcpResult, icp};
 
 /// One sweep's registration, in full.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +37,12 @@ impl LapRecord {
     #[must_use]
     pub fn occupancy_grid(&self, tick: usize) -> OccupancyGrid {
         let lidar = self.config.drive.lidar;
-        let mut config = GridConfig::default();
+        let bounds = self.config.drive.world.bounds();
+        let mut config = GridConfig {
+            min_m: bounds.min,
+            max_m: bounds.max,
+            ..GridConfig::default()
+        };
         config.sensor.max_range_m = lidar.max_range_m;
         let mut grid = OccupancyGrid::new(config);
         let beams = Beams::new(Lidar::new(lidar).bearings_rad());
@@ -51,33 +55,41 @@ impl LapRecord {
 
 impl LapTrace {
     /// The registration of `tick`; none at the start. `drive` and `config` are those of the lap.
+    ///
+    /// A matcher other than ICP shows the pairs at its result, and no iterations.
     #[must_use]
     pub fn registration(
         &self,
         tick: usize,
         drive: &Drive,
-        config: &SlamConfig,
+        config: &LapConfig,
     ) -> Option<RegistrationView> {
         let recorded = &self.report(tick)?.registration;
+        let slam = &config.slam;
         let window = self.window(tick, config);
         let mut local_cloud = PointCloud::default();
-        local_cloud_into(&window, drive, &mut local_cloud);
+        for sweep in &window {
+            local_cloud.extend_transformed(&drive.sweep(sweep.tick).cloud, &sweep.pose);
+        }
         let map = DenseMap::from_cloud(
             &local_cloud,
-            config.local_map.cell_m,
-            config.local_map.max_per_cell,
+            slam.local_map.cell_m,
+            slam.local_map.max_per_cell,
         );
-        let icp = icp(
-            &drive.sweep(tick).cloud,
-            &map,
-            recorded.prediction,
-            &registration_config(recorded.tau_m, config),
-        );
+        let (init, max_iters) = match slam.matcher.icp() {
+            Some(_) => (recorded.prediction, slam.max_iterations),
+            None => (recorded.matched.pose, 0),
+        };
+        let settings = IcpConfig {
+            max_iters,
+            tau: recorded.tau_m,
+            ..slam.matcher.icp().unwrap_or_default()
+        };
         Some(RegistrationView {
+            icp: icp(&drive.sweep(tick).cloud, &map, init, &settings),
             window,
             local_cloud,
             prediction: recorded.prediction,
-            icp,
         })
     }
 
@@ -119,20 +131,20 @@ mod tests {
 
     #[test]
     fn a_replayed_registration_has_the_bits_of_the_recorded_one() {
-        let record = LapRunner::new().run(&SlamConfig::default());
+        let record = LapRunner::new().run(&LapConfig::default());
         for tick in 1..=record.ticks() {
             let view = record.registration(tick).unwrap();
             let recorded = record.lap.report(tick).unwrap().registration;
-            assert_eq!(view.icp.pose, recorded.icp.pose, "tick {tick}");
-            assert_eq!(view.icp.rmse, recorded.icp.rmse, "tick {tick}");
+            assert_eq!(view.icp.pose, recorded.matched.pose, "tick {tick}");
+            assert_eq!(view.icp.rmse, recorded.matched.rmse_m, "tick {tick}");
         }
         assert_eq!(record.registration(0), None);
     }
 
     #[test]
     fn the_graph_before_a_loop_gives_the_exact_gate_its_covariance() {
-        let mut config = SlamConfig::default();
-        config.loops.gate_model = GateModel::ExactMarginal;
+        let mut config = LapConfig::default();
+        config.slam.loops.gate_model = GateModel::ExactMarginal;
         let lap = LapRunner::new().run(&config).lap;
         let attempts: Vec<_> = lap.loop_attempts().collect();
         assert!(attempts.iter().filter(|a| a.accepted()).count() > 1);
@@ -140,10 +152,10 @@ mod tests {
             let loop_ = &attempt.verification;
             let (old, new) = (loop_.candidate.node, loop_.from_node);
             let mut graph = lap.graph_before(attempt);
-            assert_eq!(graph.pose(old).between(&graph.pose(new)), loop_.initial);
+            assert_eq!(graph.pose(old).between(&graph.pose(new)), loop_.belief);
             assert_eq!(
                 marginal_information(&mut graph, old, new),
-                loop_.gate_information
+                Ok(loop_.gate_information)
             );
         }
     }

@@ -1,10 +1,10 @@
-//! What a tick of the lap reports.
+//! What a tick of the lap reports, judged by the truth.
 
+use ch16_slam2d::loops::LoopVerification;
 use pr_geom::SE2;
 use pr_sim::VelocityCommand;
 
-use super::front_end::Registration;
-use ch16_slam2d::loops::LoopVerification;
+use super::{Change, Registration};
 
 /// A keyframe: a node of the graph with the sweep that was taken there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +15,15 @@ pub struct Keyframe {
     pub tick: usize,
     /// True pose, world frame: for the metrics, the estimator never sees it.
     pub truth: SE2,
+}
+
+/// A sweep of the local map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WindowSweep {
+    /// The tick after which it was taken; 0 is the start.
+    pub tick: usize,
+    /// Where it was taken, by the estimate: `world_from_body`.
+    pub pose: SE2,
 }
 
 /// What closing a loop did.
@@ -31,15 +40,6 @@ pub struct LoopEffect {
     pub chi2: Change,
     /// Root mean square position error of the keyframes before and after, m.
     pub keyframe_rms_m: Change,
-}
-
-/// A value before and after.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Change {
-    /// Before.
-    pub before: f64,
-    /// After.
-    pub after: f64,
 }
 
 /// An attempt to close a loop.
@@ -82,7 +82,7 @@ pub struct TickMetrics {
 
 /// Everything that one tick did.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SlamReport {
+pub struct TickReport {
     /// Number of the tick, counted from 1.
     pub tick: usize,
     /// Time at its end, s.
@@ -99,7 +99,7 @@ pub struct SlamReport {
     pub estimate: SE2,
     /// Node of the keyframe that was taken.
     pub new_keyframe: Option<usize>,
-    /// The attempt to close a loop that was made.
+    /// The attempt to close a loop that decided: the one that was closed, or else the best.
     pub loop_attempt: Option<LoopAttempt>,
     /// Errors and map quality.
     pub metrics: TickMetrics,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::record::{LapRecord, Recorder};
-use super::{Drive, Slam, SlamConfig};
+use super::{Drive, Lap, LapConfig};
 
 /// Runs laps and keeps the simulated drive between them.
 ///
@@ -23,10 +23,10 @@ impl LapRunner {
     }
 
     /// Runs the lap of `config`, and its front end alone.
-    pub fn run(&mut self, config: &SlamConfig) -> LapRecord {
+    pub fn run(&mut self, config: &LapConfig) -> LapRecord {
         let drive = self.drive_for(config);
-        let slam = Slam::on_drive(config.clone(), Arc::clone(&drive));
-        let (lap, fork) = Recorder::new(slam).run();
+        let lap = Lap::on_drive(config.clone(), Arc::clone(&drive));
+        let (lap, fork) = Recorder::new(lap).run();
         let front_end = fork.map_or_else(|| lap.clone(), |alone| alone.run().0);
         LapRecord {
             config: config.clone(),
@@ -36,7 +36,7 @@ impl LapRunner {
         }
     }
 
-    fn drive_for(&mut self, config: &SlamConfig) -> Arc<Drive> {
+    fn drive_for(&mut self, config: &LapConfig) -> Arc<Drive> {
         let mut drive = match self.drive.take() {
             Some(drive) if drive.config().differs_only_in_noise_from(&config.drive) => drive,
             _ => Arc::new(Drive::simulate(&config.drive)),
@@ -57,10 +57,10 @@ mod tests {
     fn a_lap_does_not_depend_on_what_ran_before() {
         let mut runner = LapRunner::new();
         let configs = [
-            SlamConfig::default(),
-            SlamConfig::with_seed_and_noise(6, 2.0),
-            SlamConfig::with_seed_and_noise(6, 1.0),
-            SlamConfig::default().without_loops(),
+            LapConfig::default(),
+            LapConfig::with_seed_and_noise(6, 2.0),
+            LapConfig::with_seed_and_noise(6, 1.0),
+            LapConfig::default().without_loops(),
         ];
         for config in &configs {
             assert_eq!(runner.run(config), LapRunner::new().run(config));
@@ -69,33 +69,37 @@ mod tests {
 
     #[test]
     fn the_front_end_alone_is_the_lap_with_loop_closure_off() {
-        let both = LapRunner::new().run(&SlamConfig::default());
-        let alone = LapRunner::new().run(&SlamConfig::default().without_loops());
+        let both = LapRunner::new().run(&LapConfig::default());
+        let alone = LapRunner::new().run(&LapConfig::default().without_loops());
         assert_eq!(both.front_end, alone.lap);
         assert_ne!(both.front_end, both.lap);
     }
 
     #[test]
     fn the_record_has_the_graph_of_every_tick() {
-        let config = SlamConfig::default();
+        let config = LapConfig::default();
         let record = LapRunner::new().run(&config);
-        let mut slam = Slam::new(config.clone());
-        assert_eq!(record.lap.poses(0), slam.graph().poses());
-        while let Some(report) = slam.step() {
+        let mut lap = Lap::new(config.clone());
+        assert_eq!(record.lap.poses(0), lap.graph().poses());
+        while let Some(report) = lap.step() {
             assert_eq!(record.lap.report(report.tick), Some(&report));
-            assert_eq!(record.lap.poses(report.tick), slam.graph().poses());
+            assert_eq!(record.lap.poses(report.tick), lap.graph().poses());
             assert_eq!(
                 record.lap.edges(report.tick).len(),
-                slam.graph().edge_count()
+                lap.graph().edge_count()
             );
-            let next_window = slam.front_end().window();
-            assert_eq!(record.lap.window(report.tick + 1, &config), next_window);
+            let recorded = record.lap.window(report.tick + 1, &config);
+            let next_window = lap.slam().front_end().window();
+            assert_eq!(recorded.len(), next_window.len());
+            for (recorded, sweep) in recorded.iter().zip(next_window) {
+                assert_eq!((recorded.tick, recorded.pose), (sweep.frame, sweep.pose));
+            }
         }
     }
 
     #[test]
     fn the_motion_of_a_loop_starts_where_the_graph_was_and_ends_where_it_is() {
-        let lap = LapRunner::new().run(&SlamConfig::default()).lap;
+        let lap = LapRunner::new().run(&LapConfig::default()).lap;
         for attempt in lap.loop_attempts() {
             let (before, after) = lap.loop_motion(attempt.tick).unwrap();
             let shift = before

@@ -4,13 +4,16 @@ use pr_geom::{SE2, math};
 
 use super::LoopConfig;
 
-/// An old node that is near the new one in the graph.
+/// An old node that may show the same place as the new one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopCandidate {
     /// The old node.
     pub node: usize,
     /// Its distance from the new node in the graph, m.
     pub distance_m: f64,
+    /// Where the new node is in the old one's frame, as the detector sees it; registration starts
+    /// there. None starts at the graph's belief.
+    pub proposal: Option<SE2>,
 }
 
 /// The nodes near `poses[node]` that are old enough, nearest first; of equals the older first.
@@ -31,6 +34,7 @@ pub fn detect_loop_candidates(
         .map(|(node, pose)| LoopCandidate {
             node,
             distance_m: math::norm2(pose.x() - here.x(), pose.y() - here.y()),
+            proposal: None,
         })
         .filter(|candidate| candidate.distance_m <= config.radius_m)
         .collect();

@@ -1,22 +1,7 @@
 //! The constants of loop closure; the defaults are the chapter's.
 
-/// How a map of some sweeps is built.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MapConfig {
-    /// Side of a cell in metres.
-    pub cell_m: f64,
-    /// Points kept in a cell.
-    pub max_per_cell: usize,
-}
-
-/// How far matched points are trusted: `1/(σ² · inflate)` a pair.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TrustConfig {
-    /// Standard deviation of a point in metres.
-    pub sigma_m: f64,
-    /// Pairs are not independent: the variance is multiplied by this.
-    pub inflate: f64,
-}
+use crate::chi_squared::CHAPTER_GATE;
+use crate::matching::{MapConfig, MatcherKind, TrustConfig};
 
 /// What the gate takes for the drift between two nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -40,10 +25,14 @@ pub struct LoopConfig {
     pub min_gap_nodes: usize,
     /// At most one attempt in so many nodes.
     pub attempt_every_nodes: usize,
+    /// At most so many candidates are verified at a node, best first; the first that passes is closed.
+    pub candidates_tried: usize,
     /// The submap holds the candidate and so many nodes on either side of it.
     pub submap_half_width: usize,
     /// The submap.
     pub submap: MapConfig,
+    /// What registers the new sweep on the submap.
+    pub matcher: MatcherKind,
     /// Most iterations of the registration against the submap.
     pub max_iterations: usize,
     /// Correspondence distance in metres, unless half the radius is more.
@@ -71,11 +60,13 @@ impl Default for LoopConfig {
             radius_m: 2.0,
             min_gap_nodes: 22,
             attempt_every_nodes: 4,
+            candidates_tried: 1,
             submap_half_width: 3,
             submap: MapConfig {
                 cell_m: 0.25,
                 max_per_cell: 6,
             },
+            matcher: MatcherKind::PointToPoint,
             max_iterations: 30,
             min_tau_m: 0.6,
             max_rmse_m: 0.16,
@@ -87,7 +78,7 @@ impl Default for LoopConfig {
             gate_model: GateModel::PathApproximation,
             drift_sigma_m: 0.045,
             drift_sigma_rad: 0.012,
-            gate_chi2: 7.815,
+            gate_chi2: CHAPTER_GATE,
         }
     }
 }

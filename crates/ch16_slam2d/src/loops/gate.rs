@@ -2,6 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use pr_optim::OptimizeError;
+
 use super::LoopConfig;
 use crate::graph::PoseGraph;
 
@@ -48,15 +50,21 @@ pub fn path_information(gap: usize, config: &LoopConfig) -> Matrix3<f64> {
 /// Information of the drift as the graph knows it: the exact covariance of the pose of `new` in
 /// the frame of `old`, inverted; see [`PoseGraph::relative_covariance`].
 ///
+/// # Errors
+/// Where the graph has no covariance: its normal equations are not positive definite, or hold
+/// numbers that are not finite.
+///
 /// # Panics
-/// Where a node does not exist, or no edges tie it to a fixed one.
-#[must_use]
-pub fn marginal_information(graph: &mut PoseGraph, old: usize, new: usize) -> Matrix3<f64> {
-    graph
-        .relative_covariance(old, new)
-        .ok()
-        .and_then(|covariance| covariance.try_inverse())
-        .expect("edges tie every node to a fixed one")
+/// Where a node does not exist.
+pub fn marginal_information(
+    graph: &mut PoseGraph,
+    old: usize,
+    new: usize,
+) -> Result<Matrix3<f64>, OptimizeError> {
+    let covariance = graph.relative_covariance(old, new)?;
+    covariance
+        .try_inverse()
+        .ok_or(OptimizeError::NotPositiveDefinite { node: new })
 }
 
 #[cfg(test)]

@@ -2,14 +2,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
+use pr_optim::{OptimizeError, StopReason};
 
 use super::gate::{GateTest, chi_squared_gate};
-use super::{LoopCandidate, LoopConfig, MapConfig};
-use crate::cloud::{DenseMap, PointCloud};
-use crate::icp::{
-    INFORMATION_CAP, INFORMATION_RIDGE, Icp, IcpConfig, IcpVariant, IcpWorkspace, Pair,
-    icp_information_along, regularize,
-};
+use super::{LoopCandidate, LoopConfig};
+use crate::cloud::PointCloud;
+use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
+use crate::matching::{InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information};
+use crate::slam::Keyframe;
 
 /// Why a loop was turned away, with what was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +30,17 @@ pub enum LoopRejection {
     },
     /// The innovation is larger than the drift explains.
     OutsideGate(GateTest),
+    /// The graph has no covariance to test against.
+    NoCovariance(OptimizeError),
+    /// It passed, but with it the graph could not be optimized, so it was taken out again.
+    OptimizationFailed(StopReason),
+    /// It passed, but the optimization raised the robust cost, so it was taken out again.
+    CostRose {
+        /// `Σ ρ(eᵀΩe)` with the loop, before the optimization.
+        before: f64,
+        /// The same after it.
+        after: f64,
+    },
 }
 
 /// A verified loop: what the registration found and what the tests say of it.
@@ -39,7 +50,9 @@ pub struct LoopVerification {
     pub from_node: usize,
     /// The old node.
     pub candidate: LoopCandidate,
-    /// `candidate_from_new` by the graph, T₀.
+    /// `candidate_from_new` by the graph, T₀: what the gate tests against.
+    pub belief: SE2,
+    /// `candidate_from_new` where the registration started: the candidate's proposal, or the belief.
     pub initial: SE2,
     /// `candidate_from_new` by the registration, T̂.
     pub registered: SE2,
@@ -49,9 +62,11 @@ pub struct LoopVerification {
     pub inliers: usize,
     /// Iterations of the registration.
     pub iterations: usize,
+    /// By how much the best other place was behind, in the unit of the matcher's score.
+    pub margin: Option<f64>,
     /// `log(T₀⁻¹ T̂)`, in m, m, rad.
     pub innovation: Vector3<f64>,
-    /// The information that the gate assumed of the innovation, S⁻¹.
+    /// The information that the gate assumed of the innovation, S⁻¹; zero where the graph has none.
     pub gate_information: Matrix3<f64>,
     /// The gate's verdict.
     pub gate: GateTest,
@@ -62,7 +77,7 @@ pub struct LoopVerification {
 }
 
 impl LoopVerification {
-    /// Whether all three tests were passed.
+    /// Whether all tests were passed.
     #[must_use]
     pub fn accepted(&self) -> bool {
         self.rejection.is_none()
@@ -80,8 +95,8 @@ impl LoopVerification {
 pub struct KeyframeView<'a> {
     /// Poses of all nodes in the graph, `world_from_body`.
     pub poses: &'a [SE2],
-    /// The thinned sweep of every node with its normals, sensor frame.
-    pub clouds: &'a [&'a PointCloud],
+    /// The keyframes with their thinned scans, by node.
+    pub keyframes: &'a [Keyframe],
 }
 
 /// The memory of [`verify_loop`], kept between attempts.
@@ -89,20 +104,18 @@ pub struct KeyframeView<'a> {
 pub struct LoopWorkspace {
     world: PointCloud,
     submap: PointCloud,
-    map: DenseMap,
-    icp: IcpWorkspace,
+    matcher: Box<dyn Matcher>,
     pairs: Vec<Pair>,
 }
 
 impl LoopWorkspace {
-    /// A workspace for submaps of this make.
+    /// A workspace that registers with `matcher`.
     #[must_use]
-    pub fn new(submap: &MapConfig) -> Self {
+    pub fn new(matcher: Box<dyn Matcher>) -> Self {
         Self {
             world: PointCloud::default(),
             submap: PointCloud::default(),
-            map: DenseMap::new(submap.cell_m, submap.max_per_cell),
-            icp: IcpWorkspace::new(),
+            matcher,
             pairs: Vec::new(),
         }
     }
@@ -118,95 +131,91 @@ impl LoopWorkspace {
     pub fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
+
+    /// Builds the submap around `candidate` in its frame.
+    fn build_submap(&mut self, view: KeyframeView<'_>, candidate: usize, half_width: usize) {
+        let first = candidate.saturating_sub(half_width);
+        let last = (candidate + half_width).min(view.poses.len() - 1);
+        self.world.clear();
+        for near in first..=last {
+            self.world
+                .extend_transformed(&view.keyframes[near].scan, &view.poses[near]);
+        }
+        // Through the world frame, not by relative poses: the beams straight ahead and abeam of the
+        // candidate lie on an edge of a cell, and their last bits decide which cell they fill.
+        self.submap.clear();
+        self.submap
+            .extend_transformed(&self.world, &view.poses[candidate].inverse());
+        self.matcher.set_target(&self.submap);
+    }
 }
 
 /// Registers the sweep of `node` on the submap around `candidate` and tests the result.
 ///
 /// The submap is built in the candidate's frame from the keyframes around it; registration starts
-/// at the graph's relative pose. `gate_information` is the S⁻¹ of the gate: that of
-/// [`path_information`](super::path_information), or the graph's own.
+/// at the candidate's proposal, or at the graph's relative pose. `gate_information` is the S⁻¹ of the
+/// gate: that of [`path_information`](super::path_information), or the graph's own; an error turns
+/// the loop away.
 #[must_use]
 pub fn verify_loop(
-    keyframes: KeyframeView<'_>,
+    view: KeyframeView<'_>,
     node: usize,
     candidate: LoopCandidate,
-    gate_information: &Matrix3<f64>,
+    gate_information: Result<Matrix3<f64>, OptimizeError>,
+    frame: InformationFrame,
     config: &LoopConfig,
     workspace: &mut LoopWorkspace,
 ) -> LoopVerification {
-    let center = keyframes.poses[candidate.node];
-    let first = candidate.node.saturating_sub(config.submap_half_width);
-    let last = (candidate.node + config.submap_half_width).min(keyframes.poses.len() - 1);
-    workspace.world.clear();
-    for near in first..=last {
-        workspace
-            .world
-            .extend_transformed(keyframes.clouds[near], &keyframes.poses[near]);
-    }
-    // Through the world frame, not by relative poses: the beams straight ahead and abeam of the
-    // candidate lie on an edge of a cell, and their last bits decide which cell they fill.
-    workspace.submap.clear();
-    workspace
-        .submap
-        .extend_transformed(&workspace.world, &center.inverse());
-    workspace.map.rebuild(&workspace.submap);
-
-    let initial = center.between(&keyframes.poses[node]);
-    let registration = IcpConfig {
-        variant: IcpVariant::PointToPoint,
-        max_iters: config.max_iterations,
-        tau: (config.radius_m / 2.0).max(config.min_tau_m),
-        ..IcpConfig::default()
-    };
-    let summary = Icp::new(
-        keyframes.clouds[node],
-        &workspace.map,
-        initial,
-        &registration,
-        &mut workspace.icp,
-    )
-    .run();
-    workspace.pairs.clear();
-    workspace.pairs.extend(workspace.icp.pairs(&workspace.map));
-    let information = icp_information_along(
-        &workspace.pairs,
-        config.trust.sigma_m,
-        config.trust.inflate,
-        center.theta(),
+    workspace.build_submap(view, candidate.node, config.submap_half_width);
+    let center = view.poses[candidate.node];
+    let belief = center.between(&view.poses[node]);
+    let initial = candidate.proposal.unwrap_or(belief);
+    let found = workspace.matcher.register(
+        &view.keyframes[node].scan,
+        &MatchRequest {
+            guess: initial,
+            tau_m: (config.radius_m / 2.0).max(config.min_tau_m),
+            max_iterations: config.max_iterations,
+        },
     );
-
-    let innovation = initial.between(&summary.pose).log();
-    let gate = chi_squared_gate(&innovation, gate_information, config.gate_chi2);
+    workspace.matcher.pairs(&mut workspace.pairs);
+    let information = match frame {
+        InformationFrame::Chapter => {
+            chapter_information(&workspace.pairs, center.theta(), &config.trust)
+        }
+        InformationFrame::Exact => workspace.matcher.information(&found.pose, &config.trust),
+    };
+    let innovation = belief.between(&found.pose).log();
+    let assumed = gate_information.unwrap_or_default();
+    let gate = chi_squared_gate(&innovation, &assumed, config.gate_chi2);
     LoopVerification {
         from_node: node,
         candidate,
+        belief,
         initial,
-        registered: summary.pose,
-        rmse_m: summary.rmse,
-        inliers: summary.inliers,
-        iterations: summary.iterations,
+        registered: found.pose,
+        rmse_m: found.rmse_m,
+        inliers: found.inliers,
+        iterations: found.iterations,
+        margin: found.margin(),
         innovation,
-        gate_information: *gate_information,
+        gate_information: assumed,
         gate,
         information: regularize(information, INFORMATION_RIDGE, INFORMATION_CAP),
-        rejection: rejection(summary.rmse, summary.inliers, gate, config),
+        rejection: rejection(&found, gate, config)
+            .or(gate_information.err().map(LoopRejection::NoCovariance)),
     }
 }
 
-fn rejection(
-    rmse_m: f64,
-    inliers: usize,
-    gate: GateTest,
-    config: &LoopConfig,
-) -> Option<LoopRejection> {
-    if rmse_m > config.max_rmse_m {
+fn rejection(found: &MatchSummary, gate: GateTest, config: &LoopConfig) -> Option<LoopRejection> {
+    if found.rmse_m > config.max_rmse_m || found.rmse_m.is_nan() {
         Some(LoopRejection::PoorFit {
-            rmse_m,
+            rmse_m: found.rmse_m,
             max_rmse_m: config.max_rmse_m,
         })
-    } else if inliers < config.min_inliers {
+    } else if found.inliers < config.min_inliers {
         Some(LoopRejection::FewInliers {
-            inliers,
+            inliers: found.inliers,
             min_inliers: config.min_inliers,
         })
     } else if !gate.passes() {

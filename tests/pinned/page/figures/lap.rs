@@ -1,6 +1,6 @@
 //! Laps by name, and what the results table says of each.
 
-use ch16_lab::lap::{LapRecord, LapTrace, SlamConfig};
+use ch16_lab::lap::{LapConfig, LapRecord, LapTrace};
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
 use pr_geom::Translation;
@@ -8,37 +8,37 @@ use pr_geom::Translation;
 use super::loops;
 
 /// The parameters of the lap of that name.
-pub fn config(name: &str) -> Option<SlamConfig> {
+pub fn config(name: &str) -> Option<LapConfig> {
     Some(match name {
-        "canonical" => SlamConfig::default(),
-        "noloops" => SlamConfig::default().without_loops(),
+        "canonical" => LapConfig::default(),
+        "noloops" => LapConfig::default().without_loops(),
         "noisy" => noisy(),
         "tight" => {
             let mut config = noisy();
-            config.loops.gate_chi2 = gate_threshold(0.9);
+            config.slam.loops.gate_chi2 = gate_threshold(0.9);
             config
         }
         "locked" => drifting(),
         "exact" => {
             let mut config = drifting();
-            config.loops.gate_model = GateModel::ExactMarginal;
+            config.slam.loops.gate_model = GateModel::ExactMarginal;
             config
         }
-        "six" => SlamConfig::with_seed_and_noise(6, 1.0),
+        "six" => LapConfig::with_seed_and_noise(6, 1.0),
         _ => return None,
     })
 }
 
 /// The canonical run with four times the wheel noise.
-fn noisy() -> SlamConfig {
-    let mut config = SlamConfig::default();
+fn noisy() -> LapConfig {
+    let mut config = LapConfig::default();
     config.drive.noise_factor = 4.0;
     config
 }
 
 /// A lap that drifts farther than the gate allows for.
-fn drifting() -> SlamConfig {
-    SlamConfig::with_seed_and_noise(2, 3.0)
+fn drifting() -> LapConfig {
+    LapConfig::with_seed_and_noise(2, 3.0)
 }
 
 /// `rms`, `turn.short_m`, `loop.0.chi2`, `front_end.rms`: results of a lap, by name.

@@ -1,7 +1,7 @@
 //! What the text says about the set-up: the Apartment, constants of the lap, the gate.
 
 use ch16_lab::basin::BasinScene;
-use ch16_lab::lap::{LAST_KEYFRAMES, SlamConfig};
+use ch16_lab::lap::{LAST_KEYFRAMES, LapConfig};
 use ch16_lab::terrain::TerrainSettings;
 use ch16_slam2d::chi_squared::{cdf3, gate_threshold};
 use ch16_slam2d::cloud::PointCloud;
@@ -28,16 +28,16 @@ pub fn world(what: &str) -> Option<f64> {
 
 /// `lap.beams`, `loop.radius_m`, `basin.tau`: constants by the part that they belong to.
 pub fn value(path: &[&str]) -> Option<f64> {
-    let config = SlamConfig::default();
-    let loops = &config.loops;
+    let config = LapConfig::default();
+    let loops = &config.slam.loops;
     let basin = BasinScene::config(IcpVariant::PointToPoint, TAU_M);
     Some(match *path {
         ["lap", "beams"] => config.drive.lidar.beams as f64,
         ["lap", "tick_s"] => config.drive.dt_s,
         ["lap", "last_keyframes"] => LAST_KEYFRAMES as f64,
-        ["lap", "window"] => config.window_sweeps as f64,
-        ["lap", "keyframe_m"] => config.keyframe_distance_m,
-        ["lap", "keyframe_rad"] => config.keyframe_turn_rad,
+        ["lap", "window"] => config.slam.window_sweeps as f64,
+        ["lap", "keyframe_m"] => config.slam.keyframe_distance_m,
+        ["lap", "keyframe_rad"] => config.slam.keyframe_turn_rad,
         ["loop", "every_ordinal"] => loops.attempt_every_nodes as f64,
         ["loop", "radius_m"] => loops.radius_m,
         ["loop", "min_gap"] => loops.min_gap_nodes as f64,
@@ -46,7 +46,7 @@ pub fn value(path: &[&str]) -> Option<f64> {
         ["loop", "drift_m"] => loops.drift_sigma_m,
         ["loop", "drift_rad"] => loops.drift_sigma_rad,
         ["loop", "inflate"] => loops.trust.inflate,
-        ["odometry", "inflate"] => config.odometry_trust.inflate,
+        ["odometry", "inflate"] => config.slam.odometry_trust.inflate,
         ["lap", "tau_deviations"] => tau_deviations(),
         ["noise", "fourfold_std"] => fourfold_std(),
         ["information", "ridge"] => INFORMATION_RIDGE,
@@ -76,7 +76,7 @@ fn min_neighbors() -> usize {
 
 /// By how much noise factor 4 multiplies the standard deviation of the wheels' speed.
 fn fourfold_std() -> f64 {
-    let noise = SlamConfig::default().drive.odometry_noise;
+    let noise = LapConfig::default().drive.odometry_noise;
     (noise.scaled(4.0).alpha[0] / noise.alpha[0]).sqrt()
 }
 
@@ -94,12 +94,12 @@ fn tau_deviations() -> f64 {
 /// The test of an innovation: its threshold, and what that lets through.
 pub fn gate(what: &str) -> Option<f64> {
     match what {
-        "chi2" => Some(SlamConfig::default().loops.gate_chi2),
+        "chi2" => Some(LapConfig::default().slam.loops.gate_chi2),
         "quantile_percent" => {
-            let gate = SlamConfig::default().loops.gate_chi2;
+            let gate = LapConfig::default().slam.loops.gate_chi2;
             Some(100.0 * cdf3(gate))
         }
-        "refused_share" => Some(1.0 - cdf3(SlamConfig::default().loops.gate_chi2)),
+        "refused_share" => Some(1.0 - cdf3(LapConfig::default().slam.loops.gate_chi2)),
         "tight_chi2" => Some(gate_threshold(0.9)),
         _ => None,
     }

@@ -5,9 +5,7 @@
 use std::ops::RangeInclusive;
 use std::thread;
 
-use ch16_lab::lap::{
-    FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LapRunner, LapSummary, SlamConfig,
-};
+use ch16_lab::lap::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LapConfig, LapRunner, LapSummary};
 use ch16_lab::results::{Column, LapOutcome, LapStatistics, Row};
 
 const SEEDS: RangeInclusive<u32> = 1..=1000;
@@ -43,7 +41,7 @@ impl Sweep {
         };
         Self {
             levels: [0, 1, 2, 3].map(level),
-            canonical: LapOutcome::of(&LapRunner::new().run(&SlamConfig::default())),
+            canonical: LapOutcome::of(&LapRunner::new().run(&LapConfig::default())),
         }
     }
 
@@ -64,7 +62,7 @@ impl Sweep {
             ["last"] => Some(f64::from(*SEEDS.end())),
             ["below_low_percent"] => Some(below(spread.p05)),
             ["below_high_percent"] => Some(below(spread.p95)),
-            ["canonical_noise"] => Some(SlamConfig::default().drive.noise_factor),
+            ["canonical_noise"] => Some(LapConfig::default().drive.noise_factor),
             ["false_m"] => Some(FALSE_LOOP_DISTANCE_M),
             ["false_deg"] => Some(FALSE_LOOP_TURN_DEG),
             _ => None,
@@ -110,7 +108,7 @@ impl Sweep {
 fn laps(seeds: &[u32]) -> Vec<[LapOutcome; 4]> {
     let mut runner = LapRunner::new();
     let mut lap = |seed, noise| {
-        let config = SlamConfig::with_seed_and_noise(seed, noise);
+        let config = LapConfig::with_seed_and_noise(seed, noise);
         LapOutcome::of(&runner.run(&config))
     };
     let of_seed = |&seed: &u32| NOISE.map(|(_, noise)| lap(seed, noise));

@@ -57,7 +57,8 @@ impl Gates {
                 GateModel::PathApproximation,
                 path_information(loop_.gap(), config),
             ),
-            exact: gate(GateModel::ExactMarginal, marginal),
+            // Zero where the graph has no covariance: nothing is known there.
+            exact: gate(GateModel::ExactMarginal, marginal.unwrap_or_default()),
         }
     }
 }
@@ -82,7 +83,7 @@ impl Gate {
             return None;
         }
         let at = |rho: Vector2<f64>| {
-            let pose = loop_.initial * SE2::exp(&Vector3::new(rho.x, rho.y, theta));
+            let pose = loop_.belief * SE2::exp(&Vector3::new(rho.x, rho.y, theta));
             Vector2::new(pose.x(), pose.y())
         };
         let center = at(-drag * theta);

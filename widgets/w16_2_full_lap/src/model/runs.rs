@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ch16_lab::lap::{Drive, LapRecord, LapRunner, LapSummary, LoopAttempt, SlamConfig};
+use ch16_lab::lap::{Drive, LapConfig, LapRecord, LapRunner, LapSummary, LoopAttempt};
 use ch16_slam2d::loops::LoopConfig;
 use pr_geom::SE2;
 
@@ -13,7 +13,7 @@ use super::track::Track;
 /// A drive with both estimators that ran over it, and the errors over time.
 pub struct Runs {
     runner: LapRunner,
-    config: SlamConfig,
+    config: LapConfig,
     drive: Arc<Drive>,
     /// Of each attempt of `graph`, in order.
     gates: Vec<Gates>,
@@ -59,7 +59,7 @@ impl Runs {
         let start = config.drive.start;
         let gates = lap
             .loop_attempts()
-            .map(|attempt| Gates::of(&lap, attempt, &config.loops))
+            .map(|attempt| Gates::of(&lap, attempt, &config.slam.loops))
             .collect();
         Self {
             odometry_errors_m: core::iter::once(0.0).chain(errors).collect(),
@@ -79,12 +79,12 @@ impl Runs {
 
     /// The settings of loop detection.
     pub fn loop_config(&self) -> &LoopConfig {
-        &self.config.loops
+        &self.config.slam.loops
     }
 
     /// Largest squared innovation that is believed.
     pub fn gate_chi2(&self) -> f64 {
-        self.config.loops.gate_chi2
+        self.config.slam.loops.gate_chi2
     }
 
     /// Both gates over an attempt of the pose graph.

@@ -1,6 +1,6 @@
 //! What the values of the parameter list mean to the core.
 
-use ch16_lab::lap::{LoopClosure, SlamConfig};
+use ch16_lab::lap::{LapConfig, LoopClosure};
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
 use kit::param::Values;
@@ -41,11 +41,11 @@ impl LapSettings {
     }
 
     /// What the core runs with.
-    pub fn config(&self) -> SlamConfig {
-        let mut config = SlamConfig::with_seed_and_noise(self.seed, self.noise_factor);
-        config.loop_closure = self.loop_closure;
-        config.loops.gate_chi2 = self.gate_chi2;
-        config.loops.gate_model = self.gate_model;
+    pub fn config(&self) -> LapConfig {
+        let mut config = LapConfig::with_seed_and_noise(self.seed, self.noise_factor);
+        config.slam.loop_closure = self.loop_closure;
+        config.slam.loops.gate_chi2 = self.gate_chi2;
+        config.slam.loops.gate_model = self.gate_model;
         config
     }
 }

@@ -1,6 +1,6 @@
 //! The course of a run: one sample a tick.
 
-use ch16_lab::lap::{LapRecord, SlamReport};
+use ch16_lab::lap::{LapRecord, TickReport};
 
 /// The samples of a run; entry 0 is the start.
 pub struct History {
@@ -18,13 +18,15 @@ impl History {
     /// The samples of a finished lap.
     pub fn new(record: &LapRecord) -> Self {
         let reports = &record.lap.reports;
-        let samples = |first: f64, value: &dyn Fn(&SlamReport) -> f64| {
+        let samples = |first: f64, value: &dyn Fn(&TickReport) -> f64| {
             core::iter::once(first)
                 .chain(reports.iter().map(value))
                 .collect()
         };
         Self {
-            tau_m: samples(record.config.threshold.initial_m, &|r| r.registration.tau_m),
+            tau_m: samples(record.config.slam.threshold.initial_m, &|r| {
+                r.registration.tau_m
+            }),
             odometry_error_m: samples(0.0, &|r| r.metrics.odometry_error_m),
             estimate_error_m: samples(0.0, &|r| r.metrics.estimate_error_m),
             disagreement_m: samples(f64::NAN, &|r| {

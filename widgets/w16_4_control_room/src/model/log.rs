@@ -35,12 +35,12 @@ pub fn events(record: &LapRecord) -> Vec<Event> {
         if let Some(way_point) = record.drive.ticks()[tick - 1].reached {
             say("driver", format!("way point {} reached", way_point + 1));
         }
-        if report.registration.icp.inliers < record.config.min_inliers {
+        if !report.registration.accepted {
             say(
                 "front end",
                 format!(
                     "only {} pairs: the prediction stands",
-                    report.registration.icp.inliers
+                    report.registration.matched.inliers
                 ),
             );
         }

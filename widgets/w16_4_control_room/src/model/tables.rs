@@ -65,14 +65,14 @@ fn over_time(room: &ControlRoom) -> Table {
     ];
     let history = &room.history;
     let rows = room.record.lap.reports.iter().map(|report| {
-        let icp = &report.registration.icp;
+        let matched = &report.registration.matched;
         let tick = report.tick;
         vec![
             tick.to_string(),
             history.tau_m[tick].to_string(),
-            icp.inliers.to_string(),
-            icp.rmse.to_string(),
-            icp.iterations.to_string(),
+            matched.inliers.to_string(),
+            matched.rmse_m.to_string(),
+            matched.iterations.to_string(),
             history.odometry_error_m[tick].to_string(),
             history.estimate_error_m[tick].to_string(),
             finite(history.disagreement_m[tick]),

@@ -1,7 +1,7 @@
 //! The result in words and numbers.
 
-use ch16_lab::lap::SlamReport;
-use ch16_slam2d::icp::IcpSummary;
+use ch16_lab::lap::TickReport;
+use ch16_slam2d::matching::MatchSummary;
 use kit::model::{Fact, Outcome, Standing};
 
 use super::ControlRoom;
@@ -30,7 +30,7 @@ pub fn summary(room: &ControlRoom) -> String {
         "{} {} The newest sweep is paired with the local map by {} pairs.",
         room.grid.words(),
         tick_sentence(room),
-        room.now().map_or(0, |r| r.registration.icp.inliers),
+        room.now().map_or(0, |r| r.registration.matched.inliers),
     )
 }
 
@@ -50,16 +50,20 @@ fn tick_sentence(room: &ControlRoom) -> String {
 
 fn facts(room: &ControlRoom) -> Vec<Fact> {
     let report = room.now();
-    let of = |value: &dyn Fn(&SlamReport) -> f64| report.map_or(f64::NAN, value);
+    let of = |value: &dyn Fn(&TickReport) -> f64| report.map_or(f64::NAN, value);
     // The start is known: nothing is off there.
-    let error = |value: &dyn Fn(&SlamReport) -> f64| report.map_or(0.0, value);
-    let icp = |value: fn(&IcpSummary) -> f64| of(&|r| value(&r.registration.icp));
-    let disagreement = |r: &SlamReport| r.metrics.map_disagreement_m.unwrap_or(f64::NAN);
+    let error = |value: &dyn Fn(&TickReport) -> f64| report.map_or(0.0, value);
+    let matched = |value: fn(&MatchSummary) -> f64| of(&|r| value(&r.registration.matched));
+    let disagreement = |r: &TickReport| r.metrics.map_disagreement_m.unwrap_or(f64::NAN);
     let mut facts = vec![
         Fact::metres("tau_m", "threshold τ", of(&|r| r.registration.tau_m)),
-        Fact::count("pairs", "pairs", icp(|icp| icp.inliers as f64)),
-        Fact::metres("rmse_m", "rmse", icp(|icp| icp.rmse)),
-        Fact::count("iterations", "iterations", icp(|icp| icp.iterations as f64)),
+        Fact::count("pairs", "pairs", matched(|found| found.inliers as f64)),
+        Fact::metres("rmse_m", "rmse", matched(|found| found.rmse_m)),
+        Fact::count(
+            "iterations",
+            "iterations",
+            matched(|found| found.iterations as f64),
+        ),
     ];
     facts.extend(room.grid.facts());
     facts.extend([

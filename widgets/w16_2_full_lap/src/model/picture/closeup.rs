@@ -31,7 +31,7 @@ pub fn closeup(runs: &Runs, tick: usize) -> Panel {
 
 fn of_loop(runs: &Runs, attempt: &LoopAttempt) -> Panel {
     let loop_ = &attempt.verification;
-    let (predicted, registered) = (loop_.initial, loop_.registered);
+    let (predicted, registered) = (loop_.belief, loop_.registered);
     let mut layers = vec![
         Layer::points(submap(runs, attempt), Mark::Dot, Tone::Prior, 1.6),
         Layer::points(

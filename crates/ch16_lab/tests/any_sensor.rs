@@ -1,0 +1,123 @@
+//! One estimator for all sensors: few beams and many, near and far, mounted anywhere.
+
+use ch16_lab::lap::{Drive, DriveConfig};
+use ch16_slam2d::metrics::position_error_m;
+use ch16_slam2d::scan::{Frame, LaserScan};
+use ch16_slam2d::slam::{Slam, SlamConfig};
+use pr_geom::SE2;
+use pr_sim::LidarConfig;
+
+fn drive(lidar: LidarConfig) -> Drive {
+    Drive::simulate(&DriveConfig {
+        lidar,
+        ..DriveConfig::default()
+    })
+}
+
+/// Farthest that the estimate was from the truth over the lap, m.
+fn farthest_m(drive: &Drive, config: SlamConfig, frame: impl Fn(usize) -> Frame) -> f64 {
+    let mut slam = Slam::new(config);
+    let mut farthest: f64 = 0.0;
+    for tick in 0..=drive.ticks().len() {
+        let report = slam.step(&frame(tick)).unwrap();
+        farthest = farthest.max(position_error_m(&report.estimate, &drive.truth(tick)));
+    }
+    farthest
+}
+
+/// Farthest that the wheels alone are from the truth, m: what an estimate has to beat.
+fn wheels_m(drive: &Drive) -> f64 {
+    let ticks = drive.ticks().iter();
+    let errors = ticks.map(|tick| position_error_m(&tick.dead_reckoning, &tick.truth));
+    errors.fold(0.0, f64::max)
+}
+
+/// The configuration that a scan gives, on the map frame of the drive.
+fn of_scan(drive: &Drive) -> SlamConfig {
+    let lidar = drive.config().lidar;
+    SlamConfig {
+        start: drive.truth(0),
+        ..SlamConfig::for_scan(&drive.frame(0).scan, lidar.range_sigma_m)
+    }
+}
+
+#[test]
+fn the_lap_is_tracked_from_40_to_4000_beams() {
+    for (beams, range_sigma_m) in [(40, 0.03), (360, 0.03), (4000, 0.01)] {
+        let drive = drive(LidarConfig {
+            beams,
+            range_sigma_m,
+            max_range_m: 12.0,
+            ..LidarConfig::default()
+        });
+        let farthest = farthest_m(&drive, of_scan(&drive), |tick| drive.frame(tick));
+        assert!(
+            farthest < 0.7 * wheels_m(&drive),
+            "{beams} beams: {farthest} m"
+        );
+    }
+}
+
+/// A frame as a robot ten or a hundred times as large would measure it.
+fn scaled(frame: Frame, factor: f64) -> Frame {
+    let scale = |pose: SE2| SE2::new(factor * pose.x(), factor * pose.y(), pose.theta());
+    let ranges_m = frame.scan.ranges_m.iter().map(|range| factor * range);
+    Frame {
+        odometry: frame.odometry.map(scale),
+        scan: LaserScan {
+            ranges_m: ranges_m.collect(),
+            range_max_m: factor * frame.scan.range_max_m,
+            ..frame.scan
+        },
+        ..frame
+    }
+}
+
+#[test]
+fn a_world_of_one_metre_and_one_of_a_hundred_are_tracked_alike() {
+    let drive = drive(LidarConfig {
+        beams: 360,
+        range_sigma_m: 0.03,
+        ..LidarConfig::default()
+    });
+    for factor in [1.0 / 6.0, 100.0 / 6.0] {
+        let frame = |tick| scaled(drive.frame(tick), factor);
+        let config = SlamConfig::for_scan(&frame(0).scan, factor * 0.03);
+        let mut slam = Slam::new(config);
+        let start = drive.truth(0);
+        for tick in 0..=drive.ticks().len() {
+            let estimate = slam.step(&frame(tick)).unwrap().estimate;
+            let truth = start.between(&drive.truth(tick));
+            let truth = SE2::new(factor * truth.x(), factor * truth.y(), truth.theta());
+            let off = position_error_m(&estimate, &truth) / factor;
+            assert!(
+                off < 0.7 * wheels_m(&drive),
+                "factor {factor}, tick {tick}: {off} m"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_sensor_mounted_backwards_and_aside_gives_the_same_trajectory() {
+    let drive = drive(LidarConfig::default());
+    let body_from_sensor = SE2::new(0.2, -0.1, 3.0);
+    let config = of_scan(&drive);
+    // The body that carries the sensor: where it is follows from where the sensor is.
+    let body = |sensor: SE2| sensor * body_from_sensor.inverse();
+    let mut slam = Slam::new(SlamConfig {
+        start: body(drive.truth(0)),
+        ..config
+    });
+    let mut farthest: f64 = 0.0;
+    for tick in 0..=drive.ticks().len() {
+        let mut frame = drive.frame(tick);
+        frame.scan.body_from_sensor = body_from_sensor;
+        frame.odometry = frame
+            .odometry
+            .map(|motion| body_from_sensor * motion * body_from_sensor.inverse());
+        let estimate = slam.step(&frame).unwrap().estimate;
+        farthest = farthest.max(position_error_m(&estimate, &body(drive.truth(tick))));
+    }
+    assert!(farthest < 0.7 * wheels_m(&drive), "{farthest} m");
+}

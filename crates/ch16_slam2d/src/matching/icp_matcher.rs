@@ -1,0 +1,98 @@
+//! ICP as a matcher: a dense map of the target and a workspace, kept between calls.
+
+use pr_geom::SE2;
+
+use super::{MapConfig, MatchRequest, MatchStop, MatchSummary, Matcher};
+use crate::cloud::{DenseMap, PointCloud};
+use crate::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace, Pair};
+
+/// ICP on a [`DenseMap`], point to point or point to plane.
+#[derive(Clone)]
+pub struct IcpMatcher {
+    config: IcpConfig,
+    map: DenseMap,
+    workspace: IcpWorkspace,
+}
+
+impl IcpMatcher {
+    /// A matcher with the variant, tolerance, trimming and kernel of `config`; τ and the number of
+    /// iterations come with each request.
+    #[must_use]
+    pub fn new(config: IcpConfig, map: &MapConfig) -> Self {
+        Self {
+            config,
+            map: DenseMap::new(map.cell_m, map.max_per_cell),
+            workspace: IcpWorkspace::new(),
+        }
+    }
+
+    /// A matcher of this variant with the chapter's settings.
+    #[must_use]
+    pub fn of(variant: IcpVariant, map: &MapConfig) -> Self {
+        let config = IcpConfig {
+            variant,
+            ..IcpConfig::default()
+        };
+        Self::new(config, map)
+    }
+
+    /// The settings of a registration that is asked for by `request`.
+    #[must_use]
+    pub fn settings(&self, request: &MatchRequest) -> IcpConfig {
+        IcpConfig {
+            max_iters: request.max_iterations,
+            tau: request.tau_m,
+            ..self.config
+        }
+    }
+
+    /// The map of the target.
+    #[must_use]
+    pub fn map(&self) -> &DenseMap {
+        &self.map
+    }
+
+    /// The pairs of `source` at `target_from_source`, counted as a registration counts them.
+    pub(super) fn fit(&mut self, source: &PointCloud, at: SE2, tau_m: f64) -> MatchSummary {
+        self.register(
+            source,
+            &MatchRequest {
+                guess: at,
+                tau_m,
+                max_iterations: 0,
+            },
+        )
+    }
+}
+
+impl Matcher for IcpMatcher {
+    fn set_target(&mut self, target: &PointCloud) {
+        self.map.rebuild(target);
+    }
+
+    fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
+        let settings = self.settings(request);
+        let found = Icp::new(
+            source,
+            &self.map,
+            request.guess,
+            &settings,
+            &mut self.workspace,
+        )
+        .run();
+        MatchSummary {
+            pose: found.pose,
+            rmse_m: found.rmse,
+            inliers: found.inliers,
+            iterations: found.iterations,
+            score: None,
+            runner_up: None,
+            stop: MatchStop::Icp(found.stop),
+        }
+    }
+
+    fn pairs(&self, pairs: &mut Vec<Pair>) {
+        pairs.clear();
+        pairs.extend(self.workspace.pairs(&self.map));
+    }
+}

@@ -1,0 +1,46 @@
+//! The matchers of this crate by name.
+
+use super::{IcpMatcher, MapConfig, Matcher, NdtMatcher, NdtMatcherConfig};
+use crate::icp::{IcpConfig, IcpVariant};
+
+/// Which matcher a front end or the verification of loops uses.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum MatcherKind {
+    /// Point-to-point ICP, the chapter's.
+    #[default]
+    PointToPoint,
+    /// Point-to-plane ICP.
+    PointToPlane,
+    /// ICP with trimming, a kernel or a tolerance of one's own.
+    Icp(IcpConfig),
+    /// The normal distributions transform.
+    Ndt(NdtMatcherConfig),
+}
+
+impl MatcherKind {
+    /// The settings of its ICP, but for τ and the number of iterations; none where it is none.
+    #[must_use]
+    pub fn icp(&self) -> Option<IcpConfig> {
+        let of = |variant| IcpConfig {
+            variant,
+            ..IcpConfig::default()
+        };
+        match *self {
+            Self::PointToPoint => Some(of(IcpVariant::PointToPoint)),
+            Self::PointToPlane => Some(of(IcpVariant::PointToPlane)),
+            Self::Icp(config) => Some(config),
+            Self::Ndt(_) => None,
+        }
+    }
+
+    /// The matcher, with targets of the make `map`.
+    #[must_use]
+    pub fn build(&self, map: &MapConfig) -> Box<dyn Matcher> {
+        match *self {
+            Self::PointToPoint => Box::new(IcpMatcher::of(IcpVariant::PointToPoint, map)),
+            Self::PointToPlane => Box::new(IcpMatcher::of(IcpVariant::PointToPlane, map)),
+            Self::Icp(config) => Box::new(IcpMatcher::new(config, map)),
+            Self::Ndt(config) => Box::new(NdtMatcher::new(config, map)),
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! What every matcher can be asked.
+
+use nalgebra::Matrix3;
+use pr_geom::SE2;
+
+use super::{TrustConfig, match_information};
+use crate::cloud::PointCloud;
+use crate::icp::{Pair, StopReason};
+use crate::ndt::NdtStop;
+
+/// How a map of some sweeps is built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapConfig {
+    /// Side of a cell in metres.
+    pub cell_m: f64,
+    /// Points kept in a cell.
+    pub max_per_cell: usize,
+}
+
+/// One registration, as it is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MatchRequest {
+    /// Where to start: `target_from_source`.
+    pub guess: SE2,
+    /// Points farther than this from the target do not take part, m.
+    pub tau_m: f64,
+    /// At most so many iterations.
+    pub max_iterations: usize,
+}
+
+/// Why a matcher stopped, with what it measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MatchStop {
+    /// ICP's reason.
+    Icp(StopReason),
+    /// NDT's reason.
+    Ndt(NdtStop),
+    /// The whole window was searched.
+    Searched {
+        /// Poses that were scored.
+        poses: usize,
+    },
+    /// A matcher of the reader's own, in its words.
+    Other(&'static str),
+}
+
+/// The best pose that is another place than the answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunnerUp {
+    /// `target_from_source`.
+    pub pose: SE2,
+    /// Its score, in the unit of [`MatchSummary::score`].
+    pub score: f64,
+}
+
+/// What a registration found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MatchSummary {
+    /// `target_from_source`.
+    pub pose: SE2,
+    /// Root mean square residual of the pairs, m; infinite without pairs.
+    pub rmse_m: f64,
+    /// Points of the scan that have a partner in the target.
+    pub inliers: usize,
+    /// Iterations made.
+    pub iterations: usize,
+    /// Score of the pose, larger is better, where the matcher has one.
+    pub score: Option<f64>,
+    /// The second best place, where the matcher looked for one.
+    pub runner_up: Option<RunnerUp>,
+    /// Why it stopped.
+    pub stop: MatchStop,
+}
+
+impl MatchSummary {
+    /// By how much the runner-up is behind, in the unit of the score.
+    #[must_use]
+    pub fn margin(&self) -> Option<f64> {
+        Some(self.score? - self.runner_up?.score)
+    }
+}
+
+/// Registers scans on a target.
+///
+/// The target stays until the next [`set_target`](Matcher::set_target); the answers of `pairs` and
+/// `information` belong to the last [`register`](Matcher::register). A matcher gives the same bits
+/// for the same calls, on every machine.
+pub trait Matcher: CloneMatcher + Send {
+    /// Takes the points of `target`, with their normals, as the map.
+    fn set_target(&mut self, target: &PointCloud);
+
+    /// Finds the pose of `source` on the target.
+    fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary;
+
+    /// The pairs at the last answer, in the target's frame, into `pairs`.
+    fn pairs(&self, pairs: &mut Vec<Pair>);
+
+    /// How much the last registration knows: 3×3, translation first, in the tangent space of
+    /// `registered`, about the body's origin; neither ridge nor cap is applied.
+    ///
+    /// Without an override it is that of the pairs; see [`match_information`].
+    fn information(&self, registered: &SE2, trust: &TrustConfig) -> Matrix3<f64> {
+        let mut pairs = Vec::new();
+        self.pairs(&mut pairs);
+        match_information(&pairs, registered, trust)
+    }
+}
+
+/// A matcher that can be copied behind its trait; every `Clone` matcher is one.
+pub trait CloneMatcher {
+    /// A copy that answers as this one does.
+    fn clone_matcher(&self) -> Box<dyn Matcher>;
+}
+
+impl<M: Matcher + Clone + 'static> CloneMatcher for M {
+    fn clone_matcher(&self) -> Box<dyn Matcher> {
+        Box::new(self.clone())
+    }
+}
+
+impl Clone for Box<dyn Matcher> {
+    fn clone(&self) -> Self {
+        (**self).clone_matcher()
+    }
+}

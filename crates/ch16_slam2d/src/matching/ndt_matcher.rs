@@ -1,0 +1,89 @@
+//! NDT as a matcher: Gaussians to register on, points to measure the fit by.
+
+use super::{IcpMatcher, MapConfig, MatchRequest, MatchStop, MatchSummary, Matcher};
+use crate::cloud::PointCloud;
+use crate::icp::{IcpVariant, Pair};
+use crate::ndt::{NdtAlign, NdtConfig, NdtMap};
+
+/// The cells and the solver of an [`NdtMatcher`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NdtMatcherConfig {
+    /// Width of a cell, m: the basin is about as wide.
+    pub cell_m: f64,
+    /// Points that a cell needs.
+    pub min_points: usize,
+    /// Damping and tolerance; the number of iterations comes with each request.
+    pub solver: NdtConfig,
+}
+
+impl Default for NdtMatcherConfig {
+    fn default() -> Self {
+        Self {
+            cell_m: 0.6,
+            min_points: 4,
+            solver: NdtConfig::default(),
+        }
+    }
+}
+
+/// NDT on the Gaussians of the target.
+///
+/// A score alone does not say whether a scan fits: it grows with the number of points. So the fit is
+/// measured with the ruler of ICP, the distance to the nearest point closer than τ, and the tests of
+/// a loop mean the same for every matcher.
+#[derive(Clone)]
+pub struct NdtMatcher {
+    config: NdtMatcherConfig,
+    gaussians: Option<NdtMap>,
+    ruler: IcpMatcher,
+}
+
+impl NdtMatcher {
+    /// A matcher without a target; `map` is that of the points by which the fit is measured.
+    #[must_use]
+    pub fn new(config: NdtMatcherConfig, map: &MapConfig) -> Self {
+        Self {
+            config,
+            gaussians: None,
+            ruler: IcpMatcher::of(IcpVariant::PointToPoint, map),
+        }
+    }
+}
+
+impl Matcher for NdtMatcher {
+    fn set_target(&mut self, target: &PointCloud) {
+        let NdtMatcherConfig {
+            cell_m, min_points, ..
+        } = self.config;
+        self.gaussians = Some(NdtMap::build(target, cell_m, min_points));
+        self.ruler.set_target(target);
+    }
+
+    fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
+        let Some(gaussians) = &self.gaussians else {
+            return self.ruler.fit(source, request.guess, request.tau_m);
+        };
+        let solver = NdtConfig {
+            max_iters: request.max_iterations,
+            ..self.config.solver
+        };
+        let mut registration = NdtAlign::new(source, gaussians, request.guess, &solver);
+        let (found, stop) = loop {
+            let step = registration.step();
+            if let Some(stop) = step.stop {
+                break (step, stop);
+            }
+        };
+        let iterations = registration.iterations();
+        MatchSummary {
+            iterations,
+            score: Some(found.score),
+            stop: MatchStop::Ndt(stop),
+            ..self.ruler.fit(source, found.pose, request.tau_m)
+        }
+    }
+
+    fn pairs(&self, pairs: &mut Vec<Pair>) {
+        self.ruler.pairs(pairs);
+    }
+}

@@ -1,0 +1,67 @@
+//! One moment of a drive, as measured.
+
+use std::sync::Arc;
+
+use pr_geom::SE2;
+
+use super::{FrameError, LaserScan};
+use crate::cloud::PointCloud;
+
+/// A scan and the motion that led to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Time of the scan's first beam, s.
+    pub stamp_s: f64,
+    /// Motion of the body since the last frame, as the wheels measured it: the body's frame now in
+    /// its frame then. Without it the estimator expects the velocity to stay.
+    pub odometry: Option<SE2>,
+    /// The scan.
+    pub scan: LaserScan,
+}
+
+impl Frame {
+    /// Whether all numbers are usable.
+    ///
+    /// # Errors
+    /// The first number that is not, and what it should be.
+    pub fn validate(&self) -> Result<(), FrameError> {
+        check_motion(self.stamp_s, self.odometry.as_ref())?;
+        self.scan.validate()
+    }
+}
+
+/// A frame whose scan is already a cloud, so that it can be run more than once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PreparedFrame {
+    /// Time of the scan's first beam, s.
+    pub stamp_s: f64,
+    /// Motion of the body since the last frame; see [`Frame::odometry`].
+    pub odometry: Option<SE2>,
+    /// The scan's points in the body's frame at the stamp, thinned, with normals.
+    pub cloud: Arc<PointCloud>,
+}
+
+impl PreparedFrame {
+    /// Whether stamp and odometry are usable.
+    ///
+    /// # Errors
+    /// [`FrameError::Stamp`] or [`FrameError::Odometry`].
+    pub fn validate(&self) -> Result<(), FrameError> {
+        check_motion(self.stamp_s, self.odometry.as_ref())
+    }
+}
+
+fn check_motion(stamp_s: f64, odometry: Option<&SE2>) -> Result<(), FrameError> {
+    if !stamp_s.is_finite() {
+        return Err(FrameError::Stamp {
+            stamp_s,
+            last_s: f64::NEG_INFINITY,
+        });
+    }
+    match odometry {
+        Some(motion) if !motion.to_array().iter().all(|value| value.is_finite()) => {
+            Err(FrameError::Odometry { stamp_s })
+        }
+        _ => Ok(()),
+    }
+}

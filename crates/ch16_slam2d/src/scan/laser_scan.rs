@@ -1,0 +1,121 @@
+//! A sweep of a planar laser with its geometry.
+
+use pr_geom::SE2;
+
+use super::FrameError;
+
+/// Ranges of one sweep, and where their beams point.
+///
+/// Beam k leaves the sensor at the bearing `first_angle_rad + k · angle_step_rad`. A range is a point
+/// where it is above 0, at least `range_min_m` and below `range_max_m`; 0, NaN and infinite ranges
+/// and those at the maximum saw nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LaserScan {
+    /// Bearing of the first beam in the sensor's frame, rad.
+    pub first_angle_rad: f64,
+    /// Bearing from one beam to the next, rad; negative where the sensor turns clockwise.
+    pub angle_step_rad: f64,
+    /// Shorter ranges are no points, m.
+    pub range_min_m: f64,
+    /// Ranges at or beyond this are no points, m.
+    pub range_max_m: f64,
+    /// Where the sensor sits on the body.
+    pub body_from_sensor: SE2,
+    /// Time from one beam to the next, s; 0 where the whole sweep is one moment.
+    pub beam_interval_s: f64,
+    /// One range for each beam, m.
+    pub ranges_m: Vec<f64>,
+}
+
+impl Default for LaserScan {
+    /// A full circle without beams, at the body's origin, of any range.
+    fn default() -> Self {
+        Self {
+            first_angle_rad: -core::f64::consts::PI,
+            angle_step_rad: core::f64::consts::TAU,
+            range_min_m: 0.0,
+            range_max_m: f64::INFINITY,
+            body_from_sensor: SE2::identity(),
+            beam_interval_s: 0.0,
+            ranges_m: Vec::new(),
+        }
+    }
+}
+
+impl LaserScan {
+    /// Bearing of beam `beam` in the sensor's frame, rad.
+    #[inline]
+    #[must_use]
+    pub fn bearing_rad(&self, beam: usize) -> f64 {
+        self.first_angle_rad + beam as f64 * self.angle_step_rad
+    }
+
+    /// Whether `range_m` is a point of this scan.
+    #[inline]
+    #[must_use]
+    pub fn is_return(&self, range_m: f64) -> bool {
+        range_m > 0.0
+            && range_m >= self.range_min_m
+            && range_m < self.range_max_m
+            && range_m.is_finite()
+    }
+
+    /// Whether both scans have their beams at the same places.
+    #[must_use]
+    pub fn same_beams(&self, other: &Self) -> bool {
+        self.first_angle_rad == other.first_angle_rad
+            && self.angle_step_rad == other.angle_step_rad
+            && self.ranges_m.len() == other.ranges_m.len()
+    }
+
+    /// Whether the geometry is usable; single ranges may be anything.
+    ///
+    /// # Errors
+    /// The first number that is not, and what it should be.
+    pub fn validate(&self) -> Result<(), FrameError> {
+        let [x, y, theta] = self.body_from_sensor.to_array();
+        let rules = [
+            (
+                "first angle",
+                self.first_angle_rad,
+                self.first_angle_rad.is_finite(),
+                "radians",
+            ),
+            (
+                "angle step",
+                self.angle_step_rad,
+                self.angle_step_rad.is_finite() && self.angle_step_rad != 0.0,
+                "radians other than 0",
+            ),
+            (
+                "shortest range",
+                self.range_min_m,
+                self.range_min_m >= 0.0 && self.range_min_m.is_finite(),
+                "metres from 0 on",
+            ),
+            (
+                "longest range",
+                self.range_max_m,
+                self.range_max_m > self.range_min_m,
+                "metres beyond the shortest range",
+            ),
+            (
+                "beam interval",
+                self.beam_interval_s,
+                self.beam_interval_s >= 0.0 && self.beam_interval_s.is_finite(),
+                "seconds from 0 on",
+            ),
+            ("mounting in x", x, x.is_finite(), "metres"),
+            ("mounting in y", y, y.is_finite(), "metres"),
+            ("mounting angle", theta, theta.is_finite(), "radians"),
+        ];
+        match rules.into_iter().find(|(_, _, usable, _)| !usable) {
+            Some((name, value, _, expected)) => Err(FrameError::Geometry {
+                name,
+                value,
+                expected,
+            }),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! From a sweep to a cloud: clean, deskew, thin, estimate normals.
+
+use nalgebra::{Point2, Vector3};
+use pr_geom::{Rotation, SE2};
+
+use super::LaserScan;
+use crate::cloud::{Downsampler, NormalEstimator, PointCloud};
+
+/// How a scan becomes a cloud; the defaults are the chapter's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScanConfig {
+    /// A sweep is thinned to one point in each cell of this side, m.
+    pub cell_m: f64,
+    /// Radius within which a sweep's points give each other normals, m.
+    pub normal_radius_m: f64,
+}
+
+impl Default for ScanConfig {
+    fn default() -> Self {
+        Self {
+            cell_m: 0.12,
+            normal_radius_m: 0.3,
+        }
+    }
+}
+
+/// Makes clouds of scans, with its buffers and the beams' directions kept.
+#[derive(Clone, Debug, Default)]
+pub struct ScanPreparer {
+    /// The scan whose directions are kept; its ranges are not.
+    beams: Option<(f64, f64)>,
+    directions: Vec<Rotation>,
+    points: PointCloud,
+    downsampler: Downsampler,
+    normals: NormalEstimator,
+}
+
+impl ScanPreparer {
+    /// A preparer that has seen nothing.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The returns of `scan` in the body's frame at the first beam, thinned, with the normals that
+    /// this sweep alone gives them: a map of several sweeps turns the normals with the points.
+    ///
+    /// `velocity` is the body's twist during the sweep (m/s, m/s, rad/s). The point p of a beam that
+    /// left t seconds after the first one was seen from `exp(velocity · t)`, and is moved there.
+    #[must_use]
+    pub fn prepare(
+        &mut self,
+        scan: &LaserScan,
+        velocity: &Vector3<f64>,
+        config: &ScanConfig,
+    ) -> PointCloud {
+        self.project(scan, velocity);
+        let mut cloud = PointCloud::default();
+        self.downsampler
+            .downsample_into(&self.points, config.cell_m, &mut cloud);
+        self.normals.estimate(&mut cloud, config.normal_radius_m);
+        cloud
+    }
+
+    /// All returns of `scan` in the body's frame at the first beam, in the order of the beams.
+    #[must_use]
+    pub fn points(&mut self, scan: &LaserScan, velocity: &Vector3<f64>) -> &PointCloud {
+        self.project(scan, velocity);
+        &self.points
+    }
+
+    fn project(&mut self, scan: &LaserScan, velocity: &Vector3<f64>) {
+        self.point_beams(scan);
+        let is_moved = scan.body_from_sensor != SE2::identity();
+        let is_skewed = scan.beam_interval_s > 0.0 && *velocity != Vector3::zeros();
+        self.points.clear();
+        for (beam, (&range_m, direction)) in scan.ranges_m.iter().zip(&self.directions).enumerate()
+        {
+            if !scan.is_return(range_m) {
+                continue;
+            }
+            let mut point = Point2::new(range_m * direction.cos, range_m * direction.sin);
+            if is_moved {
+                point = scan.body_from_sensor.transform(point);
+            }
+            if is_skewed {
+                let time_s = beam as f64 * scan.beam_interval_s;
+                point = SE2::exp(&(velocity * time_s)).transform(point);
+            }
+            self.points.push(point);
+        }
+    }
+
+    fn point_beams(&mut self, scan: &LaserScan) {
+        let beams = (scan.first_angle_rad, scan.angle_step_rad);
+        if self.beams == Some(beams) && self.directions.len() == scan.ranges_m.len() {
+            return;
+        }
+        self.beams = Some(beams);
+        self.directions.clear();
+        let bearings = (0..scan.ranges_m.len()).map(|beam| scan.bearing_rad(beam));
+        self.directions.extend(bearings.map(Rotation::new));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::{FRAC_PI_2, PI};
+
+    use super::*;
+
+    fn cross(ranges_m: [f64; 4]) -> LaserScan {
+        LaserScan {
+            first_angle_rad: -PI,
+            angle_step_rad: FRAC_PI_2,
+            range_min_m: 0.5,
+            range_max_m: 6.0,
+            ranges_m: ranges_m.to_vec(),
+            ..LaserScan::default()
+        }
+    }
+
+    #[test]
+    fn what_saw_nothing_is_no_point() {
+        let mut preparer = ScanPreparer::new();
+        let nothing = [0.0, f64::NAN, f64::INFINITY, 6.0];
+        let still = Vector3::zeros();
+        assert!(preparer.points(&cross(nothing), &still).is_empty());
+        let near = [0.49, 0.5, -1.0, 5.99];
+        let points = preparer.points(&cross(near), &still);
+        let seen: Vec<_> = points.iter().collect();
+        assert_eq!(seen.len(), 2);
+        // 1e-12: the sine of a rounded quarter turn.
+        assert!((seen[0] - Point2::new(0.0, -0.5)).norm() < 1e-12);
+        assert!((seen[1] - Point2::new(0.0, 5.99)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_sensor_that_looks_back_puts_its_points_behind_the_body() {
+        let mut scan = cross([0.0, 0.0, 2.0, 0.0]);
+        scan.body_from_sensor = SE2::new(-0.3, 0.1, PI);
+        let mut preparer = ScanPreparer::new();
+        let point = preparer.points(&scan, &Vector3::zeros()).point(0);
+        assert!((point - Point2::new(-2.3, 0.1)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_wall_seen_in_motion_is_put_where_it_stood() {
+        // The body drives and turns; a beam at a time measures the wall x = 3.
+        let velocity = Vector3::new(0.8, 0.0, 0.6);
+        let (beams, interval_s) = (60_usize, 0.01);
+        let (first, step) = (-0.5, 1.0 / 60.0);
+        let ranges_m = (0..beams).map(|beam| {
+            let body = SE2::exp(&(velocity * (beam as f64 * interval_s)));
+            let heading = body.theta() + first + beam as f64 * step;
+            (3.0 - body.x()) / Rotation::new(heading).cos
+        });
+        let mut scan = LaserScan {
+            first_angle_rad: first,
+            angle_step_rad: step,
+            beam_interval_s: interval_s,
+            ranges_m: ranges_m.collect(),
+            ..LaserScan::default()
+        };
+        let mut preparer = ScanPreparer::new();
+        let straight = preparer.points(&scan, &velocity);
+        // 1e-12: a dozen roundings of numbers below 4.
+        assert!(straight.xs().iter().all(|x| (x - 3.0).abs() < 1e-12));
+        scan.beam_interval_s = 0.0;
+        let bent = preparer.points(&scan, &velocity);
+        assert!(bent.xs().iter().any(|x| (x - 3.0).abs() > 0.1));
+    }
+}

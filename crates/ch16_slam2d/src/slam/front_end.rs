@@ -1,0 +1,232 @@
+//! The front end: registers each scan on a map of the last few.
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix3, Vector3};
+use pr_geom::SE2;
+
+use super::config::SlamConfig;
+use crate::cloud::PointCloud;
+use crate::icp::{AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
+use crate::matching::{InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information};
+use crate::metrics::position_error_m;
+use crate::scan::PreparedFrame;
+
+/// A sweep of the local map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WindowSweep {
+    /// The frame in which it was taken.
+    pub frame: usize,
+    /// Where it was taken, by the estimate: `world_from_body`.
+    pub pose: SE2,
+}
+
+/// What a registration made of one scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Registration {
+    /// Estimate before it, moved by the odometry or by the last velocity: `world_from_body`.
+    pub prediction: SE2,
+    /// The result, or the prediction where too few pairs were found.
+    pub estimate: SE2,
+    /// Correspondence threshold τ that was used, m.
+    pub tau_m: f64,
+    /// τ for the next registration, m: it has seen this one's correction.
+    pub next_tau_m: f64,
+    /// Whether the result was believed.
+    pub accepted: bool,
+    /// Whether the scan joined the window of the next local map.
+    pub joined_window: bool,
+    /// The registration itself.
+    pub matched: MatchSummary,
+}
+
+/// Local map, threshold and estimate, with the memory of a registration.
+///
+/// Its memory is bounded: it holds the scans of its window and nothing older.
+#[derive(Clone)]
+pub struct FrontEnd {
+    estimate: SE2,
+    velocity: Vector3<f64>,
+    window: Vec<WindowSweep>,
+    scans: Vec<Arc<PointCloud>>,
+    threshold: AdaptiveThreshold,
+    local_cloud: PointCloud,
+    matcher: Box<dyn Matcher>,
+    pairs: Vec<Pair>,
+    /// Covariance of the motions since the last registration that was believed, none after one.
+    unregistered: Option<Matrix3<f64>>,
+}
+
+impl FrontEnd {
+    /// A front end that has seen nothing and registers with `matcher`.
+    #[must_use]
+    pub fn new(config: &SlamConfig, matcher: Box<dyn Matcher>) -> Self {
+        Self {
+            estimate: config.start,
+            velocity: Vector3::zeros(),
+            window: Vec::new(),
+            scans: Vec::new(),
+            threshold: AdaptiveThreshold::new(
+                config.threshold.initial_m,
+                config.threshold.min_motion_m,
+                config.threshold.max_range_m,
+            ),
+            local_cloud: PointCloud::default(),
+            matcher,
+            pairs: Vec::new(),
+            unregistered: None,
+        }
+    }
+
+    /// The estimated pose, `world_from_body`.
+    #[must_use]
+    pub fn estimate(&self) -> SE2 {
+        self.estimate
+    }
+
+    /// Twist of the last motion, in m/s, m/s, rad/s.
+    #[must_use]
+    pub fn velocity(&self) -> Vector3<f64> {
+        self.velocity
+    }
+
+    /// Correspondence threshold τ for the next registration, m.
+    #[must_use]
+    pub fn tau_m(&self) -> f64 {
+        self.threshold.tau()
+    }
+
+    /// The sweeps of the next local map, oldest first.
+    #[must_use]
+    pub fn window(&self) -> &[WindowSweep] {
+        &self.window
+    }
+
+    /// The points of the last local map, world frame.
+    #[must_use]
+    pub fn local_cloud(&self) -> &PointCloud {
+        &self.local_cloud
+    }
+
+    /// Takes the first scan into the window.
+    pub(super) fn start(&mut self, scan: Arc<PointCloud>) {
+        self.window.push(WindowSweep {
+            frame: 0,
+            pose: self.estimate,
+        });
+        self.scans.push(scan);
+    }
+
+    /// Registers the scan of a frame that is `dt_s` seconds after the last one, and moves on.
+    pub(super) fn register(
+        &mut self,
+        frame: &PreparedFrame,
+        dt_s: f64,
+        number: usize,
+        config: &SlamConfig,
+    ) -> Registration {
+        self.rebuild_local_map();
+        let before = self.estimate;
+        let motion = frame
+            .odometry
+            .unwrap_or_else(|| SE2::exp(&(self.velocity * dt_s)));
+        let prediction = before * motion;
+        let tau_m = self.threshold.tau();
+        let matched = self.matcher.register(
+            &frame.cloud,
+            &MatchRequest {
+                guess: prediction,
+                tau_m,
+                max_iterations: config.max_iterations,
+            },
+        );
+        let accepted = matched.inliers >= config.min_inliers;
+        self.estimate = if accepted { matched.pose } else { prediction };
+        self.remember_trust(accepted, &motion, frame.odometry.is_some(), config);
+        self.velocity = before.between(&self.estimate).log() / dt_s;
+        self.threshold.update(&prediction, &self.estimate);
+        Registration {
+            prediction,
+            estimate: self.estimate,
+            tau_m,
+            next_tau_m: self.threshold.tau(),
+            accepted,
+            joined_window: self.join_window(frame, number, config),
+            matched,
+        }
+    }
+
+    /// Information of the estimate about the last keyframe's edge, whose heading is `source_theta`.
+    pub(super) fn information(&mut self, source_theta: f64, config: &SlamConfig) -> Matrix3<f64> {
+        let trust = &config.odometry_trust;
+        let information = match (config.information_frame, self.unregistered) {
+            (InformationFrame::Exact, Some(covariance)) => {
+                // Every motion noise has a floor, so only an overflow has no inverse.
+                return covariance.try_inverse().unwrap_or_else(Matrix3::identity);
+            }
+            (InformationFrame::Exact, None) => self.matcher.information(&self.estimate, trust),
+            (InformationFrame::Chapter, _) => {
+                self.matcher.pairs(&mut self.pairs);
+                chapter_information(&self.pairs, source_theta, trust)
+            }
+        };
+        regularize(information, INFORMATION_RIDGE, INFORMATION_CAP)
+    }
+
+    /// Moves the estimate and the window by `correction`, applied on the left: a loop was closed.
+    pub(super) fn correct(&mut self, correction: &SE2) {
+        self.estimate = *correction * self.estimate;
+        for sweep in &mut self.window {
+            sweep.pose = *correction * sweep.pose;
+        }
+    }
+
+    fn rebuild_local_map(&mut self) {
+        self.local_cloud.clear();
+        for (sweep, scan) in self.window.iter().zip(&self.scans) {
+            self.local_cloud.extend_transformed(scan, &sweep.pose);
+        }
+        self.matcher.set_target(&self.local_cloud);
+    }
+
+    fn remember_trust(
+        &mut self,
+        accepted: bool,
+        motion: &SE2,
+        is_measured: bool,
+        config: &SlamConfig,
+    ) {
+        if accepted {
+            self.unregistered = None;
+            return;
+        }
+        let noise = if is_measured {
+            &config.odometry_noise
+        } else {
+            &config.prediction_noise
+        };
+        let before = self.unregistered.unwrap_or_default();
+        self.unregistered = Some(noise.then(&before, motion));
+    }
+
+    fn join_window(&mut self, frame: &PreparedFrame, number: usize, config: &SlamConfig) -> bool {
+        if let Some(newest) = self.window.last()
+            && self.window.len() >= config.window_sweeps
+        {
+            let turn = newest.pose.between(&self.estimate).theta().abs();
+            if position_error_m(&newest.pose, &self.estimate) < config.window_distance_m
+                && turn < config.window_turn_rad
+            {
+                return false;
+            }
+            self.window.remove(0);
+            self.scans.remove(0);
+        }
+        self.window.push(WindowSweep {
+            frame: number,
+            pose: self.estimate,
+        });
+        self.scans.push(Arc::clone(&frame.cloud));
+        true
+    }
+}

@@ -1,0 +1,76 @@
+//! `--world`: the Apartment, the ring, or a file with walls, start and way points.
+
+use std::fs;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use pr_sim::{Course, CourseError};
+use thiserror::Error;
+
+/// A world as it is named on the command line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum WorldArg {
+    /// The chapter's.
+    Apartment,
+    /// The ring of corridors.
+    Ring,
+    /// A file of the reader's own.
+    File(PathBuf),
+}
+
+impl FromStr for WorldArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "apartment" => Ok(Self::Apartment),
+            "ring" => Ok(Self::Ring),
+            _ if text.ends_with(".json") => Ok(Self::File(text.into())),
+            _ => Err("not apartment, ring or a file that ends in .json".to_owned()),
+        }
+    }
+}
+
+/// Why a world cannot be driven.
+#[derive(Debug, Error)]
+pub enum WorldError {
+    /// The system cannot read it.
+    #[error("{path}: {source}")]
+    Read {
+        /// The file.
+        path: String,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// It is no course that can be driven.
+    #[error("{path}: {source}")]
+    Course {
+        /// The file.
+        path: String,
+        /// What, where and what to do.
+        source: CourseError,
+    },
+}
+
+impl WorldArg {
+    /// The world and the way through it.
+    ///
+    /// # Errors
+    /// One sentence where the file cannot be used.
+    pub fn course(&self) -> Result<Course, WorldError> {
+        let file = match self {
+            Self::Apartment => return Ok(Course::apartment()),
+            Self::Ring => return Ok(Course::ring()),
+            Self::File(file) => file,
+        };
+        let path = || file.display().to_string();
+        let text = fs::read(file).map_err(|source| WorldError::Read {
+            path: path(),
+            source,
+        })?;
+        Course::from_json(&text).map_err(|source| WorldError::Course {
+            path: path(),
+            source,
+        })
+    }
+}

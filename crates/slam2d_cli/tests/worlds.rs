@@ -1,0 +1,63 @@
+//! Other matchers and other worlds on the command line.
+
+use std::fs;
+
+use crate::support::{assert_refused, json};
+
+/// A bare room of 6 m × 5 m with a pillar, and a way through it.
+const ROOM: &str = r#"{
+    "walls_m": [[0, 0, 6, 0], [6, 0, 6, 5], [6, 5, 0, 5], [0, 5, 0, 0], [2, 2, 2.4, 2], [2.4, 2, 2.4, 2.6]],
+    "start": {"x_m": 1, "y_m": 1, "heading_deg": 0},
+    "way_points_m": [[5, 1], [5, 4], [1, 4], [1, 1]]
+}"#;
+
+#[test]
+fn every_matcher_drives_the_lap_and_only_the_chapters_has_its_digest() {
+    let chapter = json(&["lap", "--json"]);
+    let point_to_point = json(&["lap", "--matcher", "p2p", "--json"]);
+    assert_eq!(chapter["digest"], point_to_point["digest"]);
+    for matcher in ["p2l", "ndt"] {
+        let lap = json(&["lap", "--matcher", matcher, "--json"]);
+        assert_ne!(lap["digest"], chapter["digest"]);
+        let ends =
+            ["keyframe_end_error", "odometry_end_error"].map(|end| lap[end].as_f64().unwrap());
+        assert!(ends[0] < 0.7 * ends[1], "{matcher}: {ends:?}");
+    }
+}
+
+#[test]
+fn the_ring_and_a_world_of_ones_own_are_driven() {
+    let on_the_ring = ["lap", "--world", "ring", "--matcher", "ndt", "--json"];
+    let ring = json(&on_the_ring);
+    assert!(ring["ticks"].as_u64().unwrap() > 150);
+    let ends = ["keyframe_end_error", "odometry_end_error"].map(|end| ring[end].as_f64().unwrap());
+    assert!(ends[0] < ends[1]);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("room.json");
+    fs::write(&path, ROOM).unwrap();
+    let room = json(&["lap", "--world", path.to_str().unwrap(), "--json"]);
+    assert!(room["keyframe_end_error"].as_f64().unwrap() < 0.8);
+    // Loops are closed there, so the information of the edges shows in χ².
+    let chapter = [&on_the_ring[..], &["--information", "chapter"]].concat();
+    assert_ne!(json(&chapter)["chi2"], ring["chi2"]);
+}
+
+#[test]
+fn a_world_that_cannot_be_driven_is_one_sentence() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text, part) in [
+        ("empty", "", "empty.json: "),
+        ("other", &ROOM.replace("start", "begin"), "other.json: "),
+        (
+            "bare",
+            &ROOM.replace("[[5, 1], [5, 4], [1, 4], [1, 1]]", "[]"),
+            "bare.json: ",
+        ),
+    ] {
+        let path = folder.path().join(format!("{name}.json"));
+        fs::write(&path, text).unwrap();
+        assert_refused(&["lap", "--world", path.to_str().unwrap()], part);
+    }
+    assert_refused(&["lap", "--world", "nowhere.json"], "nowhere.json");
+    assert_refused(&["lap", "--world", "moon"], "not apartment, ring or a file");
+}
