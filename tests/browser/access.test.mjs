@@ -241,6 +241,6 @@ describe('the focus ring', () => {
       await tab.evaluate(() => document.activeElement.blur());
       await h.quiet(tab);
       assert.equal(await look(), plain);
-    });
+    }, { options: { sees: true } });
   });
 });

@@ -40,7 +40,7 @@ describe('the chapter', () => {
         await h.ready(tab, widget(id));
         assert.ok((await h.painted(tab, widget(id))).share > 0.03, id);
       }
-    });
+    }, { sees: true });
   });
 
   it('lets its widgets be dragged, scrolled over and passed by Tab', async () => {

@@ -16,7 +16,18 @@ export const FROZEN_MS = 0;
 export const PATIENCE_MS = 5000;
 
 /** What each look at the clock takes: work that goes on until its time is up comes to an end. */
-export const LOOK_MS = 0.25;
+const LOOK_MS = 0.25;
+
+/** A slow display gets little work done in a frame: what no test waits for costs none of them much. */
+const LOOKS_OF_A_SLOW_FRAME = 300;
+
+/** While a test waits for all work to be done, looks take next to nothing: it is done in a frame or two. */
+export const QUICK_LOOK_MS = 0.01;
+
+/** What a look takes on a display with such frames. */
+export function lookMs(stepMs) {
+  return stepMs >= COARSE_MS ? stepMs / LOOKS_OF_A_SLOW_FRAME : LOOK_MS;
+}
 
 /**
  * Runs in every page before its own scripts. `frameClock` is what tests see of it.
@@ -24,7 +35,7 @@ export const LOOK_MS = 0.25;
  * It drives what the widgets ask for time: `performance.now`, the time of an animation frame, and
  * `setTimeout` with a delay. A delay of `patienceMs` or more passes only when a test skips it.
  */
-export function install({ stepMs, lookMs, patienceMs }) {
+export function install({ stepMs, lookMs, quickLookMs, patienceMs }) {
   // A tab that waits for its next test has nothing to do.
   if (location.href === 'about:blank') return;
   const nextFrame = window.requestAnimationFrame.bind(window);
@@ -32,6 +43,7 @@ export function install({ stepMs, lookMs, patienceMs }) {
   const timers = new Map();
   const watchers = new Set();
   let nowMs = 0;
+  let takesMs = lookMs;
   let skippedMs = 0;
   let asked = 0;
   let askedAt = { ms: 0, tick: 0 };
@@ -39,7 +51,7 @@ export function install({ stepMs, lookMs, patienceMs }) {
   // Far from the numbers that the browser gives.
   let lastTimer = 1e9;
 
-  performance.now = () => (nowMs += lookMs);
+  performance.now = () => (nowMs += takesMs);
   window.requestAnimationFrame = (callback) => {
     asked += 1;
     askedAt = { ms: nowMs, tick: ticks };
@@ -85,7 +97,9 @@ export function install({ stepMs, lookMs, patienceMs }) {
       const before = asked;
       const from = { ms: nowMs, tick: ticks };
       const since = (name, now) => now - Math.max(from[name], askedAt[name]);
+      takesMs = Math.min(lookMs, quickLookMs);
       await when(() => since('ms', nowMs) >= ms && since('tick', ticks) >= 3);
+      takesMs = lookMs;
       return asked - before;
     },
     /** Lets so much time pass at once, for those as well who are patient. */

@@ -9,7 +9,7 @@ const on = h.visitor();
 
 for (const name of names) {
   describe(name, () => {
-    const page = on.once(`<slam-widget name="${name}" theme="light"></slam-widget>`);
+    const page = on.once(`<slam-widget name="${name}" theme="light"></slam-widget>`, { options: { sees: true } });
 
     it('paints something other than background, in light and dark', async () => {
       const { tab } = page;

@@ -159,7 +159,7 @@ describe('contexts', () => {
       assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').heading), 77);
       assert.ok((await h.painted(tab)).share > 0.03);
       tab.troubles = tab.troubles.filter((text) => !text.includes('CONTEXT_LOST'));
-    });
+    }, { options: { sees: true } });
   });
 });
 
@@ -222,7 +222,7 @@ describe('looks', () => {
       await tab.evaluate(() => delete document.documentElement.dataset.theme);
       await tab.emulateMedia({ colorScheme: 'dark' });
       await turns(true);
-    });
+    }, { options: { sees: true } });
   });
 
   it('stay sharp at any pixel ratio', async () => {

@@ -47,7 +47,7 @@ it('paints, predicts, and saves picture and data under the strict policy', async
       const bytes = await h.bytesOf(download);
       assert.ok(bytes.length > 100 && bytes.toString('latin1').startsWith(start), `${name}: ${bytes.length} bytes`);
     }
-  }, { server: { policy: h.STRICT_POLICY } });
+  }, { server: { policy: h.STRICT_POLICY }, options: { sees: true } });
 });
 
 it('shows texts of the address and of attributes as text, never as HTML', async () => {
