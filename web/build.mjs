@@ -1,7 +1,8 @@
 // node web/build.mjs DIST PROFILE: from wasm-pack's output to the element and its files in DIST.
 //
 // 1. wraps the glue in a function, so that a page can hold an instance for each widget;
-// 2. runs the module here in Node: it writes its own schema and draws the static pictures;
+// 2. runs the module here in Node: it writes its own schema, says how high each widget is at each width,
+//    and draws the static pictures;
 // 3. bundles the element; wasm and bundle carry a hash of their content in their names, so that an
 //    old cached one is never paired with a new one;
 // 4. writes our licences and the notices of others' work;
@@ -15,6 +16,7 @@ import { gzipSync } from 'node:zlib';
 import * as esbuild from 'esbuild';
 
 import { writeParameterTables, writeTypes } from './generate.mjs';
+import { heightTable } from './heights.mjs';
 import { endWithOneSentence } from './licences/allowed.mjs';
 import { partsOfWidgets, writePackageNotices } from './licences/notices.mjs';
 import { writeMarked } from './marked.mjs';
@@ -35,6 +37,8 @@ const wasm = withoutNames(await readFile(join(PKG, 'slam_web_bg.wasm')));
 await wrapGlue();
 const glue = await instantiate(wasm);
 const schema = JSON.parse(glue.widgetSchemas());
+const finished = new Map(schema.map(({ id }) => [id, finish(id)]));
+for (const widget of schema) widget.heights = heightTable((width) => finished.get(widget.id).heightAt(width));
 await writeFile(join(PKG, 'schema.json'), JSON.stringify(schema));
 await writeTypes(schema, join(WEB, 'slam-widget.d.ts'));
 
@@ -62,6 +66,7 @@ async function wrapGlue() {
   text = replaceOnce(text, /arg0\.clearTimeout\(arg1\)/, 'frames.cancel(arg1)');
   // A browser whose pixel ratio is emulated reports device pixels that disagree with it.
   text = replaceOnce(text, /arg0\.devicePixelContentBoxSize/, 'frames.deviceSize(arg0)');
+  text = replaceOnce(text, /arg0\.devicePixelRatio/, 'frames.pixelRatio()');
   // Where the file lies is for the host to say; a bundled glue would guess wrong.
   text = replaceOnce(text, /module_or_path = script_src\.replace\([^;]*;/, '');
   const wrapped = `export function createGlue(frames) {\n${text}\nreturn wasm_bindgen;\n}\n`;
@@ -77,20 +82,25 @@ function replaceOnce(text, pattern, replacement) {
 
 async function instantiate(bytes) {
   const { createGlue } = await import(pathToFileURL(join(PKG, 'glue.js')).href);
-  const noFrames = { request: () => 0, cancel: () => {}, deviceSize: () => [] };
+  const noFrames = { request: () => 0, cancel: () => {}, deviceSize: () => [], pixelRatio: () => 1 };
   const made = createGlue(noFrames);
   made.initSync({ module: bytes });
   return made;
 }
 
-async function drawPictures(id) {
+/** A widget at its defaults, all work done. */
+function finish(id) {
   const widget = new glue.Widget(id);
   widget.finish();
+  return widget;
+}
+
+async function drawPictures(id) {
+  const widget = finished.get(id);
   for (const theme of ['light', 'dark']) {
     const svg = widget.picture(PICTURE_WIDTH_PX, theme);
     await writeFile(join(dist, 'pictures', `${id}-${theme}.svg`), svg);
   }
-  widget.free();
 }
 
 async function bundle() {

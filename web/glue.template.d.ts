@@ -6,6 +6,7 @@ export type Widget = wasm_bindgen.Widget;
 export interface FrameSource {
   request(callback: (time: number) => void): number;
   cancel(): void;
+  pixelRatio(): number;
   deviceSize(entry: ResizeObserverEntry): readonly ResizeObserverSize[];
 }
 

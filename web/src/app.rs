@@ -4,7 +4,7 @@ use std::any::Any;
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
-use egui::{Event, Pos2, RawInput, TouchPhase};
+use egui::{Event, Pos2, RawInput, Rect, TouchPhase, vec2};
 use kit::palette::{self, Theme};
 use kit::scene::Tone;
 use kit::shell::Shell;
@@ -64,6 +64,19 @@ pub fn apply_theme(ctx: &egui::Context, theme: Theme) {
         Theme::Light => egui::Theme::Light,
         Theme::Dark => egui::Theme::Dark,
     });
+}
+
+/// Lays a widget out without a canvas; returns the height it needs, in points.
+pub fn height_at(ctx: &egui::Context, shell: &mut Shell, width: f32) -> f32 {
+    let input = RawInput {
+        screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(width, 1e4))),
+        ..Default::default()
+    };
+    // egui knows the size of some things only once it has drawn them.
+    for _ in 0..2 {
+        let _ = ctx.run_ui(input.clone(), |ui| shell.ui(ui));
+    }
+    shell.content_height()
 }
 
 impl eframe::App for WidgetApp {

@@ -1,6 +1,6 @@
 //! What JavaScript sees: one object per widget, text and JSON in and out.
 
-use std::cell::{Cell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::rc::Rc;
 
 use kit::model::{Activity, Motion};
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
 
 use crate::app::{Shared, WidgetApp, apply_theme, web_options};
-use crate::{registry, schema, state};
+use crate::{app, registry, schema, state};
 
 /// The schema of every widget, a JSON array.
 #[wasm_bindgen(js_name = widgetSchemas)]
@@ -68,6 +68,8 @@ pub struct Widget {
     runner: eframe::WebRunner,
     /// The values that the host knows of.
     told: RefCell<Vec<f64>>,
+    /// Lays out what is not drawn.
+    measuring: OnceCell<egui::Context>,
 }
 
 #[wasm_bindgen]
@@ -92,6 +94,7 @@ impl Widget {
             shared: Rc::new(shared),
             runner: eframe::WebRunner::new(),
             told: RefCell::new(told),
+            measuring: OnceCell::new(),
         })
     }
 
@@ -298,6 +301,17 @@ impl Widget {
     #[wasm_bindgen(js_name = contentHeight)]
     pub fn content_height(&self) -> f32 {
         self.shared.shell.borrow().content_height()
+    }
+
+    /// The height that it would need at that width, both in CSS pixels; lays it out without a canvas.
+    #[wasm_bindgen(js_name = heightAt)]
+    pub fn height_at(&self, width_px: f32) -> f32 {
+        let ctx = self.measuring.get_or_init(|| {
+            let ctx = egui::Context::default();
+            crate::fonts::install(&ctx);
+            ctx
+        });
+        app::height_at(ctx, &mut self.shared.shell.borrow_mut(), width_px)
     }
 
     /// Whether another frame is wanted: something plays, moves or is still being computed.

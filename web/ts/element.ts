@@ -3,19 +3,20 @@
 // The element keeps the values and speaks with the page; what draws them comes and goes with the
 // place of the widget on the screen (life.ts).
 
+import { linkTo, readAddress } from './address';
 import { Controls } from './controls';
 import { listen, reveal, upgradeProperties } from './dom';
 import { takeAwayBar } from './export';
 import type { CsvFile, Outcome, Timeline } from './instance';
 import { Life, TakenAwayError, type LifeHost } from './life';
 import { LoadError } from './module';
-import { readQuery, withState } from './links';
 import { lookBar, type Way } from './look';
 import { News } from './news';
 import { Notes } from './notes';
 import { build, type Parts } from './parts';
 import { Pictures } from './pictures';
-import { findParam, findWidget, widgets, type WidgetSpec } from './schema';
+import { Place } from './place';
+import { findParam, findWidget, widgets } from './schema';
 import { State } from './state';
 import { themeOf, watchTheme, type Theme } from './theme';
 import { defaultText, shorten, type Value } from './values';
@@ -30,6 +31,7 @@ export class SlamWidget extends HTMLElement {
   readonly #notes: Notes;
   readonly #news: News;
   readonly #pictures: Pictures;
+  readonly #place: Place;
   readonly #life: Life;
   #state: State | undefined;
   #isSetUp = false;
@@ -43,6 +45,7 @@ export class SlamWidget extends HTMLElement {
     this.#notes = new Notes(this.#parts.note);
     this.#news = new News(this, this.#parts, this.#notes);
     this.#pictures = new Pictures(this.#parts.picture);
+    this.#place = new Place(this.#parts.stage);
     this.#life = new Life(this.#parts, this.#lifeHost());
   }
 
@@ -54,12 +57,16 @@ export class SlamWidget extends HTMLElement {
       watchTheme(this, () => this.#showTheme()),
       listen(window, 'error', () => this.#life.checkCrash()),
       listen(window, 'beforeprint', () => this.#drawPicture('light')),
-      listen(window, 'resize', () => this.#life.wake()),
+      listen(window, 'resize', () => this.#resized()),
       listen(document, 'visibilitychange', () => this.#life.wake()),
+      // What the reader turns to comes first where not all can draw.
+      listen(this, 'pointerenter', () => this.#life.askAgain()),
+      listen(this, 'focusin', () => this.#life.askAgain()),
     ];
     if (reducedMotion !== undefined) {
       this.#unwatch.push(listen(reducedMotion, 'change', () => this.#showMotion()));
     }
+    this.#place.fit();
     watchVisibility(this, this.#life);
   }
 
@@ -158,10 +165,7 @@ export class SlamWidget extends HTMLElement {
 
   /** The page, where it takes the state from its address; else the widget on a page of its own. */
   get link(): string {
-    const isLinked = this.hasAttribute('linked');
-    const link = new URL(isLinked ? location.href : new URL('embed.html', import.meta.url));
-    link.search = this.#stateIn(link.search);
-    return link.href;
+    return linkTo(this, this.#state?.spec, this.query);
   }
 
   /** Every plot and table as CSV. */
@@ -236,6 +240,7 @@ export class SlamWidget extends HTMLElement {
     this.#lastOutcome = undefined;
     this.#notes.clear();
     this.#pictures.clear(spec?.summary ?? '');
+    this.#place.reserve(spec?.heights ?? []);
     parts.bar.replaceChildren();
     if (spec === undefined) {
       const known = widgets.map((widget) => widget.id).join(', ');
@@ -256,27 +261,18 @@ export class SlamWidget extends HTMLElement {
       const text = this.getAttribute(param.id);
       if (text !== null) this.#tryToSet(param.id, text);
     }
-    if (this.hasAttribute('linked')) this.#readAddress(spec);
+    if (this.hasAttribute('linked')) {
+      readAddress(this, spec, {
+        set: (id, text) => this.#tryToSet(id, text),
+        wrong: (kind, problem) => this.#news.wrong(kind, problem),
+      });
+    }
     this.#controls.show(this.#state?.texts ?? []);
   }
 
   /** A reader who pressed a button of an element that then left its page is not there to be told. */
   #pressFailed(error: unknown): void {
     if (!(error instanceof TakenAwayError)) this.#life.fail(error);
-  }
-
-  #readAddress(spec: WidgetSpec): void {
-    const linked = readQuery(location.search);
-    if (linked === undefined) return;
-    if (!('widget' in linked)) {
-      // One of them speaks for all.
-      if (document.querySelector('slam-widget[linked]') !== this) return;
-      for (const problem of linked.problems) this.#news.wrong('name', problem);
-      return;
-    }
-    if (linked.widget !== spec) return;
-    for (const [id, text] of linked.values) this.#tryToSet(id, text);
-    for (const problem of linked.problems) this.#news.wrong('value', problem);
   }
 
   // ---- running ------------------------------------------------------------------------------
@@ -303,8 +299,12 @@ export class SlamWidget extends HTMLElement {
         this.#pictures.handOut(canvas);
         this.#sync();
       },
-      leaving: () => this.#drawPicture(themeOf(this)),
+      leaving: () => {
+        this.#drawPicture(themeOf(this));
+        this.#place.keep();
+      },
       failed: (error) => {
+        this.#place.free();
         this.#pictures.refuse(error);
         this.#news.failed(error, () => this.#life.restart());
       },
@@ -368,11 +368,6 @@ export class SlamWidget extends HTMLElement {
     return problem;
   }
 
-  /** A query of the page with the widget's state in place of the old one. */
-  #stateIn(search: string): string {
-    return this.#state === undefined ? search : withState(search, this.#state.spec, this.query);
-  }
-
   // ---- looks --------------------------------------------------------------------------------
 
   #showTheme(): void {
@@ -382,6 +377,11 @@ export class SlamWidget extends HTMLElement {
     this.#life.wake();
     const spec = this.#state?.spec;
     if (!this.#life.hasInstance && spec !== undefined) this.#pictures.showStart(spec.id, theme);
+  }
+
+  #resized(): void {
+    this.#place.fit();
+    this.#life.wake();
   }
 
   #showMotion(): void {

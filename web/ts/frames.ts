@@ -8,7 +8,12 @@ const SETTLE_MS = 900;
 /** So many frames follow an event however slow they are: one to take it in, two to settle. */
 const SETTLE_FRAMES = 3;
 
+/** Pixels along a side of a canvas at most: browsers cut a longer one, and what is cut stays blank. */
+const MOST_PIXELS = 8192;
+
 export class FrameGate {
+  /** What is drawn on. */
+  canvas: HTMLCanvasElement | undefined;
   /** Called after each frame that ran; says whether another one is wanted at once. */
   afterFrame: () => boolean = () => false;
   /** Called where a frame throws, which only a panic does. */
@@ -36,13 +41,19 @@ export class FrameGate {
     this.#unschedule();
   }
 
+  /** The glue calls this in place of `window.devicePixelRatio`. A very long widget is drawn coarser. */
+  pixelRatio(): number {
+    const longest = Math.max(this.canvas?.clientWidth ?? 0, this.canvas?.clientHeight ?? 0, 1);
+    return Math.min(window.devicePixelRatio, MOST_PIXELS / longest);
+  }
+
   /** The glue calls this in place of `entry.devicePixelContentBoxSize`. */
   deviceSize(entry: ResizeObserverEntry): readonly ResizeObserverSize[] {
-    const ratio = window.devicePixelRatio;
+    const ratio = this.pixelRatio();
     const { width, height } = entry.contentRect;
     const [exact] = entry.devicePixelContentBoxSize;
     // The exact size differs from the rounded one by less than a pixel, but under an emulated
-    // ratio by far.
+    // ratio, or one that is held down, by far.
     if (exact !== undefined && Math.abs(exact.inlineSize - width * ratio) < 2) return [exact];
     const [inlineSize, blockSize] = [width * ratio, height * ratio].map(Math.round);
     // The glue asks for an instance of the class, which has no constructor.

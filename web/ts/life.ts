@@ -4,21 +4,27 @@
 // path: after scrolling back, after a panic, after a lost context. The host keeps the values.
 
 import type { Widget } from '../pkg/glue.js';
+import { claim, lookAgain, release, type Drawer } from './contexts';
 import { CrashError, Instance } from './instance';
 import { LoadError } from './module';
 import type { Parts } from './parts';
 import { Stage } from './stage';
 import type { Visibility } from './visibility';
 
-/** Live contexts at most; browsers drop the oldest beyond sixteen. */
-const MAX_RUNNING = 8;
-
-const running = new Set<Life>();
+/** So often a browser may take a context away before the first frame stands. */
+const MOST_LOSSES = 3;
 
 /** The element left its page, and nobody waits for its widget any more. */
 export class TakenAwayError extends LoadError {
   constructor() {
     super('the widget was taken away while it loaded');
+  }
+}
+
+/** The browser took the context away: the fault is neither the page's nor the widget's. */
+class LostError extends LoadError {
+  constructor() {
+    super('the browser takes its drawing surface away again and again');
   }
 }
 
@@ -39,12 +45,15 @@ export interface LifeHost {
   failed(error: Error): void;
 }
 
-export class Life implements Visibility {
+export class Life implements Visibility, Drawer {
   readonly #parts: Parts;
   readonly #host: LifeHost;
   #instance: Instance | undefined;
   #creating: Promise<Instance> | undefined;
+  /** The canvas, from before its first frame on. */
   #stage: Stage | undefined;
+  /** Contexts that were lost since the last frame that stood. */
+  #losses = 0;
   #isNear = false;
   #isFar = false;
   #isInView = false;
@@ -107,11 +116,31 @@ export class Life implements Visibility {
   inView(isInView: boolean): void {
     this.#isInView = isInView;
     this.#openOrClose();
+    lookAgain();
+  }
+
+  get distance(): number {
+    const { frame } = this.#parts;
+    if (frame.matches(':hover, :focus-within')) return 0;
+    const { top, bottom } = frame.getBoundingClientRect();
+    const middle = window.innerHeight / 2;
+    const isInView = bottom > 0 && top < window.innerHeight;
+    // Half a widget that is seen counts more than a whole one beyond the edge.
+    return Math.max(top - middle, middle - bottom, 0) + (isInView ? 1 : 2 * window.innerHeight);
+  }
+
+  yield(): void {
+    this.#end();
+  }
+
+  askAgain(): void {
+    if (this.#isNear) void this.#run();
   }
 
   /** Starts anew where the widget is near the screen; a failure is forgotten. */
   restart(): void {
     this.#hasFailed = false;
+    this.#losses = 0;
     if (this.#isNear) void this.#run();
   }
 
@@ -122,21 +151,20 @@ export class Life implements Visibility {
     this.suspend();
   }
 
-  /** Draws; does nothing where it draws already, or failed. */
+  /** Draws; does nothing where it draws already, has to wait for others, or failed. */
   async #run(): Promise<void> {
     const { stage } = this.#parts;
     const widget = this.#host.widget();
     if (this.isRunning || this.#hasFailed || widget === undefined) return;
-    if (stage.classList.contains('waiting')) return;
+    if (stage.classList.contains('waiting') || !claim(this)) return;
     const generation = this.#generation;
     try {
       stage.classList.add('waiting');
       const instance = await this.ensureInstance();
       if (generation !== this.#generation) return;
-      makeRoom(this);
-      const started = await Stage.start(stage, instance, widget.title, () => this.#replace());
-      if (generation !== this.#generation) started.dispose();
-      else this.#begin(instance, started);
+      this.#stage = new Stage(stage, instance, widget.title, () => this.fail(new LostError()));
+      await this.#stage.start();
+      if (generation === this.#generation) this.#begin(instance, this.#stage);
     } catch (error) {
       if (generation === this.#generation) this.fail(error);
     }
@@ -144,9 +172,13 @@ export class Life implements Visibility {
 
   /** Gives context and memory back. */
   suspend(): void {
+    this.#end();
+    release(this);
+  }
+
+  #end(): void {
     this.#generation += 1;
-    running.delete(this);
-    if (this.#stage !== undefined) this.#host.leaving();
+    if (this.#parts.stage.classList.contains('live')) this.#host.leaving();
     this.#stage?.dispose();
     this.#stage = undefined;
     this.#instance?.dispose();
@@ -168,9 +200,18 @@ export class Life implements Visibility {
     if (crash !== undefined) this.fail(crash);
   }
 
-  /** Ends everything and tells the host, once. */
+  /** Ends everything and tells the host, once; what fails for want of a context begins anew. */
   fail(error: unknown): void {
     if (this.#hasFailed) return;
+    if (this.#stage?.isLost === true) {
+      this.#losses += 1;
+      if (this.#losses <= MOST_LOSSES) {
+        this.#end();
+        if (this.#isNear) void this.#run();
+        return;
+      }
+      error = new LostError();
+    }
     this.#hasFailed = true;
     if (error instanceof CrashError) {
       // A crashed instance cannot draw its picture any more, nor free its memory.
@@ -200,7 +241,6 @@ export class Life implements Visibility {
 
   #begin(instance: Instance, stage: Stage): void {
     const startedAt = performance.now();
-    this.#stage = stage;
     instance.frames.afterFrame = () => this.#afterFrame(instance, stage, startedAt);
     instance.frames.onCrash = (error) => this.fail(instance.crash() ?? error);
     instance.frames.open();
@@ -212,16 +252,11 @@ export class Life implements Visibility {
     else if (this.#isFar) this.suspend();
   }
 
-  /** The context was lost: everything anew. */
-  #replace(): void {
-    this.suspend();
-    if (this.#isNear) void this.#run();
-  }
-
   #openOrClose(): void {
-    if (this.#stage === undefined) return;
+    // Before its first frame stands it draws wherever it is.
+    if (!this.#parts.stage.classList.contains('live')) return;
     if (this.#isInView) this.#instance?.frames.open();
-    else if (this.#parts.stage.classList.contains('live')) this.#instance?.frames.close();
+    else this.#instance?.frames.close();
   }
 
   /** Says whether another frame is wanted. */
@@ -240,20 +275,8 @@ export class Life implements Visibility {
   #showLive(startedAt: number): void {
     this.#parts.progress.hidden = true;
     this.#parts.stage.classList.replace('waiting', 'live');
-    running.add(this);
+    this.#losses = 0;
     this.#openOrClose();
     this.#host.live(performance.now() - startedAt);
   }
-
-  /** Whether any of it can be seen. */
-  get isOnScreen(): boolean {
-    const box = this.#parts.frame.getBoundingClientRect();
-    return box.bottom > 0 && box.top < window.innerHeight;
-  }
-}
-
-/** Suspends widgets out of view while too many run. */
-function makeRoom(newcomer: Life): void {
-  const resting = [...running].filter((life) => life !== newcomer && !life.isOnScreen);
-  while (running.size >= MAX_RUNNING && resting.length > 0) resting.shift()?.suspend();
 }

@@ -2,6 +2,7 @@
 // Without script the link opens the page with that state; with it the widget on the page takes it.
 
 import { SlamWidget } from './element';
+import { keepInView } from './follow';
 import { readQuery } from './links';
 import { defaultText } from './values';
 
@@ -35,7 +36,7 @@ function showAddressed(): void {
   const linked = readQuery(location.search);
   if (linked === undefined || !('widget' in linked) || location.hash !== '') return;
   const widget = widgetNamed(linked.widget.id);
-  if (widget?.hasAttribute('linked') === true) bringIntoView(widget);
+  if (widget?.hasAttribute('linked') === true) keepInView(widget);
 }
 
 function widgetNamed(name: string): SlamWidget | undefined {
@@ -48,6 +49,5 @@ function bringIntoView(widget: SlamWidget): void {
   const { top, bottom } = widget.getBoundingClientRect();
   const visible = Math.min(bottom, innerHeight) - Math.max(top, 0);
   if (visible >= Math.min(bottom - top, innerHeight) / 2) return;
-  const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
-  widget.scrollIntoView({ behavior: calm ? 'auto' : 'smooth', block: 'start' });
+  keepInView(widget);
 }

@@ -1,6 +1,7 @@
 // What the widgets say of themselves, written by the core's own code at build time.
 
 import schemas from '../pkg/schema.json';
+import type { Heights } from './place';
 
 export interface OptionSpec {
   id: string;
@@ -36,9 +37,11 @@ export interface WidgetSpec {
   buttons: ButtonSpec[];
   presets: ButtonSpec[];
   summary: string;
+  heights: Heights;
 }
 
-export const widgets = schemas as WidgetSpec[];
+/** The import knows no pairs, only arrays. */
+export const widgets = schemas as unknown as WidgetSpec[];
 
 export function findWidget(name: string): WidgetSpec | undefined {
   return widgets.find((widget) => widget.id === name);

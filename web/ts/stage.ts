@@ -10,52 +10,55 @@ export class Stage {
   readonly #instance: Instance;
   readonly #listening = new AbortController();
 
-  private constructor(element: HTMLElement, canvas: HTMLCanvasElement, instance: Instance) {
+  readonly #context: WebGL2RenderingContext;
+
+  /** Puts the canvas on the page; throws a LoadError where the browser cannot draw. */
+  constructor(element: HTMLElement, instance: Instance, label: string, onContextLost: () => void) {
     this.#element = element;
-    this.canvas = canvas;
     this.#instance = instance;
+    this.canvas = document.createElement('canvas');
+    // A canvas has one context: eframe gets this one.
+    const context = this.canvas.getContext('webgl2');
+    if (context === null) throw new LoadError('this browser draws no WebGL 2');
+    this.#context = context;
+    this.canvas.setAttribute('role', 'img');
+    this.canvas.setAttribute('aria-label', label);
+    this.canvas.style.height = `${Math.max(element.clientHeight, 1)}px`;
+    element.append(this.canvas);
+    instance.frames.canvas = this.canvas;
+    this.#listen(onContextLost);
   }
 
-  static async start(
-    element: HTMLElement,
-    instance: Instance,
-    label: string,
-    onContextLost: () => void,
-  ): Promise<Stage> {
-    const canvas = document.createElement('canvas');
-    // A canvas has one context: eframe gets this one.
-    if (canvas.getContext('webgl2') === null) throw new LoadError('this browser draws no WebGL 2');
-    canvas.setAttribute('role', 'img');
-    canvas.setAttribute('aria-label', label);
-    canvas.style.height = `${Math.max(element.clientHeight, 1)}px`;
-    element.append(canvas);
-    const stage = new Stage(element, canvas, instance);
-    stage.#listen(onContextLost);
+  /** Whether the browser has taken the context away. */
+  get isLost(): boolean {
+    return this.#context.isContextLost();
+  }
+
+  /** Runs the instance on the canvas. */
+  async start(): Promise<void> {
+    const element = this.#element;
     // eframe focuses its text field as it starts. What is inert cannot be focused.
     element.inert = true;
     try {
-      await instance.start(canvas);
-    } catch (error) {
-      stage.dispose();
-      throw error;
+      await this.#instance.start(this.canvas);
     } finally {
       element.inert = false;
     }
     // The Tab key stops at the native controls, never in here.
-    canvas.tabIndex = -1;
+    this.canvas.tabIndex = -1;
     for (const agent of element.querySelectorAll('input')) {
       agent.tabIndex = -1;
       agent.setAttribute('aria-hidden', 'true');
     }
-    return stage;
   }
 
   /** Takes the canvas away and gives the context back at once, without waiting for the collector. */
   dispose(): void {
     this.#listening.abort();
-    const context = this.canvas.getContext('webgl2');
-    context?.getExtension('WEBGL_lose_context')?.loseContext();
+    this.#context.getExtension('WEBGL_lose_context')?.loseContext();
     this.canvas.remove();
+    // A start that panicked never ends, and leaves what it had begun.
+    this.#element.inert = false;
     for (const agent of this.#element.querySelectorAll('input')) agent.remove();
   }
 

@@ -8,9 +8,10 @@ export const STYLE = `
   border: 1px solid var(--line); border-radius: 6px; outline: none; }
 .frame.dark { --paper: #14181f; --ink: #e5e7eb; --soft: #b6bdc9; --line: #374151; --accent: #93c5fd;
   color-scheme: dark; }
-.stage { position: relative; overflow: hidden; border-radius: 6px 6px 0 0; min-height: 12rem; }
-.stage.live { min-height: 0; }
+.stage { position: relative; overflow: hidden; border-radius: 6px 6px 0 0; min-height: 12rem; height: var(--place); }
+.stage.live { min-height: 0; height: auto; }
 .picture { display: block; width: 100%; height: auto; }
+.stage[style*='--place'] .picture { height: 100%; object-fit: contain; object-position: top; }
 canvas { display: block; width: 100%; touch-action: pan-y pinch-zoom; outline: none; }
 .stage.waiting canvas { position: absolute; inset: 0; visibility: hidden; }
 .stage.live .picture { display: none; }
@@ -40,6 +41,7 @@ input[type='checkbox'] { width: 1.5rem; height: 1.5rem; accent-color: var(--acce
 .status { color: var(--soft); }
 @media print {
   .bar, progress, .note { display: none; }
+  .stage, .stage .picture { height: auto !important; }
   .stage canvas { display: none; }
   .stage .picture, .stage.live .picture { display: block; }
   .frame { --paper: #fff; --ink: #1f2937; border-color: #999; break-inside: avoid; }

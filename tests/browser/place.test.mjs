@@ -1,0 +1,74 @@
+// The place of a widget on its page: a link opens there, and the text around it stays where it is.
+
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import * as h from './harness.mjs';
+
+const visit = h.visitor();
+const chapter = (path, test, how) => visit('', test, { path, ...how });
+const named = (id) => `slam-widget[name="${id}"]`;
+
+/** Runs in the page before its scripts: keeps every height that a widget has had. */
+function keepHeights() {
+  window.heights = {};
+  addEventListener('DOMContentLoaded', () => {
+    const observer = new ResizeObserver((entries) => {
+      for (const { target } of entries) (heights[target.getAttribute('name')] ??= []).push(target.offsetHeight);
+    });
+    // Before that it is a still picture in the page.
+    void customElements.whenDefined('slam-widget').then(() => {
+      for (const widget of document.querySelectorAll('slam-widget')) observer.observe(widget);
+    });
+  });
+}
+const head = `<script>(${keepHeights})()</script>`;
+
+describe('a link to a state', () => {
+  for (const { id } of h.schema) {
+    it(`opens the page at ${id}, however much the page grows meanwhile`, async () => {
+      await chapter(`/index.html?w=${id.slice(1)}`, async (tab) => {
+        await h.ready(tab, named(id));
+        // Whatever is taller than the screen begins at its top.
+        await tab.waitForFunction((css) => {
+          const { top } = document.querySelector(css).getBoundingClientRect();
+          return top >= 0 && top < 100;
+        }, named(id));
+      });
+    });
+  }
+
+  it('lets go of the page once the reader scrolls', async () => {
+    await chapter('/index.html?w=16.3', async (tab) => {
+      await h.ready(tab, named('w16.3'));
+      await tab.mouse.move(5, 5);
+      await tab.mouse.wheel(0, -600);
+      const top = () => tab.evaluate((css) => document.querySelector(css).getBoundingClientRect().top, named('w16.3'));
+      await tab.waitForFunction((css) => document.querySelector(css).getBoundingClientRect().top > 500, named('w16.3'));
+      // Grows above what is read: the browser keeps the text in place, and nothing pulls it back.
+      await tab.evaluate(() => document.querySelector('main').style.setProperty('padding-bottom', '900px'));
+      await h.quiet(tab);
+      assert.ok((await top()) > 500);
+    });
+  });
+});
+
+/** Where lines break depends a little on the pixels: those of a common screen. */
+const deviceScaleFactor = 1;
+
+describe('a widget', () => {
+  for (const width of [1100, 390]) {
+    it(`is as high before it starts, while it draws, and while it rests, ${width} px wide`, async () => {
+      for (const { id } of h.schema) {
+        const body = `${head}<slam-widget name="${id}"></slam-widget><div style="height: 30000px"></div>`;
+        await visit(body, async (tab) => {
+          await h.ready(tab);
+          await tab.evaluate(() => scrollTo(0, document.body.scrollHeight));
+          await tab.waitForFunction(() => document.querySelector('slam-widget').state === 'resting');
+          const heights = await tab.evaluate((name) => window.heights[name], id);
+          const spread = Math.max(...heights) - Math.min(...heights);
+          assert.ok(heights[0] > 500 && spread <= 17, `${id} was ${heights.join(', ')} px high`);
+        }, { options: { deviceScaleFactor, viewport: { width, height: 800 } } });
+      }
+    });
+  }
+});
