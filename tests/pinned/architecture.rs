@@ -35,8 +35,8 @@ const CORE: [&str; 6] = [
 ];
 
 /// The half of the kit that a model may use.
-const KIT_WITHOUT_EGUI: [&str; 7] = [
-    "chart", "model", "palette", "param", "playback", "scene", "spec",
+const KIT_WITHOUT_EGUI: [&str; 9] = [
+    "chart", "model", "palette", "param", "playback", "run", "scene", "spec", "ticks",
 ];
 
 /// Functions of `f64` whose last bit depends on the platform.

@@ -3,7 +3,7 @@
 use std::cell::{Cell, OnceCell, RefCell};
 use std::rc::Rc;
 
-use kit::model::{Activity, Motion};
+use kit::model::{Activity, Motion, read_text};
 use kit::palette::Theme;
 use kit::param::{ParamError, ParamSpec};
 use kit::shell::Shell;
@@ -161,8 +161,7 @@ impl Widget {
     /// # Errors
     /// A sentence that names what would be right; the old value stands.
     pub fn set(&self, id: &str, text: &str) -> Result<(), JsError> {
-        let (spec, _) = self.find(id)?;
-        let value = spec.parse(text)?;
+        let value = read_text(self.shared.shell.borrow().model(), id, text)?;
         self.shared.shell.borrow_mut().model_mut().set(id, value)?;
         self.shared.request_repaint();
         Ok(())
@@ -351,21 +350,8 @@ impl Widget {
 
     fn find(&self, id: &str) -> Result<(&'static ParamSpec, f64), ParamError> {
         let shell = self.shared.shell.borrow();
-        let spec = shell.model().spec();
-        shell
-            .model()
-            .values()
-            .find(id)
-            .ok_or_else(|| ParamError::UnknownParam {
-                widget: spec.id,
-                id: id.to_owned(),
-                known: spec
-                    .params
-                    .iter()
-                    .map(|param| param.id)
-                    .collect::<Vec<_>>()
-                    .join(", "),
-            })
+        let model = shell.model();
+        model.values().find_for(model.spec().id, id)
     }
 }
 

@@ -1,13 +1,13 @@
 //! What the widgets share.
 //!
 //! The half without egui is what a widget's `model.rs` speaks: [`param`], [`spec`], [`model`],
-//! [`scene`], [`chart`], [`playback`], [`run`], [`palette`]. Nothing in it may use the other half: the models are
-//! tested headless.
+//! [`scene`], [`chart`], [`playback`], [`run`], [`ticks`], [`palette`]. Nothing in
+//! it may use the other half: the models are tested headless.
 //!
-//! The other half draws. [`draw`] puts a scene on any [`surface::Surface`], of which there are
-//! two, [`egui_surface`] for the live picture and [`svg`] for the static one. [`shell`] adds the
-//! words, the [`controls`], the [`transport`] bar and the [`readout`], and handles the
-//! [`pointer`]; [`desktop`] opens it as a window.
+//! The other half draws, and is compiled with the feature `view`. [`draw`] puts a scene on any
+//! [`surface::Surface`], of which there are two, [`egui_surface`] for the live picture and [`svg`]
+//! for the static one. [`shell`] adds the words, the [`controls`], the [`transport`] bar and the
+//! [`readout`], and handles the [`pointer`]; [`desktop`] opens it as a window.
 
 pub mod chart;
 pub mod model;
@@ -17,25 +17,42 @@ pub mod playback;
 pub mod run;
 pub mod scene;
 pub mod spec;
-
-pub mod audit;
-pub mod draw;
-pub mod layout;
-pub mod picture;
-pub mod surface;
-pub mod svg;
 pub mod ticks;
+
+#[cfg(feature = "view")]
+pub mod audit;
+#[cfg(feature = "view")]
+pub mod draw;
+#[cfg(feature = "view")]
+pub mod layout;
+#[cfg(feature = "view")]
+pub mod picture;
+#[cfg(feature = "view")]
+pub mod surface;
+#[cfg(feature = "view")]
+pub mod svg;
+#[cfg(feature = "view")]
 pub mod transform;
+#[cfg(feature = "view")]
 pub mod view;
+#[cfg(feature = "view")]
 pub mod zoom;
 
+#[cfg(feature = "view")]
 pub mod controls;
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(all(feature = "view", not(target_arch = "wasm32")))]
 pub mod desktop;
+#[cfg(feature = "view")]
 pub mod egui_surface;
+#[cfg(feature = "view")]
 pub mod hot;
+#[cfg(feature = "view")]
 pub mod pointer;
+#[cfg(feature = "view")]
 pub mod readout;
+#[cfg(feature = "view")]
 pub mod shell;
+#[cfg(feature = "view")]
 pub mod style;
+#[cfg(feature = "view")]
 pub mod transport;

@@ -1,6 +1,6 @@
 //! What every widget's `model.rs` implements: state in, scene out, no egui, no clock.
 
-use crate::param::{ParamError, Values};
+use crate::param::{ParamError, Values, printable};
 use crate::scene::Scene;
 use crate::spec::{Preset, WidgetSpec};
 
@@ -236,6 +236,15 @@ pub enum TablePlace {
     ExportOnly,
 }
 
+/// The value that a link, an attribute or a message gives for a parameter, checked for [`Model::set`].
+///
+/// # Errors
+/// A sentence that names what would be right.
+pub fn read_text(model: &dyn Model, id: &str, text: &str) -> Result<f64, ParamError> {
+    let (param, _) = model.values().find_for(model.spec().id, id)?;
+    param.parse(text)
+}
+
 /// Puts a model into the state that a preset names.
 ///
 /// # Errors
@@ -271,7 +280,7 @@ pub fn unknown_button(spec: &WidgetSpec, id: &str) -> ParamError {
     let known: Vec<_> = buttons.chain(presets).collect();
     ParamError::UnknownButton {
         widget: spec.id,
-        id: id.to_owned(),
+        id: printable(id),
         known: known.join(", "),
     }
 }

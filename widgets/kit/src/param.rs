@@ -104,7 +104,7 @@ pub enum ParamError {
     Unreadable {
         /// Parameter.
         id: &'static str,
-        /// Text that was given.
+        /// Text that was given, fit to be shown.
         text: String,
         /// What would have been right.
         expected: String,
@@ -200,7 +200,7 @@ impl ParamSpec {
         let text = text.trim();
         let unreadable = |expected: String| ParamError::Unreadable {
             id: self.id,
-            text: text.to_owned(),
+            text: printable(text),
             expected,
         };
         match self.kind {
@@ -257,6 +257,27 @@ impl Values {
         Some((&self.specs[index], self.values[index]))
     }
 
+    /// The parameter of that name with its value, or words that name what there is.
+    ///
+    /// # Errors
+    /// [`ParamError::UnknownParam`].
+    pub fn find_for(
+        &self,
+        widget: &'static str,
+        id: &str,
+    ) -> Result<(&'static ParamSpec, f64), ParamError> {
+        self.find(id).ok_or_else(|| self.unknown(widget, id))
+    }
+
+    fn unknown(&self, widget: &'static str, id: &str) -> ParamError {
+        let known: Vec<_> = self.specs.iter().map(|spec| spec.id).collect();
+        ParamError::UnknownParam {
+            widget,
+            id: printable(id),
+            known: known.join(", "),
+        }
+    }
+
     /// The value of a parameter that the widget itself declares.
     ///
     /// # Panics
@@ -280,12 +301,7 @@ impl Values {
         value: f64,
     ) -> Result<Changed, ParamError> {
         let Some(index) = self.specs.iter().position(|spec| spec.id == id) else {
-            let known: Vec<_> = self.specs.iter().map(|spec| spec.id).collect();
-            return Err(ParamError::UnknownParam {
-                widget,
-                id: id.to_owned(),
-                known: known.join(", "),
-            });
+            return Err(self.unknown(widget, id));
         };
         let value = self.specs[index].check(value)?;
         if value.to_bits() == self.values[index].to_bits() {
@@ -299,6 +315,35 @@ impl Values {
     pub fn iter(&self) -> impl Iterator<Item = (&'static ParamSpec, f64)> {
         self.specs.iter().zip(self.values.iter().copied())
     }
+}
+
+/// Most characters of a text from outside that a message repeats.
+const MAX_REPEATED: usize = 60;
+
+/// A text from outside as a message repeats it: without control characters, and not for ever.
+#[must_use]
+pub fn printable(text: &str) -> String {
+    let mut shown = String::new();
+    let mut room = MAX_REPEATED;
+    for character in text.chars() {
+        let escaped = character.escape_debug();
+        let length = if character.is_control() {
+            escaped.len()
+        } else {
+            1
+        };
+        if length > room {
+            shown.push('…');
+            break;
+        }
+        room -= length;
+        if character.is_control() {
+            shown.extend(escaped);
+        } else {
+            shown.push(character);
+        }
+    }
+    shown
 }
 
 /// Whether a call changed anything.
@@ -370,10 +415,21 @@ mod tests {
             "w has no parameter `headin`; it has heading, variant"
         );
         assert_eq!(values, Values::defaults(SPECS));
+        let error = values.find_for("w", "headin").unwrap_err();
+        assert!(error.to_string().starts_with("w has no parameter `headin`"));
         let error = SPECS[1].parse("plane").unwrap_err();
         assert_eq!(
             error.to_string(),
             "`variant` takes point-to-point or point-to-plane, not `plane`"
         );
+    }
+
+    #[test]
+    fn what_a_message_repeats_has_no_control_characters_and_ends() {
+        assert_eq!(printable("point-to-plane"), "point-to-plane");
+        assert_eq!(printable("a\u{1b}[2Jb"), "a\\u{1b}[2Jb");
+        assert_eq!(printable(&"é".repeat(61)), format!("{}…", "é".repeat(60)));
+        let escaped = printable(&"\u{1b}".repeat(61));
+        assert_eq!(escaped, format!("{}…", "\\u{1b}".repeat(10)));
     }
 }

@@ -5,9 +5,11 @@
 
 pub mod model;
 pub mod spec;
+#[cfg(feature = "view")]
 pub mod view;
 
 /// The widget, ready to be shown.
+#[cfg(feature = "view")]
 #[must_use]
 pub fn widget() -> kit::shell::Shell {
     kit::shell::Shell::new(

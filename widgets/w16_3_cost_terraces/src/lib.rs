@@ -4,11 +4,14 @@
 
 pub mod model;
 pub mod spec;
+#[cfg(feature = "view")]
 pub mod view;
 
+#[cfg(feature = "view")]
 use kit::shell::Shell;
 
 /// The widget, ready to be drawn.
+#[cfg(feature = "view")]
 #[must_use]
 pub fn widget() -> Shell {
     Shell::new(
