@@ -8,6 +8,7 @@
 //! All maps answer through [`NearestMap`], so registration does not care which one it is given.
 
 mod cell_table;
+mod csv;
 mod dense_map;
 mod nearest;
 mod nearest_table;
@@ -15,6 +16,7 @@ mod normals;
 mod point_cloud;
 mod voxel_map;
 
+pub use csv::CsvError;
 pub use dense_map::DenseMap;
 pub use nearest::{Memory, NearestMap, Neighbor};
 pub use nearest_table::NearestTable;

@@ -3,11 +3,11 @@
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
-use ch16_slam2d::cloud::{DenseMap, PointCloud};
+use ch16_slam2d::cloud::{CsvError, DenseMap, PointCloud};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace, StopReason};
 use clap::{Args, ValueEnum};
 use measuring::timed;
-use pr_geom::{Point2, SE2, Vector2};
+use pr_geom::SE2;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -62,19 +62,13 @@ pub enum RegisterFailure {
         /// What the system says.
         source: std::io::Error,
     },
-    /// A line is not a point.
-    #[error("{}: line {line}: expected x,y or x,y,nx,ny as finite numbers", path.display())]
-    Line {
+    /// It holds no cloud.
+    #[error("{}: {source}", path.display())]
+    Cloud {
         /// Which file.
         path: PathBuf,
-        /// Which line, counted from 1.
-        line: usize,
-    },
-    /// It has no points.
-    #[error("{}: no points", path.display())]
-    Empty {
-        /// Which file.
-        path: PathBuf,
+        /// What is wrong, and in which line.
+        source: CsvError,
     },
 }
 
@@ -179,56 +173,12 @@ fn fastest_us(repeat: NonZeroU32, mut call: impl FnMut()) -> f64 {
 }
 
 fn read_points(path: &Path) -> Result<PointCloud, RegisterFailure> {
-    let text = std::fs::read_to_string(path).map_err(|source| RegisterFailure::File {
+    let text = std::fs::read(path).map_err(|source| RegisterFailure::File {
         path: path.to_owned(),
         source,
     })?;
-    let mut cloud = PointCloud::default();
-    let lines = text.lines().enumerate();
-    for (index, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
-        let (point, normal) = parse_point(line).ok_or_else(|| RegisterFailure::Line {
-            path: path.to_owned(),
-            line: index + 1,
-        })?;
-        cloud.push_with_normal(point, normal);
-    }
-    if cloud.is_empty() {
-        return Err(RegisterFailure::Empty {
-            path: path.to_owned(),
-        });
-    }
-    Ok(cloud)
-}
-
-/// `x,y` or `x,y,nx,ny`; a normal of (0, 0) is none, any other is scaled to length 1.
-fn parse_point(line: &str) -> Option<(Point2<f64>, Option<Vector2<f64>>)> {
-    let numbers: Vec<f64> = line
-        .split(',')
-        .map(|field| field.trim().parse().ok().filter(|v: &f64| v.is_finite()))
-        .collect::<Option<_>>()?;
-    match numbers[..] {
-        [x, y] => Some((Point2::new(x, y), None)),
-        [x, y, nx, ny] => {
-            let normal = Vector2::new(nx, ny).try_normalize(0.0);
-            Some((Point2::new(x, y), normal))
-        }
-        _ => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_line_is_a_point_with_or_without_its_normal() {
-        let point = Point2::new(1.0, -2.5);
-        assert_eq!(parse_point("1, -2.5"), Some((point, None)));
-        let up = Some(Vector2::new(0.0, 1.0));
-        assert_eq!(parse_point("1,-2.5,0,2"), Some((point, up)));
-        assert_eq!(parse_point("1,-2.5,0,0"), Some((point, None)));
-        for wrong in ["1", "1,2,3", "1,2,3,4,5", "a,b", "1,nan", "1,inf", "x,y"] {
-            assert_eq!(parse_point(wrong), None, "{wrong}");
-        }
-    }
+    PointCloud::from_csv(&text).map_err(|source| RegisterFailure::Cloud {
+        path: path.to_owned(),
+        source,
+    })
 }
