@@ -12,7 +12,7 @@ fn root() -> PathBuf {
 
 /// The manifests of all packages with their folders.
 fn packages() -> Vec<(PathBuf, String)> {
-    let mut found: Vec<PathBuf> = ["web", "tests", "tests/bench"]
+    let mut found: Vec<PathBuf> = ["web", "tests", "tests/bench", "tests/doors"]
         .map(|folder| root().join(folder))
         .into();
     for folder in ["crates", "widgets"] {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::fuzz::{self, Fuzz};
 use crate::site::Speed;
 use crate::suite::{AfterFailure, Piece, Soak};
 
@@ -15,11 +16,13 @@ cargo xtask test PIECE...                     of: format native lints counts sit
 cargo xtask peers                             lints and tests of what times other people's solvers
 cargo xtask soak N [--go-on] [--only a,b]     the browser tests N times on a busy machine
 cargo xtask record-counts                     accept the instruction counts of the workloads
+cargo xtask fuzz [--minutes N] [--target T] [--keep]
+                                              every door from outside, under libFuzzer
 cargo xtask bench [--json FILE]               time and count the workloads, write docs/performance.md
 cargo xtask sizes                             what keeps the module small, each step left out once";
 
 /// One of the commands, with its options.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, PartialEq)]
 pub enum Command {
     /// Print the usage.
     Help,
@@ -40,6 +43,8 @@ pub enum Command {
     Soak(Soak),
     /// Accept the instruction counts as they are.
     RecordCounts,
+    /// Look for inputs that break a promise.
+    Fuzz(Fuzz),
     /// Time the workloads.
     Bench {
         /// Where the measurements go besides the table.
@@ -66,6 +71,7 @@ pub fn parse(words: impl Iterator<Item = String>) -> Result<Command, String> {
         "soak" => Command::Soak(parse_soak(&mut words)?),
         "record-counts" => Command::RecordCounts,
         "sizes" => Command::Sizes,
+        "fuzz" => Command::Fuzz(fuzz::parse(&mut words)?),
         "bench" => Command::Bench {
             json: match words.next_if_eq("--json") {
                 Some(_) => Some(words.next().ok_or("--json takes a file name")?.into()),

@@ -1,4 +1,5 @@
-//! The project's commands: `cargo xtask serve`, `build`, `test`, `peers`, `soak`, `bench`, `sizes`.
+//! The project's commands: `cargo xtask serve`, `build`, `test`, `peers`, `soak`, `fuzz`,
+//! `bench`, `sizes`.
 //!
 //! Everything that a step needs is checked first and installed where cargo, npm or apt can do it;
 //! what cannot be installed is named in one line, with the way to get it. Tools of cargo go to
@@ -8,6 +9,7 @@ mod args;
 mod bench;
 mod chromium;
 mod committed;
+mod fuzz;
 mod http;
 mod ledger;
 mod load;
@@ -42,6 +44,7 @@ fn main() -> ExitCode {
         Command::Peers => suite::peers(),
         Command::Soak(soak) => suite::soak(&soak),
         Command::RecordCounts => suite::record_counts(),
+        Command::Fuzz(fuzz) => fuzz::fuzz(&fuzz),
         Command::Bench { json } => bench::bench(json.as_deref()),
         Command::Sizes => sizes::sizes(),
     };

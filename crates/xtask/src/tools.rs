@@ -1,6 +1,7 @@
 //! What the build needs besides cargo: found, or installed, or named in one line.
 
 use std::env;
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -31,15 +32,13 @@ pub fn ensure_build_tools() -> Result<(), Failure> {
 /// Takes more options of cargo. Panic messages name sources, and so the module would hold
 /// where this machine keeps cargo's registry: the compiler writes `cargo/registry/…` instead.
 pub fn wasm_pack_build(package: &str, options: &[&str]) -> Command {
-    let inherited = env::var_os("PATH").unwrap_or_default();
-    let paths = std::iter::once(tools().join("bin")).chain(env::split_paths(&inherited));
     let mut command = program("wasm-pack");
     command
         .args(["build", package, "--no-opt", "--no-pack"])
         .args(["--mode", "no-install"])
         .args(options)
         .arg("--")
-        .env("PATH", env::join_paths(paths).unwrap_or(inherited));
+        .env("PATH", path_with_tools());
     let home = env::var_os("CARGO_HOME").map(PathBuf::from);
     if let Some(home) = home.or_else(|| Some(env::home_dir()?.join(".cargo"))) {
         command.args(["--config", &remapping(&home)]);
@@ -53,6 +52,38 @@ fn remapping(cargo_home: &Path) -> String {
         "target.{TARGET}.rustflags=['--remap-path-prefix={}=cargo']",
         cargo_home.display()
     )
+}
+
+/// The PATH with our own tools first.
+pub fn path_with_tools() -> OsString {
+    let inherited = env::var_os("PATH").unwrap_or_default();
+    let paths = std::iter::once(tools().join("bin")).chain(env::split_paths(&inherited));
+    env::join_paths(paths).unwrap_or(inherited)
+}
+
+/// A tool of LLVM that fits the compiler.
+///
+/// # Errors
+/// One line on how to get it.
+pub fn llvm_tool(name: &str) -> Result<PathBuf, Failure> {
+    let missing = || {
+        Failure::new(format!(
+            "{name} is missing: `rustup component add llvm-tools` installs it"
+        ))
+    };
+    let libraries = output(program("rustc").args(["--print", "target-libdir"]));
+    let libraries = PathBuf::from(libraries.ok_or_else(missing)?);
+    let folder = libraries.parent().ok_or_else(missing)?.join("bin");
+    let tool = folder.join(format!("{name}{}", env::consts::EXE_SUFFIX));
+    if !tool.is_file() {
+        let mut install = program("rustup");
+        step(
+            "Installing LLVM's tools",
+            install.args(["component", "add", "llvm-tools"]),
+        )
+        .map_err(|_| missing())?;
+    }
+    Ok(tool)
 }
 
 /// Where cargo puts the tools.
@@ -132,7 +163,8 @@ fn check_node(version: Option<&str>) -> Result<(), Failure> {
     }
 }
 
-fn ensure_cargo_tool(name: &str, package: &str, version: &str) -> Result<(), Failure> {
+/// Installs a tool of cargo where no candidate has that version.
+pub fn ensure_cargo_tool(name: &str, package: &str, version: &str) -> Result<(), Failure> {
     let installed = tools()
         .join("bin")
         .join(format!("{name}{}", env::consts::EXE_SUFFIX));

@@ -1,0 +1,5 @@
+//! The door `hands` of `tests/doors`.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_doors::hands::door(data));

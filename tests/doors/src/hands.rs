@@ -1,0 +1,199 @@
+//! Random hands on every widget's model: set, press, drag, hover, play, work, in any order.
+
+use arbitrary::{Result, Unstructured};
+use kit::model::{Activity, Model, Motion};
+use kit::scene::{Cell, Layer, Panel, Scene};
+
+use crate::numbers::any;
+use crate::widgets::MODELS;
+
+/// Most things that a case does.
+const MAX_ACTIONS: usize = 8;
+/// Most pieces of work that a case waits for at a time.
+const MAX_WORK: usize = 40;
+
+/// Nothing panics, every value stays in its range, and the picture has finite numbers.
+pub fn door(data: &[u8]) {
+    let mut bytes = Unstructured::new(data);
+    let Ok(maker) = bytes.choose(&MODELS) else {
+        return;
+    };
+    let mut model = maker();
+    // Bytes that end early end the case.
+    for _ in 0..MAX_ACTIONS {
+        if act(&mut bytes, model.as_mut()).is_err() {
+            break;
+        }
+        assert_values(model.as_ref());
+    }
+    assert_told(model.as_ref());
+}
+
+fn act(bytes: &mut Unstructured<'_>, model: &mut dyn Model) -> Result<()> {
+    if bytes.is_empty() {
+        return Err(arbitrary::Error::NotEnoughData);
+    }
+    match bytes.int_in_range(0..=11)? {
+        0..=3 => set(bytes, model),
+        4..=5 => press(bytes, model),
+        6..=7 => drag(bytes, model),
+        8 => {
+            let elapsed_s = *bytes.choose(&[1.0 / 60.0, 0.0, 0.5, 20.0, 1e9, 1e300])?;
+            model.advance(elapsed_s);
+            Ok(())
+        }
+        9 => {
+            let most = bytes.int_in_range(1..=MAX_WORK)?;
+            for _ in 0..most {
+                if model.work() == Activity::Idle {
+                    break;
+                }
+            }
+            Ok(())
+        }
+        10 => {
+            let scene = model.scene();
+            let panel = bytes.choose(&scene.panels)?;
+            let at = point(bytes, panel)?;
+            model.hover(panel.id, bytes.arbitrary::<bool>()?.then_some(at));
+            Ok(())
+        }
+        _ => {
+            let motion = *bytes.choose(&[Motion::Full, Motion::Reduced])?;
+            model.set_motion(motion);
+            Ok(())
+        }
+    }
+}
+
+fn set(bytes: &mut Unstructured<'_>, model: &mut dyn Model) -> Result<()> {
+    let param = bytes.choose(model.spec().params)?;
+    let (min, max) = param.range();
+    let value = match bytes.int_in_range(0..=15)? {
+        0 => min,
+        1 => max,
+        2 => any(bytes)?,
+        _ => {
+            let steps = ((max - min) / param.step()).min(1e9) as u32;
+            min + f64::from(bytes.int_in_range(0..=steps)?) * param.step()
+        }
+    };
+    let before = model.values().clone();
+    match model.set(param.id, value) {
+        Ok(()) => assert!(param.check(value).is_ok(), "{} took {value}", param.id),
+        Err(_) => assert_eq!(&before, model.values(), "{} refused {value}", param.id),
+    }
+    Ok(())
+}
+
+fn press(bytes: &mut Unstructured<'_>, model: &mut dyn Model) -> Result<()> {
+    let spec = model.spec();
+    let buttons = spec.buttons.iter().map(|button| button.id);
+    let presets = spec.presets.iter().map(|preset| preset.id);
+    let known: Vec<_> = buttons.chain(presets).collect();
+    let button = *bytes.choose(&known)?;
+    assert!(model.press(button).is_ok(), "{button}");
+    Ok(())
+}
+
+fn drag(bytes: &mut Unstructured<'_>, model: &mut dyn Model) -> Result<()> {
+    let scene = model.scene();
+    let panel = bytes.choose(&scene.panels)?;
+    let at = point(bytes, panel)?;
+    let reach = [0.05, 0.05].map(|share| share * (panel.x.max - panel.x.min).abs());
+    let Some(handle) = model.grab(panel.id, at, reach) else {
+        return Ok(());
+    };
+    assert_eq!(handle.panel, panel.id);
+    for _ in 0..bytes.int_in_range(1..=3)? {
+        model.drag(handle, point(bytes, panel)?);
+    }
+    Ok(())
+}
+
+/// A point of a panel: at something that can be grabbed, somewhere on it, or far off.
+fn point(bytes: &mut Unstructured<'_>, panel: &Panel) -> Result<[f64; 2]> {
+    match bytes.int_in_range(0..=7)? {
+        0..=2 => {
+            let handles = panel.layers.iter().filter_map(|layer| match layer {
+                Layer::Handle { at, .. } => Some(*at),
+                _ => None,
+            });
+            let handles: Vec<_> = handles.collect();
+            Ok(*bytes.choose(&handles)?)
+        }
+        3 => Ok([any(bytes)?, any(bytes)?]),
+        _ => {
+            let bounds = panel.bounds();
+            let share = |bytes: &mut Unstructured<'_>| -> Result<f64> {
+                Ok(f64::from(bytes.arbitrary::<u8>()?) / 255.0)
+            };
+            let (x, y) = (share(bytes)?, share(bytes)?);
+            let [width, height] = bounds.size();
+            Ok([bounds.min[0] + x * width, bounds.min[1] + y * height])
+        }
+    }
+}
+
+fn assert_values(model: &dyn Model) {
+    for (param, value) in model.values().iter() {
+        let checked = param.check(value).map(f64::to_bits);
+        assert_eq!(checked, Ok(value.to_bits()), "{} at {value}", param.id);
+    }
+}
+
+/// Everything that the model says of itself holds together.
+fn assert_told(model: &dyn Model) {
+    let outcome = model.outcome();
+    assert!(!outcome.sentence.is_empty() && !outcome.verdict.is_empty());
+    assert!(!outcome.sentence.contains("NaN"), "{}", outcome.sentence);
+    assert!(!model.summary().is_empty());
+    for table in model.tables() {
+        for row in &table.rows {
+            assert_eq!(row.len(), table.columns.len(), "{}", table.id);
+        }
+    }
+    if let Some(timeline) = model.timeline() {
+        assert!(timeline.last.is_finite() && timeline.last >= 0.0);
+        for mark in &timeline.marks {
+            assert!((0.0..=timeline.last).contains(&mark.at), "{}", mark.label);
+        }
+        assert!(model.values().find(timeline.param).is_some());
+    }
+    assert_drawable(&model.scene());
+}
+
+fn assert_drawable(scene: &Scene) {
+    assert!(!scene.panels.is_empty());
+    for panel in &scene.panels {
+        for axis in [&panel.x, &panel.y] {
+            let is_range = axis.min.is_finite() && axis.max.is_finite() && axis.min < axis.max;
+            assert!(is_range, "{}: {axis:?}", panel.id);
+        }
+        for layer in &panel.layers {
+            assert!(numbers_are_finite(layer), "{}: {layer:?}", panel.id);
+        }
+    }
+}
+
+/// Whether every number of a layer can be drawn. A line may be broken by what is not finite.
+fn numbers_are_finite(layer: &Layer) -> bool {
+    let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
+    match layer {
+        Layer::Points { points, .. } => finite(points.as_flattened()),
+        Layer::Line { .. } => true,
+        Layer::Segments { segments, .. } => finite(segments.as_flattened().as_flattened()),
+        Layer::Pose { pose, .. } => finite(pose),
+        Layer::Handle { at, .. } | Layer::Text { at, .. } => finite(at),
+        Layer::Ellipse {
+            center, half_axes, ..
+        } => finite(center) && finite(half_axes.as_flattened()),
+        Layer::Raster(raster) => {
+            raster.cells.len() == raster.columns * raster.rows
+                && raster.cells.iter().all(|cell| match cell {
+                    Cell::Level(level) | Cell::Occupancy(level) => level.is_finite(),
+                    Cell::Unknown | Cell::Class(_) => true,
+                })
+        }
+    }
+}

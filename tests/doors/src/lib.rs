@@ -1,0 +1,29 @@
+//! Every door from outside, as a function that takes any bytes and panics where a promise breaks.
+//!
+//! The fuzzer in `fuzz/` drives these functions with inputs that it makes up. What it found worth
+//! keeping lies in `fuzz/corpus` and `fuzz/found`, and the tests of this package replay it.
+
+pub mod clouds;
+pub mod g2o;
+pub mod graphs;
+pub mod hands;
+pub mod links;
+pub mod messages;
+mod numbers;
+pub mod registration;
+mod solve;
+mod widgets;
+
+/// A door: takes any bytes, and panics where the code behind it breaks a promise.
+pub type Door = fn(&[u8]);
+
+/// Every door with the name of its fuzz target.
+pub const DOORS: [(&str, Door); 7] = [
+    ("links", links::door),
+    ("messages", messages::door),
+    ("g2o", g2o::door),
+    ("clouds", clouds::door),
+    ("graphs", graphs::door),
+    ("registration", registration::door),
+    ("hands", hands::door),
+];

@@ -1,0 +1,75 @@
+//! Messages of a page around an embedded widget, as JSON: what of them reaches the core.
+//!
+//! The first byte names the widget, the rest is the message: `{"type": "set", "values": {…}}` or
+//! `{"type": "press", "button": "…"}`. What `embed.ts` refuses by itself ends there and here alike.
+
+use kit::model::{Model, read_text};
+use serde_json::Value;
+
+use crate::widgets::{Listener, SPECS};
+
+/// A refused value or press changes nothing; a taken one changes what it names and nothing else.
+pub fn door(data: &[u8]) {
+    let [widget, message @ ..] = data else {
+        return;
+    };
+    let Ok(Value::Object(message)) = serde_json::from_slice(message) else {
+        return;
+    };
+    let mut listener = Listener::new(SPECS[usize::from(*widget) % SPECS.len()]);
+    match message.get("type").and_then(Value::as_str) {
+        Some("set") => {
+            let Some(Value::Object(values)) = message.get("values") else {
+                return;
+            };
+            for (id, value) in values {
+                set(&mut listener, id, &as_javascript_writes(value));
+            }
+        }
+        Some("press") => {
+            if let Some(button) = message.get("button").and_then(Value::as_str) {
+                press(&mut listener, button);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn set(listener: &mut Listener, id: &str, text: &str) {
+    let before = listener.values().clone();
+    let answer =
+        read_text(listener, id, text).and_then(|value| listener.set(id, value).map(|()| value));
+    let pairs = before.iter().zip(listener.values().iter());
+    for ((param, old), (_, new)) in pairs {
+        let may_change = answer.is_ok() && param.id == id;
+        assert!(may_change || old.to_bits() == new.to_bits(), "{}", param.id);
+    }
+    match answer {
+        Ok(value) => assert_eq!(listener.values().get(id).to_bits(), value.to_bits()),
+        Err(refusal) => assert!(refusal.to_string().len() < 600, "{refusal}"),
+    }
+}
+
+fn press(listener: &mut Listener, button: &str) {
+    match listener.press(button) {
+        Ok(()) => assert_eq!(listener.presses, 1),
+        Err(refusal) => {
+            assert_eq!(listener.presses, 0);
+            assert!(refusal.to_string().len() < 900, "{refusal}");
+        }
+    }
+}
+
+/// `String(value)`.
+fn as_javascript_writes(value: &Value) -> String {
+    match value {
+        Value::Null => "null".to_owned(),
+        Value::String(text) => text.clone(),
+        Value::Array(values) => {
+            let texts: Vec<_> = values.iter().map(as_javascript_writes).collect();
+            texts.join(",")
+        }
+        Value::Object(_) => "[object Object]".to_owned(),
+        plain => plain.to_string(),
+    }
+}
