@@ -82,10 +82,25 @@ impl CellTable {
         let high = (center + reach) * self.per_metre - f64::from(origin);
         // Written so that a query that is not a number touches nothing.
         if !(high >= 0.0 && low < count as f64) {
-            return None;
+            return self.outermost(low, high, origin, count);
         }
         // The casts cut off at zero from below; through u32 they are single instructions.
         Some((low as u32 as usize, (high as u32 as usize).min(count - 1)))
+    }
+
+    /// The table index that a range beyond the table still touches: a cell at either end of all cells
+    /// also holds whatever lies farther out, see [`cell_index`](super::cell_index).
+    #[cold]
+    fn outermost(&self, low: f64, high: f64, origin: i32, count: usize) -> Option<(usize, usize)> {
+        let last = count.checked_sub(1)?;
+        let end = i64::from(origin) + last as i64;
+        if high < 0.0 && origin == i32::MIN.div_euclid(self.factor) {
+            Some((0, 0))
+        } else if low >= count as f64 && end == i64::from(i32::MAX.div_euclid(self.factor)) {
+            Some((last, last))
+        } else {
+            None
+        }
     }
 
     /// Calls `visit` with the run of points of every column that the box touches, x ascending.
