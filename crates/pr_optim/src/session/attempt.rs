@@ -54,8 +54,10 @@ impl Attempt {
     }
 
     /// The cost; a cost that is out of the range of numbers comes last, whatever the sign of its NaN.
+    /// Information that is indefinite can make a cost negative.
     fn rank(&self) -> f64 {
-        self.report.cost_or_nan().abs()
+        let cost = self.report.cost_or_nan();
+        if cost.is_nan() { f64::INFINITY } else { cost }
     }
 }
 
