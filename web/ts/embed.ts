@@ -11,17 +11,9 @@
 import { SlamWidget as Element, widgets as schemas } from './slam-widget.js';
 import type { SlamWidget } from './element';
 import { readQuery } from './links';
+import { receive, VERSION, type Message } from './messages';
 import type { WidgetSpec } from './schema';
-import { shorten, type Value } from './values';
-
-const VERSION = 1;
-
-/** So many values of one message are refused by name; of the others, their number is told. */
-const MOST_REFUSALS = 8;
-/** What comes back with an answer is the sender's own, but not at any length. */
-const LONGEST_ID = 200;
-
-type Message = Record<string, unknown>;
+import type { Value } from './values';
 
 const [first] = schemas as WidgetSpec[];
 
@@ -65,82 +57,23 @@ function listen(element: SlamWidget): void {
   element.addEventListener('slam-result', (event) => post({ type: 'result', ...detail(event) }));
   element.addEventListener('slam-error', (event) => post({ type: 'error', ...detail(event) }));
   new ResizeObserver(tellSize).observe(main);
+  const addressed = {
+    set: (id: string, value: Value) => element.set(id, value),
+    press: (button: string) => element.press(button),
+    state: () => ({
+      name: element.getAttribute('name'),
+      value: element.value,
+      outcome: element.outcome ?? null,
+      summary: element.summary,
+    }),
+  };
   window.addEventListener('message', (event: MessageEvent<unknown>) => {
-    const { data } = event;
-    if (event.source !== window.parent || !isOurs(data)) return;
-    try {
-      answer(element, data);
-    } catch (error) {
-      refuse(error as Error);
-    }
+    if (event.source === window.parent) receive(addressed, event.data, post, refuse);
   });
 }
 
 function refuse({ message }: Error): void {
   post({ type: 'error', name: spec?.id ?? null, kind: 'message', message });
-}
-
-function isOurs(data: unknown): data is Message {
-  return typeof data === 'object' && data !== null && 'slam' in data;
-}
-
-function answer(element: SlamWidget, message: Message): void {
-  if (message['slam'] !== VERSION) {
-    const spoken = shorten(String(message['slam']));
-    throw new RangeError(`this widget speaks version ${VERSION}, not ${spoken}`);
-  }
-  switch (message['type']) {
-    case 'set': {
-      const values = message['values'];
-      if (typeof values !== 'object' || values === null) {
-        throw new TypeError('set takes `values`, an object of parameters');
-      }
-      setAll(element, values as Record<string, Value>);
-      break;
-    }
-    case 'press': {
-      const { button } = message;
-      if (typeof button !== 'string') throw new TypeError('press takes `button`, a name');
-      element.press(button).catch(refuse);
-      break;
-    }
-    case 'get':
-      post({
-        type: 'state',
-        id: idOf(message),
-        name: element.getAttribute('name'),
-        value: element.value,
-        outcome: element.outcome ?? null,
-        summary: element.summary,
-      });
-      break;
-    default:
-      throw new RangeError(
-        `there is no message \`${shorten(String(message['type']))}\`; there are set, press, get`,
-      );
-  }
-}
-
-/** The name that the sender gave its question. */
-function idOf({ id }: Message): string | number | null {
-  if (id === undefined || id === null) return null;
-  if (typeof id === 'number' || (typeof id === 'string' && id.length <= LONGEST_ID)) return id;
-  throw new RangeError(`get takes as \`id\` a number, or a text of at most ${LONGEST_ID} characters`);
-}
-
-/** What does not fit keeps nothing from what does. */
-function setAll(element: SlamWidget, values: Record<string, Value>): void {
-  let refused = 0;
-  for (const [id, value] of Object.entries(values)) {
-    try {
-      element.set(id, value);
-    } catch (error) {
-      refused += 1;
-      if (refused <= MOST_REFUSALS) refuse(error as Error);
-    }
-  }
-  const more = refused - MOST_REFUSALS;
-  if (more > 0) refuse(new RangeError(`${more} more values do not fit, either`));
 }
 
 /** The height of all that the frame shows. */
