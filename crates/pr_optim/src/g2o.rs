@@ -105,7 +105,7 @@ pub enum G2oProblem {
 pub struct G2oFile {
     /// The graph; nodes are numbered in the order of the file.
     pub problem: Problem,
-    /// The file without its byte order mark.
+    /// The file without a byte order mark.
     text: Vec<u8>,
     vertices: Vec<VertexLine>,
     /// Line of every factor, from 0.
@@ -129,8 +129,11 @@ impl G2oFile {
     /// The first line that is malformed, names a vertex that does not exist, carries an indefinite
     /// information matrix, or declares a vertex that nothing ties to a fixed one.
     pub fn parse(text: impl AsRef<[u8]>) -> Result<Self, G2oError> {
-        let text = text.as_ref();
-        let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+        let mut text = text.as_ref();
+        // Files that were joined have more than one.
+        while let Some(rest) = text.strip_prefix(BYTE_ORDER_MARK) {
+            text = rest;
+        }
         let mut problem = Problem::new();
         let mut vertices: Vec<VertexLine> = Vec::new();
         let mut node_of: BTreeMap<i64, usize> = BTreeMap::new();
