@@ -63,9 +63,12 @@ impl NormalEquations {
     }
 
     /// `Σ ρ(eᵀΩe)` at other poses of the same graph; the blocks stay as they are.
+    ///
+    /// Not finite wherever `Σ eᵀΩe` is not: no step can be computed there, cheap as a kernel makes it.
     pub fn cost_at(&mut self, problem: &Problem, poses: &[SE2], kernel: RobustKernel) -> f64 {
         self.prepare(poses);
-        problem.cost_and_chi2_at(&self.poses, kernel).0
+        let (cost, chi2) = problem.cost_and_chi2_at(&self.poses, kernel);
+        if chi2.is_finite() { cost } else { chi2 }
     }
 
     /// Fills the workspace of poses with their sines and cosines; headings that are there already

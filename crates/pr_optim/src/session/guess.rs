@@ -19,7 +19,7 @@ impl Session<'_> {
             self.given_cost = Some(given);
         }
         let of_tree = self.optimizer.cost_at(self.problem, &tree);
-        let takes_tree = of_tree < given || (given.is_nan() && of_tree.is_finite());
+        let takes_tree = of_tree.is_finite() && (of_tree < given || !given.is_finite());
         let (start, other, cost) = if takes_tree {
             self.problem.poses_mut().copy_from_slice(&tree);
             (Start::SpanningTree, Start::Given, given)
