@@ -56,7 +56,8 @@ impl NdtMap {
     /// The Gaussians of `cloud` on cells `cell_m` wide that hold at least `min_points` points.
     ///
     /// The covariance divides by n − 1. Its larger eigenvalue is raised to 1e-4 m² and the smaller
-    /// one to 0.01 of the larger, so that a cell of points in one line still has an inverse.
+    /// one to 0.01 of the larger, so that a cell of points in one line still has an inverse. A cell
+    /// whose covariance is out of the range of numbers, as of points 1e200 m apart, is left out.
     ///
     /// # Panics
     /// If the cell size is not positive and finite, or `min_points` is below 2.
@@ -88,6 +89,7 @@ impl NdtMap {
             .iter()
             .filter(|moments| moments.count >= min_points)
             .map(Moments::gaussian)
+            .filter(NdtCell::is_finite)
             .collect();
         let (lookup, near) = Lookup::build(&gaussians);
         Self {
@@ -207,6 +209,12 @@ impl Moments {
 }
 
 impl NdtCell {
+    fn is_finite(&self) -> bool {
+        let numbers = self.mean.iter().chain(&self.covariance);
+        let mut numbers = numbers.chain(&self.information);
+        numbers.all(|number| number.is_finite())
+    }
+
     /// `½ dᵀ Σ⁻¹ d` of a point at `(x, y)`.
     #[inline]
     #[must_use]
@@ -280,7 +288,9 @@ impl Lookup {
             let mut runs = Vec::with_capacity((columns * rows) as usize);
             for i in 0..columns as i32 {
                 for j in 0..rows as i32 {
-                    runs.push(run_around((origin.0 + i, origin.1 + j)));
+                    // The last cells of all have no neighbours beyond.
+                    let cell = (origin.0.saturating_add(i), origin.1.saturating_add(j));
+                    runs.push(run_around(cell));
                 }
             }
             Self::Dense {
