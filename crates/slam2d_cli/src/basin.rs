@@ -144,6 +144,7 @@ pub fn run(args: &BasinArgs) {
                 StopReason::SmallStep { .. } => "",
                 StopReason::IterationLimit { .. } => " (limit)",
                 StopReason::TooFewPairs { .. } => " (too few pairs)",
+                StopReason::NotFinite => " (too large a number)",
             },
             pose(&outcome.pose),
         );

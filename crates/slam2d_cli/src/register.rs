@@ -162,6 +162,10 @@ fn why(stop: &StopReason) -> String {
             "too few pairs within tau: {pairs} where {min_pairs} are needed; \
              bring the scan nearer to the map, or take a larger --tau"
         ),
+        StopReason::NotFinite => {
+            "the next step is out of the range of numbers; bring the points nearer to the origin"
+                .to_owned()
+        }
     }
 }
 

@@ -40,6 +40,8 @@ pub enum StopReason {
         /// [`IcpConfig::min_pairs`].
         min_pairs: usize,
     },
+    /// The next increment is out of the range of numbers, as for points 1e200 m away; the pose stays.
+    NotFinite,
 }
 
 impl StopReason {
@@ -209,7 +211,11 @@ impl<'a, M: NearestMap> Icp<'a, M> {
             return Some(StopReason::TooFewPairs { pairs, min_pairs });
         }
         let increment = self.workspace.increment(&self.config);
-        self.associate_at(increment * self.current.pose);
+        let next = increment * self.current.pose;
+        if !next.to_array().iter().all(|number| number.is_finite()) {
+            return Some(StopReason::NotFinite);
+        }
+        self.associate_at(next);
         let step = increment.step_size();
         if step < tolerance {
             return Some(StopReason::SmallStep { step, tolerance });

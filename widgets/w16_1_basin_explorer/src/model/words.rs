@@ -86,6 +86,7 @@ fn stop_words(stop: &StopReason) -> &'static str {
         StopReason::SmallStep { .. } => "converged after",
         StopReason::IterationLimit { .. } => "stopped at the limit of",
         StopReason::TooFewPairs { .. } => "gave up for want of pairs after",
+        StopReason::NotFinite => "left the range of numbers after",
     }
 }
 
