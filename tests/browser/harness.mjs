@@ -6,8 +6,10 @@ import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
 import { after, before } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { chromium } from 'playwright-core';
+import { LAST_RESORT_MS, launch } from './chromium.mjs';
 import * as clock from './clock.mjs';
+
+export { launch };
 
 export const DIST = fileURLToPath(new URL('../../dist/', import.meta.url));
 
@@ -62,51 +64,6 @@ export async function serve({ pages = {}, policy, answer } = {}) {
       return closed;
     },
   };
-}
-
-/** Ends a wait that will never end, in a page that hangs; nothing is judged by it. */
-const LAST_RESORT_MS = 5 * 60_000;
-
-/** What the Chromium of Playwright does without, from its chromiumSwitches.ts. */
-const PLAYWRIGHT_DISABLES = ['AvoidUnnecessaryBeforeUnloadCheckSync', 'DestroyProfileOnBrowserClose', 'HttpsUpgrades',
-  'HttpsFirstBalancedModeAutoEnable', 'LensOverlay', 'MediaRouter', 'PaintHolding', 'ThirdPartyStoragePartitioning',
-  'AvoidCorsURLLoaderRestartOnRedirect', 'TcpPortRandomizationWin', 'OptimizationHints', 'NetworkTimeServiceQuerying',
-  'AimEnabled', 'PreconnectToSearch'];
-/** Pages of the browser's own, loaded beside each tab: a second of work for what nobody sees. */
-const NOT_FOR_TESTS = ['WebUIOmniboxPopup', 'WebUIOmniboxAimPopup', 'WebUIOmniboxFullPopup', 'PreloadTopChromeWebUI'];
-
-const HOW = {
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-  timeout: LAST_RESORT_MS,
-  args: [
-    '--no-sandbox',
-    '--use-angle=swiftshader',
-    '--enable-unsafe-swiftshader',
-    '--disable-quic',
-    '--no-first-run',
-    '--disable-background-networking',
-    '--disable-component-update',
-    '--disable-sync',
-    // A scroll that is animated needs frames, and software GL may owe them for long.
-    '--disable-smooth-scrolling',
-    // Drawing by software costs the most here, and no test is about how the browser puts a page together.
-    '--disable-gpu-compositing',
-    // The last list counts, so it starts with Playwright's own.
-    `--disable-features=${[...PLAYWRIGHT_DISABLES, ...NOT_FOR_TESTS]}`,
-    '--js-flags=--expose-gc',
-  ],
-};
-
-/** The Chromium that run.mjs started for all files, else one of this file's own; so with flags. */
-export function launch(extra = []) {
-  const shared = process.env.SLAM_CHROMIUM;
-  if (shared !== undefined && extra.length === 0) return chromium.connect(shared, { timeout: LAST_RESORT_MS });
-  return chromium.launch({ ...HOW, args: [...HOW.args, ...extra] });
-}
-
-/** A Chromium that the files of the tests connect to. */
-export function launchServer() {
-  return chromium.launchServer(HOW);
 }
 
 /** A screen with few pixels: software draws each of them four times, were edges to be smoothed as well. */

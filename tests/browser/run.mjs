@@ -8,7 +8,7 @@ import { mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { launchServer } from './harness.mjs';
+import { launchServer } from './chromium.mjs';
 
 const HERE = fileURLToPath(new URL('.', import.meta.url));
 /** These count frames, or what the collector leaves. */

@@ -1,7 +1,7 @@
 //! `cargo xtask test`: every check there is, cheapest first. `docs/testing.md` says what is where.
 
 mod browser;
-mod native;
+pub mod native;
 mod piece;
 mod skipped;
 mod soak;

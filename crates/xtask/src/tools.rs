@@ -219,6 +219,22 @@ pub fn ensure_node_modules(folder: &Path) -> Result<(), Failure> {
     })
 }
 
+/// Installs nanoflann, a peer of the benchmark, as root on Debian; the benchmark runs without it
+/// and says so.
+pub fn ensure_nanoflann() {
+    let is_root = output(program("id").arg("-u")).as_deref() == Some("0");
+    if Path::new("/usr/include/nanoflann.hpp").exists() || !is_root {
+        return;
+    }
+    let installed = step(
+        "Installing nanoflann (apt-get, once)",
+        program("apt-get").args(["install", "--yes", "g++", "libnanoflann-dev"]),
+    );
+    if let Err(failure) = installed {
+        eprintln!("{failure}");
+    }
+}
+
 /// npm is a script on Windows, which must be named in full.
 pub fn npm() -> &'static str {
     if cfg!(windows) { "npm.cmd" } else { "npm" }

@@ -5,7 +5,9 @@ use ch16_lab::samples;
 use ch16_slam2d::icp::IcpVariant;
 
 use crate::scans::{
-    QUERIES, ndt_build, ndt_registration, nearest, normals, register, sweep, terrain,
+    QUERIES, ndt_build, ndt_registration, nearest_in_dense_map, nearest_in_table,
+    nearest_in_voxel_map, normals, register_with_table, register_without_table, sweep, table,
+    terrain,
 };
 use crate::{Limit, Run, Workload, prepared};
 
@@ -21,36 +23,63 @@ pub fn workloads() -> Vec<Workload> {
         what,
         repetitions: 1,
         limit,
+        most_of_native: None,
         prepare,
     };
+    let query = |id, what, limit, prepare| Workload {
+        repetitions: QUERIES as u32,
+        most_of_native: Some(1.5),
+        ..workload(id, what, limit, prepare)
+    };
     vec![
-        workload(
-            "lap",
-            "the canonical lap, simulated and estimated, with its front end alone and all metrics",
-            limit(12.0, 25.0),
-            lap,
-        ),
+        Workload {
+            most_of_native: Some(1.6),
+            ..workload(
+                "lap",
+                "the canonical lap, simulated and estimated, with its front end alone and all metrics",
+                limit(12.0, 25.0),
+                lap,
+            )
+        },
         workload(
             "register-p2p",
-            "one registration, 155 points, 30 iterations, point to point",
+            "one registration, 155 points, 30 iterations, point to point, on the table",
             limit(0.15, 0.3),
-            || register(IcpVariant::PointToPoint),
+            || register_with_table(IcpVariant::PointToPoint),
         ),
         workload(
             "register-p2l",
-            "one registration, 155 points, 30 iterations, point to plane",
+            "one registration, 155 points, 30 iterations, point to plane, on the table",
             limit(0.15, 0.3),
-            || register(IcpVariant::PointToPlane),
+            || register_with_table(IcpVariant::PointToPlane),
+        ),
+        workload(
+            "register-p2p-map",
+            "the same, point to point, on the dense map: no table",
+            None,
+            || register_without_table(IcpVariant::PointToPoint),
+        ),
+        workload(
+            "register-p2l-map",
+            "the same, point to plane, on the dense map: no table",
+            None,
+            || register_without_table(IcpVariant::PointToPlane),
+        ),
+        workload(
+            "table",
+            "the table of nearest neighbours, built",
+            None,
+            table,
         ),
         workload(
             "sweep-p2p",
-            "basin sweep, 361 headings, point to point",
+            "basin sweep, 361 headings, point to point, scene and table built",
             limit(30.0, 60.0),
             || sweep(IcpVariant::PointToPoint),
         ),
         workload(
             "sweep-p2l",
-            "basin sweep, 361 headings, point to plane",
+            "basin sweep, 361 headings, point to plane, scene and table built",
             limit(30.0, 60.0),
             || sweep(IcpVariant::PointToPlane),
         ),
@@ -78,15 +107,24 @@ pub fn workloads() -> Vec<Workload> {
             None,
             ndt_registration,
         ),
-        Workload {
-            repetitions: QUERIES as u32,
-            ..workload(
-                "nearest",
-                "nearest neighbour within 0.5 m, map of 5,000 points, a query",
-                limit(90e-6, 150e-6),
-                nearest,
-            )
-        },
+        query(
+            "nearest-table",
+            "nearest neighbour within 0.5 m, map of 5,000 points, a query: table",
+            None,
+            nearest_in_table,
+        ),
+        query(
+            "nearest",
+            "the same, dense map",
+            limit(90e-6, 150e-6),
+            nearest_in_dense_map,
+        ),
+        query(
+            "nearest-voxel",
+            "the same, voxel map",
+            None,
+            nearest_in_voxel_map,
+        ),
         workload("normals", "normals of 720 points", None, normals),
         workload(
             "solve",

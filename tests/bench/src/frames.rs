@@ -18,7 +18,10 @@ const LIMIT: Option<Limit> = Some(Limit {
     wasm_ms: 4.0,
 });
 
-/// The frames, one a widget, with the picture changed before each.
+/// The tick before the canonical lap's 38th keyframe, and its own.
+const KEYFRAME_TICKS: [f64; 2] = [118.0, 119.0];
+
+/// The frames of each widget, with the picture changed before each.
 #[must_use]
 pub fn workloads() -> Vec<Workload> {
     let frame = |id, what, prepare| Workload {
@@ -26,6 +29,7 @@ pub fn workloads() -> Vec<Workload> {
         what,
         repetitions: 1,
         limit: LIMIT,
+        most_of_native: None,
         prepare,
     };
     vec![
@@ -46,8 +50,13 @@ pub fn workloads() -> Vec<Workload> {
         ),
         frame(
             "frame-w16.4",
-            "a frame of w16.4 while its timeline is dragged",
+            "a frame of w16.4 while its timeline is dragged between two keyframes",
             || Frames::of(w16_4_control_room::widget(), "t", [100.0, 101.0]),
+        ),
+        frame(
+            "frame-w16.4-grid",
+            "a frame of w16.4 that takes a keyframe in or out, and so draws its grid again",
+            || Frames::of(w16_4_control_room::widget(), "t", KEYFRAME_TICKS),
         ),
     ]
 }
@@ -106,5 +115,22 @@ impl Frames {
         picture
             .bytes()
             .for_each(|byte| digest.add_bits(u64::from(byte)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ch16_lab::lap::{LapConfig, LapRunner};
+
+    use super::*;
+
+    #[test]
+    fn one_frame_of_the_control_room_draws_its_grid_again_and_one_does_not() {
+        let record = LapRunner::new().run(&LapConfig::default());
+        let keyframes = |tick: f64| record.lap.node_count(tick as usize);
+        assert_eq!(keyframes(101.0), keyframes(100.0));
+        let [before, at] = KEYFRAME_TICKS;
+        assert_eq!(keyframes(at), keyframes(before) + 1);
+        assert_eq!(keyframes(at), 38);
     }
 }

@@ -5,6 +5,7 @@
 //! computed: so nothing is optimized away, and a digest of all of it, taken while no clock runs,
 //! shows whether two builds compute the same.
 
+pub mod calibration;
 pub mod chapter;
 pub mod frames;
 pub mod measure;
@@ -22,6 +23,8 @@ pub struct Workload {
     pub repetitions: u32,
     /// The most that it may take, where the project has set itself a limit.
     pub limit: Option<Limit>,
+    /// The most that WebAssembly in Chromium may take of the native time, where a limit is set.
+    pub most_of_native: Option<f64>,
     /// Prepares it.
     pub prepare: fn() -> Box<dyn Run>,
 }
@@ -86,7 +89,11 @@ pub fn workloads() -> Vec<Workload> {
 
 #[cfg(target_arch = "wasm32")]
 mod browser {
+    use std::cell::RefCell;
+
     use wasm_bindgen::prelude::wasm_bindgen;
+
+    use crate::measure::Turns;
 
     #[wasm_bindgen]
     extern "C" {
@@ -94,15 +101,13 @@ mod browser {
         fn now() -> f64;
     }
 
-    /// Measures every workload; the answer is the JSON that the native binary prints.
+    thread_local!(static TURNS: RefCell<Turns> = RefCell::default());
+
+    /// Runs a workload for about `budget_ms`; the answer is the JSON that the native binary prints.
     #[wasm_bindgen]
-    #[must_use]
-    pub fn measure_all(seconds_each: f64) -> String {
-        let measured: Vec<_> = crate::workloads()
-            .iter()
-            .map(|workload| crate::measure::measure(workload, 1e3 * seconds_each, &now))
-            .collect();
-        serde_json::to_string(&measured).unwrap_or_default()
+    pub fn turn(id: &str, budget_ms: f64) -> Result<String, String> {
+        let turn = TURNS.with_borrow_mut(|turns| turns.take(id, budget_ms, &now))?;
+        serde_json::to_string(&turn).map_err(|error| error.to_string())
     }
 }
 

@@ -4,31 +4,41 @@
 
 mod clouds;
 mod counts;
+mod measured;
 mod page;
+mod peer;
+mod ratios;
 mod registration;
 mod report;
 mod sweep;
 
-use std::io::{ErrorKind, Write as _, stdout};
+use std::io::{ErrorKind, Write as _, stdin, stdout};
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use measured::Measured;
 use measuring::skip::tell;
 use page::{Block, write_into};
-use report::Figures;
 use serde::Serialize;
-use slam2d_bench::{measure::measure, workloads};
+use slam2d_bench::measure::{self, Turns};
 
 const USAGE: &str = "\
-slam2d_bench measure [SECONDS_EACH]      medians of all workloads as JSON
+slam2d_bench names                       the names of all that is measured, as JSON
+slam2d_bench turns                       for each line `ID MILLISECONDS` of standard input: run that
+                                         workload so long, and print its time as a line of JSON
 slam2d_bench count                       instructions of one repetition of each workload as JSON;
                                          an empty object without valgrind
-slam2d_bench table NATIVE.json WASM.json COUNTS.json PAGE.md
-                                         print the table of the workloads and write it into a page
+slam2d_bench table TURNS.json COUNTS.json PAGE.md
+                                         print the tables of the workloads, from what measure.mjs
+                                         printed, and write them into a page
+slam2d_bench judge TURNS.json            fail where a row is beyond its limit on a quiet machine
+slam2d_bench peer PAGE.md                check and time the port in JavaScript with Node,
+                                         print its table and write it into a page
 slam2d_bench clouds FOLDER               write the clouds of the registration table, for slam2d register
 slam2d_bench registration SLAM2D FOLDER PAGE.md
-                                         write the clouds, register them with the program SLAM2D,
+                                         write the clouds, register them with the program SLAM2D and
+                                         with nanoflann, where a C++ compiler finds it,
                                          print the table and write it into a page
 slam2d_bench sweep SLAM2D PAGE.md        run the sweep of 4,000 laps with the program SLAM2D,
                                          print its distribution and write it into a page
@@ -40,11 +50,13 @@ fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let args: Vec<&str> = args.iter().map(String::as_str).collect();
     let done = match args[..] {
-        ["measure"] => measure_all("0.5"),
-        ["measure", seconds] => measure_all(seconds),
+        ["names"] => say_json(&measure::names()),
+        ["turns"] => turns(),
         ["count"] => count(),
-        ["table", native, wasm, counts, page] => {
-            table([native, wasm, counts].map(Path::new), Path::new(page))
+        ["table", turns, counts, page] => tables(Path::new(turns), Path::new(counts), page),
+        ["judge", turns] => Measured::read(Path::new(turns)).and_then(|all| all.judge()),
+        ["peer", page] => {
+            peer::table().and_then(|table| publish(Path::new(page), Block::Peer, &table))
         }
         ["clouds", folder] => clouds::write(Path::new(folder)).and_then(|files| {
             let mut names = files.iter().map(|file| file.display().to_string());
@@ -92,15 +104,19 @@ fn publish(page: &Path, block: Block, text: &str) -> Result<(), String> {
     write_into(page, block, text)
 }
 
-fn measure_all(seconds: &str) -> Result<(), String> {
-    let seconds: f64 = seconds.parse().map_err(|_| USAGE.to_owned())?;
+/// Answers each line of standard input, one turn of one workload, until there are no more.
+fn turns() -> Result<(), String> {
     let start = Instant::now();
     let now_ms = || 1e3 * start.elapsed().as_secs_f64();
-    let measured: Vec<_> = workloads()
-        .iter()
-        .map(|workload| measure(workload, 1e3 * seconds, &now_ms))
-        .collect();
-    say_json(&measured)
+    let mut turns = Turns::default();
+    for line in stdin().lines() {
+        let line = line.map_err(|error| format!("standard input: {error}"))?;
+        let words = line.split_once(' ');
+        let turn = words.and_then(|(id, budget)| Some((id, budget.parse::<f64>().ok()?)));
+        let (id, budget_ms) = turn.ok_or_else(|| format!("`{line}` is not `ID MILLISECONDS`"))?;
+        say_json(&turns.take(id, budget_ms, &now_ms)?)?;
+    }
+    Ok(())
 }
 
 fn count() -> Result<(), String> {
@@ -114,13 +130,16 @@ fn count() -> Result<(), String> {
     say_json(&counts::of_one_repetition(counts))
 }
 
-fn table([native, wasm, counts]: [&Path; 3], page: &Path) -> Result<(), String> {
-    let figures = Figures::read(native, wasm, counts)?;
-    publish(page, Block::Workloads, &figures.table())?;
-    if figures.are_counted() {
-        return Ok(());
+fn tables(turns: &Path, counts: &Path, page: &str) -> Result<(), String> {
+    let measured = Measured::read(turns)?;
+    let counts = measured::read(counts)?;
+    let page = Path::new(page);
+    publish(page, Block::Workloads, &report::table(&measured, &counts))?;
+    publish(page, Block::Ratios, &ratios::table(&measured))?;
+    if counts.is_empty() {
+        say("valgrind is not installed: no instructions were counted")?;
     }
-    say("valgrind is not installed: no instructions were counted")
+    Ok(())
 }
 
 fn judge_counts(judge: impl FnOnce(&counts::Counts) -> Result<(), String>) -> Result<(), String> {
@@ -133,10 +152,7 @@ fn judge_counts(judge: impl FnOnce(&counts::Counts) -> Result<(), String>) -> Re
 
 fn run(id: &str, times: &str) -> Result<(), String> {
     let times: u32 = times.parse().map_err(|_| USAGE.to_owned())?;
-    let workload = workloads()
-        .into_iter()
-        .find(|workload| workload.id == id)
-        .ok_or_else(|| format!("there is no workload `{id}`"))?;
+    let workload = measure::find(id)?;
     let mut run = (workload.prepare)();
     for _ in 0..times {
         run.once();

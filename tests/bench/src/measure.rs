@@ -1,61 +1,128 @@
-//! The median of many runs, with the clock as an argument.
+//! Workloads measured by turns, with the clock as an argument.
+//!
+//! Another build, or another engine, has the turn between two turns of this one: what else a machine
+//! does meets all of them alike, and a ratio of two turns of one round says what a ratio of two
+//! medians from different minutes does not.
+
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use serde::Serialize;
 
-use crate::Workload;
+use crate::{Run, Workload, calibration, workloads};
 
-/// A sample lasts at least this long: browsers round their clocks to a tenth of a millisecond.
-const SAMPLE_MS: f64 = 8.0;
+/// A sample lasts at least this long: a page that stands alone has a clock of 5 µs.
+const SAMPLE_MS: f64 = 2.0;
 
-/// Fewest samples that a median is taken of.
-const MIN_SAMPLES: usize = 5;
+/// Fewest samples of a turn.
+const MIN_SAMPLES: u32 = 3;
 
-/// What was measured of one workload.
+/// What one turn measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Measured {
-    /// Name of the workload.
-    pub id: &'static str,
-    /// What one run does.
-    pub what: &'static str,
-    /// Median of one repetition, in milliseconds.
-    pub median_ms: f64,
-    /// The fastest sample, in milliseconds.
-    pub least_ms: f64,
-    /// Number of samples.
-    pub samples: usize,
+pub struct Turn {
+    /// Milliseconds of one repetition, in the fastest sample of the turn.
+    pub ms: f64,
+    /// The same, in the mean over all samples: what else the machine does shows here.
+    pub mean_ms: f64,
     /// Digest of the first run, in hexadecimal.
     pub digest: String,
 }
 
-/// Runs a workload for about `budget_ms` and returns its median; `now_ms` is the clock.
-pub fn measure(workload: &Workload, budget_ms: f64, now_ms: &dyn Fn() -> f64) -> Measured {
-    let mut run = (workload.prepare)();
-    run.once();
-    let digest = run.digest();
-    let mut time = |runs: u32| {
+/// The workloads that have had a turn, each prepared once.
+#[derive(Default)]
+pub struct Turns {
+    ready: BTreeMap<String, Ready>,
+}
+
+struct Ready {
+    run: Box<dyn Run>,
+    repetitions: u32,
+    digest: String,
+    /// Runs of one sample.
+    runs: u32,
+}
+
+impl Turns {
+    /// Runs a workload for about `budget_ms`; `now_ms` is the clock.
+    ///
+    /// # Errors
+    /// One sentence where there is no workload of that name.
+    pub fn take(
+        &mut self,
+        id: &str,
+        budget_ms: f64,
+        now_ms: &dyn Fn() -> f64,
+    ) -> Result<Turn, String> {
+        let ready = match self.ready.entry(id.to_owned()) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => entry.insert(Ready::new(&find(id)?)),
+        };
+        Ok(ready.turn(budget_ms, now_ms))
+    }
+}
+
+/// The names of all that is measured: the calibration loop first, then the workloads.
+#[must_use]
+pub fn names() -> Vec<&'static str> {
+    let workloads = workloads();
+    let ids = workloads.iter().map(|workload| workload.id);
+    [calibration::ID].into_iter().chain(ids).collect()
+}
+
+/// The workload of a name, or the calibration loop.
+///
+/// # Errors
+/// One sentence where there is none.
+pub fn find(id: &str) -> Result<Workload, String> {
+    workloads()
+        .into_iter()
+        .chain([calibration::workload()])
+        .find(|workload| workload.id == id)
+        .ok_or_else(|| format!("there is no workload `{id}`"))
+}
+
+impl Ready {
+    fn new(workload: &Workload) -> Self {
+        let mut run = (workload.prepare)();
+        run.once();
+        let digest = format!("{:016x}", run.digest());
+        Self {
+            run,
+            repetitions: workload.repetitions,
+            digest,
+            runs: 1,
+        }
+    }
+
+    fn turn(&mut self, budget_ms: f64, now_ms: &dyn Fn() -> f64) -> Turn {
+        let started = now_ms();
+        let (mut fastest_ms, mut sum_ms) = (f64::INFINITY, 0.0);
+        let mut samples = 0_u32;
+        while samples < MIN_SAMPLES || now_ms() - started < budget_ms {
+            let sample_ms = self.sample(now_ms);
+            if sample_ms < SAMPLE_MS {
+                self.runs *= 2;
+                (fastest_ms, sum_ms, samples) = (f64::INFINITY, 0.0, 0);
+                continue;
+            }
+            fastest_ms = fastest_ms.min(sample_ms);
+            sum_ms += sample_ms;
+            samples += 1;
+        }
+        let repetitions = f64::from(self.runs) * f64::from(self.repetitions);
+        Turn {
+            ms: fastest_ms / repetitions,
+            mean_ms: sum_ms / f64::from(samples) / repetitions,
+            digest: self.digest.clone(),
+        }
+    }
+
+    fn sample(&mut self, now_ms: &dyn Fn() -> f64) -> f64 {
         let start = now_ms();
-        for _ in 0..runs {
-            run.once();
+        for _ in 0..self.runs {
+            self.run.once();
         }
         now_ms() - start
-    };
-    let mut runs = 1;
-    while time(runs) < SAMPLE_MS {
-        runs *= 2;
-    }
-    let started = now_ms();
-    let mut samples = Vec::new();
-    while samples.len() < MIN_SAMPLES || now_ms() - started < budget_ms {
-        samples.push(time(runs) / f64::from(runs) / f64::from(workload.repetitions));
-    }
-    samples.sort_by(f64::total_cmp);
-    Measured {
-        id: workload.id,
-        what: workload.what,
-        median_ms: samples[samples.len() / 2],
-        least_ms: samples[0],
-        samples: samples.len(),
-        digest: format!("{digest:016x}"),
     }
 }
 
@@ -69,25 +136,52 @@ mod tests {
     use crate::prepared;
 
     #[test]
-    fn the_median_is_that_of_one_repetition() {
-        // A clock that every look moves by 20 ms: each sample lasts 20 ms.
+    fn a_turn_gives_the_time_of_one_repetition_in_its_fastest_sample() {
+        // Every look at the clock moves it by 20 ms, but the one that ends the first sample by 12.
+        let looks = Cell::new(0);
         let clock = Cell::new(0.0);
         let now = || {
-            clock.set(clock.get() + 20.0);
+            looks.set(looks.get() + 1);
+            clock.set(clock.get() + if looks.get() == 3 { 12.0 } else { 20.0 });
             clock.get()
         };
-        let workload = Workload {
+        let mut ready = Ready::new(&Workload {
             id: "nothing",
             what: "nothing",
             repetitions: 4,
             limit: None,
+            most_of_native: None,
             prepare: || prepared((), |()| {}, |(), digest| digest.add_bits(7)),
-        };
-        let measured = measure(&workload, 100.0, &now);
-        assert_eq!(measured.median_ms, 5.0);
-        assert!(measured.samples >= MIN_SAMPLES);
+        });
+        let turn = ready.turn(100.0, &now);
+        assert_eq!(turn.ms, 12.0 / 4.0);
+        assert!(turn.ms < turn.mean_ms && turn.mean_ms < 20.0 / 4.0);
         let mut digest = Digest::new();
         digest.add_bits(7);
-        assert_eq!(measured.digest, format!("{:016x}", digest.value()));
+        assert_eq!(turn.digest, format!("{:016x}", digest.value()));
+    }
+
+    #[test]
+    fn a_run_too_short_for_the_clock_is_repeated_within_a_sample() {
+        thread_local!(static CLOCK: Cell<f64> = const { Cell::new(0.0) });
+        let mut ready = Ready::new(&Workload {
+            id: "short",
+            what: "a quarter of a millisecond",
+            repetitions: 1,
+            limit: None,
+            most_of_native: None,
+            prepare: || {
+                let work = |(): &mut ()| CLOCK.set(CLOCK.get() + 0.25);
+                prepared((), work, |(), digest| digest.add_bits(7))
+            },
+        });
+        let turn = ready.turn(10.0, &|| CLOCK.get());
+        assert_eq!((turn.ms, ready.runs), (0.25, 8));
+    }
+
+    #[test]
+    fn a_name_that_is_no_workload_is_told() {
+        let told = Turns::default().take("nothing", 1.0, &|| 0.0);
+        assert_eq!(told, Err("there is no workload `nothing`".to_owned()));
     }
 }

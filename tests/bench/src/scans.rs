@@ -3,9 +3,11 @@
 use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart};
 use ch16_lab::samples;
 use ch16_lab::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
-use ch16_slam2d::cloud::{DenseMap, NearestMap, NormalEstimator, PointCloud};
+use ch16_slam2d::cloud::{
+    DenseMap, NearestMap, NearestTable, Neighbor, NormalEstimator, PointCloud, VoxelMap,
+};
 use ch16_slam2d::digest::Digest;
-use ch16_slam2d::icp::{IcpConfig, IcpVariant, IcpWorkspace};
+use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace};
 use ch16_slam2d::ndt::{NdtConfig, NdtMap, ndt_align};
 use pr_geom::{Point2, SE2};
 use pr_sim::Rng;
@@ -48,13 +50,18 @@ impl Basin {
     }
 }
 
-pub(crate) fn register(variant: IcpVariant) -> Box<dyn Run> {
+/// Settings with which every run uses all of its 30 iterations.
+fn all_iterations(variant: IcpVariant) -> IcpConfig {
+    IcpConfig {
+        tolerance: 0.0,
+        ..BasinScene::config(variant, TAU_M)
+    }
+}
+
+/// A registration that looks neighbours up in the scene's table, built before.
+pub(crate) fn register_with_table(variant: IcpVariant) -> Box<dyn Run> {
     prepared(
-        Basin::new(IcpConfig {
-            // So every run uses all of its 30 iterations.
-            tolerance: 0.0,
-            ..BasinScene::config(variant, TAU_M)
-        }),
+        Basin::new(all_iterations(variant)),
         |basin| {
             let (start, workspace) = (BasinStart::default(), &mut basin.workspace);
             let outcome = basin.scene.register_from(&start, &basin.config, workspace);
@@ -65,10 +72,47 @@ pub(crate) fn register(variant: IcpVariant) -> Box<dyn Run> {
     )
 }
 
+/// The same registration on the dense map, where nothing is built for it.
+pub(crate) fn register_without_table(variant: IcpVariant) -> Box<dyn Run> {
+    prepared(
+        Basin::new(all_iterations(variant)),
+        |basin| {
+            let (scene, workspace) = (&basin.scene, &mut basin.workspace);
+            let guess = scene.guess(&BasinStart::default());
+            let map = scene.map().map();
+            let found = Icp::new(scene.source(), map, guess, &basin.config, workspace).run();
+            basin.outcomes.clear();
+            let outcome = BasinOutcome::judge(&basin.scene.truth(), &found);
+            basin.outcomes.push(outcome);
+        },
+        Basin::add_to,
+    )
+}
+
+/// The scene's table of nearest neighbours, built.
+pub(crate) fn table() -> Box<dyn Run> {
+    let scene = BasinScene::new();
+    prepared(
+        (scene, None),
+        |(scene, table)| *table = Some(BasinScene::table(scene.map().map().clone())),
+        |(scene, table), digest| {
+            if let Some(table) = table {
+                let found = scene
+                    .source()
+                    .iter()
+                    .map(|point| table.neighbor(point, TAU_M));
+                found.for_each(|found| add_neighbor(found, digest));
+            }
+        },
+    )
+}
+
+/// A whole sweep: the scene with its table, and a registration for each degree.
 pub(crate) fn sweep(variant: IcpVariant) -> Box<dyn Run> {
     prepared(
         Basin::new(BasinScene::config(variant, TAU_M)),
         |basin| {
+            basin.scene = BasinScene::new();
             let headings = (-180..=180).map(f64::from);
             let (start, workspace) = (BasinStart::default(), &mut basin.workspace);
             let outcomes = basin.scene.sweep(start, headings, &basin.config, workspace);
@@ -131,8 +175,31 @@ pub(crate) fn ndt_registration() -> Box<dyn Run> {
     )
 }
 
-pub(crate) fn nearest() -> Box<dyn Run> {
+/// Queries of neighbouring beams in a table of nearest neighbours, built before.
+pub(crate) fn nearest_in_table() -> Box<dyn Run> {
     let map = DenseMap::from_cloud(&samples::apartment_map(), 0.25, usize::MAX);
+    nearest_in(NearestTable::new(map, 0.08, 1.0))
+}
+
+/// The same queries in the dense map.
+pub(crate) fn nearest_in_dense_map() -> Box<dyn Run> {
+    nearest_in(DenseMap::from_cloud(
+        &samples::apartment_map(),
+        0.25,
+        usize::MAX,
+    ))
+}
+
+/// The same queries in the chapter's hash of cells.
+pub(crate) fn nearest_in_voxel_map() -> Box<dyn Run> {
+    nearest_in(VoxelMap::from_cloud(
+        &samples::apartment_map(),
+        0.25,
+        usize::MAX,
+    ))
+}
+
+fn nearest_in<M: NearestMap + 'static>(map: M) -> Box<dyn Run> {
     let pose = SE2::new(3.4, 4.4, 0.2);
     let near = pose * SE2::new(0.1, 0.1, 0.03);
     let cloud = samples::sweep(&pose, QUERIES, &mut Rng::new(77)).transformed(&near);
@@ -143,13 +210,20 @@ pub(crate) fn nearest() -> Box<dyn Run> {
             found.clear();
             found.extend(queries.iter().map(|query| map.neighbor(*query, 0.5)));
         },
-        |(_, _, found), digest| {
+        |(map, _, found), digest| {
             for found in found {
-                digest.add_bits(found.map_or(u64::MAX, |found| found.index as u64));
-                digest.add(found.map_or(-1.0, |found| found.distance_squared_m2));
+                add_neighbor(*found, digest);
+                // Each map numbers its points in its own order.
+                let point = found.map(|found| map.point(found.index));
+                digest.add_all(&point.unwrap_or_default().coords);
             }
         },
     )
+}
+
+fn add_neighbor(found: Option<Neighbor>, digest: &mut Digest) {
+    digest.add_bits(found.map_or(u64::MAX, |found| found.index as u64));
+    digest.add(found.map_or(-1.0, |found| found.distance_squared_m2));
 }
 
 pub(crate) fn normals() -> Box<dyn Run> {

@@ -93,11 +93,17 @@ impl BasinScene {
         let map = DenseMap::from_cloud(&target, MAP_CELL_M, MAP_POINTS_PER_CELL);
         Self {
             world_from_target,
-            map: NearestTable::new(map, TABLE_SQUARE_M, TABLE_REACH_M),
+            map: Self::table(map),
             target,
             source,
             truth: world_from_target.between(&world_from_source),
         }
+    }
+
+    /// The table in which the scene looks neighbours up, built from the target's map.
+    #[must_use]
+    pub fn table(map: DenseMap) -> NearestTable {
+        NearestTable::new(map, TABLE_SQUARE_M, TABLE_REACH_M)
     }
 
     /// The scene's settings for a registration: 30 iterations, everything else the chapter's.

@@ -75,7 +75,7 @@ pub fn compile_tools() -> Result<(), Failure> {
 }
 
 /// A program of [`compile_tools`].
-fn tool(name: &str) -> PathBuf {
+pub fn tool(name: &str) -> PathBuf {
     folder_of_tools().join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
 }
 

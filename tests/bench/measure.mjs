@@ -1,0 +1,83 @@
+// Measures the workloads by turns, natively and as WebAssembly in Node and in Chromium:
+// `node tests/bench/measure.mjs SLAM2D_BENCH FOLDER [ROUNDS] [MILLISECONDS] [ID,ID]`.
+// FOLDER holds what wasm-pack built; the answer is JSON on standard output.
+
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { join, resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { launch } from '../browser/chromium.mjs';
+import { native } from './native.mjs';
+
+/** Rounds that nobody counts: an engine compiles what runs often a second time, and better. */
+const WARM_UP = 3;
+
+const [program, folder, rounds = '15', budgetMs = '25', only] = process.argv.slice(2);
+const glue = join(resolve(folder), 'slam2d_bench.js');
+const module = readFileSync(join(folder, 'slam2d_bench_bg.wasm'));
+
+/** Each engine runs a workload for some milliseconds and says what it took; one runs at a time. */
+const engines = { native: native(program), node: await inNode(), chromium: await inChromium() };
+try {
+  console.log(JSON.stringify(await measure()));
+} finally {
+  for (const { close } of Object.values(engines)) await close();
+}
+
+async function measure() {
+  const all = JSON.parse(execFileSync(program, ['names'], { encoding: 'utf8' }));
+  // The first is the calibration loop, which tells how busy the machine is.
+  const names = all.filter((id, index) => index === 0 || !only || only.split(',').includes(id));
+  const nothing = () => ({ ms: [], mean_ms: [], digest: '' });
+  const entries = names.map((id) => ({ id, native: nothing(), node: nothing(), chromium: nothing() }));
+  for (let round = -WARM_UP; round < Number(rounds); round += 1) {
+    for (const entry of entries) {
+      for (const [name, engine] of Object.entries(engines)) {
+        const { ms, mean_ms, digest } = await engine.turn(entry.id, Number(budgetMs));
+        if (round < 0) continue;
+        entry[name].ms.push(ms);
+        entry[name].mean_ms.push(mean_ms);
+        entry[name].digest = digest;
+      }
+    }
+  }
+  return entries;
+}
+
+async function inNode() {
+  const exports = await import(pathToFileURL(glue));
+  exports.initSync({ module });
+  return { turn: (id, ms) => JSON.parse(exports.turn(id, ms)), close() {} };
+}
+
+async function inChromium() {
+  const files = {
+    '/': ['text/html', '<!doctype html><title>Bench</title>'],
+    '/glue.js': ['text/javascript', readFileSync(glue)],
+    '/slam2d_bench_bg.wasm': ['application/wasm', module],
+  };
+  const server = createServer(({ url }, response) => {
+    const [type, body] = files[url] ?? ['text/plain', ''];
+    response.setHeader('Content-Type', type);
+    // A page that stands alone has a clock of 5 µs, any other one of 100.
+    response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
+    response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
+    response.end(body);
+  });
+  await new Promise((listening) => server.listen(0, '127.0.0.1', listening));
+  const browser = await launch();
+  const page = await browser.newPage();
+  await page.goto(`http://localhost:${server.address().port}/`);
+  await page.evaluate(async () => {
+    window.glue = await import('/glue.js');
+    await glue.default();
+  });
+  return {
+    turn: async (id, ms) => JSON.parse(await page.evaluate(([id, ms]) => glue.turn(id, ms), [id, ms])),
+    async close() {
+      await browser.close();
+      server.close();
+    },
+  };
+}
