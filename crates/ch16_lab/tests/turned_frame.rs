@@ -21,7 +21,7 @@ fn edges(drive: &Drive, start: SE2, information_frame: InformationFrame) -> Vec<
     for tick in 0..=drive.ticks().len() {
         slam.step_prepared(&drive.prepared(tick)).unwrap();
     }
-    slam.graph().edges().map(|view| *view.edge).collect()
+    slam.graph().edges().map(|view| view.edge).collect()
 }
 
 /// Largest difference of two matrices, as a share of the largest entry.

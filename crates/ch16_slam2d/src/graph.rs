@@ -8,15 +8,12 @@
 //!
 //! over all edges `(i, j)` with measurement `Z` and information `Ω` (3×3, tangent order x, y, θ).
 //! The sum is not halved and not touched by a robust kernel. Fixed nodes hold the gauge.
-//! The solver is [`pr_optim`]; this module keeps the graph on [`petgraph`], so that it can be
-//! walked, drawn and asked for its edges.
+//! The solver is [`pr_optim`]. Poses and measurements are stored once, in its [`Problem`]; this module
+//! gives them their handles, and remembers where each measurement comes from.
 //!
 //! Source: Grisetti, Kümmerle, Stachniss, Burgard, "A tutorial on graph-based SLAM", 2010.
 
 use nalgebra::Matrix3;
-use petgraph::Directed;
-use petgraph::graph::{EdgeIndex, Graph, NodeIndex};
-use petgraph::visit::EdgeRef;
 use pr_geom::SE2;
 use pr_optim::{
     Between, JacobianModel, Method, OptimizeError, Optimizer, Problem, Report, RobustKernel,
@@ -24,10 +21,34 @@ use pr_optim::{
 };
 
 /// Handle of a node. Nodes are numbered from 0 in the order in which they were added.
-pub type NodeId = NodeIndex<usize>;
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct NodeId(usize);
 
 /// Handle of an edge. Edges are numbered from 0 in the order in which they were added.
-pub type EdgeId = EdgeIndex<usize>;
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EdgeId(usize);
+
+impl NodeId {
+    /// The node's number.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
+impl From<usize> for NodeId {
+    fn from(number: usize) -> Self {
+        Self(number)
+    }
+}
+
+impl EdgeId {
+    /// The edge's number.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
 
 /// Where a measurement comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -58,9 +79,19 @@ pub struct PoseEdge {
     pub kind: EdgeKind,
 }
 
+impl PoseEdge {
+    fn new(factor: &Between, kind: EdgeKind) -> Self {
+        Self {
+            measurement: factor.measurement,
+            information: factor.information,
+            kind,
+        }
+    }
+}
+
 /// An edge together with its ends, as the iterators give it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EdgeView<'a> {
+pub struct EdgeView {
     /// Handle of the edge.
     pub id: EdgeId,
     /// The node that measured.
@@ -68,14 +99,15 @@ pub struct EdgeView<'a> {
     /// The node that was measured.
     pub to: NodeId,
     /// The measurement.
-    pub edge: &'a PoseEdge,
+    pub edge: PoseEdge,
 }
 
 /// Poses and measurements, with the solver's workspace beside them.
 #[derive(Debug)]
 pub struct PoseGraph {
-    graph: Graph<PoseNode, PoseEdge, Directed, usize>,
     problem: Problem,
+    /// Where each factor of the problem comes from.
+    kinds: Vec<EdgeKind>,
     optimizer: Optimizer,
 }
 
@@ -89,8 +121,8 @@ impl Clone for PoseGraph {
     /// The clone solves to the same bits; it analyses the pattern anew when it is first solved.
     fn clone(&self) -> Self {
         Self {
-            graph: self.graph.clone(),
             problem: self.problem.clone(),
+            kinds: self.kinds.clone(),
             optimizer: Optimizer::new(self.optimizer.settings),
         }
     }
@@ -107,8 +139,8 @@ impl PoseGraph {
     #[must_use]
     pub fn with_jacobians(jacobians: JacobianModel) -> Self {
         Self {
-            graph: Graph::default(),
             problem: Problem::new(),
+            kinds: Vec::new(),
             optimizer: Optimizer::new(Settings {
                 method: Method::GaussNewton,
                 jacobians,
@@ -119,14 +151,12 @@ impl PoseGraph {
 
     /// Adds a node that the solver may move.
     pub fn add_node(&mut self, pose: SE2) -> NodeId {
-        self.problem.add_pose(pose);
-        self.graph.add_node(PoseNode { pose, fixed: false })
+        NodeId(self.problem.add_pose(pose))
     }
 
     /// Adds a node that stays where it is: it holds the gauge.
     pub fn add_fixed_node(&mut self, pose: SE2) -> NodeId {
-        self.problem.add_fixed_pose(pose);
-        self.graph.add_node(PoseNode { pose, fixed: true })
+        NodeId(self.problem.add_fixed_pose(pose))
     }
 
     /// Adds the measurement that `to` is at `measurement` in the frame of `from`.
@@ -141,29 +171,20 @@ impl PoseGraph {
         information: Matrix3<f64>,
         kind: EdgeKind,
     ) -> EdgeId {
-        let (from, to) = (from.into(), to.into());
         self.problem.add_factor(Between {
-            from: from.index(),
-            to: to.index(),
+            from: from.into().index(),
+            to: to.into().index(),
             measurement,
             information,
         });
-        self.graph.add_edge(
-            from,
-            to,
-            PoseEdge {
-                measurement,
-                information,
-                kind,
-            },
-        )
+        self.kinds.push(kind);
+        EdgeId(self.kinds.len() - 1)
     }
 
     /// Takes the newest edge out again and returns it; none where there is none.
     pub fn pop_edge(&mut self) -> Option<PoseEdge> {
-        let newest = self.edge_count().checked_sub(1)?;
-        self.problem.pop_factor();
-        self.graph.remove_edge(EdgeId::new(newest))
+        let factor = self.problem.pop_factor()?;
+        Some(PoseEdge::new(&factor, self.kinds.pop()?))
     }
 
     /// The present pose of a node.
@@ -172,7 +193,7 @@ impl PoseGraph {
     /// Where the node does not exist.
     #[must_use]
     pub fn pose(&self, node: impl Into<NodeId>) -> SE2 {
-        self.graph[node.into()].pose
+        self.problem.poses()[node.into().index()]
     }
 
     /// Moves a node from outside, for an initial guess.
@@ -180,28 +201,27 @@ impl PoseGraph {
     /// # Panics
     /// Where the node does not exist.
     pub fn set_pose(&mut self, node: impl Into<NodeId>, pose: SE2) {
-        let node = node.into();
-        self.graph[node].pose = pose;
-        self.problem.poses_mut()[node.index()] = pose;
+        self.problem.poses_mut()[node.into().index()] = pose;
     }
 
     /// Number of nodes.
     #[must_use]
     pub fn node_count(&self) -> usize {
-        self.graph.node_count()
+        self.problem.node_count()
     }
 
     /// Number of edges.
     #[must_use]
     pub fn edge_count(&self) -> usize {
-        self.graph.edge_count()
+        self.kinds.len()
     }
 
     /// All nodes with their handles, in the order in which they were added.
-    pub fn nodes(&self) -> impl Iterator<Item = (NodeId, &PoseNode)> {
-        self.graph
-            .node_indices()
-            .map(|node| (node, &self.graph[node]))
+    pub fn nodes(&self) -> impl ExactSizeIterator<Item = (NodeId, PoseNode)> + '_ {
+        let nodes = self.problem.poses().iter().zip(self.problem.fixed());
+        nodes
+            .enumerate()
+            .map(|(number, (&pose, &fixed))| (NodeId(number), PoseNode { pose, fixed }))
     }
 
     /// The poses of all nodes, by number.
@@ -211,12 +231,13 @@ impl PoseGraph {
     }
 
     /// All edges with their ends, in the order in which they were added.
-    pub fn edges(&self) -> impl Iterator<Item = EdgeView<'_>> {
-        self.graph.edge_references().map(|edge| EdgeView {
-            id: edge.id(),
-            from: edge.source(),
-            to: edge.target(),
-            edge: edge.weight(),
+    pub fn edges(&self) -> impl ExactSizeIterator<Item = EdgeView> + '_ {
+        let edges = self.problem.factors().iter().zip(&self.kinds);
+        edges.enumerate().map(|(number, (factor, &kind))| EdgeView {
+            id: EdgeId(number),
+            from: NodeId(factor.from),
+            to: NodeId(factor.to),
+            edge: PoseEdge::new(factor, kind),
         })
     }
 
@@ -250,9 +271,7 @@ impl PoseGraph {
         self.optimizer.settings.kernel = RobustKernel::Huber { width: huber };
         self.optimizer.settings.max_iterations = max_iters;
         self.optimizer.settings.step_tolerance = tolerance;
-        let report = self.optimizer.run(&mut self.problem);
-        self.take_poses();
-        report
+        self.optimizer.run(&mut self.problem)
     }
 
     /// One Gauss–Newton iteration; returns the largest step of a node (m and rad added).
@@ -261,7 +280,6 @@ impl PoseGraph {
     pub fn optimize_once(&mut self, huber: f64) -> f64 {
         self.optimizer.settings.kernel = RobustKernel::Huber { width: huber };
         let step = self.optimizer.step(&mut self.problem);
-        self.take_poses();
         step.map_or(f64::NAN, |step| step.largest_step)
     }
 
@@ -314,12 +332,6 @@ impl PoseGraph {
             .zip(ends)
             .map(|(joint, factor)| joint.relative(&poses[factor.from], &poses[factor.to]))
             .collect())
-    }
-
-    fn take_poses(&mut self) {
-        for (node, pose) in self.graph.node_weights_mut().zip(self.problem.poses()) {
-            node.pose = *pose;
-        }
     }
 }
 

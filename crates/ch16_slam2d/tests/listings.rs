@@ -111,6 +111,6 @@ fn the_listing_on_the_pose_graph_compiles() {
     assert!(largest_step > 0.0 && graph.chi2() < before);
     graph.optimize(max_iters, tolerance);
     assert!((graph.pose(c).translation().x - 2.4).abs() < 1e-8);
-    let edge: &PoseEdge = graph.edges().last().expect("three edges").edge;
+    let edge: PoseEdge = graph.edges().last().expect("three edges").edge;
     assert_eq!(edge.kind, EdgeKind::Loop);
 }
