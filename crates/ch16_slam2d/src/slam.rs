@@ -34,7 +34,7 @@ use crate::loops::{
 };
 use crate::matching::Matcher;
 use crate::metrics::position_error_m;
-use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer};
+use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer, is_finite};
 
 /// The parts of the estimator that can be exchanged.
 #[derive(Clone)]
@@ -194,6 +194,14 @@ impl Slam {
             return Err(FrameError::Stamp {
                 stamp_s: frame.stamp_s,
                 last_s: self.last_stamp_s,
+            });
+        }
+        if frame
+            .odometry
+            .is_some_and(|motion| !is_finite(&(self.front_end.estimate() * motion)))
+        {
+            return Err(FrameError::Odometry {
+                stamp_s: frame.stamp_s,
             });
         }
         self.last_stamp_s = frame.stamp_s;

@@ -97,6 +97,28 @@ proptest! {
 }
 
 #[test]
+fn a_table_beyond_its_budget_is_not_used_and_the_answers_stay() {
+    let hall = |k: i32| Point2::new(3.0 * f64::from(k), 2.0 * f64::from(k % 7));
+    let cloud: PointCloud = (0..1000).map(hall).collect();
+    let map = DenseMap::from_cloud(&cloud, 0.25, 8);
+    // 3 km by 14 m: 600,000 squares of 0.3 m with their margin, but 65 million of 3 cm.
+    let (coarse, fine) = (
+        NearestTable::new(map.clone(), 0.3, 0.7),
+        NearestTable::new(map.clone(), 0.03, 0.7),
+    );
+    assert!(coarse.is_tabulated() && !fine.is_tabulated());
+    for k in 0..200 {
+        let query = Point2::new(15.1 * f64::from(k), 0.07 * f64::from(k));
+        let expected = map.neighbor(query, 2.0);
+        assert_eq!(coarse.neighbor(query, 2.0), expected);
+        assert_eq!(fine.neighbor(query, 2.0), expected);
+    }
+    let nowhere = [Point2::new(0.0, 0.0), Point2::new(f64::INFINITY, 0.0)];
+    let map = DenseMap::from_cloud(&nowhere.into_iter().collect(), 0.25, 8);
+    let _ = NearestTable::new(map, 0.1, 0.7).neighbor(Point2::new(0.1, 0.0), 1.0);
+}
+
+#[test]
 fn maps_far_larger_than_their_points_stay_small_and_exact() {
     // 2·10⁶ m across in cells of 0.25 m: a table of all cells would take 256 TB.
     let points: Vec<_> = (0..40)

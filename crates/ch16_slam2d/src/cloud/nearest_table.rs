@@ -8,12 +8,15 @@ use super::{DenseMap, Memory, NearestMap, Neighbor};
 /// Squared distances that differ by less than this, m², count as equal when a point is ruled out.
 const ROUNDING_M2: f64 = 1e-12;
 
+/// Most squares of a table, and most candidates in it: 80 MB. A room takes a hundredth of it.
+const BUDGET: usize = 1 << 22;
+
 /// A [`DenseMap`] with a table: for every small square, the points that can be nearest to
 /// anything in it.
 ///
 /// A query is a look at the few points of its square. Building costs a search for every square,
 /// about 3 ms for a room; it pays after about 100,000 queries. The answers are those of the map.
-/// Queries off the table go to the map.
+/// Queries off the table go to the map; where the table would grow beyond a budget, all of them.
 #[derive(Clone, Debug)]
 pub struct NearestTable {
     map: DenseMap,
@@ -44,7 +47,7 @@ impl NearestTable {
     /// A table of squares `square_m` wide that reaches `reach_m` beyond the points of `map`.
     ///
     /// # Panics
-    /// If the square is not positive, or the table would have more than 2³² entries.
+    /// If the square is not positive.
     #[must_use]
     pub fn new(map: DenseMap, square_m: f64, reach_m: f64) -> Self {
         assert!(square_m > 0.0, "a square of {square_m} m is not positive");
@@ -60,11 +63,24 @@ impl NearestTable {
         if let Some(extent) = extent(&table.map) {
             table.origin = (extent.low.0 - reach_m, extent.low.1 - reach_m);
             let squares = |low: f64, high: f64| ((high - low + 2.0 * reach_m) / square_m).ceil();
-            table.columns = squares(extent.low.0, extent.high.0) as usize;
-            table.rows = squares(extent.low.1, extent.high.1) as usize;
-            table.fill(square_m);
+            let (columns, rows) = (
+                squares(extent.low.0, extent.high.0),
+                squares(extent.low.1, extent.high.1),
+            );
+            // Written so that an extent that is not a number has no table.
+            if columns * rows <= BUDGET as f64 {
+                table.columns = columns as usize;
+                table.rows = rows as usize;
+                table.fill(square_m);
+            }
         }
         table
+    }
+
+    /// Whether there is a table: the map is not empty, and its table is within the budget.
+    #[must_use]
+    pub fn is_tabulated(&self) -> bool {
+        self.columns > 0
     }
 
     /// The map behind the table.
@@ -77,6 +93,12 @@ impl NearestTable {
     #[cold]
     fn off_table(&self, query: Point2<f64>, radius_m: f64) -> Option<Neighbor> {
         self.map.neighbor(query, radius_m)
+    }
+
+    fn forget(&mut self) {
+        (self.columns, self.rows) = (0, 0);
+        self.starts = vec![0];
+        self.candidates = Vec::new();
     }
 
     fn fill(&mut self, square_m: f64) {
@@ -106,8 +128,11 @@ impl NearestTable {
                     y: self.map.ys()[index as usize],
                     index,
                 }));
-                let end = u32::try_from(self.candidates.len()).expect("fewer than 2³² entries");
-                self.starts.push(end);
+                if self.candidates.len() > BUDGET {
+                    self.forget();
+                    return;
+                }
+                self.starts.push(self.candidates.len() as u32);
             }
         }
     }

@@ -49,8 +49,7 @@ pub struct LoopConfig {
     pub drift_sigma_m: f64,
     /// Drift of the heading over one node, a standard deviation in radians; grows with √gap.
     pub drift_sigma_rad: f64,
-    /// The largest squared innovation that is believed: the 95 % quantile of χ² with 3 degrees of
-    /// freedom is 7.815.
+    /// The largest squared innovation that is believed; see [`CHAPTER_GATE`].
     pub gate_chi2: f64,
 }
 

@@ -70,6 +70,7 @@ pub fn marginal_information(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::chi_squared::CHAPTER_GATE;
 
     #[test]
     fn drift_of_the_path_grows_with_the_square_root_of_its_length() {
@@ -83,10 +84,10 @@ mod tests {
     fn an_innovation_of_three_sigma_in_x_has_chi2_nine() {
         let config = LoopConfig::default();
         let innovation = Vector3::new(-3.0 * 0.045 * 5.0, 0.0, 0.0);
-        let test = chi_squared_gate(&innovation, &path_information(25, &config), 7.815);
+        let test = chi_squared_gate(&innovation, &path_information(25, &config), CHAPTER_GATE);
         assert!((test.chi2 - 9.0).abs() < 1e-12);
         assert!(!test.passes());
-        let nan = chi_squared_gate(&innovation, &Matrix3::repeat(f64::NAN), 7.815);
+        let nan = chi_squared_gate(&innovation, &Matrix3::repeat(f64::NAN), CHAPTER_GATE);
         assert!(!nan.passes());
     }
 }

@@ -28,6 +28,18 @@ pub struct MatchRequest {
     pub max_iterations: usize,
 }
 
+impl MatchRequest {
+    /// A registration from `guess` with this threshold (m) and limit.
+    #[must_use]
+    pub fn new(guess: SE2, tau_m: f64, max_iterations: usize) -> Self {
+        Self {
+            guess,
+            tau_m,
+            max_iterations,
+        }
+    }
+}
+
 /// Why a matcher stopped, with what it measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MatchStop {

@@ -25,9 +25,9 @@ pub enum FrameError {
         /// Stamp of the frame before it, s; minus infinity before the first.
         last_s: f64,
     },
-    /// The odometry is not a motion.
+    /// The odometry is not a motion, or leads out of all numbers.
     #[error(
-        "the odometry of the frame at {stamp_s} s holds a number that is not finite; leave it out"
+        "the odometry of the frame at {stamp_s} s leads to a pose that is not finite; leave it out"
     )]
     Odometry {
         /// Stamp of the frame, s.

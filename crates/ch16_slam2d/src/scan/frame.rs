@@ -51,6 +51,11 @@ impl PreparedFrame {
     }
 }
 
+/// Whether all numbers of a pose are.
+pub(crate) fn is_finite(pose: &SE2) -> bool {
+    pose.to_array().iter().all(|value| value.is_finite())
+}
+
 fn check_motion(stamp_s: f64, odometry: Option<&SE2>) -> Result<(), FrameError> {
     if !stamp_s.is_finite() {
         return Err(FrameError::Stamp {
@@ -59,9 +64,7 @@ fn check_motion(stamp_s: f64, odometry: Option<&SE2>) -> Result<(), FrameError> 
         });
     }
     match odometry {
-        Some(motion) if !motion.to_array().iter().all(|value| value.is_finite()) => {
-            Err(FrameError::Odometry { stamp_s })
-        }
+        Some(motion) if !is_finite(motion) => Err(FrameError::Odometry { stamp_s }),
         _ => Ok(()),
     }
 }

@@ -10,7 +10,7 @@ use crate::cloud::PointCloud;
 use crate::icp::{AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
 use crate::matching::{InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information};
 use crate::metrics::position_error_m;
-use crate::scan::PreparedFrame;
+use crate::scan::{PreparedFrame, is_finite};
 
 /// A sweep of the local map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,6 +130,12 @@ impl FrontEnd {
         let motion = frame
             .odometry
             .unwrap_or_else(|| SE2::exp(&(self.velocity * dt_s)));
+        // A velocity from two stamps that all but coincide may lead anywhere: then it is none.
+        let motion = if is_finite(&(before * motion)) {
+            motion
+        } else {
+            SE2::identity()
+        };
         let prediction = before * motion;
         let tau_m = self.threshold.tau();
         let matched = self.matcher.register(
@@ -140,7 +146,7 @@ impl FrontEnd {
                 max_iterations: config.max_iterations,
             },
         );
-        let accepted = matched.inliers >= config.min_inliers;
+        let accepted = matched.inliers >= config.min_inliers && is_finite(&matched.pose);
         self.estimate = if accepted { matched.pose } else { prediction };
         self.remember_trust(accepted, &motion, frame.odometry.is_some(), config);
         self.velocity = before.between(&self.estimate).log() / dt_s;

@@ -24,7 +24,8 @@ impl SlamConfig {
     /// The typical range r is the root mean square of the returns: the radius of a circle as large as
     /// what a full turn sees. Cells hold one beam at r: they are
     /// `max(r · angle step, 0.02 r, 2.4 σ)` wide. Normals, maps, thresholds and keyframes follow from
-    /// the cell and r by the ratios of the chapter's lap. A scan without returns gives the default.
+    /// the cell and r by the ratios of the chapter's lap. A scan without returns gives the
+    /// default.
     #[must_use]
     pub fn for_scan(scan: &LaserScan, range_sigma_m: f64) -> Self {
         let default = Self::default();
@@ -85,7 +86,9 @@ fn returns(scan: &LaserScan) -> impl Iterator<Item = f64> + '_ {
 
 fn typical_range_m(scan: &LaserScan) -> Option<f64> {
     returns(scan).next()?;
-    Some(rms(returns(scan)))
+    let typical_m = rms(returns(scan));
+    // Ranges whose squares are beyond all numbers, or below them, are nobody's.
+    (typical_m.is_finite() && typical_m > 0.0).then_some(typical_m)
 }
 
 fn farthest_m(scan: &LaserScan) -> f64 {

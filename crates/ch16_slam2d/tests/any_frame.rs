@@ -1,0 +1,105 @@
+//! Whatever a sensor says, the estimator answers with a report or with one sentence.
+
+use ch16_slam2d::matching::{MatcherKind, NdtMatcherConfig};
+use ch16_slam2d::prelude::*;
+use ch16_slam2d::scan::{Frame, LaserScan};
+use ch16_slam2d::slam::{Slam, SlamConfig};
+
+/// Numbers that break what was not meant for them, among common ones.
+const NUMBERS: [f64; 14] = [
+    0.0,
+    -0.0,
+    1.0,
+    -2.5,
+    3.9,
+    0.7,
+    5.1,
+    1e-310,
+    1e9,
+    -1e9,
+    1e200,
+    f64::MAX,
+    f64::INFINITY,
+    f64::NAN,
+];
+
+/// Numbers in an order without a pattern (Knuth, "The Art of Computer Programming" 2, 3.3.4: MMIX).
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, count: usize) -> usize {
+        self.0 = (self.0)
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % count
+    }
+
+    fn any(&mut self) -> f64 {
+        NUMBERS[self.below(NUMBERS.len())]
+    }
+
+    /// One that a sensor may mean, three times of four.
+    fn mostly(&mut self, usual: f64) -> f64 {
+        match self.below(4) {
+            0 => self.any(),
+            _ => usual,
+        }
+    }
+
+    fn frame(&mut self, stamp_s: f64) -> Frame {
+        let beams = [0, 1, 40, 360][self.below(4)];
+        let has_odometry = self.below(3) > 0;
+        Frame {
+            stamp_s: if self.below(9) == 0 {
+                self.any()
+            } else {
+                stamp_s
+            },
+            odometry: has_odometry.then(|| SE2::new(self.mostly(0.1), 0.0, self.mostly(0.05))),
+            scan: LaserScan {
+                angle_step_rad: self.mostly(0.1),
+                range_max_m: self.mostly(f64::INFINITY),
+                beam_interval_s: self.mostly(1e-3),
+                ranges_m: (0..beams).map(|_| self.mostly(2.0)).collect(),
+                ..LaserScan::default()
+            },
+        }
+    }
+}
+
+#[test]
+fn no_frame_makes_the_estimator_panic_or_leaves_it_without_a_pose() {
+    for (seed, matcher) in [
+        MatcherKind::PointToPoint,
+        MatcherKind::PointToPlane,
+        MatcherKind::Ndt(NdtMatcherConfig::default()),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let mut numbers = Numbers(seed as u64);
+        let (mut taken, mut refused, mut unbelieved) = (0, 0, 0);
+        for start in 0..12 {
+            let scales = numbers.frame(0.0).scan;
+            let config = SlamConfig::for_scan(&scales, 0.03).with_matcher(matcher);
+            let mut slam = Slam::new(config);
+            for step in 0..40 {
+                match slam.step(&numbers.frame(0.1 * f64::from(step))) {
+                    Ok(report) => {
+                        taken += 1;
+                        let found = report.registration;
+                        unbelieved += usize::from(found.is_some_and(|found| !found.accepted));
+                        let pose = report.estimate.to_array();
+                        let is_finite = pose.iter().all(|number| number.is_finite());
+                        assert!(is_finite, "{matcher:?}, {start}, {step}: {pose:?}");
+                    }
+                    Err(error) => {
+                        refused += 1;
+                        assert!(!error.to_string().is_empty());
+                    }
+                }
+            }
+        }
+        assert!(taken > 100 && refused > 100 && unbelieved > 10);
+    }
+}
