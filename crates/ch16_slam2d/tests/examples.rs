@@ -6,8 +6,14 @@ mod align_two_clouds;
 mod optimize_a_graph;
 #[path = "../examples/register_a_scan.rs"]
 mod register_a_scan;
+#[path = "../examples/run_slam_on_your_frames.rs"]
+mod run_slam_on_your_frames;
+#[path = "../examples/write_your_own_matcher.rs"]
+mod write_your_own_matcher;
 
+use ch16_slam2d::matching::IcpMatcher;
 use ch16_slam2d::prelude::*;
+use ch16_slam2d::slam::SlamConfig;
 
 #[test]
 fn the_robot_of_the_aligned_clouds_moved_straight() {
@@ -44,6 +50,47 @@ fn the_loop_of_the_graph_brings_the_end_to_the_start() {
     assert!(before_m > 0.2 && after_m < 0.1 * before_m);
     assert!(graph.chi2() > 1.0, "it is shared out, not gone");
     optimize_a_graph::main();
+}
+
+#[test]
+fn the_walk_of_the_frames_is_followed_although_the_wheels_turn_too_far() {
+    let slam = run_slam_on_your_frames::run().unwrap();
+    let off_m = |pose: SE2, step| {
+        let truth: SE2 = run_slam_on_your_frames::truth(step);
+        (pose.translation() - truth.translation()).norm()
+    };
+    // The wheels alone claim 1.2 rad too much.
+    let start = run_slam_on_your_frames::truth(0);
+    let wheels = (1..=120).fold(start, |pose, step| {
+        pose * run_slam_on_your_frames::frame(step).odometry.unwrap()
+    });
+    let wheels_m = off_m(wheels, 120);
+    assert!(wheels_m > 0.5, "{wheels_m}");
+    for keyframe in slam.keyframes() {
+        let error_m = off_m(slam.graph().pose(keyframe.node), keyframe.frame);
+        assert!(error_m < 0.2 * wheels_m, "{error_m} of {wheels_m}");
+    }
+    run_slam_on_your_frames::main();
+}
+
+#[test]
+fn a_matcher_that_looks_around_finds_the_heading_that_icp_misses() {
+    let config = SlamConfig::default();
+    let mut icp = IcpMatcher::of(IcpVariant::PointToPoint, &config.local_map);
+    let alone = write_your_own_matcher::off_rad(&mut icp);
+    let mut many = write_your_own_matcher::ManyHeadings(icp);
+    let around = write_your_own_matcher::off_rad(&mut many);
+    assert!(alone.abs() > 0.3, "{alone}");
+    assert!(around.abs() < 0.01, "{around}");
+    // It drives the estimator, too.
+    let mut slam = write_your_own_matcher::slam(config, many);
+    for step in 0..10 {
+        slam.step(&run_slam_on_your_frames::frame(step)).unwrap();
+    }
+    let expected = run_slam_on_your_frames::truth(0).between(&run_slam_on_your_frames::truth(9));
+    let found = slam.front_end().estimate();
+    assert!(expected.between(&found).step_size() < 0.1, "{found:?}");
+    write_your_own_matcher::main();
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The system from outside: one binary, one module for each part.
 
 mod alignment;
+mod any_frame;
 mod examples;
 mod listings;
 mod nearest;

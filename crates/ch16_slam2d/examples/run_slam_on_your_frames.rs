@@ -1,0 +1,56 @@
+//! SLAM on frames of your own: a log, a robot, or a room and a walk that are made up here.
+//!
+//! `cargo run -p ch16_slam2d --example run_slam_on_your_frames`
+
+use ch16_slam2d::prelude::*;
+use ch16_slam2d::scan::{Frame, FrameError, LaserScan};
+use ch16_slam2d::slam::{Slam, SlamConfig};
+
+/// The walk: around a circle in an empty room of 8 m × 6 m.
+pub fn truth(step: usize) -> SE2 {
+    SE2::new(4.0, 1.5, 0.0) * SE2::exp(&(Vector3::new(1.5, 0.0, 1.0) * 0.06 * step as f64))
+}
+
+/// What the robot measures after `step` steps: its wheels claim a little too much of each turn.
+pub fn frame(step: usize) -> Frame {
+    let (pose, last) = (truth(step), truth(step.saturating_sub(1)));
+    let mut scan = LaserScan {
+        angle_step_rad: 1_f64.to_radians(),
+        range_max_m: 12.0,
+        ..LaserScan::default()
+    };
+    let bearings = (0..360).map(|beam| scan.bearing_rad(beam));
+    scan.ranges_m = bearings.map(|bearing| range_m(&pose, bearing)).collect();
+    Frame {
+        stamp_s: 0.25 * step as f64,
+        odometry: (step > 0).then(|| last.between(&pose) * SE2::new(0.0, 0.0, 0.01)),
+        scan,
+    }
+}
+
+fn range_m(pose: &SE2, bearing_rad: f64) -> f64 {
+    let (sin, cos) = (pose.theta() + bearing_rad).sin_cos();
+    let to_wall = |at: f64, step: f64, size: f64| (size * f64::from(step > 0.0) - at) / step;
+    to_wall(pose.x(), cos, 8.0).min(to_wall(pose.y(), sin, 6.0))
+}
+
+/// Runs all frames and returns the estimator with its map.
+pub fn run() -> Result<Slam, FrameError> {
+    // Lengths that fit the sensor, and where the map's frame is laid.
+    let mut config = SlamConfig::for_scan(&frame(0).scan, 0.01);
+    config.start = truth(0);
+    let mut slam = Slam::new(config);
+    for step in 0..=120 {
+        let report = slam.step(&frame(step))?;
+        if let Some(node) = report.new_keyframe {
+            println!("keyframe {node} at {:.3?}", report.estimate.to_array());
+        }
+    }
+    Ok(slam)
+}
+
+/// Prints the keyframes.
+pub fn main() {
+    let slam = run().expect("frames in the order of time, with finite numbers");
+    println!("{} edges", slam.graph().edge_count());
+}

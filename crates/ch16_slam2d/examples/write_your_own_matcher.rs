@@ -1,0 +1,59 @@
+//! A matcher of your own: ICP from several headings, of which the one with most pairs is kept.
+//!
+//! `cargo run -p ch16_slam2d --example write_your_own_matcher`
+
+use ch16_slam2d::matching::{IcpMatcher, MatchRequest, MatchSummary, Matcher};
+use ch16_slam2d::prelude::*;
+use ch16_slam2d::slam::{Slam, SlamConfig, SlamParts};
+
+/// ICP that looks around before it looks closely.
+#[derive(Clone)]
+pub struct ManyHeadings(pub IcpMatcher);
+
+impl Matcher for ManyHeadings {
+    fn set_target(&mut self, target: &PointCloud) {
+        self.0.set_target(target);
+    }
+
+    fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
+        let mut from = |guess| self.0.register(source, &MatchRequest { guess, ..*request });
+        let mut best = from(request.guess);
+        for turn_rad in [-0.8, -0.4, 0.4, 0.8] {
+            let found = from(request.guess * SE2::new(0.0, 0.0, turn_rad));
+            if found.inliers > best.inliers {
+                best = found;
+            }
+        }
+        // Pairs and information belong to the last registration: let that be the best one.
+        from(best.pose)
+    }
+
+    fn pairs(&self, pairs: &mut Vec<Pair>) {
+        self.0.pairs(pairs);
+    }
+}
+
+/// The estimator with this matcher in front, and everything else as it was.
+pub fn slam(config: SlamConfig, matcher: ManyHeadings) -> Slam {
+    let mut parts = SlamParts::of(&config);
+    parts.front_end = Box::new(matcher);
+    Slam::with_parts(config, parts)
+}
+
+/// How far a registration ends from the heading of a scan whose guess is off by 0.9 rad.
+pub fn off_rad(matcher: &mut dyn Matcher) -> f64 {
+    let side = |k: i32| 0.05 * f64::from(k);
+    let walls = |k| [[side(k), 0.0], [0.0, side(k)], [side(k), 2.0]];
+    let room: PointCloud = (1..60).flat_map(walls).map(Point2::from).collect();
+    matcher.set_target(&room);
+    let scan = room.transformed(&SE2::new(1.2, 0.9, 0.9).inverse());
+    let request = MatchRequest::new(SE2::new(1.2, 0.9, 0.0), 1.0, 30);
+    matcher.register(&scan, &request).pose.theta() - 0.9
+}
+
+pub fn main() {
+    let config = SlamConfig::default();
+    let mut many = ManyHeadings(IcpMatcher::of(IcpVariant::PointToPoint, &config.local_map));
+    println!("many headings are off by {:.3} rad", off_rad(&mut many));
+    println!("frames so far: {}", slam(config, many).frames());
+}
