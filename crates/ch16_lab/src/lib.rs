@@ -5,4 +5,5 @@ pub mod basin;
 pub mod lap;
 pub mod results;
 pub mod samples;
+mod scenes;
 pub mod terrain;

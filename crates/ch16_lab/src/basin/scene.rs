@@ -1,22 +1,20 @@
 //! The two sweeps and the registration from one start.
 
 use pr_geom::SE2;
-use pr_sim::{Lidar, LidarConfig, Rng, World};
+use pr_sim::{LidarConfig, Rng};
 
 use super::BasinOutcome;
+use crate::scenes::{self, MAP_POINTS_PER_CELL, NORMAL_RADIUS_M};
 use ch16_slam2d::cloud::{DenseMap, NearestTable, PointCloud};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace};
 
 /// A registration counts as right closer than this to the truth, m.
 pub const SUCCESS_RADIUS_M: f64 = 0.12;
 
-const BEAMS: usize = 180;
 const RANGE_SIGMA_M: f64 = 0.012;
 const TARGET_VOXEL_M: f64 = 0.06;
 const SOURCE_VOXEL_M: f64 = 0.09;
 const MAP_CELL_M: f64 = 0.25;
-const MAP_POINTS_PER_CELL: usize = 8;
-const NORMAL_RADIUS_M: f64 = 0.3;
 /// A basin map asks the target about a million times, so the answers are tabulated.
 const TABLE_SQUARE_M: f64 = 0.08;
 const TABLE_REACH_M: f64 = 2.0;
@@ -73,19 +71,12 @@ impl BasinScene {
     /// The chapter's scene with other range noise.
     #[must_use]
     pub fn with_seed(seed: u32) -> Self {
-        let world = World::apartment();
-        let world_from_target = SE2::new(2.0, 1.9, 0.0);
+        let world_from_target = scenes::room_a();
         let world_from_source = SE2::new(2.5, 1.55, 0.35);
-        let mut lidar = Lidar::new(LidarConfig {
-            beams: BEAMS,
-            range_sigma_m: RANGE_SIGMA_M,
-            ..LidarConfig::default()
-        });
+        let mut lidar = scenes::lidar(RANGE_SIGMA_M, LidarConfig::default().max_range_m);
         let mut rng = Rng::new(seed);
         let mut sweep = |world_from_sensor: &SE2, voxel_m: f64| {
-            let ranges_m = lidar.sense(&world, world_from_sensor, &mut rng);
-            let cloud: PointCloud = lidar.project(&ranges_m).collect();
-            cloud.downsample(voxel_m)
+            scenes::sweep(&mut lidar, world_from_sensor, &mut rng, voxel_m)
         };
         let mut target = sweep(&world_from_target, TARGET_VOXEL_M);
         let source = sweep(&world_from_source, SOURCE_VOXEL_M);

@@ -1,21 +1,19 @@
 //! The two places, their maps, and what can be changed.
 
 use pr_geom::{Rotation, SE2};
-use pr_sim::{Lidar, LidarConfig, Rng, World};
+use pr_sim::Rng;
 
 use super::information::{PoseInformation, pose_information};
+use crate::scenes::{self, MAP_POINTS_PER_CELL, NORMAL_RADIUS_M};
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{IcpConfig, correspondences};
 use ch16_slam2d::ndt::NdtMap;
 
-const BEAMS: usize = 180;
 const MAX_RANGE_M: f64 = 3.0;
 const RANGE_SIGMA_M: f64 = 0.01;
 const VOXEL_M: f64 = 0.08;
 const MAP_CELL_M: f64 = 0.3;
-const MAP_POINTS_PER_CELL: usize = 8;
 const NDT_MIN_POINTS: usize = 4;
-const NORMAL_RADIUS_M: f64 = 0.3;
 
 /// Where the sweep was taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -101,18 +99,13 @@ impl TerrainScene {
     #[must_use]
     pub fn with_seed(kind: SceneKind, ndt_cell_m: f64, seed: u32) -> Self {
         let world_from_sensor = match kind {
-            SceneKind::Room => SE2::new(2.0, 1.9, 0.0),
-            SceneKind::Corridor => SE2::new(6.0, 4.42, 0.0),
+            SceneKind::Room => scenes::room_a(),
+            SceneKind::Corridor => scenes::corridor(),
         };
-        let mut lidar = Lidar::new(LidarConfig {
-            beams: BEAMS,
-            max_range_m: MAX_RANGE_M,
-            range_sigma_m: RANGE_SIGMA_M,
-            ..LidarConfig::default()
-        });
-        let ranges_m = lidar.sense(&World::apartment(), &world_from_sensor, &mut Rng::new(seed));
-        let sweep: PointCloud = lidar.project(&ranges_m).collect();
-        let mut cloud = sweep.downsample(VOXEL_M).transformed(&world_from_sensor);
+        let mut lidar = scenes::lidar(RANGE_SIGMA_M, MAX_RANGE_M);
+        let mut rng = Rng::new(seed);
+        let sweep = scenes::sweep(&mut lidar, &world_from_sensor, &mut rng, VOXEL_M);
+        let mut cloud = sweep.transformed(&world_from_sensor);
         cloud.estimate_normals(NORMAL_RADIUS_M);
         Self {
             kind,

@@ -1,0 +1,44 @@
+//! What the scenes of basin and terrain have in common: where in the Apartment they stand, and with
+//! which sensor.
+
+use ch16_slam2d::cloud::PointCloud;
+use pr_geom::SE2;
+use pr_sim::{Lidar, LidarConfig, Rng, World};
+
+/// In the middle of room A, which has walls on all four sides, `world_from_sensor`.
+pub fn room_a() -> SE2 {
+    SE2::new(2.0, 1.9, 0.0)
+}
+
+/// In the middle of the corridor: two long walls and nothing across, `world_from_sensor`.
+pub fn corridor() -> SE2 {
+    SE2::new(6.0, 4.42, 0.0)
+}
+
+/// Radius within which the points of a scene give each other normals, m.
+pub const NORMAL_RADIUS_M: f64 = 0.3;
+
+/// Points that a cell of a scene's map keeps.
+pub const MAP_POINTS_PER_CELL: usize = 8;
+
+/// A sensor of the scenes: more beams than the robot of the lap has.
+pub fn lidar(range_sigma_m: f64, max_range_m: f64) -> Lidar {
+    Lidar::new(LidarConfig {
+        beams: 180,
+        max_range_m,
+        range_sigma_m,
+        ..LidarConfig::default()
+    })
+}
+
+/// A sweep in the Apartment, thinned to one point in each cell of `voxel_m`, in the sensor's frame.
+pub fn sweep(
+    lidar: &mut Lidar,
+    world_from_sensor: &SE2,
+    rng: &mut Rng,
+    voxel_m: f64,
+) -> PointCloud {
+    let ranges_m = lidar.sense(&World::apartment(), world_from_sensor, rng);
+    let cloud: PointCloud = lidar.project(&ranges_m).collect();
+    cloud.downsample(voxel_m)
+}
