@@ -4,6 +4,7 @@
 //! errors; [`Lap::run`] does all of them. [`LapRunner`] runs a lap together with its front end alone
 //! and keeps what a timeline needs.
 
+mod choices;
 mod config;
 mod digest;
 mod drive;
@@ -18,6 +19,7 @@ mod runner;
 use std::sync::Arc;
 
 pub use ch16_slam2d::slam::{Change, LoopClosure, Registration, SlamConfig};
+pub use choices::{BuiltInWorld, Choice, LapMatcher};
 pub use config::{CANONICAL_SEED, DriveConfig, LAP_TICKS, LapConfig};
 pub use digest::lap_digest;
 pub use drive::{Drive, DriveTick, Sweep};

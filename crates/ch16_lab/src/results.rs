@@ -59,6 +59,8 @@ pub struct LapOutcome {
     pub front_end: LapSummary,
     /// Loops that were closed although they are false.
     pub false_acceptances: usize,
+    /// Digest of all poses; see [`LapRecord::digest`].
+    pub digest: u64,
 }
 
 impl LapOutcome {
@@ -69,6 +71,7 @@ impl LapOutcome {
             lap: record.lap.summary,
             front_end: record.front_end.summary,
             false_acceptances: record.lap.false_acceptances().count(),
+            digest: record.digest(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! The experiments together with what they judge: one binary, one module for each.
 
 mod any_sensor;
+mod edge_information;
 mod exact_gate;
 mod icp_laws;
 mod patience;

@@ -1,13 +1,13 @@
-//! `slam2d lap`: the Apartment's lap at one seed and noise factor.
+//! `slam2d lap`: a lap at one seed and noise factor, through the Apartment or another world.
 
-use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, LoopAttempt, SlamConfig, TickReport};
-use ch16_slam2d::matching::{InformationFrame, MatcherKind, NdtMatcherConfig};
-use clap::{Args, ValueEnum};
+use ch16_lab::lap::{LapRecord, LapRunner, LoopAttempt, TickReport};
+use clap::Args;
 use serde::Serialize;
 
 use crate::numbers;
 use crate::output::{print_json, say};
-use crate::world::{WorldArg, WorldError};
+use crate::trial::TrialArgs;
+use crate::world::WorldError;
 
 /// Drive the lap through the Apartment, or through another world, and estimate it.
 #[derive(Args, Clone, Debug)]
@@ -18,15 +18,8 @@ pub struct LapArgs {
     /// Factor of the wheels' six noise parameters.
     #[arg(long, default_value = "1", value_parser = numbers::noise_factor, allow_hyphen_values = true)]
     noise: f64,
-    /// What registers scans, for the front end and for loops.
-    #[arg(long, value_enum, default_value_t = MatcherArg::P2p)]
-    matcher: MatcherArg,
-    /// What is driven: apartment, ring, or a file that ends in .json.
-    #[arg(long, default_value = "apartment")]
-    world: WorldArg,
-    /// In which frame the information of edges is expressed; the chapter's lap has its own.
-    #[arg(long, value_enum)]
-    information: Option<InformationArg>,
+    #[command(flatten)]
+    trial: TrialArgs,
     /// The front end alone: no loop is closed.
     #[arg(long)]
     no_loops: bool,
@@ -85,62 +78,15 @@ struct TickJson {
     keyframe: bool,
 }
 
-/// The matchers by their short names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum MatcherArg {
-    /// Point-to-point ICP, the chapter's.
-    P2p,
-    /// Point-to-plane ICP.
-    P2l,
-    /// The normal distributions transform.
-    Ndt,
-}
-
-/// The frames of information by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum InformationArg {
-    /// As the chapter's figures were computed.
-    Chapter,
-    /// At the edge's target, about its origin.
-    Exact,
-}
-
-impl LapArgs {
-    /// The lap that is asked for: in the Apartment the chapter's estimator, elsewhere the default.
-    fn config(&self) -> Result<LapConfig, WorldError> {
-        let mut config = LapConfig::with_seed_and_noise(self.seed, self.noise);
-        if self.world != WorldArg::Apartment {
-            config.drive = config.drive.on_course(&self.world.course()?);
-            config.slam = SlamConfig {
-                threshold: config.slam.threshold,
-                ..SlamConfig::default()
-            };
-        }
-        config.slam = config.slam.with_matcher(match self.matcher {
-            MatcherArg::P2p => MatcherKind::PointToPoint,
-            MatcherArg::P2l => MatcherKind::PointToPlane,
-            MatcherArg::Ndt => MatcherKind::Ndt(NdtMatcherConfig::default()),
-        });
-        match self.information {
-            Some(InformationArg::Chapter) => {
-                config.slam.information_frame = InformationFrame::Chapter;
-            }
-            Some(InformationArg::Exact) => config.slam.information_frame = InformationFrame::Exact,
-            None => {}
-        }
-        if self.no_loops {
-            config = config.without_loops();
-        }
-        Ok(config)
-    }
-}
-
 /// Runs the lap and prints it.
 ///
 /// # Errors
 /// Where the file of the world cannot be used.
 pub fn run(args: &LapArgs) -> Result<(), WorldError> {
-    let config = args.config()?;
+    let mut config = args.trial.trial()?.lap(args.seed, args.noise);
+    if args.no_loops {
+        config = config.without_loops();
+    }
     let record = LapRunner::new().run(&config);
     if args.json {
         print_json(&LapJson::new(&record, args));

@@ -12,6 +12,7 @@ mod register;
 mod sweep;
 mod table;
 mod terrain;
+mod trial;
 mod world;
 
 use std::process::ExitCode;

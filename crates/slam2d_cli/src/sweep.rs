@@ -2,7 +2,7 @@
 
 use std::num::NonZeroUsize;
 
-use ch16_lab::lap::{LapConfig, LapRunner};
+use ch16_lab::lap::LapRunner;
 use ch16_lab::results::{Column, LapOutcome, LapStatistics, Row};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -12,9 +12,14 @@ use thiserror::Error;
 
 use crate::numbers::{self, Seeds};
 use crate::output::{print_json, say};
+use crate::trial::{Trial, TrialArgs};
+use crate::world::WorldError;
 
 /// Most laps of one sweep.
 const MAX_LAPS: u64 = 10_000_000;
+
+/// Most laps whose digests are printed.
+const MOST_SAMPLES: usize = 20;
 
 /// Most threads: beyond any machine's cores, more only cost memory.
 const MAX_THREADS: usize = 1024;
@@ -34,6 +39,8 @@ pub struct SweepArgs {
         allow_hyphen_values = true
     )]
     noise: Vec<f64>,
+    #[command(flatten)]
+    trial: TrialArgs,
     /// Number of threads, at most one for each seed; all cores without it.
     #[arg(long, value_parser = numbers::threads, allow_hyphen_values = true)]
     threads: Option<NonZeroUsize>,
@@ -51,6 +58,9 @@ pub enum SweepFailure {
         /// Seeds times noise factors.
         laps: u64,
     },
+    /// There is no such world.
+    #[error(transparent)]
+    World(#[from] WorldError),
     /// The threads could not be started.
     #[error(transparent)]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -69,6 +79,15 @@ struct Level {
     /// Share of the runs with a false acceptance.
     false_run_share: f64,
     entries: Vec<Entry>,
+    /// Digests of some of the laps, evenly spaced: who drives only these compares bits.
+    samples: Vec<Sample>,
+}
+
+/// A lap by its bits.
+#[derive(Serialize)]
+struct Sample {
+    seed: u32,
+    digest: String,
 }
 
 /// An entry of the results table over the runs; runs that lack it are left out.
@@ -91,25 +110,26 @@ struct Entry {
 /// Runs all laps and prints their distribution.
 ///
 /// # Errors
-/// Where the sweep is too large or the threads cannot be started.
+/// Where the sweep is too large, the world cannot be driven or the threads cannot be started.
 pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
     let laps = args.seeds.count() * args.noise.len() as u64;
     if laps > MAX_LAPS {
         return Err(SweepFailure::TooMany { laps });
     }
+    let trial = args.trial.trial()?;
     let mut pool = rayon::ThreadPoolBuilder::new();
     if let Some(threads) = args.threads {
         let useful = usize::try_from(args.seeds.count()).unwrap_or(usize::MAX);
         pool = pool.num_threads(threads.get().min(useful).min(MAX_THREADS));
     }
-    let by_seed = pool.build()?.install(|| all_runs(args));
+    let by_seed = pool.build()?.install(|| all_runs(args, &trial));
     let levels: Vec<Level> = args
         .noise
         .iter()
         .enumerate()
         .map(|(k, &noise)| {
             let outcomes = by_seed.iter().map(|runs| runs[k]).collect();
-            Level::new(noise, &LapStatistics { outcomes })
+            Level::new(noise, args.seeds.first, &LapStatistics { outcomes })
         })
         .collect();
     if args.json {
@@ -121,17 +141,14 @@ pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
 }
 
 /// The runs of every seed, in order of the seeds; each has one run for each noise factor.
-fn all_runs(args: &SweepArgs) -> Vec<Vec<LapOutcome>> {
+fn all_runs(args: &SweepArgs, trial: &Trial) -> Vec<Vec<LapOutcome>> {
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} seeds, {eta} left")
         .expect("the template is well formed");
     let bar = ProgressBar::new(args.seeds.count()).with_style(style);
     let runs = (args.seeds.first..=args.seeds.last)
         .into_par_iter()
         .map_init(LapRunner::new, |runner, seed| {
-            let at = |&noise: &f64| {
-                let config = LapConfig::with_seed_and_noise(seed, noise);
-                LapOutcome::of(&runner.run(&config))
-            };
+            let at = |&noise: &f64| LapOutcome::of(&runner.run(&trial.lap(seed, noise)));
             let runs = args.noise.iter().map(at).collect();
             bar.inc(1);
             runs
@@ -142,7 +159,7 @@ fn all_runs(args: &SweepArgs) -> Vec<Vec<LapOutcome>> {
 }
 
 impl Level {
-    fn new(noise: f64, statistics: &LapStatistics) -> Self {
+    fn new(noise: f64, first_seed: u32, statistics: &LapStatistics) -> Self {
         Self {
             noise,
             runs: statistics.outcomes.len(),
@@ -151,8 +168,21 @@ impl Level {
             false_acceptances: statistics.false_acceptances(),
             false_run_share: statistics.false_run_share(),
             entries: entries(statistics),
+            samples: samples(first_seed, statistics),
         }
     }
+}
+
+fn samples(first_seed: u32, statistics: &LapStatistics) -> Vec<Sample> {
+    let outcomes = &statistics.outcomes;
+    let seeds = (first_seed..).zip(outcomes);
+    seeds
+        .step_by(outcomes.len().div_ceil(MOST_SAMPLES).max(1))
+        .map(|(seed, outcome)| Sample {
+            seed,
+            digest: format!("{:016x}", outcome.digest),
+        })
+        .collect()
 }
 
 fn entries(statistics: &LapStatistics) -> Vec<Entry> {

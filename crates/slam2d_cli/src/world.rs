@@ -4,16 +4,15 @@ use std::fs;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use ch16_lab::lap::{BuiltInWorld, Choice};
 use pr_sim::{Course, CourseError};
 use thiserror::Error;
 
 /// A world as it is named on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum WorldArg {
-    /// The chapter's.
-    Apartment,
-    /// The ring of corridors.
-    Ring,
+    /// A built-in one.
+    BuiltIn(BuiltInWorld),
     /// A file of the reader's own.
     File(PathBuf),
 }
@@ -22,11 +21,10 @@ impl FromStr for WorldArg {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "apartment" => Ok(Self::Apartment),
-            "ring" => Ok(Self::Ring),
-            _ if text.ends_with(".json") => Ok(Self::File(text.into())),
-            _ => Err("not apartment, ring or a file that ends in .json".to_owned()),
+        match BuiltInWorld::named(text) {
+            Some(world) => Ok(Self::BuiltIn(world)),
+            None if text.ends_with(".json") => Ok(Self::File(text.into())),
+            None => Err("not apartment, ring or a file that ends in .json".to_owned()),
         }
     }
 }
@@ -59,8 +57,7 @@ impl WorldArg {
     /// One sentence where the file cannot be used.
     pub fn course(&self) -> Result<Course, WorldError> {
         let file = match self {
-            Self::Apartment => return Ok(Course::apartment()),
-            Self::Ring => return Ok(Course::ring()),
+            Self::BuiltIn(world) => return Ok(world.course()),
             Self::File(file) => file,
         };
         let path = || file.display().to_string();

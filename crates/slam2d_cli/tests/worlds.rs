@@ -2,6 +2,9 @@
 
 use std::fs;
 
+use pr_sim::Course;
+use serde_json::Value;
+
 use crate::support::{assert_refused, json};
 
 /// A bare room of 6 m × 5 m with a pillar, and a way through it.
@@ -43,6 +46,72 @@ fn the_ring_and_a_world_of_ones_own_are_driven() {
 }
 
 #[test]
+fn the_apartment_from_a_file_is_driven_as_the_built_in_one() {
+    let course = Course::apartment();
+    let start = course.start();
+    let walls = course.world().walls().iter();
+    let file = serde_json::json!({
+        "walls_m": walls
+            .map(|wall| [wall.start.x, wall.start.y, wall.end.x, wall.end.y])
+            .collect::<Vec<_>>(),
+        "start": {"x_m": start.x(), "y_m": start.y(), "heading_deg": start.theta().to_degrees()},
+        "way_points_m": course.way_points().iter().map(|p| [p.x, p.y]).collect::<Vec<_>>(),
+        "turn_at": course.turn().map(|turn| turn + 1),
+    });
+    assert_eq!(
+        Course::from_json(file.to_string().as_bytes()).unwrap(),
+        course
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("apartment.json");
+    fs::write(&path, file.to_string()).unwrap();
+    let from_file = json(&["lap", "--world", path.to_str().unwrap(), "--json"]);
+    let built_in = json(&["lap", "--json"]);
+    let ticks = |lap: &Value| lap["per_tick"].as_array().unwrap().clone();
+    assert_eq!(ticks(&from_file).len(), ticks(&built_in).len());
+    for (file, built_in) in ticks(&from_file).iter().zip(ticks(&built_in)) {
+        assert_eq!(file["truth"], built_in["truth"]);
+        assert_eq!(file["dead_reckoning"], built_in["dead_reckoning"]);
+    }
+}
+
+#[test]
+fn a_sweep_of_the_ring_gives_the_laps_of_the_ring() {
+    let sweep = |world| {
+        let arguments = [
+            "sweep",
+            "--seeds",
+            "1..=2",
+            "--noise",
+            "1",
+            "--matcher",
+            "ndt",
+        ];
+        json(&[&arguments[..], &["--world", world, "--json"]].concat())
+    };
+    let ring = sweep("ring");
+    assert_ne!(ring, sweep("apartment"));
+    let samples = ring[0]["samples"].as_array().unwrap();
+    assert_eq!(samples.len(), 2);
+    for sample in samples {
+        let seed = sample["seed"].to_string();
+        let lap = [
+            "lap",
+            "--world",
+            "ring",
+            "--matcher",
+            "ndt",
+            "--seed",
+            &seed,
+        ];
+        assert_eq!(
+            sample["digest"],
+            json(&[&lap[..], &["--json"]].concat())["digest"]
+        );
+    }
+}
+
+#[test]
 fn a_world_that_cannot_be_driven_is_one_sentence() {
     let folder = tempfile::tempdir().unwrap();
     for (name, text, part) in [
@@ -59,5 +128,7 @@ fn a_world_that_cannot_be_driven_is_one_sentence() {
         assert_refused(&["lap", "--world", path.to_str().unwrap()], part);
     }
     assert_refused(&["lap", "--world", "nowhere.json"], "nowhere.json");
+    assert_refused(&["sweep", "--world", "nowhere.json"], "nowhere.json");
+    assert_refused(&["lap", "--matcher", "best"], "best");
     assert_refused(&["lap", "--world", "moon"], "not apartment, ring or a file");
 }

@@ -117,10 +117,42 @@ impl LapConfig {
         config
     }
 
+    /// The same robot on another course, with the default estimator: what the chapter's gets wrong
+    /// would be nobody's figures there.
+    #[must_use]
+    pub fn elsewhere(self, course: &Course) -> Self {
+        Self {
+            drive: self.drive.on_course(course),
+            slam: SlamConfig {
+                threshold: self.slam.threshold,
+                ..SlamConfig::default()
+            },
+        }
+    }
+
     /// The same lap with loop closure off.
     #[must_use]
     pub fn without_loops(mut self) -> Self {
         self.slam = self.slam.without_loops();
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pr_grid::{GridConfig, InverseSensorModel};
+
+    use super::*;
+
+    #[test]
+    fn what_packages_that_do_not_know_each_other_say_of_the_apartment_is_one() {
+        let (world, range_m) = (World::apartment(), LidarConfig::default().max_range_m);
+        assert_eq!(SlamConfig::chapter().threshold.max_range_m, range_m);
+        assert_eq!(InverseSensorModel::default().max_range_m, range_m);
+        let grid = GridConfig::default();
+        let bounds = world.bounds();
+        assert_eq!((grid.min_m, grid.max_m), (bounds.min, bounds.max));
+        let drive = DriveConfig::default();
+        assert_eq!(drive.clone().on_course(&Course::apartment()), drive);
     }
 }

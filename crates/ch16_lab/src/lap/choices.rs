@@ -1,0 +1,190 @@
+//! What a lap can be made of, by name: worlds, matchers, frames of information.
+//!
+//! The command line and the widgets choose from these lists, so that a name means the same everywhere.
+
+use ch16_slam2d::matching::{InformationFrame, MatcherKind, NdtMatcherConfig};
+use pr_sim::Course;
+
+use super::config::LapConfig;
+
+/// One of a short list of things with names.
+pub trait Choice: Copy + PartialEq + Sized + 'static {
+    /// All of them, the chapter's first.
+    const ALL: &'static [Self];
+
+    /// The short name, for commands and links.
+    fn name(self) -> &'static str;
+
+    /// The name in words.
+    fn label(self) -> &'static str;
+
+    /// The one of that short name.
+    #[must_use]
+    fn named(name: &str) -> Option<Self> {
+        Self::ALL
+            .iter()
+            .copied()
+            .find(|choice| choice.name() == name)
+    }
+}
+
+/// The worlds that are built in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum BuiltInWorld {
+    /// The chapter's: down a corridor and back.
+    #[default]
+    Apartment,
+    /// Corridors around a block: its free space has a hole.
+    Ring,
+}
+
+impl BuiltInWorld {
+    /// The world and the way through it.
+    #[must_use]
+    pub fn course(self) -> Course {
+        match self {
+            Self::Apartment => Course::apartment(),
+            Self::Ring => Course::ring(),
+        }
+    }
+}
+
+impl Choice for BuiltInWorld {
+    const ALL: &'static [Self] = &[Self::Apartment, Self::Ring];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Apartment => "apartment",
+            Self::Ring => "ring",
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Apartment => "the Apartment",
+            Self::Ring => "a ring of corridors",
+        }
+    }
+}
+
+/// The matchers that drive a lap, for its front end and for its loops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LapMatcher {
+    /// Point-to-point ICP, the chapter's.
+    #[default]
+    PointToPoint,
+    /// Point-to-plane ICP.
+    PointToPlane,
+    /// The normal distributions transform.
+    Ndt,
+}
+
+impl LapMatcher {
+    /// The matcher with its settings.
+    #[must_use]
+    pub fn kind(self) -> MatcherKind {
+        match self {
+            Self::PointToPoint => MatcherKind::PointToPoint,
+            Self::PointToPlane => MatcherKind::PointToPlane,
+            Self::Ndt => MatcherKind::Ndt(NdtMatcherConfig::default()),
+        }
+    }
+}
+
+impl Choice for LapMatcher {
+    const ALL: &'static [Self] = &[Self::PointToPoint, Self::PointToPlane, Self::Ndt];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::PointToPoint => "p2p",
+            Self::PointToPlane => "p2l",
+            Self::Ndt => "ndt",
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::PointToPoint => "point to point",
+            Self::PointToPlane => "point to plane",
+            Self::Ndt => "NDT",
+        }
+    }
+}
+
+impl Choice for InformationFrame {
+    const ALL: &'static [Self] = &[Self::Chapter, Self::Exact];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Chapter => "chapter",
+            Self::Exact => "exact",
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Chapter => "as the chapter's figures",
+            Self::Exact => "at the edge's target",
+        }
+    }
+}
+
+impl LapConfig {
+    /// The lap at this seed and noise factor in a built-in world: the chapter's estimator in its own
+    /// Apartment, the default one elsewhere.
+    #[must_use]
+    pub fn in_world(world: BuiltInWorld, seed: u32, noise_factor: f64) -> Self {
+        let chapter = Self::with_seed_and_noise(seed, noise_factor);
+        match world {
+            BuiltInWorld::Apartment => chapter,
+            BuiltInWorld::Ring => chapter.elsewhere(&world.course()),
+        }
+    }
+
+    /// The same lap with another matcher, for the front end and for loops.
+    #[must_use]
+    pub fn with_matcher(mut self, matcher: LapMatcher) -> Self {
+        self.slam = self.slam.with_matcher(matcher.kind());
+        self
+    }
+
+    /// The same lap with the information of its edges in another frame.
+    #[must_use]
+    pub fn with_information(mut self, frame: InformationFrame) -> Self {
+        self.slam.information_frame = frame;
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check<C: Choice + core::fmt::Debug>() {
+        for (k, &choice) in C::ALL.iter().enumerate() {
+            assert_eq!(C::named(choice.name()), Some(choice));
+            assert!(!choice.label().is_empty());
+            assert!(
+                C::ALL[..k]
+                    .iter()
+                    .all(|other| other.label() != choice.label())
+            );
+        }
+        assert_eq!(C::named("none of them"), None);
+    }
+
+    #[test]
+    fn every_choice_is_found_by_its_name() {
+        check::<BuiltInWorld>();
+        check::<LapMatcher>();
+        check::<InformationFrame>();
+    }
+
+    #[test]
+    fn the_first_of_each_list_is_the_chapters_lap() {
+        let first = LapConfig::in_world(BuiltInWorld::ALL[0], super::super::CANONICAL_SEED, 1.0)
+            .with_matcher(LapMatcher::ALL[0])
+            .with_information(InformationFrame::ALL[0]);
+        assert_eq!(first, LapConfig::default());
+    }
+}

@@ -1,0 +1,75 @@
+//! What `lap` and `sweep` drive, and with which estimator: `--world`, `--matcher`, `--information`.
+
+use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher};
+use ch16_slam2d::matching::InformationFrame;
+use clap::Args;
+use clap::builder::PossibleValue;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use pr_sim::Course;
+
+use crate::world::{WorldArg, WorldError};
+
+/// The arguments that a lap and a sweep of laps have in common.
+#[derive(Args, Clone, Debug)]
+pub struct TrialArgs {
+    /// What registers scans, for the front end and for loops.
+    #[arg(long, default_value = "p2p", value_parser = choice::<LapMatcher>())]
+    matcher: LapMatcher,
+    /// What is driven: apartment, ring, or a file that ends in .json.
+    #[arg(long, default_value = "apartment")]
+    world: WorldArg,
+    /// In which frame the information of edges is expressed: that of the chapter's figures in the
+    /// Apartment, the exact one elsewhere, unless it is said.
+    #[arg(long, value_parser = choice::<InformationFrame>())]
+    information: Option<InformationFrame>,
+}
+
+/// The laps that are asked for; they differ in seed and noise.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    course: Option<Course>,
+    matcher: LapMatcher,
+    information: Option<InformationFrame>,
+}
+
+impl TrialArgs {
+    /// The laps, with the world read.
+    ///
+    /// # Errors
+    /// Where the file of the world cannot be used.
+    pub fn trial(&self) -> Result<Trial, WorldError> {
+        let is_the_chapters = self.world == WorldArg::BuiltIn(BuiltInWorld::Apartment);
+        let course = (!is_the_chapters).then(|| self.world.course());
+        Ok(Trial {
+            course: course.transpose()?,
+            matcher: self.matcher,
+            information: self.information,
+        })
+    }
+}
+
+impl Trial {
+    /// The lap at this seed and noise factor: in the Apartment the chapter's estimator, elsewhere the
+    /// default.
+    pub fn lap(&self, seed: u32, noise_factor: f64) -> LapConfig {
+        let chapter = LapConfig::with_seed_and_noise(seed, noise_factor);
+        let lap = match &self.course {
+            Some(course) => chapter.elsewhere(course),
+            None => chapter,
+        };
+        let lap = lap.with_matcher(self.matcher);
+        match self.information {
+            Some(frame) => lap.with_information(frame),
+            None => lap,
+        }
+    }
+}
+
+/// Takes the short names of a list, and shows its labels in the help.
+fn choice<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = C> {
+    let values = C::ALL
+        .iter()
+        .map(|choice| PossibleValue::new(choice.name()).help(choice.label()));
+    PossibleValuesParser::new(values)
+        .map(|name| C::named(&name).expect("the parser lets only names of the list pass"))
+}
