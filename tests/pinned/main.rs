@@ -12,3 +12,4 @@ mod reached;
 mod rng;
 mod scan;
 mod terrain;
+mod worlds;

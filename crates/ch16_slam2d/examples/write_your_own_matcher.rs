@@ -1,4 +1,4 @@
-//! A matcher of your own: ICP from several headings, of which the one with most pairs is kept.
+//! A matcher of your own: ICP from several headings, of which the one that fits best is kept.
 //!
 //! `cargo run -p ch16_slam2d --example write_your_own_matcher`
 
@@ -17,15 +17,13 @@ impl Matcher for ManyHeadings {
 
     fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
         let mut from = |guess| self.0.register(source, &MatchRequest { guess, ..*request });
-        let mut best = from(request.guess);
-        for turn_rad in [-0.8, -0.4, 0.4, 0.8] {
-            let found = from(request.guess * SE2::new(0.0, 0.0, turn_rad));
-            if found.inliers > best.inliers {
-                best = found;
-            }
-        }
+        let turns = [0.0, -0.8, -0.4, 0.4, 0.8].map(|turn_rad| SE2::new(0.0, 0.0, turn_rad));
+        let found = turns.map(|turn| from(request.guess * turn));
+        let best = found
+            .into_iter()
+            .min_by(|a, b| a.rmse_m.total_cmp(&b.rmse_m));
         // Pairs and information belong to the last registration: let that be the best one.
-        from(best.pose)
+        from(best.map_or(request.guess, |best| best.pose))
     }
 
     fn pairs(&self, pairs: &mut Vec<Pair>) {
@@ -47,10 +45,11 @@ pub fn off_rad(matcher: &mut dyn Matcher) -> f64 {
     let room: PointCloud = (1..60).flat_map(walls).map(Point2::from).collect();
     matcher.set_target(&room);
     let scan = room.transformed(&SE2::new(1.2, 0.9, 0.9).inverse());
-    let request = MatchRequest::new(SE2::new(1.2, 0.9, 0.0), 1.0, 30);
+    let request = MatchRequest::new(SE2::new(1.2, 0.9, 0.0), 1.0, 99);
     matcher.register(&scan, &request).pose.theta() - 0.9
 }
 
+/// Prints by how much the matcher above misses a heading.
 pub fn main() {
     let config = SlamConfig::default();
     let mut many = ManyHeadings(IcpMatcher::of(IcpVariant::PointToPoint, &config.local_map));

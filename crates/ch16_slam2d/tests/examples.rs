@@ -81,7 +81,8 @@ fn a_matcher_that_looks_around_finds_the_heading_that_icp_misses() {
     let mut many = write_your_own_matcher::ManyHeadings(icp);
     let around = write_your_own_matcher::off_rad(&mut many);
     assert!(alone.abs() > 0.3, "{alone}");
-    assert!(around.abs() < 0.01, "{around}");
+    // Points stand 5 cm apart, about 1.5 m away: half a point is 0.017 rad, and ICP holds on to it.
+    assert!(around.abs() < 0.02, "{around}");
     // It drives the estimator, too.
     let mut slam = write_your_own_matcher::slam(config, many);
     for step in 0..10 {
