@@ -41,6 +41,10 @@ export interface TheFullLapState {
   gate: number;
   /** Path: the chapter's, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. An outline holds the positions that pass at the registered heading. */
   'gate-model': 'path' | 'exact';
+  /** What registers each sweep, in the front end and for loops: the chapter's ICP, point to point, or point to plane, or the normal distributions transform. */
+  matcher: 'p2p' | 'p2l' | 'ndt';
+  /** The frame in which an edge says what it is sure of. As the chapter's figures were computed, it is turned by a heading of the world; exactly, it stands at the edge's target, the newer of its ends. */
+  information: 'chapter' | 'exact';
   /** The moment shown; a tick is a quarter of a second, and the marks are loops. 0 to 129. */
   t: number;
   /** How fast the run plays. */
@@ -98,7 +102,7 @@ export interface WidgetStates {
 /** The buttons and presets of each widget, for `press`. */
 export interface WidgetButtons {
   'w16.1': 'play' | 'step' | 'reset' | 'defaults' | 'near' | 'quarter-turn' | 'between' | 'between-plane' | 'half-turn' | 'short-sighted';
-  'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in';
+  'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'bells' | 'sliding';
   'w16.3': 'drop' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'turned';
   'w16.4': 'play' | 'step' | 'reset' | 'next-event' | 'defaults' | 'watch' | 'blurred' | 'rebuilt' | 'noisy' | 'wrong-loop' | 'open';
 }
@@ -171,6 +175,8 @@ export interface SlamWidgetProperties {
   gate: number | undefined;
   'gate-model': 'path' | 'exact' | undefined;
   gateModel: 'path' | 'exact' | undefined;
+  matcher: 'p2p' | 'p2l' | 'ndt' | undefined;
+  information: 'chapter' | 'exact' | undefined;
   t: number | undefined;
   scene: 'room' | 'corridor' | undefined;
   'ndt-cell': number | undefined;

@@ -1,8 +1,9 @@
 //! What the values of the parameter list mean to the core.
 
-use ch16_lab::lap::{LapConfig, LoopClosure};
+use ch16_lab::lap::{Choice, LapConfig, LapMatcher, LoopClosure};
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
+use ch16_slam2d::matching::InformationFrame;
 use kit::param::Values;
 
 /// What a lap depends on.
@@ -18,6 +19,10 @@ pub struct LapSettings {
     pub gate_chi2: f64,
     /// What the gate takes for the drift.
     pub gate_model: GateModel,
+    /// What registers sweeps, for the front end and for loops.
+    pub matcher: LapMatcher,
+    /// In which frame an edge says what it is sure of.
+    pub information_frame: InformationFrame,
 }
 
 impl LapSettings {
@@ -37,6 +42,8 @@ impl LapSettings {
             } else {
                 GateModel::ExactMarginal
             },
+            matcher: LapMatcher::ALL[values.get("matcher") as usize],
+            information_frame: InformationFrame::ALL[values.get("information") as usize],
         }
     }
 
@@ -47,5 +54,7 @@ impl LapSettings {
         config.slam.loops.gate_chi2 = self.gate_chi2;
         config.slam.loops.gate_model = self.gate_model;
         config
+            .with_matcher(self.matcher)
+            .with_information(self.information_frame)
     }
 }

@@ -1,7 +1,10 @@
 //! What settings and presets do to the lap.
 
+use ch16_lab::lap::{Choice, LapConfig, LapMatcher, LapRunner};
 use ch16_slam2d::loops::LoopRejection;
+use ch16_slam2d::matching::InformationFrame;
 use kit::model::Standing;
+use kit::param::ParamKind;
 
 use super::*;
 
@@ -29,6 +32,9 @@ fn every_setting_recomputes_the_lap_at_once_and_keeps_the_time() {
         ("loops", 0.0),
         ("gate", 0.9),
         ("gate-model", 1.0),
+        ("matcher", 1.0),
+        ("matcher", 2.0),
+        ("information", 1.0),
     ] {
         // Noisy enough for the two models of the gate to disagree.
         let mut model = at(&[("seed", 2.0), ("noise", 3.0), ("t", 110.0)]);
@@ -89,6 +95,52 @@ fn without_loops_the_two_passes_end_as_far_apart_as_the_preset_says() {
         "no-loops",
         &format!("{apart:.2} m apart instead of {together:.2} m"),
     );
+}
+
+#[test]
+fn every_matcher_ends_the_lap_as_far_off_as_its_preset_says() {
+    let end_error = |model: &FullLap| model.runs.results().graph.keyframe_end_error_m;
+    let chapter = end_error(&FullLap::new());
+    for preset in ["bells", "sliding"] {
+        let mut model = FullLap::new();
+        model.press(preset).unwrap();
+        let off = end_error(&model);
+        assert_promised(
+            preset,
+            &format!("ends {off:.2} m off instead of {chapter:.2} m"),
+        );
+    }
+}
+
+/// The names and the labels of a choice of the widget.
+fn options(id: &str) -> Vec<(&'static str, &'static str)> {
+    let spec = SPEC.params.iter().find(|param| param.id == id).unwrap();
+    let ParamKind::Choice { options } = spec.kind else {
+        panic!("{id} is no choice");
+    };
+    options.iter().map(|it| (it.id, it.label)).collect()
+}
+
+fn named<T: Choice>() -> Vec<(&'static str, &'static str)> {
+    T::ALL.iter().map(|it| (it.name(), it.label())).collect()
+}
+
+#[test]
+fn matchers_and_frames_are_called_as_on_the_command_line_and_drive_the_same_lap() {
+    assert_eq!(options("matcher"), named::<LapMatcher>());
+    assert_eq!(options("information"), named::<InformationFrame>());
+    let mut model = at(&[("seed", 7.0), ("noise", 2.0)]);
+    for (matcher, kind) in LapMatcher::ALL.iter().enumerate() {
+        for (information, frame) in InformationFrame::ALL.iter().enumerate() {
+            model.set("matcher", matcher as f64).unwrap();
+            model.set("information", information as f64).unwrap();
+            let config = LapConfig::with_seed_and_noise(7, 2.0)
+                .with_matcher(*kind)
+                .with_information(*frame);
+            let record = LapRunner::new().run(&config);
+            assert_eq!(model.runs.results().graph, record.lap.summary);
+        }
+    }
 }
 
 #[test]
