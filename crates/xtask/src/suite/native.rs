@@ -66,9 +66,12 @@ pub fn compile_tools() -> Result<(), Failure> {
     show(
         "Compiling slam2d, states and slam2d_bench",
         unincremental(&mut cargo())
-            .args(["build", "--quiet", "--release"])
+            .args(["build", "--quiet"])
             .args(["--package=slam2d_bench", "--package=slam2d_cli"])
             .args(["--package=slam_web", "--bins"])
+            // With a bench cargo counts in what only tests need, so that the crates of others have the
+            // features, and the one build, that the tests have.
+            .arg("--bench=workloads")
             .arg("--target-dir")
             .arg(root().join("target")),
     )
@@ -81,7 +84,7 @@ pub fn tool(name: &str) -> PathBuf {
 
 /// Where [`compile_tools`] leaves the programs.
 pub fn folder_of_tools() -> PathBuf {
-    root().join("target/release")
+    root().join("target/debug")
 }
 
 /// `cargo xtask peers`: lints and tests of the crate that times other people's solvers.
