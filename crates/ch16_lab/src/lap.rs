@@ -10,10 +10,12 @@ mod drive;
 mod judge;
 mod loop_error;
 mod loop_words;
+mod ranges;
 mod record;
 mod replay;
 mod report;
 mod runner;
+mod soundness;
 
 use std::sync::Arc;
 
@@ -23,6 +25,7 @@ pub use digest::lap_digest;
 pub use drive::{Drive, DriveTick, Sweep};
 pub use judge::Judge;
 pub use loop_error::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopError, LoopJudgement};
+pub use ranges::{ConfigRange, RANGES, random_config};
 pub use record::{Epoch, LAST_KEYFRAMES, LapRecord, LapSummary, LapTrace, RecordedEdge};
 pub use replay::RegistrationView;
 pub use report::{Keyframe, LoopAttempt, LoopEffect, TickMetrics, TickReport, WindowSweep};
