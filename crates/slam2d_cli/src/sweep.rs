@@ -1,5 +1,8 @@
 //! `slam2d sweep`: the lap at many seeds and noise factors, over all cores. One seed is an anecdote.
 
+mod nudge;
+mod random;
+
 use std::num::NonZeroUsize;
 
 use ch16_lab::lap::{LapConfig, LapRunner};
@@ -37,6 +40,13 @@ pub struct SweepArgs {
     /// Number of threads, at most one for each seed; all cores without it.
     #[arg(long, value_parser = numbers::threads, allow_hyphen_values = true)]
     threads: Option<NonZeroUsize>,
+    /// Drive each lap once more with its start moved by 4e-16 of itself, and count other laps.
+    #[arg(long)]
+    nudge: bool,
+    /// Draw the configuration of each lap from the documented ranges, noise included, and check
+    /// that every figure is finite.
+    #[arg(long, conflicts_with_all = ["nudge", "noise"])]
+    random: bool,
     /// Print one JSON list, an object for each noise factor.
     #[arg(long)]
     json: bool,
@@ -50,6 +60,14 @@ pub enum SweepFailure {
     TooMany {
         /// Seeds times noise factors.
         laps: u64,
+    },
+    /// A lap within the documented ranges broke down.
+    #[error("the lap at the random configuration {seed} is not sound: {fault}")]
+    Unsound {
+        /// Which one.
+        seed: u32,
+        /// What is wrong with it.
+        fault: String,
     },
     /// The threads could not be started.
     #[error(transparent)]
@@ -91,7 +109,7 @@ struct Entry {
 /// Runs all laps and prints their distribution.
 ///
 /// # Errors
-/// Where the sweep is too large or the threads cannot be started.
+/// Where the sweep is too large, the threads cannot be started, or a random lap is not sound.
 pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
     let laps = args.seeds.count() * args.noise.len() as u64;
     if laps > MAX_LAPS {
@@ -102,7 +120,15 @@ pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
         let useful = usize::try_from(args.seeds.count()).unwrap_or(usize::MAX);
         pool = pool.num_threads(threads.get().min(useful).min(MAX_THREADS));
     }
-    let by_seed = pool.build()?.install(|| all_runs(args));
+    let pool = pool.build()?;
+    if args.random {
+        return pool.install(|| random::print(args));
+    }
+    if args.nudge {
+        pool.install(|| nudge::print(args));
+        return Ok(());
+    }
+    let by_seed = pool.install(|| all_runs(args));
     let levels: Vec<Level> = args
         .noise
         .iter()
@@ -122,9 +148,7 @@ pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
 
 /// The runs of every seed, in order of the seeds; each has one run for each noise factor.
 fn all_runs(args: &SweepArgs) -> Vec<Vec<LapOutcome>> {
-    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} seeds, {eta} left")
-        .expect("the template is well formed");
-    let bar = ProgressBar::new(args.seeds.count()).with_style(style);
+    let bar = progress_bar(args.seeds.count());
     let runs = (args.seeds.first..=args.seeds.last)
         .into_par_iter()
         .map_init(LapRunner::new, |runner, seed| {
@@ -139,6 +163,13 @@ fn all_runs(args: &SweepArgs) -> Vec<Vec<LapOutcome>> {
         .collect();
     bar.finish_and_clear();
     runs
+}
+
+/// A bar on a terminal's standard error, one step for each seed.
+fn progress_bar(seeds: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} seeds, {eta} left")
+        .expect("the template is well formed");
+    ProgressBar::new(seeds).with_style(style)
 }
 
 impl Level {
