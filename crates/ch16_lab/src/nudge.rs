@@ -16,13 +16,15 @@ pub const NUDGE: f64 = 4e-16;
 /// A keyframe that ends up farther away than this is a difference that no rounding explains, m.
 pub const CHANGED_M: f64 = 1e-6;
 
-/// The same lap with its start moved by `share` of its coordinates.
+/// The same lap with the x of its start moved by `share` of itself, along the corridor.
+///
+/// Not across: at its way point the robot turns round by exactly π. Off the line, however little, it
+/// turns the other way round, and every lap is another drive.
 #[must_use]
 pub fn nudged(config: &LapConfig, share: f64) -> LapConfig {
     let mut twin = config.clone();
     let start = config.drive.start;
-    let factor = 1.0 + share;
-    twin.drive.start = SE2::new(factor * start.x(), factor * start.y(), start.theta());
+    twin.drive.start = SE2::new((1.0 + share) * start.x(), start.y(), start.theta());
     twin
 }
 

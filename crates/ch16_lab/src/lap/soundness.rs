@@ -76,7 +76,6 @@ fn is_finite(pose: &SE2) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::lap::{LapConfig, LapRunner};
 
     #[test]
