@@ -30,8 +30,8 @@ pub(super) struct CellTable {
 /// A cell size for which a table of `cloud` has a few points in each occupied cell, m.
 pub(super) fn free_cell_m(cloud: &PointCloud) -> Option<f64> {
     let span = |values: &[f64]| {
-        let finite = || values.iter().copied().filter(|value| value.is_finite());
-        finite().fold(f64::NEG_INFINITY, math::max) - finite().fold(f64::INFINITY, math::min)
+        let (low, high) = finite_range(values);
+        high - low
     };
     let (width, height) = (span(cloud.xs()), span(cloud.ys()));
     let cells = CHOSEN_CELLS_PER_POINT * cloud.len() as f64;
@@ -124,4 +124,15 @@ impl CellTable {
             visit(run);
         }
     }
+}
+
+/// Smallest and largest of the finite values; ∞ and −∞ where there are none.
+pub(super) fn finite_range(values: &[f64]) -> (f64, f64) {
+    let finite = values.iter().filter(|value| value.is_finite());
+    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| {
+        (
+            if value < low { value } else { low },
+            if value > high { value } else { high },
+        )
+    })
 }

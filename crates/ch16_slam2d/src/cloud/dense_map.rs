@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector2};
 use pr_geom::math;
 use rustc_hash::FxHashMap;
 
-use super::cell_table::{CellTable, free_cell_m};
+use super::cell_table::{CellTable, finite_range, free_cell_m};
 use super::{Memory, NearestMap, Neighbor, PointCloud, cell_index};
 
 /// Marks "no point" where an index would stand.
@@ -326,17 +326,6 @@ impl DenseMap {
         }
         total as usize
     }
-}
-
-/// Smallest and largest of the finite values; ∞ and −∞ where there are none.
-fn finite_range(values: &[f64]) -> (f64, f64) {
-    let finite = values.iter().filter(|value| value.is_finite());
-    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| {
-        (
-            if value < low { value } else { low },
-            if value > high { value } else { high },
-        )
-    })
 }
 
 impl NearestMap for DenseMap {

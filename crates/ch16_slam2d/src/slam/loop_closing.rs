@@ -1,0 +1,144 @@
+//! The back end: candidates are verified in order, and the first that passes corrects the graph.
+
+use super::pending::PendingFrame;
+use super::{Change, LoopAttempt, LoopClosure, LoopEffect, Slam};
+use crate::graph::EdgeKind;
+use crate::loops::{
+    GateModel, KeyframeView, LoopCandidate, LoopQuery, LoopRejection, LoopVerification,
+    marginal_information, path_information, verify_loop,
+};
+use crate::metrics::position_error_m;
+
+impl Slam {
+    /// Second part: looks for loops at a new keyframe and verifies the candidates in order, until
+    /// one passes or the limit is reached.
+    pub fn verify_loops(&mut self, pending: &mut PendingFrame) {
+        let Some(node) = pending.new_keyframe else {
+            return;
+        };
+        // The first keyframe has none before it, and does not count as an attempt.
+        if self.config.loop_closure == LoopClosure::Off || node == 0 {
+            return;
+        }
+        let loops = self.config.loops;
+        if let Some(last) = self.last_attempt_node
+            && node - last < loops.attempt_every_nodes
+        {
+            return;
+        }
+        self.last_attempt_node = Some(node);
+        let mut query = LoopQuery::new(&mut self.graph, &self.keyframes);
+        let mut candidates = self.detector.detect(&mut query);
+        candidates.retain(|candidate| candidate.node < node);
+        for candidate in candidates.into_iter().take(loops.candidates_tried) {
+            let verification = self.verify(node, candidate);
+            let is_last = verification.accepted();
+            pending.loop_attempts.push(LoopAttempt {
+                frame: self.frames - 1,
+                verification,
+                effect: None,
+            });
+            if is_last {
+                return;
+            }
+        }
+    }
+
+    /// Third part: adds the edge of a loop that passed and spreads the correction; takes it back where
+    /// the graph does not bear it.
+    pub fn close_loop(&mut self, pending: &mut PendingFrame) {
+        let Some(attempt) = pending.loop_attempts.last_mut() else {
+            return;
+        };
+        if !attempt.verification.accepted() {
+            return;
+        }
+        match self.optimize_with(&attempt.verification) {
+            Ok(effect) => attempt.effect = Some(effect),
+            Err(rejection) => attempt.verification.rejection = Some(rejection),
+        }
+    }
+
+    fn verify(&mut self, node: usize, candidate: LoopCandidate) -> LoopVerification {
+        let loops = &self.config.loops;
+        let gate_information = match loops.gate_model {
+            GateModel::PathApproximation => Ok(path_information(node - candidate.node, loops)),
+            GateModel::ExactMarginal => marginal_information(&mut self.graph, candidate.node, node),
+        };
+        let view = KeyframeView {
+            poses: self.graph.poses(),
+            keyframes: &self.keyframes,
+        };
+        verify_loop(
+            view,
+            node,
+            candidate,
+            gate_information,
+            self.config.information_frame,
+            loops,
+            &mut self.loop_workspace,
+        )
+    }
+
+    fn optimize_with(
+        &mut self,
+        verification: &LoopVerification,
+    ) -> Result<LoopEffect, LoopRejection> {
+        let poses_before = self.graph.poses().to_vec();
+        self.graph.add_edge(
+            verification.candidate.node,
+            verification.from_node,
+            verification.registered,
+            verification.information,
+            EdgeKind::Loop,
+        );
+        let chi2_before = self.graph.chi2();
+        let report = self.graph.optimize_robust(
+            self.config.optimizer_iterations,
+            self.config.optimizer_tolerance,
+            self.config.huber,
+        );
+        let cost_before = report
+            .steps
+            .first()
+            .map_or(report.cost, |step| step.cost_before);
+        let rejection = match report.stop {
+            stop @ pr_optim::StopReason::Failed { .. } => {
+                Some(LoopRejection::OptimizationFailed(stop))
+            }
+            _ if report.cost > cost_before || report.cost.is_nan() => {
+                Some(LoopRejection::CostRose {
+                    before: cost_before,
+                    after: report.cost,
+                })
+            }
+            _ => None,
+        };
+        if let Some(rejection) = rejection {
+            self.graph.pop_edge();
+            for (node, pose) in poses_before.iter().enumerate() {
+                self.graph.set_pose(node, *pose);
+            }
+            return Err(rejection);
+        }
+        self.chi2 = self.graph.chi2();
+        let newest = verification.from_node;
+        let correction = self.graph.pose(newest) * poses_before[newest].inverse();
+        self.front_end.correct(&correction);
+        let max_shift_m = poses_before
+            .iter()
+            .zip(self.graph.poses())
+            .map(|(old, new)| position_error_m(new, old))
+            .fold(0.0, f64::max);
+        Ok(LoopEffect {
+            correction,
+            max_shift_m,
+            iterations: report.iterations,
+            chi2: Change {
+                before: chi2_before,
+                after: self.chi2,
+            },
+            poses_before,
+        })
+    }
+}
