@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 use super::page::document::source;
 
 /// Every package with its layer; a package may use only packages of lower layers.
-const LAYERS: [(&str, u8); 16] = [
+const LAYERS: [(&str, u8); 17] = [
     ("crates/pr_geom", 0),
     ("crates/pr_sim", 1),
     ("crates/pr_grid", 1),
     ("crates/pr_optim", 1),
     ("crates/ch16_slam2d", 2),
     ("crates/ch16_lab", 3),
+    ("crates/robot_io", 3),
     ("crates/slam2d_cli", 4),
     ("crates/solver_peers", 3),
     ("crates/measuring", 0),
@@ -25,13 +26,14 @@ const LAYERS: [(&str, u8); 16] = [
     ("web", 5),
 ];
 
-const CORE: [&str; 6] = [
+const CORE: [&str; 7] = [
     "crates/pr_geom",
     "crates/pr_sim",
     "crates/pr_grid",
     "crates/pr_optim",
     "crates/ch16_slam2d",
     "crates/ch16_lab",
+    "crates/robot_io",
 ];
 
 /// The half of the kit that a model may use.

@@ -4,11 +4,16 @@
 //! files that cannot be used end in one line on standard error and exit code 2.
 
 mod basin;
+mod evaluate;
+mod grade;
+mod info;
 mod lap;
+mod log_file;
 mod numbers;
 mod optimize;
 mod output;
 mod register;
+mod run_log;
 mod sweep;
 mod table;
 mod terrain;
@@ -39,6 +44,9 @@ enum Command {
     Register(register::RegisterArgs),
     Sweep(sweep::SweepArgs),
     Optimize(optimize::OptimizeArgs),
+    Info(info::InfoArgs),
+    Run(run_log::RunArgs),
+    Evaluate(evaluate::EvaluateArgs),
 }
 
 fn main() -> ExitCode {
@@ -63,6 +71,9 @@ fn main() -> ExitCode {
         Command::Register(args) => register::run(args).map_err(|e| e.to_string()),
         Command::Sweep(args) => sweep::run(args).map_err(|e| e.to_string()),
         Command::Optimize(args) => optimize::run(args).map_err(|e| e.to_string()),
+        Command::Info(args) => info::run(args).map_err(|e| e.to_string()),
+        Command::Run(args) => run_log::run(args).map_err(|e| e.to_string()),
+        Command::Evaluate(args) => evaluate::run(args).map_err(|e| e.to_string()),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,0 +1,160 @@
+//! What a log says, and what a broken one is answered.
+
+use core::f64::consts::{FRAC_PI_2, PI};
+
+use super::*;
+use pr_geom::SE2;
+
+/// All frames of a text, and what was noted.
+fn read(text: impl AsRef<[u8]>) -> Result<(Vec<LogFrame>, LogNotes), LogError> {
+    let mut reader = CarmenReader::new(text.as_ref(), "x.clf");
+    let mut frames = Vec::new();
+    while let Some(frame) = reader.next_frame()? {
+        frames.push(frame);
+    }
+    Ok((frames, reader.notes().clone()))
+}
+
+const FLASER: &str = "FLASER 4 1 2 81.83 4 1.1 2 0.5 1 2 0.5 100.25 host 7\n";
+
+#[test]
+fn a_flaser_line_is_a_scan_with_odometry() {
+    let (frames, notes) = read(FLASER).unwrap();
+    let [frame] = &frames[..] else { panic!() };
+    assert_eq!(frame.stamp_s, 100.25);
+    assert_eq!(frame.odometry, Some(SE2::new(1.0, 2.0, 0.5)));
+    assert_eq!(frame.scan.ranges_m, [1.0, 2.0, 81.83, 4.0]);
+    assert_eq!(frame.scan.first_angle_rad, -FRAC_PI_2);
+    assert_eq!(frame.scan.angle_step_rad, PI / 4.0);
+    assert!(!frame.scan.is_return(81.83) && frame.scan.is_return(4.0));
+    assert_eq!(notes.records["FLASER"], 1);
+    assert_eq!((notes.broken, notes.half_written), (0, None));
+}
+
+#[test]
+fn an_odd_number_of_beams_ends_at_the_left_and_an_even_one_before_it() {
+    for (count, steps) in [(180, 180.0), (181, 180.0), (360, 360.0), (361, 360.0)] {
+        let text = format!("FLASER {count} {}0 0 0 0 0 0 1 h 1\n", "2.5 ".repeat(count));
+        let (frames, _) = read(text).unwrap();
+        assert_eq!(frames[0].scan.angle_step_rad, PI / steps, "{count}");
+    }
+}
+
+#[test]
+fn parameters_say_where_the_laser_sits_and_how_far_it_sees() {
+    let text = format!(
+        "PARAM robot_frontlaser_offset 0.22 1 h 1\nPARAM robot_front_laser_max 3.5 1 h 1\n{FLASER}"
+    );
+    let (frames, _) = read(text).unwrap();
+    assert_eq!(frames[0].scan.body_from_sensor, SE2::new(0.22, 0.0, 0.0));
+    assert!(!frames[0].scan.is_return(4.0));
+}
+
+#[test]
+fn the_codes_of_a_laser_in_millimetres_are_no_points() {
+    let (frames, _) = read("FLASER 2 8.183 3.5 0 0 0 0 0 0 1 h 1\n").unwrap();
+    assert!(!frames[0].scan.is_return(8.183) && frames[0].scan.is_return(3.5));
+}
+
+#[test]
+fn a_robotlaser_line_carries_its_own_geometry() {
+    let text = "ROBOTLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 1 99 1.3 2 0 1 2 0 0.1 0.2 1 1 0 12.5 h 0.5\n";
+    let (frames, _) = read(text).unwrap();
+    let scan = &frames[0].scan;
+    assert_eq!((scan.first_angle_rad, scan.angle_step_rad), (-1.5, 1.5));
+    assert_eq!((scan.range_max_m, scan.ranges_m.len()), (30.0, 3));
+    assert!((scan.body_from_sensor.x() - 0.3).abs() < 1e-12);
+    assert_eq!(frames[0].stamp_s, 12.5);
+}
+
+#[test]
+fn a_raw_scan_takes_the_odometry_of_its_time() {
+    let raw = |t: f64| format!("RAWLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 {t} h {t}\n");
+    let odom = |x: f64, t: f64| format!("ODOM {x} 0 0 0 0 0 {t} h {t}\n");
+    let text = [odom(0.0, 1.0), raw(1.5), odom(1.0, 2.0), raw(3.0)].concat();
+    let (frames, _) = read(text).unwrap();
+    let xs: Vec<f64> = frames.iter().map(|f| f.odometry.unwrap().x()).collect();
+    // After the last odometry the wheels are taken to have stood.
+    assert_eq!(xs, [0.5, 1.0]);
+}
+
+#[test]
+fn a_scan_that_is_logged_twice_is_read_once() {
+    let text = "\
+ODOM 0 0 0 0 0 0 1 h 1
+RAWLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 1.5 h 1.5
+ROBOTLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 0 0 0 0 0 0 0 0 1 1 0 1.5 h 1.5
+ODOM 0 0 0 0 0 0 2 h 2
+RAWLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 2.5 h 2.5
+";
+    let (frames, notes) = read(text).unwrap();
+    assert_eq!(frames.len(), 1);
+    assert_eq!(notes.records["RAWLASER1"], 2);
+}
+
+#[test]
+fn a_log_without_times_counts_its_scans() {
+    let line = "FLASER 2 1 2 0 0 0 0 0 0 0 h 0\n";
+    let (frames, _) = read(line.repeat(3)).unwrap();
+    let stamps: Vec<f64> = frames.iter().map(|f| f.stamp_s).collect();
+    assert_eq!(stamps, [0.0, 1.0, 2.0]);
+}
+
+#[test]
+fn a_broken_line_in_the_middle_is_told_and_the_rest_is_read() {
+    let broken = "FLASER 4 1 2 x 4 1 2 0.5 1 2 0.5 100 host 7\n";
+    let nan = "FLASER 2 1 2 0 0 0 nan 0 0 100 host 7\n";
+    let text = format!("{FLASER}{broken}{nan}FLASER 900 1 2 3\n\u{0}\u{1}\n{FLASER}");
+    let (frames, notes) = read(text).unwrap();
+    assert_eq!((frames.len(), notes.broken), (2, 4));
+    let sentences = notes.sentences("x.clf");
+    assert_eq!(
+        sentences,
+        [
+            "x.clf: 4 lines were left out; the first is line 2: number 3 of the readings has to be a number, and is ‘x’"
+        ]
+    );
+}
+
+#[test]
+fn a_half_written_last_line_is_no_broken_line() {
+    let text = format!("{FLASER}FLASER 4 1 2 3");
+    let (frames, notes) = read(text).unwrap();
+    assert_eq!((frames.len(), notes.broken), (1, 0));
+    let [sentence] = &notes.sentences("x.clf")[..] else {
+        panic!()
+    };
+    assert_eq!(
+        sentence,
+        "x.clf: the last line, 2, is half written and was left out: 4 readings were announced, and 3 stand there"
+    );
+}
+
+#[test]
+fn what_holds_no_scan_is_refused_in_one_sentence() {
+    for (text, said) in [
+        ("", "x.clf is empty; give a recorded log"),
+        (
+            "Dear reader,\nthis is no log.\n",
+            "x.clf is no CARMEN log; give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1",
+        ),
+        (
+            "ODOM 0 0 0 0 0 0 1 h 1\n",
+            "x.clf holds no scan that can be used: no line starts with FLASER, ROBOTLASER1 or RAWLASER1; record the laser as well",
+        ),
+        (
+            "PARAM a 1 1 h 1\nFLASER 2 1 2 nan 0 0 0 0 0 1 h 1\n",
+            "x.clf holds no scan that can be used: line 2: laser_x has to be a finite number, and is ‘nan’",
+        ),
+        (
+            "FLASER 2 1",
+            "x.clf is no CARMEN log; give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1",
+        ),
+    ] {
+        let error = read(text).unwrap_err().to_string();
+        assert_eq!(error, said, "{text:?}");
+    }
+    let noise: Vec<u8> = (0..100_000_u32).map(|k| (k * k % 251) as u8).collect();
+    let error = read(noise).unwrap_err().to_string();
+    assert!(error.starts_with("x.clf is no CARMEN log"), "{error}");
+}

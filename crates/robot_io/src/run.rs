@@ -1,0 +1,170 @@
+//! A log through the estimator, one scan at a time.
+
+use ch16_slam2d::loops::LoopVerification;
+use ch16_slam2d::scan::{Frame, FrameError};
+use ch16_slam2d::slam::{Slam, SlamConfig, SlamReport};
+use pr_geom::SE2;
+
+use crate::log::LogFrame;
+use crate::trajectory::{StampedPose, Trajectory};
+
+/// Standard deviation of the ranges of a planar laser, m: what lengths are worked out from.
+const RANGE_SIGMA_M: f64 = 0.01;
+
+/// Whether the wheels are listened to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum OdometryUse {
+    /// The odometry of the log predicts each scan.
+    #[default]
+    Log,
+    /// Scans alone: the velocity is expected to stay.
+    None,
+}
+
+/// A loop that was looked at, with the evidence and whether it is in the graph.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TriedLoop {
+    /// Candidate, registration and tests.
+    pub verification: LoopVerification,
+    /// Whether it was closed.
+    pub accepted: bool,
+}
+
+/// A log under way: the estimator, and where each scan was taken from.
+///
+/// The pose of a scan is kept in the frame of the keyframe before it, so that every loop moves the
+/// scans in between as well.
+pub struct LogRun {
+    odometry_use: OdometryUse,
+    config: Option<SlamConfig>,
+    slam: Option<Slam>,
+    last_odometry: Option<SE2>,
+    last_stamp_s: f64,
+    scans: Vec<ScanPlace>,
+    loops: Vec<TriedLoop>,
+    late: usize,
+    refused: Option<FrameError>,
+}
+
+/// Where a scan was taken.
+#[derive(Clone, Copy, Debug)]
+struct ScanPlace {
+    stamp_s: f64,
+    keyframe: usize,
+    keyframe_from_body: SE2,
+}
+
+impl LogRun {
+    /// A run that has seen nothing.
+    #[must_use]
+    pub fn new(odometry_use: OdometryUse) -> Self {
+        Self {
+            odometry_use,
+            config: None,
+            slam: None,
+            last_odometry: None,
+            last_stamp_s: f64::NEG_INFINITY,
+            scans: Vec::new(),
+            loops: Vec::new(),
+            late: 0,
+            refused: None,
+        }
+    }
+
+    /// The same run with a configuration of one's own, in place of the one by the first scan.
+    #[must_use]
+    pub fn with_config(mut self, config: SlamConfig) -> Self {
+        self.config = Some(config);
+        self
+    }
+
+    /// Takes the next scan; none where it is left out, because it is not after the one before it or
+    /// because its numbers are no scan.
+    pub fn step(&mut self, log: LogFrame) -> Option<SlamReport> {
+        if log.stamp_s <= self.last_stamp_s {
+            self.late += 1;
+            return None;
+        }
+        let motion = match (self.odometry_use, self.last_odometry, log.odometry) {
+            (OdometryUse::Log, Some(last), Some(now)) => Some(last.between(&now)),
+            _ => None,
+        };
+        let frame = Frame {
+            stamp_s: log.stamp_s,
+            odometry: motion,
+            scan: log.scan,
+        };
+        let slam = self.slam.get_or_insert_with(|| {
+            let by_scan = || SlamConfig::for_scan(&frame.scan, RANGE_SIGMA_M);
+            Slam::new(self.config.take().unwrap_or_else(by_scan))
+        });
+        let report = match slam.step(&frame) {
+            Ok(report) => report,
+            Err(problem) => {
+                self.refused.get_or_insert(problem);
+                return None;
+            }
+        };
+        self.last_stamp_s = frame.stamp_s;
+        self.last_odometry = log.odometry;
+        let keyframe = slam.keyframes().len() - 1;
+        self.scans.push(ScanPlace {
+            stamp_s: frame.stamp_s,
+            keyframe,
+            keyframe_from_body: slam.graph().pose(keyframe).between(&report.estimate),
+        });
+        let tried = report.loop_attempts.iter().map(|attempt| TriedLoop {
+            verification: attempt.verification,
+            accepted: attempt.accepted(),
+        });
+        self.loops.extend(tried);
+        Some(report)
+    }
+
+    /// Says that no scan follows.
+    pub fn finish(&mut self) {}
+
+    /// The estimator; none before the first scan.
+    #[must_use]
+    pub fn slam(&self) -> Option<&Slam> {
+        self.slam.as_ref()
+    }
+
+    /// Scans taken.
+    #[must_use]
+    pub fn scans(&self) -> usize {
+        self.scans.len()
+    }
+
+    /// The loops that were looked at, in order.
+    #[must_use]
+    pub fn loops(&self) -> &[TriedLoop] {
+        &self.loops
+    }
+
+    /// Scans left out because their stamp was not after the one before.
+    #[must_use]
+    pub fn late(&self) -> usize {
+        self.late
+    }
+
+    /// Why the first scan was refused whose numbers are no scan.
+    #[must_use]
+    pub fn refused(&self) -> Option<FrameError> {
+        self.refused
+    }
+
+    /// Where every scan was taken, by the graph as it is now.
+    #[must_use]
+    pub fn trajectory(&self) -> Trajectory {
+        let Some(slam) = &self.slam else {
+            return Trajectory::default();
+        };
+        let poses = slam.graph().poses();
+        let places = self.scans.iter().map(|scan| StampedPose {
+            stamp_s: scan.stamp_s,
+            pose: poses[scan.keyframe] * scan.keyframe_from_body,
+        });
+        Trajectory::new(places.collect())
+    }
+}

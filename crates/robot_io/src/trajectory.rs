@@ -1,0 +1,323 @@
+//! Stamped poses, and the TUM format: `stamp x y z qx qy qz qw` on each line.
+
+use std::io::{BufRead, Write};
+
+use pr_geom::{SE2, math};
+use thiserror::Error;
+
+use crate::lines::{LineEnd, finite, next_line};
+
+/// Poses in the order of time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trajectory {
+    poses: Vec<StampedPose>,
+}
+
+/// A pose at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StampedPose {
+    /// Time, s.
+    pub stamp_s: f64,
+    /// `world_from_body`.
+    pub pose: SE2,
+}
+
+/// Why a file of times and poses, or of times and relations, cannot be used.
+#[derive(Debug, Error)]
+pub enum TextError {
+    /// The system could not give its bytes.
+    #[error("{name}: line {line}: {source}")]
+    Io {
+        /// The file's name.
+        name: String,
+        /// The line at which it happened.
+        line: usize,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A line is not what it has to be.
+    #[error("{name}: line {line}: {problem}; a line is ‘{expected}’")]
+    Line {
+        /// The file's name.
+        name: String,
+        /// Number of the line, counted from 1.
+        line: usize,
+        /// What is wrong.
+        problem: String,
+        /// The fields of a line.
+        expected: &'static str,
+    },
+    /// There is no line in it.
+    #[error("{name} holds nothing; lines of ‘{expected}’ are expected")]
+    Empty {
+        /// The file's name.
+        name: String,
+        /// The fields of a line.
+        expected: &'static str,
+    },
+}
+
+const TUM_LINE: &str = "stamp x y z qx qy qz qw";
+
+impl Trajectory {
+    /// A trajectory of these poses, which stand in the order of time.
+    #[must_use]
+    pub fn new(poses: Vec<StampedPose>) -> Self {
+        Self { poses }
+    }
+
+    /// The poses in order.
+    #[must_use]
+    pub fn poses(&self) -> &[StampedPose] {
+        &self.poses
+    }
+
+    /// Reads TUM lines; `#` starts a comment. Height, roll and pitch are not looked at.
+    ///
+    /// # Errors
+    /// The first line that is no pose, that is not after the one before it, or that there is none.
+    pub fn read_tum(source: impl BufRead, name: &str) -> Result<Self, TextError> {
+        let mut poses: Vec<StampedPose> = Vec::new();
+        let mut numbers = NumberLines::new(source, name, TUM_LINE);
+        while let Some([stamp_s, x, y, _, qx, qy, qz, qw]) = numbers.next_line()? {
+            if poses.last().is_some_and(|last| stamp_s <= last.stamp_s) {
+                return Err(numbers.refuse("the stamp is not after the one before it".to_owned()));
+            }
+            // Yaw of a quaternion, whatever its length.
+            let norm = qx * qx + qy * qy + qz * qz + qw * qw;
+            if norm < 1e-12 {
+                return Err(numbers.refuse("the quaternion is zero".to_owned()));
+            }
+            let sin = 2.0 * (qw * qz + qx * qy);
+            let cos = qw * qw + qx * qx - qy * qy - qz * qz;
+            let theta = math::atan2(sin, cos);
+            poses.push(StampedPose {
+                stamp_s,
+                pose: SE2::new(x, y, theta),
+            });
+        }
+        numbers.at_least_one(poses.len())?;
+        Ok(Self { poses })
+    }
+
+    /// Writes TUM lines. Numbers are the shortest that read back to the same bits.
+    ///
+    /// # Errors
+    /// Where `target` cannot take them.
+    pub fn write_tum(&self, mut target: impl Write) -> std::io::Result<()> {
+        for StampedPose { stamp_s, pose } in &self.poses {
+            let (sin, cos) = math::sin_cos(pose.theta() / 2.0);
+            writeln!(
+                target,
+                "{stamp_s} {} {} 0 0 0 {sin} {cos}",
+                pose.x(),
+                pose.y()
+            )?;
+        }
+        Ok(())
+    }
+
+    /// The pose at a time: on the twist between the poses around it, none beyond `slack_s` (s) of
+    /// either end.
+    #[must_use]
+    pub fn at(&self, stamp_s: f64, slack_s: f64) -> Option<SE2> {
+        let after = self.poses.partition_point(|pose| pose.stamp_s < stamp_s);
+        match (
+            after.checked_sub(1).map(|k| self.poses[k]),
+            self.poses.get(after),
+        ) {
+            (None, Some(next)) => (next.stamp_s - stamp_s <= slack_s).then_some(next.pose),
+            (Some(last), None) => (stamp_s - last.stamp_s <= slack_s).then_some(last.pose),
+            (Some(last), Some(next)) => {
+                let share = (stamp_s - last.stamp_s) / (next.stamp_s - last.stamp_s);
+                let motion = last.pose.between(&next.pose);
+                Some(last.pose * SE2::exp(&(motion.log() * share)))
+            }
+            (None, None) => None,
+        }
+    }
+
+    /// The pose at each of the times of `odometry`: the nearest pose here in time, carried on by
+    /// `odometry` from there.
+    #[must_use]
+    pub fn carried_by(&self, odometry: &Self) -> Self {
+        if self.poses.is_empty() {
+            return self.clone();
+        }
+        let poses = odometry.poses.iter().filter_map(|now| {
+            let nearest = self.nearest(now.stamp_s)?;
+            let anchor = odometry.at(nearest.stamp_s, f64::INFINITY)?;
+            Some(StampedPose {
+                stamp_s: now.stamp_s,
+                pose: nearest.pose * anchor.between(&now.pose),
+            })
+        });
+        Self {
+            poses: poses.collect(),
+        }
+    }
+
+    fn nearest(&self, stamp_s: f64) -> Option<StampedPose> {
+        let after = self.poses.partition_point(|pose| pose.stamp_s < stamp_s);
+        let around = [after.checked_sub(1), Some(after)];
+        let near = around
+            .into_iter()
+            .flatten()
+            .filter_map(|k| self.poses.get(k));
+        near.min_by(|a, b| {
+            let [a, b] = [a, b].map(|pose| (pose.stamp_s - stamp_s).abs());
+            a.total_cmp(&b)
+        })
+        .copied()
+    }
+}
+
+/// Lines of a fixed number of finite numbers.
+pub(crate) struct NumberLines<'a, R> {
+    source: R,
+    name: &'a str,
+    expected: &'static str,
+    line: Vec<u8>,
+    number: usize,
+}
+
+impl<'a, R: BufRead> NumberLines<'a, R> {
+    pub(crate) fn new(source: R, name: &'a str, expected: &'static str) -> Self {
+        Self {
+            source,
+            name,
+            expected,
+            line: Vec::new(),
+            number: 0,
+        }
+    }
+
+    pub(crate) fn refuse(&self, problem: String) -> TextError {
+        TextError::Line {
+            name: self.name.to_owned(),
+            line: self.number,
+            problem,
+            expected: self.expected,
+        }
+    }
+
+    pub(crate) fn at_least_one(&self, count: usize) -> Result<(), TextError> {
+        if count > 0 {
+            return Ok(());
+        }
+        Err(TextError::Empty {
+            name: self.name.to_owned(),
+            expected: self.expected,
+        })
+    }
+
+    /// The numbers of the next line that is neither empty nor a comment.
+    pub(crate) fn next_line<const N: usize>(&mut self) -> Result<Option<[f64; N]>, TextError> {
+        loop {
+            let read =
+                next_line(&mut self.source, &mut self.line).map_err(|source| TextError::Io {
+                    name: self.name.to_owned(),
+                    line: self.number + 1,
+                    source,
+                })?;
+            let Some((end, _)) = read else {
+                return Ok(None);
+            };
+            self.number += 1;
+            if end == LineEnd::TooLong {
+                return Err(self.refuse("the line is longer than 4 MB".to_owned()));
+            }
+            let text = std::str::from_utf8(&self.line)
+                .map_err(|_| self.refuse("the line is no text".to_owned()))?;
+            let text = text.trim_start_matches('\u{feff}').trim();
+            if text.is_empty() || text.starts_with('#') {
+                continue;
+            }
+            let names = self.expected.split(' ');
+            let mut words = text.split_ascii_whitespace();
+            let mut numbers = [0.0; N];
+            for (slot, name) in numbers.iter_mut().zip(names) {
+                *slot = finite(words.next(), name).map_err(|problem| self.refuse(problem))?;
+            }
+            return Ok(Some(numbers));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Trajectory, TextError> {
+        Trajectory::read_tum(text.as_bytes(), "t.tum")
+    }
+
+    fn line(poses: &[(f64, [f64; 3])]) -> Trajectory {
+        let stamped = poses.iter().map(|&(stamp_s, [x, y, theta])| StampedPose {
+            stamp_s,
+            pose: SE2::new(x, y, theta),
+        });
+        Trajectory::new(stamped.collect())
+    }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let written = line(&[
+            (976_052_857.337_284, [0.1, -2.5, 3.1]),
+            (976_052_857.347_284, [1e-9, 7.0, -3.1]),
+        ]);
+        let mut bytes = Vec::new();
+        written.write_tum(&mut bytes).unwrap();
+        let back = Trajectory::read_tum(&bytes[..], "t").unwrap();
+        for (a, b) in written.poses().iter().zip(back.poses()) {
+            assert_eq!(a.stamp_s, b.stamp_s);
+            assert_eq!((a.pose.x(), a.pose.y()), (b.pose.x(), b.pose.y()));
+            // 1e-15: a heading through half an angle, sine and cosine.
+            assert!((a.pose.theta() - b.pose.theta()).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn wrong_lines_are_named() {
+        for (text, said) in [
+            ("", "t.tum holds nothing"),
+            ("# only words\n", "t.tum holds nothing"),
+            (
+                "1 0 0 0 0 0 0 1\n2 0 0 x 0 0 0 1\n",
+                "t.tum: line 2: z has to be a finite number",
+            ),
+            ("1 0 0 0 0 0 0\n", "t.tum: line 1: qw is missing"),
+            ("1 0 0 0 0 0 0 0\n", "line 1: the quaternion is zero"),
+            (
+                "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n",
+                "line 2: the stamp is not after",
+            ),
+        ] {
+            let error = read(text).unwrap_err().to_string();
+            assert!(error.contains(said), "{text:?}: {error}");
+        }
+    }
+
+    #[test]
+    fn between_two_poses_the_body_is_on_an_arc() {
+        let quarter = core::f64::consts::FRAC_PI_2;
+        // A quarter of the circle about (0, 1).
+        let bend = line(&[(0.0, [0.0, 0.0, 0.0]), (2.0, [1.0, 1.0, quarter])]);
+        let middle = bend.at(1.0, 0.0).unwrap();
+        let half = core::f64::consts::FRAC_1_SQRT_2;
+        // 1e-12: a dozen roundings of numbers about 1.
+        assert!((middle.x() - half).abs() < 1e-12 && (middle.y() - 1.0 + half).abs() < 1e-12);
+        assert_eq!(bend.at(2.5, 0.4), None);
+        assert_eq!(bend.at(2.5, 0.5), Some(bend.poses()[1].pose));
+    }
+
+    #[test]
+    fn keyframes_are_carried_on_by_odometry() {
+        let keyframes = line(&[(1.0, [5.0, 5.0, core::f64::consts::FRAC_PI_2])]);
+        let odometry = line(&[(1.0, [0.0, 0.0, 0.0]), (2.0, [1.0, 0.0, 0.0])]);
+        let carried = keyframes.carried_by(&odometry);
+        assert_eq!(carried.poses().len(), 2);
+        assert!((carried.poses()[1].pose.x() - 5.0).abs() < 1e-12);
+        assert!((carried.poses()[1].pose.y() - 6.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,3 @@
+//! What the readers and the grades say of files.
+
+mod evo;

@@ -1,0 +1,84 @@
+//! `slam2d evaluate`: how good a trajectory is.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use robot_io::trajectory::{StampedPose, Trajectory};
+use thiserror::Error;
+
+use crate::grade::{GradeError, ReferenceArgs};
+use crate::log_file::{FileError, open, open_log};
+use crate::output::print_json;
+
+/// Grade a trajectory against reference relations or against the true trajectory.
+#[derive(Args, Clone, Debug)]
+pub struct EvaluateArgs {
+    /// The trajectory: TUM lines, stamp x y z qx qy qz qw.
+    trajectory: PathBuf,
+    #[command(flatten)]
+    reference: ReferenceArgs,
+    /// The log that it was made from: its odometry carries the poses on to the scans in between.
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Why there is no grade.
+#[derive(Debug, Error)]
+pub enum EvaluateError {
+    /// Neither relations nor truth were named.
+    #[error("there is nothing to compare with; give --relations FILE or --truth FILE")]
+    NoReference,
+    /// The log has no odometry to carry poses on with.
+    #[error("{0} has no odometry, so it cannot carry poses on; leave --log out")]
+    NoOdometry(String),
+    /// The log cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The comparison failed.
+    #[error(transparent)]
+    Grade(#[from] GradeError),
+}
+
+/// Reads both and prints the errors.
+///
+/// # Errors
+/// Where a file cannot be used, or nothing can be compared.
+pub fn run(args: &EvaluateArgs) -> Result<(), EvaluateError> {
+    let reference = args.reference.read()?.ok_or(EvaluateError::NoReference)?;
+    let name = args.trajectory.display().to_string();
+    let mut trajectory =
+        Trajectory::read_tum(open(&args.trajectory)?, &name).map_err(GradeError::from)?;
+    if let Some(path) = &args.log {
+        let odometry = odometry(path)?;
+        trajectory = trajectory.carried_by(&odometry);
+    }
+    let grade = reference.grade(&trajectory)?;
+    if args.json {
+        print_json(&grade);
+    } else {
+        grade.print();
+    }
+    Ok(())
+}
+
+/// The odometry of a log at its scans, as far as it is in the order of time.
+fn odometry(path: &std::path::Path) -> Result<Trajectory, EvaluateError> {
+    let (mut reader, mut progress) = open_log(path)?;
+    let mut poses: Vec<StampedPose> = Vec::new();
+    while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
+        progress.tell(poses.len());
+        let Some(pose) = frame.odometry else { continue };
+        let stamp_s = frame.stamp_s;
+        if poses.last().is_none_or(|last| stamp_s > last.stamp_s) {
+            poses.push(StampedPose { stamp_s, pose });
+        }
+    }
+    progress.end();
+    if poses.is_empty() {
+        return Err(EvaluateError::NoOdometry(path.display().to_string()));
+    }
+    Ok(Trajectory::new(poses))
+}

@@ -1,0 +1,185 @@
+//! A trajectory against a file of relations, or against the true one.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use robot_io::evaluate::{
+    Alignment, RelationReport, TruthProblem, TruthReport, relation_errors, truth_errors,
+};
+use robot_io::relations::{Relation, read_relations};
+use robot_io::trajectory::{StampedPose, TextError, Trajectory};
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::log_file::{FileError, open};
+use crate::output::say;
+
+/// What a trajectory is compared with.
+#[derive(Args, Clone, Debug)]
+pub struct ReferenceArgs {
+    /// Reference relations: lines of t1 t2 x y z roll pitch yaw.
+    #[arg(long, value_name = "FILE", conflicts_with = "truth")]
+    pub relations: Option<PathBuf>,
+    /// The true trajectory: TUM lines.
+    #[arg(long, value_name = "FILE")]
+    pub truth: Option<PathBuf>,
+    /// Whether the trajectory is moved onto the true one before it is compared.
+    #[arg(long, value_enum, default_value = "none")]
+    pub align: AlignArg,
+}
+
+/// [`Alignment`] by its names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum AlignArg {
+    /// Both are in the same frame.
+    None,
+    /// By the best rigid motion of the plane.
+    Se2,
+}
+
+impl From<AlignArg> for Alignment {
+    fn from(align: AlignArg) -> Self {
+        match align {
+            AlignArg::None => Self::None,
+            AlignArg::Se2 => Self::Se2,
+        }
+    }
+}
+
+/// Why there is no grade.
+#[derive(Debug, Error)]
+pub enum GradeError {
+    /// A file cannot be opened.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A file is not what it has to be.
+    #[error(transparent)]
+    Text(#[from] TextError),
+    /// The two have no times in common.
+    #[error("{0}")]
+    Truth(#[from] TruthProblem),
+    /// No relation lies within the times of the trajectory.
+    #[error(
+        "none of the {count} relations lies within the times of the trajectory, {first_s} s to {last_s} s; give both the same clock"
+    )]
+    Outside {
+        /// Relations of the file.
+        count: usize,
+        /// First stamp of the trajectory, s.
+        first_s: f64,
+        /// Last stamp of the trajectory, s.
+        last_s: f64,
+    },
+}
+
+/// The references, read before anything is run.
+pub enum Reference {
+    /// Relations between two times.
+    Relations(Vec<Relation>),
+    /// True poses.
+    Truth(Trajectory, Alignment),
+}
+
+/// The errors against a reference.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Grade {
+    /// Against relations.
+    Relations(RelationReport),
+    /// Against the truth.
+    Truth(TruthReport),
+}
+
+impl ReferenceArgs {
+    /// Reads the reference that was named, if one was.
+    ///
+    /// # Errors
+    /// Where its file cannot be used.
+    pub fn read(&self) -> Result<Option<Reference>, GradeError> {
+        if let Some(path) = &self.relations {
+            let relations = read_relations(open(path)?, &path.display().to_string())?;
+            return Ok(Some(Reference::Relations(relations)));
+        }
+        if let Some(path) = &self.truth {
+            let truth = Trajectory::read_tum(open(path)?, &path.display().to_string())?;
+            return Ok(Some(Reference::Truth(truth, self.align.into())));
+        }
+        Ok(None)
+    }
+}
+
+impl Reference {
+    /// The errors of a trajectory; what could not be compared is told on standard error.
+    ///
+    /// # Errors
+    /// Where nothing can be compared.
+    pub fn grade(&self, trajectory: &Trajectory) -> Result<Grade, GradeError> {
+        match self {
+            Self::Relations(relations) => {
+                let errors = relation_errors(trajectory, relations);
+                let report = errors.report();
+                if report.n == 0 {
+                    let stamp_s =
+                        |pose: Option<&StampedPose>| pose.map_or(0.0, |pose| pose.stamp_s);
+                    return Err(GradeError::Outside {
+                        count: relations.len(),
+                        first_s: stamp_s(trajectory.poses().first()),
+                        last_s: stamp_s(trajectory.poses().last()),
+                    });
+                }
+                if errors.outside > 0 {
+                    eprintln!(
+                        "slam2d: {} of {} relations lie outside of the trajectory's times and are not counted",
+                        errors.outside,
+                        relations.len()
+                    );
+                }
+                Ok(Grade::Relations(report))
+            }
+            Self::Truth(truth, alignment) => {
+                Ok(Grade::Truth(truth_errors(trajectory, truth, *alignment)?))
+            }
+        }
+    }
+}
+
+impl Grade {
+    /// Prints it for people.
+    pub fn print(&self) {
+        match self {
+            Self::Relations(report) => {
+                say!("relations        {}", report.n);
+                for (name, unit, spread) in [
+                    ("translation", "m", report.trans),
+                    ("rotation", "°", report.rot_deg),
+                    ("translation²", "m²", report.trans2),
+                    ("rotation²", "°²", report.rot2),
+                ] {
+                    say!(
+                        "{name:<16} {:.4} ± {:.4} {unit}, median {:.4}, 95 % below {:.4}",
+                        spread.mean,
+                        spread.std,
+                        spread.median,
+                        spread.p95
+                    );
+                }
+            }
+            Self::Truth(report) => {
+                say!("poses compared   {}", report.n);
+                for (name, unit, errors) in [
+                    ("ATE", "m", report.ate),
+                    ("RPE", "m", report.rpe.trans),
+                    ("RPE, rotation", "°", report.rpe.rot_deg),
+                ] {
+                    say!(
+                        "{name:<16} rms {:.4} {unit}, mean {:.4}, median {:.4}, largest {:.4}",
+                        errors.rmse,
+                        errors.mean,
+                        errors.median,
+                        errors.max
+                    );
+                }
+            }
+        }
+    }
+}

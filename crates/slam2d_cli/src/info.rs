@@ -1,0 +1,84 @@
+//! `slam2d info`: what is in a recorded log.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use clap::Args;
+use robot_io::info::LogInfo;
+use serde::Serialize;
+
+use crate::log_file::{FileError, open_log};
+use crate::output::{print_json, say};
+
+/// Print what is in a recorded log: scans, beams, odometry, times, and what cannot be read.
+#[derive(Args, Clone, Debug)]
+pub struct InfoArgs {
+    /// The log.
+    log: PathBuf,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct InfoJson<'a> {
+    records: &'a BTreeMap<String, usize>,
+    broken_lines: usize,
+    #[serde(flatten)]
+    info: &'a LogInfo,
+}
+
+/// Reads the log once and prints what is in it.
+///
+/// # Errors
+/// Where it cannot be read.
+pub fn run(args: &InfoArgs) -> Result<(), FileError> {
+    let (mut reader, mut progress) = open_log(&args.log)?;
+    let mut info = LogInfo::default();
+    while let Some(frame) = reader.next_frame()? {
+        info.take(&frame);
+        progress.tell(info.scans);
+    }
+    progress.end();
+    let notes = reader.notes();
+    for sentence in notes.sentences(&args.log.display().to_string()) {
+        eprintln!("slam2d: {sentence}");
+    }
+    if args.json {
+        print_json(&InfoJson {
+            records: &notes.records,
+            broken_lines: notes.broken,
+            info: &info,
+        });
+        return Ok(());
+    }
+    for (name, count) in &notes.records {
+        say!("{name:<16} {count}");
+    }
+    say!("scans            {}", info.scans);
+    say!(
+        "beams            {} to {}",
+        info.fewest_beams,
+        info.most_beams
+    );
+    say!("field of view    {:.1}°", info.field_of_view_deg);
+    say!("longest return   {:.2} m", info.longest_return_m);
+    say!(
+        "returns          {:.0} in the median scan",
+        info.median_returns
+    );
+    say!("duration         {:.1} s", info.duration_s);
+    say!(
+        "stamps           {}",
+        if info.late == 0 {
+            "in order".to_owned()
+        } else {
+            format!("{} are not after the one before", info.late)
+        }
+    );
+    match info.odometry_way_m {
+        Some(way_m) => say!("odometry         {way_m:.1} m"),
+        None => say!("odometry         none"),
+    }
+    Ok(())
+}

@@ -1,0 +1,196 @@
+//! `slam2d run`: a recorded log through the estimator.
+
+use std::fs;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::Args;
+use measuring::process;
+use robot_io::run::{LogRun, OdometryUse};
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::grade::{Grade, GradeError, ReferenceArgs};
+use crate::log_file::{FileError, open_log};
+use crate::output::{print_json, say};
+
+/// Map a recorded log, and grade the trajectory where a reference is given.
+#[derive(Args, Clone, Debug)]
+pub struct RunArgs {
+    /// The log.
+    log: PathBuf,
+    /// Write the results into this folder.
+    #[arg(short = 'o', long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Leave the wheels out: scans alone.
+    #[arg(long)]
+    no_odometry: bool,
+    #[command(flatten)]
+    reference: ReferenceArgs,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Why a log was not run to its end.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The comparison failed.
+    #[error(transparent)]
+    Grade(#[from] GradeError),
+    /// Every scan was refused.
+    #[error("{name}: no scan could be used: {problem}")]
+    NoScan {
+        /// The log.
+        name: String,
+        /// Why the first one was not.
+        problem: String,
+    },
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct RunJson {
+    scans: usize,
+    keyframes: usize,
+    loops_tried: usize,
+    loops_accepted: usize,
+    /// Seconds that the process kept a core busy.
+    cpu_s: f64,
+    /// Most memory that the process held, MB; null where the system does not tell.
+    peak_mb: Option<f64>,
+    /// Whether Ctrl-C ended the run before the log's end.
+    interrupted: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    relations: Option<Grade>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    truth: Option<Grade>,
+}
+
+/// Runs the log and prints what came of it.
+///
+/// # Errors
+/// Where a file cannot be used. What was mapped before is written.
+pub fn run(args: &RunArgs) -> Result<(), RunError> {
+    let name = args.log.display().to_string();
+    let reference = args.reference.read()?;
+    let is_interrupted = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&is_interrupted);
+    // Without a handler Ctrl-C ends the process at once, which loses the work and nothing else.
+    let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
+    let (mut reader, mut progress) = open_log(&args.log)?;
+    let mut run = LogRun::new(if args.no_odometry {
+        OdometryUse::None
+    } else {
+        OdometryUse::Log
+    });
+    let mut broken = None;
+    while !is_interrupted.load(Ordering::Relaxed) {
+        match reader.next_frame() {
+            Ok(Some(frame)) => {
+                run.step(frame);
+                progress.tell(run.scans());
+            }
+            Ok(None) => break,
+            Err(error) if run.scans() == 0 => return Err(FileError::from(error).into()),
+            Err(error) => {
+                broken = Some(error);
+                break;
+            }
+        }
+    }
+    run.finish();
+    progress.end();
+    tell_notes(&run, &reader.notes().sentences(&name), &name);
+    if run.scans() == 0 {
+        let problem = match run.refused() {
+            Some(problem) => problem.to_string(),
+            None => "it was interrupted before the first one".to_owned(),
+        };
+        return Err(RunError::NoScan { name, problem });
+    }
+    let trajectory = run.trajectory();
+    let grade = reference
+        .as_ref()
+        .map(|reference| reference.grade(&trajectory))
+        .transpose();
+    if let Some(folder) = &args.output {
+        write_results(folder, &run)?;
+    }
+    // The results are written before anything that may still fail is told.
+    let grade = grade?;
+    if let Some(error) = broken {
+        return Err(FileError::from(error).into());
+    }
+    let of = |wanted: bool| grade.filter(|grade| wanted == matches!(grade, Grade::Relations(_)));
+    let result = RunJson {
+        scans: run.scans(),
+        keyframes: run.slam().map_or(0, |slam| slam.keyframes().len()),
+        loops_tried: run.loops().len(),
+        loops_accepted: run.loops().iter().filter(|tried| tried.accepted).count(),
+        cpu_s: process::cpu_s(),
+        peak_mb: process::peak_mb(),
+        interrupted: is_interrupted.load(Ordering::Relaxed),
+        relations: of(true),
+        truth: of(false),
+    };
+    if args.json {
+        print_json(&result);
+    } else {
+        print_text(&result);
+    }
+    Ok(())
+}
+
+fn tell_notes(run: &LogRun, sentences: &[String], name: &str) {
+    for sentence in sentences {
+        eprintln!("slam2d: {sentence}");
+    }
+    if run.late() > 0 {
+        eprintln!(
+            "slam2d: {name}: {} scans are not after the one before them and were left out",
+            run.late()
+        );
+    }
+    if let Some(problem) = run.refused() {
+        eprintln!("slam2d: {name}: scans were left out; the first because {problem}");
+    }
+}
+
+/// Writes the trajectory and the graph into a folder, which is made where it is missing.
+fn write_results(folder: &Path, run: &LogRun) -> Result<(), FileError> {
+    let told = |path: &Path| {
+        let path = path.to_owned();
+        move |source| FileError::Io { path, source }
+    };
+    fs::create_dir_all(folder).map_err(told(folder))?;
+    let path = folder.join("trajectory.tum");
+    let file = fs::File::create(&path).map_err(told(&path))?;
+    let mut file = BufWriter::new(file);
+    run.trajectory()
+        .write_tum(&mut file)
+        .and_then(|()| file.flush())
+        .map_err(told(&path))
+}
+
+fn print_text(result: &RunJson) {
+    say!("scans            {}", result.scans);
+    say!("keyframes        {}", result.keyframes);
+    say!(
+        "loops            {} tried, {} accepted",
+        result.loops_tried,
+        result.loops_accepted
+    );
+    say!("CPU              {:.2} s", result.cpu_s);
+    if let Some(peak_mb) = result.peak_mb {
+        say!("memory           {peak_mb:.0} MB at most");
+    }
+    if let Some(grade) = result.relations.or(result.truth) {
+        grade.print();
+    }
+}

@@ -1,0 +1,169 @@
+//! Recorded logs on the command line: what is said of them, and the errors of a run.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::support::{assert_refused, json, slam2d};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A log of a robot that drives along x in a hall 6 m wide, 0.1 m a scan, with wheels that measure a
+/// tenth too much.
+fn corridor(folder: &TempDir, scans: usize) -> PathBuf {
+    let mut text = String::new();
+    for scan in 0..scans {
+        let x = 0.1 * scan as f64;
+        text.push_str("FLASER 90");
+        for beam in 0..90 {
+            let bearing = f64::to_radians(-90.0 + 2.0 * f64::from(beam));
+            let side = 3.0 / bearing.sin().abs();
+            let end = (9.0 - x) / bearing.cos();
+            text.push_str(&format!(" {:.4}", side.min(end)));
+        }
+        let odometry = format!("{:.4} 0 0", 1.1 * x);
+        text.push_str(&format!(" {odometry} {odometry} {} h 0\n", 100 + scan));
+    }
+    write(folder, "corridor.clf", &text)
+}
+
+fn write(folder: &TempDir, name: &str, text: &str) -> PathBuf {
+    let path = folder.path().join(name);
+    fs::write(&path, text).unwrap();
+    path
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+#[test]
+fn a_log_is_mapped_and_graded_against_relations() {
+    let folder = TempDir::new().unwrap();
+    let log = corridor(&folder, 40);
+    // From the first scan to the last 3.9 m were driven.
+    let relations = write(&folder, "relations", "100 139 3.9 0 0 0 0 0\n");
+    let (log, relations) = (text(&log), text(&relations));
+    let out = folder.path().join("out/deep");
+    let run = json(&[
+        "run",
+        log,
+        "-o",
+        text(&out),
+        "--relations",
+        relations,
+        "--json",
+    ]);
+    assert_eq!(run["scans"], 40);
+    assert!(run["keyframes"].as_u64().unwrap() > 3);
+    assert!(run["cpu_s"].as_f64().unwrap() > 0.0);
+    let error_m = run["relations"]["trans"]["mean"].as_f64().unwrap();
+    // The wheels alone are off by 0.39 m; the wall at the end tells better.
+    assert!(error_m < 0.2, "{error_m}");
+    let trajectory = out.join("trajectory.tum");
+    let trajectory = text(&trajectory);
+    let graded = json(&["evaluate", trajectory, "--relations", relations, "--json"]);
+    assert_eq!(graded, run["relations"]);
+    let fields: Vec<&String> = graded.as_object().unwrap().keys().collect();
+    assert_eq!(fields, ["n", "rot2", "rot_deg", "trans", "trans2"]);
+    let carried = json(&[
+        "evaluate",
+        trajectory,
+        "--relations",
+        relations,
+        "--log",
+        log,
+        "--json",
+    ]);
+    assert_eq!(carried, graded, "every scan has its own pose already");
+    let truth = json(&[
+        "evaluate", trajectory, "--truth", trajectory, "--align", "se2", "--json",
+    ]);
+    assert!(truth["ate"]["max"].as_f64().unwrap() < 1e-9);
+}
+
+#[test]
+fn without_odometry_the_scans_alone_are_followed() {
+    let folder = TempDir::new().unwrap();
+    let log = corridor(&folder, 30);
+    let relations = write(&folder, "relations", "100 129 2.9 0 0 0 0 0\n");
+    let arguments = [
+        "run",
+        text(&log),
+        "--no-odometry",
+        "--relations",
+        text(&relations),
+        "--json",
+    ];
+    let error_m = json(&arguments)["relations"]["trans"]["mean"]
+        .as_f64()
+        .unwrap();
+    assert!(error_m < 0.5, "{error_m}");
+}
+
+#[test]
+fn what_is_in_a_log_is_told() {
+    let folder = TempDir::new().unwrap();
+    let info = json(&["info", text(&corridor(&folder, 5)), "--json"]);
+    assert_eq!(
+        (&info["scans"], &info["most_beams"]),
+        (&Value::from(5), &Value::from(90))
+    );
+    assert_eq!(info["records"]["FLASER"], 5);
+    assert!((info["odometry_way_m"].as_f64().unwrap() - 0.44).abs() < 1e-9);
+}
+
+#[test]
+fn broken_lines_are_told_and_the_rest_is_mapped() {
+    let folder = TempDir::new().unwrap();
+    let whole = fs::read_to_string(corridor(&folder, 6)).unwrap();
+    let mut lines: Vec<&str> = whole.lines().collect();
+    lines[2] = "FLASER 90 1 2 three";
+    let cut = &lines[5][..200];
+    lines[5] = cut;
+    let log = write(&folder, "broken.clf", &lines.join("\n"));
+    let output = slam2d(&["run", text(&log), "--json"]);
+    assert!(output.status.success());
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains("one line was left out; the first is line 3: "),
+        "{said}"
+    );
+    assert!(said.contains("the last line, 6, is half written"), "{said}");
+    let run: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(run["scans"], 4);
+}
+
+#[test]
+fn files_that_cannot_be_used_end_in_one_line() {
+    let folder = TempDir::new().unwrap();
+    let log = corridor(&folder, 3);
+    let log = text(&log);
+    let empty = write(&folder, "empty.clf", "");
+    let prose = write(&folder, "prose.txt", "It was a dark night.\n");
+    let far = write(&folder, "far", "5 6 0 0 0 0 0 0\n");
+    let tum = write(&folder, "t.tum", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
+    for (arguments, said) in [
+        (vec!["run", "/absent"], "/absent: "),
+        (vec!["run", text(folder.path())], "directory"),
+        (vec!["run", text(&empty)], "is empty; give a recorded log"),
+        (vec!["info", text(&prose)], "is no CARMEN log; give one"),
+        (
+            vec!["run", log, "--relations", text(&prose)],
+            "line 1: t1 has to be a finite number",
+        ),
+        (
+            vec!["run", log, "--relations", text(&far)],
+            "none of the 1 relations lies within",
+        ),
+        (
+            vec!["evaluate", text(&tum)],
+            "give --relations FILE or --truth FILE",
+        ),
+        (
+            vec!["evaluate", log, "--truth", text(&tum)],
+            "stamp has to be a finite number",
+        ),
+    ] {
+        assert_refused(&arguments, said);
+    }
+}
