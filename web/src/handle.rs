@@ -334,6 +334,12 @@ impl Widget {
         self.shared.frames.get()
     }
 
+    /// Finishes what the picture waits for, so that outcome, words and tables are those of the values;
+    /// says whether there was anything.
+    pub fn settle(&self) -> bool {
+        self.shared.shell.borrow_mut().settle()
+    }
+
     /// Does all the work that fills in piece by piece: for a picture of the finished state.
     pub fn finish(&self) {
         let mut shell = self.shared.shell.borrow_mut();
@@ -342,6 +348,7 @@ impl Widget {
 
     /// The picture as SVG, for print and for pages where the widget cannot run.
     pub fn picture(&self, width_px: f32, theme: &str) -> String {
+        self.settle();
         self.shared
             .shell
             .borrow()

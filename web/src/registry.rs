@@ -45,6 +45,7 @@ mod tests {
             let states = core::iter::once("defaults").chain(presets.iter().map(|p| p.id));
             for state in states {
                 shell.model_mut().press(state).expect("the widget has it");
+                shell.settle();
                 for width in [320.0, 390.0, 700.0, 1100.0] {
                     let faults = shell.text_faults(width);
                     assert!(faults.is_empty(), "{name} after {state}: {faults:#?}");

@@ -43,7 +43,7 @@ export class SlamWidget extends HTMLElement {
     super();
     this.#parts = build(this.attachShadow({ mode: 'open' }));
     this.#notes = new Notes(this.#parts.note);
-    this.#news = new News(this, this.#parts, this.#notes);
+    this.#news = new News(this, this.#parts, this.#notes, () => this.#showTimeline());
     this.#pictures = new Pictures(this.#parts.picture);
     this.#place = new Place(this.#parts.stage);
     this.#life = new Life(this.#parts, this.#lifeHost());
@@ -138,23 +138,25 @@ export class SlamWidget extends HTMLElement {
     await this.#life.ensureInstance();
     this.#life.ask((widget) => widget.press(button));
     this.#sync();
-    this.#controls?.showTimeline(this.timeline);
+    this.#showTimeline();
     this.#life.wake();
   }
 
   /** The latest result, once the widget has run. */
   get outcome(): Outcome | undefined {
-    this.#lastOutcome = this.#life.ask((_, instance) => instance.outcome()) ?? this.#lastOutcome;
-    return this.#lastOutcome;
+    this.#settle();
+    return this.#shownOutcome();
   }
 
   /** The run that can be scrubbed, while the widget runs. */
   get timeline(): Timeline | null {
-    return this.#life.ask((_, instance) => instance.timeline()) ?? null;
+    this.#settle();
+    return this.#shownTimeline();
   }
 
   /** The text that stands for the picture. */
   get summary(): string {
+    this.#settle();
     return this.#life.ask((widget) => widget.summary()) ?? this.#state?.spec.summary ?? '';
   }
 
@@ -171,6 +173,7 @@ export class SlamWidget extends HTMLElement {
   /** Every plot and table as CSV. */
   async tables(): Promise<CsvFile[]> {
     await this.#ensureInstance();
+    this.#settle();
     return this.#life.ask((_, instance) => instance.tables()) ?? [];
   }
 
@@ -291,8 +294,8 @@ export class SlamWidget extends HTMLElement {
         widget.setReducedMotion(reducedMotion?.matches === true);
       },
       live: (milliseconds) => {
-        this.#controls?.showTimeline(this.timeline);
-        this.#lastOutcome = this.outcome;
+        this.#showTimeline();
+        this.#shownOutcome();
         this.#news.ready(milliseconds);
       },
       drew: (canvas) => {
@@ -301,6 +304,7 @@ export class SlamWidget extends HTMLElement {
       },
       leaving: () => {
         this.#drawPicture(themeOf(this));
+        this.#shownOutcome();
         this.#place.keep();
       },
       failed: (error) => {
@@ -315,7 +319,7 @@ export class SlamWidget extends HTMLElement {
   #sync(): void {
     const changes = this.#takeChanges();
     if (changes.length === 0) return;
-    const { timeline } = this;
+    const timeline = this.#shownTimeline();
     if (timeline?.playing === true) {
       const before = Number(this.#state?.text(timeline.param));
       const now = Number(new Map(changes).get(timeline.param) ?? before);
@@ -332,8 +336,27 @@ export class SlamWidget extends HTMLElement {
   #told(changes: Iterable<[string, string]>): void {
     for (const [id, text] of changes) this.#state?.keep(id, text);
     this.#controls?.show(changes);
-    this.#controls?.showTimeline(this.timeline);
-    this.#news.changed(changes);
+    this.#showTimeline();
+    this.#news.changed(changes, this.#shownOutcome());
+  }
+
+  /** Figures are read of the values that are set: what the picture still waits for is finished. */
+  #settle(): void {
+    if (this.#life.ask((widget) => widget.settle()) === true) this.#life.wake();
+  }
+
+  /** The result of what the picture shows, which may wait for newer values. */
+  #shownOutcome(): Outcome | undefined {
+    this.#lastOutcome = this.#life.ask((_, instance) => instance.outcome()) ?? this.#lastOutcome;
+    return this.#lastOutcome;
+  }
+
+  #shownTimeline(): Timeline | null {
+    return this.#life.ask((_, instance) => instance.timeline()) ?? null;
+  }
+
+  #showTimeline(): void {
+    this.#controls?.showTimeline(this.#shownTimeline());
   }
 
   // ---- values -------------------------------------------------------------------------------

@@ -23,9 +23,11 @@ export class News {
   readonly #source: NewsSource;
   readonly #parts: Parts;
   readonly #notes: Notes;
+  readonly #onSettled: () => void;
   #timer: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(source: NewsSource, parts: Parts, notes: Notes) {
+  constructor(source: NewsSource, parts: Parts, notes: Notes, onSettled: () => void) {
+    this.#onSettled = onSettled;
     this.#source = source;
     this.#parts = parts;
     this.#notes = notes;
@@ -37,9 +39,8 @@ export class News {
     this.#emit('slam-ready', { value: this.#source.value, ms: milliseconds });
   }
 
-  /** Values changed; the result follows once they rest. */
-  changed(changes: Iterable<[string, string]>): void {
-    const { outcome } = this.#source;
+  /** Values changed; the outcome is that of the picture so far. The result follows once they rest. */
+  changed(changes: Iterable<[string, string]>, outcome: Outcome | undefined): void {
     for (const [parameter, text] of changes) {
       this.#notes.settle(parameter);
       const value = this.#source.get(parameter);
@@ -83,6 +84,7 @@ export class News {
   #settled(): void {
     const source = this.#source;
     const { outcome } = source;
+    this.#onSettled();
     this.#describe();
     if (outcome !== undefined) {
       this.#say(outcome.sentence);

@@ -2,7 +2,8 @@
 //!
 //! [`Lap::step`] hands one tick of a [`Drive`] to the estimator and reports what it did, with its
 //! errors; [`Lap::run`] does all of them. [`LapRunner`] runs a lap together with its front end alone
-//! and keeps what a timeline needs.
+//! and keeps what a timeline needs; [`LapRun`] does so in pieces, and [`NewestLap`] for a control that
+//! moves faster than laps are run.
 
 mod choices;
 mod config;
@@ -11,9 +12,11 @@ mod drive;
 mod judge;
 mod loop_error;
 mod loop_words;
+mod newest;
 mod record;
 mod replay;
 mod report;
+mod run;
 mod runner;
 
 use std::sync::Arc;
@@ -22,12 +25,14 @@ pub use ch16_slam2d::slam::{Change, LoopClosure, Registration, SlamConfig};
 pub use choices::{BuiltInWorld, Choice, LapMatcher};
 pub use config::{CANONICAL_SEED, DriveConfig, LAP_TICKS, LapConfig};
 pub use digest::lap_digest;
-pub use drive::{Drive, DriveTick, Sweep};
+pub use drive::{Drive, DriveSimulation, DriveTick, Sweep};
 pub use judge::Judge;
 pub use loop_error::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopError, LoopJudgement};
+pub use newest::{NewestLap, NewestStep};
 pub use record::{Epoch, LAST_KEYFRAMES, LapRecord, LapSummary, LapTrace, RecordedEdge};
 pub use replay::RegistrationView;
 pub use report::{Keyframe, LoopAttempt, LoopEffect, TickMetrics, TickReport, WindowSweep};
+pub use run::LapRun;
 pub use runner::LapRunner;
 
 use ch16_slam2d::graph::PoseGraph;

@@ -33,7 +33,7 @@ fn act(bytes: &mut Unstructured<'_>, model: &mut dyn Model) -> Result<()> {
     if bytes.is_empty() {
         return Err(arbitrary::Error::NotEnoughData);
     }
-    match bytes.int_in_range(0..=11)? {
+    match bytes.int_in_range(0..=12)? {
         0..=3 => set(bytes, model),
         4..=5 => press(bytes, model),
         6..=7 => drag(bytes, model),
@@ -52,6 +52,11 @@ fn act(bytes: &mut Unstructured<'_>, model: &mut dyn Model) -> Result<()> {
             Ok(())
         }
         10 => {
+            model.settle();
+            assert_eq!(model.settle(), Activity::Idle);
+            Ok(())
+        }
+        11 => {
             let scene = model.scene();
             let panel = bytes.choose(&scene.panels)?;
             let at = point(bytes, panel)?;

@@ -36,6 +36,12 @@ pub trait Model {
         Activity::Idle
     }
 
+    /// Finishes what [`Model::work`] has begun and the picture waits for, so that figures and picture
+    /// are those of the values; what only fills in goes on later. Idle where nothing was to be done.
+    fn settle(&mut self) -> Activity {
+        Activity::Idle
+    }
+
     /// The picture.
     fn scene(&self) -> Scene;
 

@@ -129,6 +129,15 @@ impl Shell {
         self.model.as_mut()
     }
 
+    /// Finishes what the picture waits for, see [`Model::settle`]; says whether there was anything.
+    pub fn settle(&mut self) -> bool {
+        let settled = self.model.settle() == Activity::Busy;
+        if settled {
+            self.touch();
+        }
+        settled
+    }
+
     /// Points needed at the width of the last [`Shell::ui`].
     #[must_use]
     pub fn content_height(&self) -> f32 {

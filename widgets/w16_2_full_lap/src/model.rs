@@ -1,6 +1,7 @@
 //! The state of the widget: parameters, the laps they lead to, playback and animation.
 //!
-//! Any parameter that changes the lap recomputes all of it at once; the moment shown stays.
+//! A parameter that changes the lap asks for a new one. It is computed in pieces, the newest that was
+//! asked for first; the old one stays until the new one is whole, and the moment shown stays.
 
 mod gates;
 mod moment;
@@ -12,7 +13,7 @@ mod track;
 mod transition;
 mod words;
 
-use ch16_lab::lap::LoopAttempt;
+use ch16_lab::lap::{LapRecord, LoopAttempt, NewestLap, NewestStep};
 use kit::chart::{dragged_to, grab_now};
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
@@ -22,7 +23,7 @@ use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 
-use crate::spec::SPEC;
+use crate::spec::{LOOP_BUTTONS, SPEC};
 use moment::Moment;
 use runs::{Results, Runs};
 use settings::LapSettings;
@@ -34,7 +35,12 @@ const TICKS_PER_S: f64 = 8.0;
 /// The full lap.
 pub struct FullLap {
     values: Values,
+    /// What is shown.
     runs: Runs,
+    /// What is being computed.
+    laps: NewestLap,
+    /// Buttons that wait for the lap they were pressed for.
+    pressed: Vec<&'static str>,
     canonical: Results,
     playback: Playback,
     transition: Option<Transition>,
@@ -48,14 +54,21 @@ impl Default for FullLap {
 
 impl FullLap {
     /// The chapter's run, at its first loop.
+    ///
+    /// # Panics
+    /// Never: a lap that was asked for ends.
     #[must_use]
     pub fn new() -> Self {
         let values = Values::defaults(SPEC.params);
-        let runs = Runs::new(&LapSettings::read(&values));
+        let mut laps = NewestLap::new();
+        laps.ask(LapSettings::read(&values).config());
+        let runs = Runs::new(*laps.finish().expect("a lap was asked for"));
         Self {
             canonical: runs.results(),
             values,
             runs,
+            laps,
+            pressed: Vec::new(),
             playback: Playback::default(),
             transition: None,
         }
@@ -109,15 +122,45 @@ impl FullLap {
         self.values = Values::defaults(SPEC.params);
         self.playback.pause();
         self.transition = None;
+        self.pressed.clear();
         self.recompute();
     }
 
+    /// Asks for the lap of the settings, where it is not the one that is shown.
     fn recompute(&mut self) {
-        self.runs.update(&LapSettings::read(&self.values));
+        self.laps.ask(LapSettings::read(&self.values).config());
+    }
+
+    /// Shows a lap that is whole, and does what waited for it.
+    fn show(&mut self, record: LapRecord) {
+        self.runs = Runs::new(record);
         self.transition = None;
         if self.values.get("t") > self.last() {
             self.go_to(self.runs.ticks());
         }
+        if !self.laps.is_running() {
+            for button in core::mem::take(&mut self.pressed) {
+                self.press_loop(button);
+            }
+        }
+    }
+
+    /// Buttons that go by the loops of the lap; says whether it is one of them.
+    fn press_loop(&mut self, id: &str) -> bool {
+        let Some(button) = LOOP_BUTTONS.iter().find(|button| button.id == id) else {
+            return false;
+        };
+        if self.laps.is_running() {
+            self.pressed.push(button.id);
+            return true;
+        }
+        match button.id {
+            "before" => self.press_loop_button(-1),
+            "at" => self.press_loop_button(0),
+            "after" => self.press_loop_button(1),
+            _ => self.next_loop(),
+        }
+        true
     }
 
     /// Plays on; stops for the animation of every loop on the way.
@@ -172,11 +215,10 @@ impl Model for FullLap {
             }
             return Ok(());
         }
+        if self.press_loop(id) {
+            return Ok(());
+        }
         match id {
-            "before" => self.press_loop_button(-1),
-            "at" => self.press_loop_button(0),
-            "after" => self.press_loop_button(1),
-            "next" => self.next_loop(),
             "defaults" => self.back_to_defaults(),
             _ => return press_preset(self, id),
         }
@@ -196,6 +238,24 @@ impl Model for FullLap {
         } else {
             Activity::Idle
         }
+    }
+
+    /// One tick of the lap that is being computed.
+    fn work(&mut self) -> Activity {
+        match self.laps.step() {
+            NewestStep::Idle => return Activity::Idle,
+            NewestStep::Tick => {}
+            NewestStep::Finished(record) => self.show(*record),
+        }
+        Activity::Busy
+    }
+
+    fn settle(&mut self) -> Activity {
+        let Some(record) = self.laps.finish() else {
+            return Activity::Idle;
+        };
+        self.show(*record);
+        Activity::Busy
     }
 
     fn scene(&self) -> Scene {

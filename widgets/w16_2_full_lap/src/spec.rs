@@ -130,6 +130,9 @@ const NEXT: ButtonSpec = ButtonSpec {
     help: "On to the next loop; after the last one, to the first.",
 };
 
+/// The buttons that go by the loops of the lap.
+pub const LOOP_BUTTONS: [ButtonSpec; 4] = [BEFORE, AT, AFTER, NEXT];
+
 /// What never changes.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.2",

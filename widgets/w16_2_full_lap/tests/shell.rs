@@ -33,12 +33,16 @@ fn fact(harness: &Harness<'_, Shell>, id: &str) -> f64 {
 fn press(harness: &mut Harness<'_, Shell>, label: &str) {
     harness.get_by_role_and_label(Role::Button, label).click();
     harness.run_steps(2);
+    harness.state_mut().settle();
+    harness.run_steps(2);
 }
 
 fn key(harness: &mut Harness<'_, Shell>, slider: &str, key: egui::Key) {
     harness.get_by_role_and_label(Role::Slider, slider).focus();
     harness.run_steps(2);
     harness.key_press(key);
+    harness.run_steps(2);
+    harness.state_mut().settle();
     harness.run_steps(2);
 }
 

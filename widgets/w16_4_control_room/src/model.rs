@@ -1,6 +1,7 @@
 //! The state of the control room: one recorded run, the tick shown, its grid and registration.
 //!
-//! A parameter of the run computes all of it again at once; the moment shown stays.
+//! A parameter of the run asks for a new one. It is computed in pieces, the newest that was asked for
+//! first; the old one stays until the new one is whole, and the moment shown stays.
 
 mod grid;
 mod history;
@@ -10,7 +11,7 @@ mod settings;
 mod tables;
 mod words;
 
-use ch16_lab::lap::{LapRecord, LapRunner, RegistrationView, TickReport};
+use ch16_lab::lap::{LapRecord, NewestLap, NewestStep, RegistrationView, TickReport};
 use kit::chart::{dragged_to, grab_now};
 use kit::model::{Activity, Handle, Model, Motion, Outcome, Table, Timeline, press_preset};
 use kit::param::{Changed, ParamError, Values};
@@ -32,8 +33,12 @@ const TICKS_PER_S: f64 = 8.0;
 pub struct ControlRoom {
     values: Values,
     world: World,
-    runner: LapRunner,
+    /// What is shown.
     record: LapRecord,
+    /// What is being computed.
+    laps: NewestLap,
+    /// How often the reader went on to the next event of the run that is being computed.
+    next_events: usize,
     history: History,
     events: Vec<Event>,
     /// The registration of the tick shown.
@@ -50,11 +55,15 @@ impl Default for ControlRoom {
 
 impl ControlRoom {
     /// The chapter's run on its way out.
+    ///
+    /// # Panics
+    /// Never: a lap that was asked for ends.
     #[must_use]
     pub fn new() -> Self {
         let values = Values::defaults(SPEC.params);
-        let mut runner = LapRunner::new();
-        let record = runner.run(&config(&values));
+        let mut laps = NewestLap::new();
+        laps.ask(config(&values));
+        let record = *laps.finish().expect("a lap was asked for");
         let mut room = Self {
             history: History::new(&record),
             events: log::events(&record),
@@ -63,7 +72,8 @@ impl ControlRoom {
             world: World::apartment(),
             playback: Playback::default(),
             values,
-            runner,
+            laps,
+            next_events: 0,
             record,
         };
         room.show();
@@ -98,20 +108,36 @@ impl ControlRoom {
     }
 
     fn run_again(&mut self) {
-        self.record = self.runner.run(&config(&self.values));
+        self.laps.ask(config(&self.values));
+    }
+
+    /// Shows a run that is whole, and does what waited for it.
+    fn take(&mut self, record: LapRecord) {
+        self.record = record;
         self.history = History::new(&self.record);
         self.events = log::events(&self.record);
         self.grid.forget();
         self.go_to(self.values.get("t"));
+        if !self.laps.is_running() {
+            for _ in 0..core::mem::take(&mut self.next_events) {
+                self.next_event();
+            }
+        }
     }
 
     fn back_to_defaults(&mut self) {
         self.playback.pause();
         self.values = Values::defaults(SPEC.params);
+        self.next_events = 0;
         self.run_again();
+        self.show();
     }
 
     fn next_event(&mut self) {
+        if self.laps.is_running() {
+            self.next_events += 1;
+            return;
+        }
         self.playback.pause();
         let now = self.tick();
         let next = self.events.iter().find(|event| event.tick > now);
@@ -173,6 +199,24 @@ impl Model for ControlRoom {
         if reached != now {
             self.go_to(reached);
         }
+        Activity::Busy
+    }
+
+    /// One tick of the run that is being computed.
+    fn work(&mut self) -> Activity {
+        match self.laps.step() {
+            NewestStep::Idle => return Activity::Idle,
+            NewestStep::Tick => {}
+            NewestStep::Finished(record) => self.take(*record),
+        }
+        Activity::Busy
+    }
+
+    fn settle(&mut self) -> Activity {
+        let Some(record) = self.laps.finish() else {
+            return Activity::Idle;
+        };
+        self.take(*record);
         Activity::Busy
     }
 

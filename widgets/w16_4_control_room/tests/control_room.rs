@@ -26,6 +26,16 @@ fn fact(room: &ControlRoom, id: &str) -> f64 {
     facts.iter().find(|fact| fact.id == id).expect(id).value
 }
 
+fn set(room: &mut ControlRoom, id: &str, value: f64) {
+    room.set(id, value).unwrap();
+    room.settle();
+}
+
+fn press(room: &mut ControlRoom, id: &str) {
+    room.press(id).unwrap();
+    room.settle();
+}
+
 fn revision(room: &ControlRoom) -> u64 {
     let scene = room.scene();
     let grid = scene.panels[0].layers.iter().find_map(|layer| match layer {
@@ -44,10 +54,10 @@ fn the_end_of_every_reference_run_has_its_grid_its_loops_and_its_errors() {
         (12_648_430, 1.0, false),
     ] {
         let run = reference(seed, noise, loops);
-        room.set("seed", seed as f64).unwrap();
-        room.set("noise", noise).unwrap();
-        room.set("loops", f64::from(u8::from(loops))).unwrap();
-        room.set("t", run["ticks"].as_f64().unwrap()).unwrap();
+        set(&mut room, "seed", seed as f64);
+        set(&mut room, "noise", noise);
+        set(&mut room, "loops", f64::from(u8::from(loops)));
+        set(&mut room, "t", run["ticks"].as_f64().unwrap());
         assert_eq!(fact(&room, "keyframes"), run["keyframes"].as_f64().unwrap());
         assert_eq!(
             fact(&room, "occupied_cells"),
@@ -76,10 +86,10 @@ fn the_end_of_every_reference_run_has_its_grid_its_loops_and_its_errors() {
 #[test]
 fn the_grid_is_drawn_again_when_a_loop_moves_its_keyframes() {
     let mut room = ControlRoom::new();
-    room.set("t", 91.0).unwrap();
+    set(&mut room, "t", 91.0);
     let before = fact(&room, "occupied_cells");
     assert_eq!(fact(&room, "loops"), 0.0);
-    room.press("step").unwrap();
+    press(&mut room, "step");
     assert_eq!(fact(&room, "loops"), 1.0);
     assert_ne!(fact(&room, "occupied_cells"), before);
     assert!(
@@ -94,11 +104,11 @@ fn the_grid_is_drawn_again_when_a_loop_moves_its_keyframes() {
 #[test]
 fn a_tick_without_a_keyframe_uploads_no_new_texture() {
     let mut room = ControlRoom::new();
-    room.set("t", 0.0).unwrap();
+    set(&mut room, "t", 0.0);
     let first = revision(&room);
-    room.press("step").unwrap();
+    press(&mut room, "step");
     assert_eq!(revision(&room), first);
-    room.set("t", 20.0).unwrap();
+    set(&mut room, "t", 20.0);
     assert_ne!(revision(&room), first);
 }
 
@@ -124,15 +134,15 @@ fn with_reduced_motion_play_is_at_the_end_at_once() {
     let mut room = ControlRoom::new();
     room.set_motion(Motion::Reduced);
     for start in ["play", "watch"] {
-        room.set("t", 20.0).unwrap();
-        room.press(start).unwrap();
+        set(&mut room, "t", 20.0);
+        press(&mut room, start);
         assert_eq!(room.values().get("t"), 129.0, "{start}");
         assert!(!room.timeline().unwrap().playing, "{start}");
         assert_eq!(room.advance(0.1), Activity::Idle, "{start}");
     }
     // Asked for while it plays, it ends the run.
     room.set_motion(Motion::Full);
-    room.press("play").unwrap();
+    press(&mut room, "play");
     assert_eq!(room.values().get("t"), 0.0);
     room.set_motion(Motion::Reduced);
     assert_eq!(room.values().get("t"), 129.0);
@@ -157,7 +167,7 @@ fn the_line_at_the_moment_shown_can_be_dragged_in_both_plots_over_time() {
 #[test]
 fn the_start_shows_the_first_sweep_where_nothing_is_off_yet() {
     let mut room = ControlRoom::new();
-    room.set("t", 0.0).unwrap();
+    set(&mut room, "t", 0.0);
     assert_eq!(fact(&room, "estimate_error_m"), 0.0);
     assert_eq!(fact(&room, "odometry_error_m"), 0.0);
     assert!(fact(&room, "pairs").is_nan(), "nothing was registered");
@@ -171,22 +181,61 @@ fn the_start_shows_the_first_sweep_where_nothing_is_off_yet() {
 #[test]
 fn changing_the_run_keeps_the_moment() {
     let mut room = ControlRoom::new();
-    room.set("t", 87.0).unwrap();
+    set(&mut room, "t", 87.0);
     let before = room.outcome();
-    room.set("noise", 4.0).unwrap();
+    set(&mut room, "noise", 4.0);
     assert_eq!(room.values().get("t"), 87.0);
     assert_ne!(room.outcome(), before);
-    room.press("defaults").unwrap();
-    room.set("t", 87.0).unwrap();
+    press(&mut room, "defaults");
+    set(&mut room, "t", 87.0);
     assert_eq!(room.outcome(), before);
+}
+
+#[test]
+fn a_setting_runs_in_pieces_of_a_tick_and_the_old_run_stays_until_the_new_one_is_whole() {
+    let mut room = ControlRoom::new();
+    set(&mut room, "t", 92.0);
+    let before = room.outcome();
+    for noise in [2.0, 3.0, 4.0] {
+        room.set("noise", noise).unwrap();
+    }
+    let mut pieces = 0;
+    while room.work() == Activity::Busy {
+        pieces += 1;
+        if pieces < 129 {
+            assert_eq!(room.outcome(), before, "piece {pieces}");
+        }
+    }
+    // One lap and its front end alone, of 129 ticks each, and two ends: of three values one is run.
+    assert!((129..=260).contains(&pieces), "{pieces} pieces");
+    let mut at_once = ControlRoom::new();
+    set(&mut at_once, "t", 92.0);
+    set(&mut at_once, "noise", 4.0);
+    assert_eq!(room.outcome(), at_once.outcome());
+    assert_ne!(room.outcome(), before);
+}
+
+#[test]
+fn the_next_event_is_one_of_the_run_that_is_asked_for() {
+    let mut room = ControlRoom::new();
+    set(&mut room, "t", 60.0);
+    room.set("seed", 6.0).unwrap();
+    room.press("next-event").unwrap();
+    assert_eq!(room.values().get("t"), 60.0);
+    room.settle();
+    let mut at_once = ControlRoom::new();
+    set(&mut at_once, "t", 60.0);
+    set(&mut at_once, "seed", 6.0);
+    press(&mut at_once, "next-event");
+    assert_eq!(room.values().get("t"), at_once.values().get("t"));
 }
 
 #[test]
 fn the_transport_steps_resets_and_restores() {
     let mut room = ControlRoom::new();
-    room.set("noise", 2.0).unwrap();
+    set(&mut room, "noise", 2.0);
     for (button, tick) in [("step", 61.0), ("reset", 0.0), ("defaults", 60.0)] {
-        room.press(button).unwrap();
+        press(&mut room, button);
         assert_eq!(room.values().get("t"), tick, "{button}");
     }
     // At the default tick the map cannot disagree with itself yet: NaN, which equals nothing.
@@ -217,10 +266,10 @@ fn every_lap_ends_where_the_timeline_does() {
     let spec = SPEC.params.iter().find(|spec| spec.id == "t").unwrap();
     let (_, last) = spec.range();
     for (seed, noise) in [(0.0, 0.25), (6.0, 2.0), (4_294_967_295.0, 4.0)] {
-        room.set("seed", seed).unwrap();
-        room.set("noise", noise).unwrap();
+        set(&mut room, "seed", seed);
+        set(&mut room, "noise", noise);
         assert_eq!(room.timeline().unwrap().last, last, "seed {seed}");
-        room.set("t", last).unwrap();
+        set(&mut room, "t", last);
         assert_eq!(room.outcome().verdict, "run finished");
     }
 }

@@ -7,6 +7,7 @@ use w16_4_control_room::spec::SPEC;
 fn after(preset: &str) -> ControlRoom {
     let mut room = ControlRoom::new();
     room.press(preset).unwrap();
+    room.settle();
     room
 }
 
@@ -64,6 +65,7 @@ fn four_times_the_noise_opens_the_threshold() {
     let noisy = after("noisy");
     let mut quiet = after("noisy");
     quiet.set("noise", 1.0).unwrap();
+    quiet.settle();
     let (from, to) = (fact(&quiet, "tau_m"), fact(&noisy, "tau_m"));
     assert!(from < to);
     assert_promised("noisy", &format!("from {from:.2} m to {to:.2} m"));

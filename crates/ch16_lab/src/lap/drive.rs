@@ -3,16 +3,19 @@
 //! Nothing of it depends on the estimate, so it is simulated once and any number of estimators can
 //! run over it: with loops and without, with one gate and another.
 
+mod simulation;
+
 use std::sync::Arc;
 
 use ch16_slam2d::cloud::PointCloud;
-use ch16_slam2d::scan::{Frame, LaserScan, PreparedFrame, ScanConfig, ScanPreparer};
-use nalgebra::Vector3;
+use ch16_slam2d::scan::{Frame, LaserScan, PreparedFrame};
 use pr_geom::SE2;
-use pr_sim::motion::{drive_exactly, sample_velocity_motion};
-use pr_sim::{Lidar, Rng, VelocityCommand, WaypointDriver, World};
+use pr_sim::motion::sample_velocity_motion;
+use pr_sim::{Rng, VelocityCommand};
 
 use super::config::DriveConfig;
+
+pub use simulation::DriveSimulation;
 
 /// One revolution of the sensor.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,41 +58,11 @@ impl Drive {
     /// Simulates the drive until its last way point is reached.
     #[must_use]
     pub fn simulate(config: &DriveConfig) -> Self {
-        let world = &config.world;
-        let mut rng = Rng::new(config.seed);
-        let mut sensor = Sensor::new(config);
-        let mut driver = WaypointDriver::new(config.driver.clone());
-        let noise = config.odometry_noise.scaled(config.noise_factor);
-
-        let first_sweep = sensor.sweep(world, &config.start, &mut rng);
-        let mut ticks = Vec::new();
-        let mut truth = config.start;
-        let mut dead_reckoning = config.start;
-        let mut finished = false;
-        while !finished && ticks.len() < config.max_ticks {
-            let step = driver.step(&truth);
-            let before = truth;
-            truth = drive_exactly(&before, step.command, config.dt_s);
-            let rng_before_odometry = rng.clone();
-            let wheels =
-                sample_velocity_motion(&before, step.command, &noise, config.dt_s, &mut rng);
-            let odometry = before.between(&wheels);
-            dead_reckoning = dead_reckoning * odometry;
-            ticks.push(DriveTick {
-                command: step.command,
-                truth,
-                odometry,
-                dead_reckoning,
-                reached: step.reached,
-                sweep: sensor.sweep(world, &truth, &mut rng),
-                rng_before_odometry,
-            });
-            finished = step.finished;
-        }
-        Self {
-            config: config.clone(),
-            first_sweep,
-            ticks,
+        let mut simulation = DriveSimulation::new(config.clone());
+        loop {
+            if let Some(drive) = simulation.step() {
+                return drive;
+            }
         }
     }
 
@@ -180,38 +153,6 @@ impl Drive {
         match tick {
             0 => &self.first_sweep,
             _ => &self.ticks[tick - 1].sweep,
-        }
-    }
-}
-
-/// Sensing with its buffers kept.
-struct Sensor {
-    lidar: Lidar,
-    scan: LaserScan,
-    preparer: ScanPreparer,
-    config: ScanConfig,
-}
-
-impl Sensor {
-    fn new(config: &DriveConfig) -> Self {
-        Self {
-            lidar: Lidar::new(config.lidar),
-            scan: empty_scan(config),
-            preparer: ScanPreparer::new(),
-            config: config.scan,
-        }
-    }
-
-    fn sweep(&mut self, world: &World, world_from_sensor: &SE2, rng: &mut Rng) -> Sweep {
-        self.lidar
-            .sense_into(world, world_from_sensor, rng, &mut self.scan.ranges_m);
-        // A sweep is one moment here, so no motion skews it.
-        let cloud = self
-            .preparer
-            .prepare(&self.scan, &Vector3::zeros(), &self.config);
-        Sweep {
-            ranges_m: self.scan.ranges_m.clone(),
-            cloud: Arc::new(cloud),
         }
     }
 }

@@ -186,6 +186,13 @@ pub(super) struct Recorder {
     lap: Lap,
     reports: Vec<TickReport>,
     epochs: Vec<Epoch>,
+    has_branched: bool,
+}
+
+/// A tick that was written down.
+pub(super) struct Recorded {
+    /// Branched off in this tick: the lap without its loops.
+    pub front_end_alone: Option<Box<Recorder>>,
 }
 
 impl Recorder {
@@ -197,30 +204,33 @@ impl Recorder {
                 first_tick: 0,
                 poses: Vec::new(),
             }],
+            has_branched: false,
         }
     }
 
-    /// Runs to the end. Returns, beside the history, a copy from just before the first accepted
-    /// loop: continued without loops it is the front end alone, with no need to start over.
-    pub(super) fn run(mut self) -> (LapTrace, Option<Recorder>) {
+    /// Does one tick; none once the lap is finished.
+    ///
+    /// In the tick of the first loop that would be closed, a copy branches off from just before it:
+    /// continued without loops it is the front end alone, with no need to start over.
+    pub(super) fn step(&mut self) -> Option<Recorded> {
+        let mut pending = self.lap.begin()?;
+        self.lap.slam.verify_loops(&mut pending);
         let mut front_end_alone = None;
-        while let Some(mut pending) = self.lap.begin() {
-            self.lap.slam.verify_loops(&mut pending);
-            if pending.has_loop() && front_end_alone.is_none() {
-                let mut alone = self.clone();
-                alone.lap.slam.set_loop_closure(LoopClosure::Off);
-                let report = alone.lap.finish(pending.clone().without_loops());
-                alone.reports.push(report);
-                front_end_alone = Some(alone);
-            }
-            self.lap.slam.close_loop(&mut pending);
-            if let Some(poses_before) = pending.poses_before_loop() {
-                self.end_epoch(poses_before.to_vec());
-            }
-            let report = self.lap.finish(pending);
-            self.reports.push(report);
+        if pending.has_loop() && !self.has_branched {
+            self.has_branched = true;
+            let mut alone = self.clone();
+            alone.lap.slam.set_loop_closure(LoopClosure::Off);
+            let report = alone.lap.finish(pending.clone().without_loops());
+            alone.reports.push(report);
+            front_end_alone = Some(Box::new(alone));
         }
-        (self.into_trace(), front_end_alone)
+        self.lap.slam.close_loop(&mut pending);
+        if let Some(poses_before) = pending.poses_before_loop() {
+            self.end_epoch(poses_before.to_vec());
+        }
+        let report = self.lap.finish(pending);
+        self.reports.push(report);
+        Some(Recorded { front_end_alone })
     }
 
     /// Stores the poses that an optimization has changed.
@@ -238,7 +248,8 @@ impl Recorder {
         }
     }
 
-    fn into_trace(mut self) -> LapTrace {
+    /// The history up to here.
+    pub(super) fn into_trace(mut self) -> LapTrace {
         self.store_poses(self.lap.graph().poses().to_vec());
         let lap = &self.lap;
         let keyframes: Vec<Keyframe> = lap.keyframes().collect();

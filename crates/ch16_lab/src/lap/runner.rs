@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::record::{LapRecord, Recorder};
-use super::{Drive, Lap, LapConfig};
+use super::record::LapRecord;
+use super::run::{LapRun, Stage};
+use super::{Drive, DriveSimulation, LapConfig};
 
 /// Runs laps and keeps the simulated drive between them.
 ///
@@ -24,34 +25,41 @@ impl LapRunner {
 
     /// Runs the lap of `config`, and its front end alone.
     pub fn run(&mut self, config: &LapConfig) -> LapRecord {
-        let drive = self.drive_for(config);
-        let lap = Lap::on_drive(config.clone(), Arc::clone(&drive));
-        let (lap, fork) = Recorder::new(lap).run();
-        let front_end = fork.map_or_else(|| lap.clone(), |alone| alone.run().0);
-        LapRecord {
-            config: config.clone(),
-            drive,
-            lap,
-            front_end,
+        let mut run = self.start(config.clone());
+        loop {
+            if let Some(record) = run.step() {
+                self.keep(&record);
+                return record;
+            }
         }
     }
 
-    fn drive_for(&mut self, config: &LapConfig) -> Arc<Drive> {
-        let mut drive = match self.drive.take() {
-            Some(drive) if drive.config().differs_only_in_noise_from(&config.drive) => drive,
-            _ => Arc::new(Drive::simulate(&config.drive)),
+    /// The same run in pieces; what of the last drive still holds is not simulated anew.
+    #[must_use]
+    pub fn start(&self, config: LapConfig) -> LapRun {
+        let same = |drive: &&Arc<Drive>| drive.config().differs_only_in_noise_from(&config.drive);
+        let Some(drive) = self.drive.as_ref().filter(same) else {
+            let simulation = DriveSimulation::new(config.drive.clone());
+            return LapRun::new(config, Stage::Driving(Box::new(simulation)));
         };
+        let mut drive = Arc::clone(drive);
         if drive.config().noise_factor != config.drive.noise_factor {
             Arc::make_mut(&mut drive).set_noise_factor(config.drive.noise_factor);
         }
-        self.drive = Some(Arc::clone(&drive));
-        drive
+        let stage = Stage::on(&config, drive);
+        LapRun::new(config, stage)
+    }
+
+    /// Keeps the drive of a finished run for the next one.
+    pub fn keep(&mut self, record: &LapRecord) {
+        self.drive = Some(Arc::clone(&record.drive));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lap::Lap;
 
     #[test]
     fn a_lap_does_not_depend_on_what_ran_before() {

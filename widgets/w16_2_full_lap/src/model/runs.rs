@@ -2,17 +2,15 @@
 
 use std::sync::Arc;
 
-use ch16_lab::lap::{Drive, LapConfig, LapRecord, LapRunner, LapSummary, LoopAttempt};
+use ch16_lab::lap::{Drive, LapConfig, LapRecord, LapSummary, LoopAttempt};
 use ch16_slam2d::loops::LoopConfig;
 use pr_geom::SE2;
 
 use super::gates::Gates;
-use super::settings::LapSettings;
 use super::track::Track;
 
 /// A drive with both estimators that ran over it, and the errors over time.
 pub struct Runs {
-    runner: LapRunner,
     config: LapConfig,
     drive: Arc<Drive>,
     /// Of each attempt of `graph`, in order.
@@ -35,23 +33,14 @@ pub struct Results {
 }
 
 impl Runs {
-    /// Simulates the drive and runs both estimators over it.
-    pub fn new(settings: &LapSettings) -> Self {
-        Self::of(LapRunner::new(), settings)
-    }
-
-    /// Runs again with other settings; what they leave as it is, is not simulated anew.
-    pub fn update(&mut self, settings: &LapSettings) {
-        *self = Self::of(core::mem::take(&mut self.runner), settings);
-    }
-
-    fn of(mut runner: LapRunner, settings: &LapSettings) -> Self {
+    /// What a lap's record holds, with the series of the plots.
+    pub fn new(record: LapRecord) -> Self {
         let LapRecord {
             config,
             drive,
             lap,
             front_end,
-        } = runner.run(&settings.config());
+        } = record;
         let errors = lap
             .reports
             .iter()
@@ -65,7 +54,6 @@ impl Runs {
             odometry_errors_m: core::iter::once(0.0).chain(errors).collect(),
             front_end: Track::new(front_end, start),
             graph: Track::new(lap, start),
-            runner,
             gates,
             config,
             drive,

@@ -25,7 +25,18 @@ fn at(settings: &[(&str, f64)]) -> FullLap {
     for (id, value) in settings {
         model.set(id, *value).unwrap();
     }
+    model.settle();
     model
+}
+
+fn set(model: &mut FullLap, id: &str, value: f64) {
+    model.set(id, value).unwrap();
+    model.settle();
+}
+
+fn press(model: &mut FullLap, id: &str) {
+    model.press(id).unwrap();
+    model.settle();
 }
 
 fn table(model: &FullLap, id: &str) -> Vec<Vec<String>> {

@@ -39,7 +39,7 @@ fn the_facts_give_the_chi_squared_of_both_gates() {
     let exact = fact(&model, "chi2_exact");
     assert_eq!(fact(&model, "chi2"), path);
     assert_ne!(path, exact);
-    model.set("gate-model", 1.0).unwrap();
+    set(&mut model, "gate-model", 1.0);
     assert_eq!(fact(&model, "chi2"), exact);
 }
 
@@ -61,7 +61,7 @@ fn the_measured_position_lies_in_a_gates_region_exactly_where_that_gate_passes()
     let mut seen = [[0, 0], [0, 0]];
     let mut model = at(&[("noise", 4.0), ("gate", 0.9)]);
     for seed in 1..=12 {
-        model.set("seed", f64::from(seed)).unwrap();
+        set(&mut model, "seed", f64::from(seed));
         for attempt in model.runs.graph.attempts() {
             let loop_ = &attempt.verification;
             let gates = model.runs.gates(attempt);
@@ -103,9 +103,9 @@ fn the_gate_that_decides_is_solid_and_the_other_one_dotted() {
 #[test]
 fn the_exact_gate_lets_the_locked_out_loops_in() {
     let mut model = FullLap::new();
-    model.press("locked-out").unwrap();
+    press(&mut model, "locked-out");
     let locked_out = model.runs.results().graph;
-    model.press("let-in").unwrap();
+    press(&mut model, "let-in");
     let attempts = model.runs.graph.attempts();
     assert_eq!(attempts.len(), 3);
     let lap = model.runs.graph.lap();
@@ -129,9 +129,9 @@ fn the_exact_gate_closes_more_loops_wrong_ones_among_them() {
     let mut model = at(&[("noise", 4.0)]);
     let mut closed = [[0, 0]; 2];
     for seed in 1..=50 {
-        model.set("seed", f64::from(seed)).unwrap();
+        set(&mut model, "seed", f64::from(seed));
         for (gate_model, [all, wrong]) in (0_u8..).zip(&mut closed) {
-            model.set("gate-model", f64::from(gate_model)).unwrap();
+            set(&mut model, "gate-model", f64::from(gate_model));
             for attempt in model.runs.graph.attempts() {
                 let judgement = model.runs.graph.lap().judge(attempt);
                 *all += usize::from(attempt.accepted());

@@ -17,15 +17,15 @@ fn before_at_and_after_stay_with_their_loop_and_next_goes_round() {
         ("next", 119),
         ("next", 92),
     ] {
-        model.press(button).unwrap();
+        press(&mut model, button);
         assert_eq!(model.tick(), tick, "after {button}");
     }
     let mut model = at(&[("t", 0.0)]);
-    model.press("at").unwrap();
+    press(&mut model, "at");
     assert_eq!(model.tick(), 92);
     let mut model = at(&[("loops", 0.0), ("t", 5.0)]);
     for button in ["before", "at", "after", "next"] {
-        model.press(button).unwrap();
+        press(&mut model, button);
         assert_eq!(model.tick(), 5, "there is no loop to go to");
     }
 }
@@ -34,7 +34,7 @@ fn before_at_and_after_stay_with_their_loop_and_next_goes_round() {
 fn at_a_loop_the_nodes_move_from_the_old_poses_to_the_new_ones() {
     let mut model = FullLap::new();
     let settled = shown_nodes(&model);
-    model.press("at").unwrap();
+    press(&mut model, "at");
     let old = shown_nodes(&model);
     let moved = |to: &[[f64; 2]]| {
         let distances = old
@@ -60,12 +60,12 @@ fn with_reduced_motion_a_loop_jumps() {
     let mut model = FullLap::new();
     let settled = shown_nodes(&model);
     model.set_motion(Motion::Reduced);
-    model.press("at").unwrap();
+    press(&mut model, "at");
     assert_eq!(shown_nodes(&model), settled);
     assert_eq!(model.advance(0.1), Activity::Idle);
     // Asked for in the middle of an animation, it ends it.
     model.set_motion(Motion::Full);
-    model.press("at").unwrap();
+    press(&mut model, "at");
     assert_ne!(shown_nodes(&model), settled);
     model.set_motion(Motion::Reduced);
     assert_eq!(shown_nodes(&model), settled);
@@ -75,7 +75,7 @@ fn with_reduced_motion_a_loop_jumps() {
 fn playing_shows_every_loop_and_ends_at_the_end() {
     for speed in 0..=4 {
         let mut model = at(&[("speed", f64::from(speed)), ("t", 129.0)]);
-        model.press("play").unwrap();
+        press(&mut model, "play");
         assert_eq!(model.tick(), 0, "at the end, play starts over");
         let mut seen = vec![0];
         while model.advance(0.25) == Activity::Busy {
@@ -99,13 +99,13 @@ fn a_loop_just_before_the_end_does_not_stop_the_playback() {
     // At four times the speed a slow frame covers 8 ticks: the end and the loop fall in one.
     let mut model = at(&[("speed", 4.0)]);
     let late = (0..60).find_map(|seed| {
-        model.set("seed", f64::from(seed)).unwrap();
+        set(&mut model, "seed", f64::from(seed));
         let last = model.runs.graph.attempts().last()?;
         (123..129).contains(&last.tick).then_some(last.tick)
     });
     let tick = late.expect("some seed has its last loop in the last ticks");
-    model.set("t", tick as f64 - 1.0).unwrap();
-    model.press("play").unwrap();
+    set(&mut model, "t", tick as f64 - 1.0);
+    press(&mut model, "play");
     model.advance(0.25);
     assert_eq!(model.tick(), tick);
     while model.advance(0.25) == Activity::Busy {}
@@ -115,16 +115,16 @@ fn a_loop_just_before_the_end_does_not_stop_the_playback() {
 #[test]
 fn transport_buttons_step_reset_and_restore() {
     let mut model = at(&[("noise", 2.0), ("t", 50.0)]);
-    model.press("step").unwrap();
+    press(&mut model, "step");
     assert_eq!(model.tick(), 51);
-    model.press("reset").unwrap();
+    press(&mut model, "reset");
     assert_eq!(model.tick(), 0);
     assert_eq!(model.values().get("noise"), 2.0);
-    model.press("defaults").unwrap();
+    press(&mut model, "defaults");
     assert_eq!(model.values(), &Values::defaults(SPEC.params));
     assert!(picture(&model) == picture(&FullLap::new()));
     let mut model = at(&[("t", 129.0)]);
-    model.press("step").unwrap();
+    press(&mut model, "step");
     assert_eq!(model.tick(), 129, "the lap has an end");
 }
 
@@ -150,13 +150,13 @@ fn the_line_at_the_moment_shown_can_be_dragged_in_every_plot_over_time() {
 fn with_reduced_motion_play_is_at_the_end_at_once() {
     let mut model = at(&[("t", 20.0)]);
     model.set_motion(Motion::Reduced);
-    model.press("play").unwrap();
+    press(&mut model, "play");
     assert_eq!(model.tick(), 129);
     assert!(!model.timeline().unwrap().playing);
     assert_eq!(model.advance(0.1), Activity::Idle);
     // Asked for while it plays, it ends the run.
     model.set_motion(Motion::Full);
-    model.press("play").unwrap();
+    press(&mut model, "play");
     assert_eq!(model.tick(), 0);
     model.set_motion(Motion::Reduced);
     assert_eq!(model.tick(), 129);

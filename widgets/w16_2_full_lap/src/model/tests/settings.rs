@@ -24,35 +24,96 @@ fn the_start_is_the_first_loop_of_the_canonical_run() {
     );
 }
 
+/// Settings that lead to another lap, noisy enough for the two models of the gate to disagree.
+const NOISY: [(&str, f64); 3] = [("seed", 2.0), ("noise", 3.0), ("t", 110.0)];
+
+const OTHER_LAPS: [(&str, f64); 8] = [
+    ("noise", 2.0),
+    ("seed", 3.0),
+    ("loops", 0.0),
+    ("gate", 0.9),
+    ("gate-model", 1.0),
+    ("matcher", 1.0),
+    ("matcher", 2.0),
+    ("information", 1.0),
+];
+
+fn shown(model: &FullLap) -> (Vec<Vec<String>>, Vec<Vec<String>>, f64) {
+    let tables = (table(model, "run"), table(model, "loops"));
+    (tables.0, tables.1, fact(model, "gate_chi2"))
+}
+
 #[test]
-fn every_setting_recomputes_the_lap_at_once_and_keeps_the_time() {
-    for (id, value) in [
-        ("noise", 2.0),
-        ("seed", 3.0),
-        ("loops", 0.0),
-        ("gate", 0.9),
-        ("gate-model", 1.0),
-        ("matcher", 1.0),
-        ("matcher", 2.0),
-        ("information", 1.0),
-    ] {
-        // Noisy enough for the two models of the gate to disagree.
-        let mut model = at(&[("seed", 2.0), ("noise", 3.0), ("t", 110.0)]);
-        let before = (
-            table(&model, "run"),
-            table(&model, "loops"),
-            fact(&model, "gate_chi2"),
-        );
-        model.set(id, value).unwrap();
-        let after = (
-            table(&model, "run"),
-            table(&model, "loops"),
-            fact(&model, "gate_chi2"),
-        );
-        assert_ne!(before, after, "{id} changed nothing");
+fn every_setting_recomputes_the_lap_and_keeps_the_time() {
+    for (id, value) in OTHER_LAPS {
+        let mut model = at(&NOISY);
+        let before = shown(&model);
+        set(&mut model, id, value);
+        assert_ne!(before, shown(&model), "{id} changed nothing");
         assert_eq!(model.tick(), 110, "{id} moved the time");
-        assert_eq!(model.advance(0.1), Activity::Idle, "{id} left work behind");
+        assert_eq!(
+            model.advance(0.1),
+            Activity::Idle,
+            "{id} left motion behind"
+        );
+        assert_eq!(model.work(), Activity::Idle, "{id} left work behind");
     }
+}
+
+#[test]
+fn setting_a_value_runs_nothing_and_the_old_picture_stays_until_the_new_lap_is_whole() {
+    for (id, value) in OTHER_LAPS {
+        let mut model = at(&NOISY);
+        let (steps, before) = (model.laps.steps(), picture(&model));
+        model.set(id, value).unwrap();
+        assert_eq!(model.laps.steps(), steps, "{id} ran at once");
+        let mut pieces = 0;
+        while model.laps.is_running() {
+            assert!(picture(&model) == before, "{id}: half a lap is shown");
+            assert_eq!(model.work(), Activity::Busy);
+            pieces += 1;
+        }
+        // At least a tick each: no piece is the whole lap.
+        assert!(pieces >= model.runs.ticks(), "{id}: {pieces} pieces");
+        let mut at_once = at(&NOISY);
+        set(&mut at_once, id, value);
+        assert!(picture(&model) == picture(&at_once), "{id}");
+    }
+}
+
+#[test]
+fn of_two_hundred_values_at_once_only_the_newest_lap_is_run() {
+    let mut model = at(&[]);
+    let before = model.laps.steps();
+    for value in 1..=200 {
+        // Twice over the slider, ending at 4.
+        let noise = 0.25 + 3.75 * f64::from((value - 1) % 100) / 99.0;
+        model.set("noise", noise).unwrap();
+    }
+    model.settle();
+    // The lap, the rest of its front end alone, and the end of each.
+    assert!(model.laps.steps() - before <= 2 * model.runs.ticks() + 2);
+    assert!(picture(&model) == picture(&at(&[("noise", 4.0)])));
+}
+
+#[test]
+fn a_preset_goes_to_the_loop_of_the_lap_that_it_asks_for() {
+    let mut model = at(&[("seed", 6.0), ("noise", 2.0), ("t", 10.0)]);
+    model.press("next").unwrap();
+    let first = model.tick();
+    model.set("t", 10.0).unwrap();
+    model.set("noise", 4.0).unwrap();
+    model.press("next").unwrap();
+    assert_eq!(
+        model.tick(),
+        10,
+        "the lap that is asked for is not known yet"
+    );
+    model.settle();
+    let mut straight = at(&[("seed", 6.0), ("noise", 4.0), ("t", 10.0)]);
+    straight.press("next").unwrap();
+    assert_eq!(model.tick(), straight.tick());
+    assert_ne!(model.tick(), first);
 }
 
 #[test]
@@ -69,7 +130,7 @@ fn a_lap_depends_on_its_settings_alone_and_not_on_the_way_to_them() {
         ("noise", 1.5),
         ("seed", 2.0),
     ] {
-        wandering.set(id, value).unwrap();
+        set(&mut wandering, id, value);
     }
     let straight = at(&[("seed", 2.0), ("noise", 1.5)]);
     assert!(picture(&wandering) == picture(&straight));
@@ -89,7 +150,7 @@ fn without_loops_the_graph_is_the_front_end() {
 fn without_loops_the_two_passes_end_as_far_apart_as_the_preset_says() {
     let mut model = at(&[("t", 129.0)]);
     let together = fact(&model, "map_disagreement_m");
-    model.press("no-loops").unwrap();
+    press(&mut model, "no-loops");
     let apart = fact(&model, "map_disagreement_m");
     assert_promised(
         "no-loops",
@@ -103,7 +164,7 @@ fn every_matcher_ends_the_lap_as_far_off_as_its_preset_says() {
     let chapter = end_error(&FullLap::new());
     for preset in ["bells", "sliding"] {
         let mut model = FullLap::new();
-        model.press(preset).unwrap();
+        press(&mut model, preset);
         let off = end_error(&model);
         assert_promised(
             preset,
@@ -132,8 +193,8 @@ fn matchers_and_frames_are_called_as_on_the_command_line_and_drive_the_same_lap(
     let mut model = at(&[("seed", 7.0), ("noise", 2.0)]);
     for (matcher, kind) in LapMatcher::ALL.iter().enumerate() {
         for (information, frame) in InformationFrame::ALL.iter().enumerate() {
-            model.set("matcher", matcher as f64).unwrap();
-            model.set("information", information as f64).unwrap();
+            set(&mut model, "matcher", matcher as f64);
+            set(&mut model, "information", information as f64);
             let config = LapConfig::with_seed_and_noise(7, 2.0)
                 .with_matcher(*kind)
                 .with_information(*frame);
@@ -146,7 +207,7 @@ fn matchers_and_frames_are_called_as_on_the_command_line_and_drive_the_same_lap(
 #[test]
 fn the_first_loop_helps_the_robot_and_not_its_history() {
     let mut model = FullLap::new();
-    model.press("first-loop").unwrap();
+    press(&mut model, "first-loop");
     assert!(fact(&model, "graph_error_m") < fact(&model, "front_end_error_m"));
     assert!(fact(&model, "rms_after_m") > fact(&model, "rms_before_m"));
 }
@@ -178,7 +239,7 @@ fn a_wrong_loop_is_called_wrong_wherever_it_is_named() {
 #[test]
 fn seed_6_has_a_loop_that_passes_the_gate_and_is_turned_away_all_the_same() {
     let mut model = FullLap::new();
-    model.press("rejected").unwrap();
+    press(&mut model, "rejected");
     let attempt = model.runs.graph.attempt_at(model.tick()).unwrap();
     assert!(attempt.verification.gate.passes() && !attempt.accepted());
     assert_eq!(
@@ -195,7 +256,7 @@ fn seed_6_has_a_loop_that_passes_the_gate_and_is_turned_away_all_the_same() {
 #[test]
 fn the_noisy_preset_shows_what_it_says() {
     let mut model = FullLap::new();
-    model.press("noisy").unwrap();
+    press(&mut model, "noisy");
     let results = model.runs.results();
     assert!((4.7..5.0).contains(&results.graph.odometry_end_error_m));
     assert!(results.front_end.keyframe_end_error_m < 1.0);
@@ -207,7 +268,7 @@ fn the_noisy_preset_shows_what_it_says() {
 #[test]
 fn the_tight_gate_turns_away_a_loop_that_the_chapters_gate_accepts() {
     let mut model = FullLap::new();
-    model.press("tight-gate").unwrap();
+    press(&mut model, "tight-gate");
     // NIST/SEMATECH e-Handbook: χ² of 0.90 with 3 degrees of freedom.
     assert_eq!(fact(&model, "gate_chi2"), 6.251);
     let verdict = |model: &FullLap| {
@@ -216,7 +277,7 @@ fn the_tight_gate_turns_away_a_loop_that_the_chapters_gate_accepts() {
     };
     assert_eq!(verdict(&model), (37, false));
     assert!(model.outcome().sentence.contains("above 6.251"));
-    model.set("gate", 0.95).unwrap();
+    set(&mut model, "gate", 0.95);
     assert_eq!(fact(&model, "gate_chi2"), 7.815);
     assert_eq!(verdict(&model), (37, true));
 }
@@ -224,7 +285,7 @@ fn the_tight_gate_turns_away_a_loop_that_the_chapters_gate_accepts() {
 #[test]
 fn the_locked_out_preset_turns_away_three_right_loops_by_the_gate_alone() {
     let mut model = FullLap::new();
-    model.press("locked-out").unwrap();
+    press(&mut model, "locked-out");
     let attempts = model.runs.graph.attempts();
     assert_eq!(attempts.len(), 3);
     for attempt in attempts {
@@ -259,9 +320,9 @@ fn wrong_values_and_buttons_change_nothing() {
 fn every_preset_can_be_pressed_and_pressed_again() {
     for preset in SPEC.presets {
         let mut model = at(&[("noise", 3.3), ("gate", 0.99)]);
-        model.press(preset.id).unwrap();
+        press(&mut model, preset.id);
         let once = (model.values().clone(), picture(&model));
-        model.press(preset.id).unwrap();
+        press(&mut model, preset.id);
         assert!(
             (model.values().clone(), picture(&model)) == once,
             "{}",
@@ -278,7 +339,7 @@ fn the_corners_of_the_settings_have_a_picture_at_every_tick() {
                 let mut model = at(&[("seed", seed), ("noise", noise), ("gate", gate)]);
                 assert_eq!(model.last(), crate::spec::LAP_TICKS);
                 for tick in 0..=model.runs.ticks() {
-                    model.set("t", tick as f64).unwrap();
+                    set(&mut model, "t", tick as f64);
                     let shown = shown_nodes(&model);
                     assert!(shown.iter().flatten().all(|value| value.is_finite()));
                     assert_eq!(shown.len() as f64, fact(&model, "keyframes"));

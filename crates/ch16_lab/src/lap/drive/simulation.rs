@@ -1,0 +1,124 @@
+//! The simulation of a drive, a tick at a time.
+
+use std::sync::Arc;
+
+use ch16_slam2d::scan::{LaserScan, ScanPreparer};
+use nalgebra::Vector3;
+use pr_geom::SE2;
+use pr_sim::motion::{OdometryNoise, drive_exactly, sample_velocity_motion};
+use pr_sim::{Lidar, Rng, WaypointDriver};
+
+use super::{Drive, DriveTick, Sweep, empty_scan};
+use crate::lap::DriveConfig;
+
+/// A drive under way: [`Drive::simulate`] in pieces.
+pub struct DriveSimulation {
+    config: DriveConfig,
+    rng: Rng,
+    driver: WaypointDriver,
+    noise: OdometryNoise,
+    sensor: Sensor,
+    first_sweep: Sweep,
+    ticks: Vec<DriveTick>,
+    truth: SE2,
+    dead_reckoning: SE2,
+}
+
+impl DriveSimulation {
+    /// Stands at the start, where the first sweep is taken.
+    #[must_use]
+    pub fn new(config: DriveConfig) -> Self {
+        let mut rng = Rng::new(config.seed);
+        let mut sensor = Sensor::new(&config);
+        let first_sweep = sensor.sweep(&config, &config.start, &mut rng);
+        Self {
+            driver: WaypointDriver::new(config.driver.clone()),
+            noise: config.odometry_noise.scaled(config.noise_factor),
+            ticks: Vec::new(),
+            truth: config.start,
+            dead_reckoning: config.start,
+            config,
+            rng,
+            sensor,
+            first_sweep,
+        }
+    }
+
+    /// Drives one tick; returns the whole drive once its last way point is reached.
+    ///
+    /// # Panics
+    /// Where it is called again after that.
+    pub fn step(&mut self) -> Option<Drive> {
+        let mut finished = self.ticks.len() >= self.config.max_ticks;
+        if !finished {
+            finished = self.drive_tick();
+        }
+        (finished || self.ticks.len() >= self.config.max_ticks).then(|| Drive {
+            config: self.config.clone(),
+            first_sweep: core::mem::take(&mut self.first_sweep),
+            ticks: core::mem::take(&mut self.ticks),
+        })
+    }
+
+    /// Whether the last way point was reached.
+    fn drive_tick(&mut self) -> bool {
+        let config = &self.config;
+        let step = self.driver.step(&self.truth);
+        let before = self.truth;
+        self.truth = drive_exactly(&before, step.command, config.dt_s);
+        let rng_before_odometry = self.rng.clone();
+        let wheels = sample_velocity_motion(
+            &before,
+            step.command,
+            &self.noise,
+            config.dt_s,
+            &mut self.rng,
+        );
+        let odometry = before.between(&wheels);
+        self.dead_reckoning = self.dead_reckoning * odometry;
+        self.ticks.push(DriveTick {
+            command: step.command,
+            truth: self.truth,
+            odometry,
+            dead_reckoning: self.dead_reckoning,
+            reached: step.reached,
+            sweep: self.sensor.sweep(config, &self.truth, &mut self.rng),
+            rng_before_odometry,
+        });
+        step.finished
+    }
+}
+
+/// Sensing with its buffers kept.
+struct Sensor {
+    lidar: Lidar,
+    scan: LaserScan,
+    preparer: ScanPreparer,
+}
+
+impl Sensor {
+    fn new(config: &DriveConfig) -> Self {
+        Self {
+            lidar: Lidar::new(config.lidar),
+            scan: empty_scan(config),
+            preparer: ScanPreparer::new(),
+        }
+    }
+
+    fn sweep(&mut self, config: &DriveConfig, world_from_sensor: &SE2, rng: &mut Rng) -> Sweep {
+        self.lidar.sense_into(
+            &config.world,
+            world_from_sensor,
+            rng,
+            &mut self.scan.ranges_m,
+        );
+        // A sweep is one moment here, so no motion skews it.
+        let cloud = self
+            .preparer
+            .prepare(&self.scan, &Vector3::zeros(), &config.scan);
+        Sweep {
+            ranges_m: self.scan.ranges_m.clone(),
+            cloud: Arc::new(cloud),
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Laps for a control that is moved faster than they are computed.
+
+use super::record::LapRecord;
+use super::run::LapRun;
+use super::{LapConfig, LapRunner};
+
+/// At most one lap under way, and at most one that waits for it: the newest that was asked for.
+///
+/// What is asked for in between is never run. The lap under way goes on to its end, or a control
+/// that moves at every frame would show nothing until it rests; one that has not begun yet gives
+/// way at once.
+#[derive(Default)]
+pub struct NewestLap {
+    runner: LapRunner,
+    under_way: Option<LapRun>,
+    waiting: Option<LapConfig>,
+    steps: usize,
+}
+
+/// What [`NewestLap::step`] did.
+#[derive(Debug)]
+pub enum NewestStep {
+    /// Nothing: no lap is under way.
+    Idle,
+    /// One tick of a lap.
+    Tick,
+    /// The last tick of a lap.
+    Finished(Box<LapRecord>),
+}
+
+impl NewestLap {
+    /// Nothing is asked for yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Asks for a lap; one that was asked for before, and has not begun, is dropped.
+    pub fn ask(&mut self, config: LapConfig) {
+        let begun = self.under_way.take().filter(|run| run.steps() > 0);
+        self.waiting = match &begun {
+            Some(run) if *run.config() == config => None,
+            Some(_) => Some(config),
+            None => {
+                self.under_way = Some(self.runner.start(config));
+                return;
+            }
+        };
+        self.under_way = begun;
+    }
+
+    /// Whether a lap is under way.
+    #[must_use]
+    pub fn is_running(&self) -> bool {
+        self.under_way.is_some()
+    }
+
+    /// Steps done since the start, of all laps.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Does one tick of the lap under way.
+    pub fn step(&mut self) -> NewestStep {
+        let Some(run) = &mut self.under_way else {
+            return NewestStep::Idle;
+        };
+        self.steps += 1;
+        let Some(record) = run.step() else {
+            return NewestStep::Tick;
+        };
+        self.runner.keep(&record);
+        self.under_way = self.waiting.take().map(|config| self.runner.start(config));
+        NewestStep::Finished(Box::new(record))
+    }
+
+    /// Runs the newest lap that was asked for to its end; none where that is done.
+    pub fn finish(&mut self) -> Option<Box<LapRecord>> {
+        if let Some(config) = self.waiting.take() {
+            self.under_way = Some(self.runner.start(config));
+        }
+        loop {
+            match self.step() {
+                NewestStep::Idle => return None,
+                NewestStep::Tick => {}
+                NewestStep::Finished(record) => return Some(record),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps to the end of one lap; returns it with the steps taken.
+    fn next(newest: &mut NewestLap) -> (Box<LapRecord>, usize) {
+        for steps in 1.. {
+            match newest.step() {
+                NewestStep::Idle => panic!("no lap is under way"),
+                NewestStep::Tick => {}
+                NewestStep::Finished(record) => return (record, steps),
+            }
+        }
+        unreachable!("a lap ends")
+    }
+
+    #[test]
+    fn of_two_hundred_values_at_once_only_the_newest_is_run() {
+        let mut newest = NewestLap::new();
+        newest.ask(LapConfig::default());
+        newest.finish().unwrap();
+        let before = newest.steps();
+        for value in 1..=200 {
+            newest.ask(LapConfig::with_seed_and_noise(
+                12_648_430,
+                f64::from(value) * 0.02,
+            ));
+        }
+        let (record, steps) = next(&mut newest);
+        let wanted = LapConfig::with_seed_and_noise(12_648_430, 4.0);
+        assert_eq!(*record, LapRunner::new().run(&wanted));
+        assert!(matches!(newest.step(), NewestStep::Idle));
+        // The lap and the rest of its front end: at most two laps of ticks, and the two ends.
+        assert!(steps <= 2 * record.ticks() + 2, "{steps} steps");
+        assert_eq!(newest.steps(), before + steps);
+    }
+
+    #[test]
+    fn a_lap_that_has_begun_is_shown_and_then_the_newest_of_those_that_waited() {
+        let mut newest = NewestLap::new();
+        newest.ask(LapConfig::with_seed_and_noise(1, 1.0));
+        newest.step();
+        for noise in [2.0, 3.0, 4.0] {
+            newest.ask(LapConfig::with_seed_and_noise(1, noise));
+        }
+        let (first, _) = next(&mut newest);
+        assert_eq!(first.config, LapConfig::with_seed_and_noise(1, 1.0));
+        assert!(newest.is_running());
+        let (second, _) = next(&mut newest);
+        assert_eq!(second.config, LapConfig::with_seed_and_noise(1, 4.0));
+        assert!(!newest.is_running());
+    }
+
+    #[test]
+    fn going_back_to_the_lap_under_way_asks_for_no_other() {
+        let mut newest = NewestLap::new();
+        newest.ask(LapConfig::with_seed_and_noise(1, 1.0));
+        newest.step();
+        newest.ask(LapConfig::with_seed_and_noise(1, 2.0));
+        newest.ask(LapConfig::with_seed_and_noise(1, 1.0));
+        next(&mut newest);
+        assert!(!newest.is_running());
+    }
+
+    #[test]
+    fn finishing_skips_what_is_out_of_date_and_has_the_bits_of_a_run_at_once() {
+        let mut newest = NewestLap::new();
+        newest.ask(LapConfig::with_seed_and_noise(1, 1.0));
+        newest.step();
+        newest.ask(LapConfig::with_seed_and_noise(6, 2.0));
+        let record = newest.finish().unwrap();
+        let wanted = LapConfig::with_seed_and_noise(6, 2.0);
+        assert_eq!(*record, LapRunner::new().run(&wanted));
+        assert!(newest.finish().is_none());
+    }
+}

@@ -1,0 +1,132 @@
+//! A lap and its front end alone in pieces of one tick each, so that a page can draw in between.
+
+use std::sync::Arc;
+
+use super::record::{LapRecord, LapTrace, Recorder};
+use super::{Drive, DriveSimulation, Lap, LapConfig};
+
+/// A lap under way, from [`LapRunner::start`](super::LapRunner::start).
+pub struct LapRun {
+    config: LapConfig,
+    stage: Option<Stage>,
+    steps: usize,
+}
+
+/// What a run does next.
+pub(super) enum Stage {
+    /// The world is driven through.
+    Driving(Box<DriveSimulation>),
+    /// The lap runs, and the front end alone has branched off or not.
+    Lap {
+        drive: Arc<Drive>,
+        recorder: Box<Recorder>,
+        front_end: Option<Box<Recorder>>,
+    },
+    /// The lap is finished, the front end alone runs on.
+    FrontEnd {
+        drive: Arc<Drive>,
+        lap: Box<LapTrace>,
+        recorder: Box<Recorder>,
+    },
+}
+
+impl Stage {
+    /// The lap of `config` on a drive that is simulated.
+    pub(super) fn on(config: &LapConfig, drive: Arc<Drive>) -> Self {
+        let lap = Lap::on_drive(config.clone(), Arc::clone(&drive));
+        Self::Lap {
+            drive,
+            recorder: Box::new(Recorder::new(lap)),
+            front_end: None,
+        }
+    }
+}
+
+impl LapRun {
+    pub(super) fn new(config: LapConfig, stage: Stage) -> Self {
+        Self {
+            config,
+            stage: Some(stage),
+            steps: 0,
+        }
+    }
+
+    /// What is run.
+    #[must_use]
+    pub fn config(&self) -> &LapConfig {
+        &self.config
+    }
+
+    /// Steps done so far.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Does one tick of the drive, of the lap or of the front end alone; returns the record once
+    /// all of them are done. The bits are those of [`LapRunner::run`](super::LapRunner::run).
+    ///
+    /// # Panics
+    /// Where it is called again after that.
+    pub fn step(&mut self) -> Option<LapRecord> {
+        self.steps += 1;
+        let stage = self.stage.take().expect("a finished lap has no step left");
+        let next = match stage {
+            Stage::Driving(mut simulation) => match simulation.step() {
+                None => Stage::Driving(simulation),
+                Some(drive) => Stage::on(&self.config, Arc::new(drive)),
+            },
+            Stage::Lap {
+                drive,
+                mut recorder,
+                mut front_end,
+            } => match recorder.step() {
+                Some(recorded) => {
+                    front_end = front_end.or(recorded.front_end_alone);
+                    Stage::Lap {
+                        drive,
+                        recorder,
+                        front_end,
+                    }
+                }
+                None => {
+                    let lap = recorder.into_trace();
+                    match front_end {
+                        None => return Some(self.record(drive, lap.clone(), lap)),
+                        Some(recorder) => Stage::FrontEnd {
+                            drive,
+                            lap: Box::new(lap),
+                            recorder,
+                        },
+                    }
+                }
+            },
+            Stage::FrontEnd {
+                drive,
+                lap,
+                mut recorder,
+            } => {
+                if recorder.step().is_none() {
+                    let front_end = recorder.into_trace();
+                    return Some(self.record(drive, *lap, front_end));
+                }
+                Stage::FrontEnd {
+                    drive,
+                    lap,
+                    recorder,
+                }
+            }
+        };
+        self.stage = Some(next);
+        None
+    }
+
+    fn record(&self, drive: Arc<Drive>, lap: LapTrace, front_end: LapTrace) -> LapRecord {
+        LapRecord {
+            config: self.config.clone(),
+            drive,
+            lap,
+            front_end,
+        }
+    }
+}
