@@ -21,9 +21,11 @@ export interface BasinExplorerState {
   huber: number;
   /** The vertical axis of the basin maps; the other offset comes from its slider. */
   axis: 'dx' | 'dy';
+  /** Draws over the basin map which way starts all over it go, iteration by iteration. */
+  paths: boolean;
   /** Where the range noise of both sweeps starts; 457 is the chapter's. 0 to 4294967295. */
   seed: number;
-  /** Which iteration is shown; 0 is the first guess. 0 to 30. */
+  /** Which iteration is shown; 0 is the first guess, and past the last one is the end. 0 to 30. */
   iteration: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
@@ -167,6 +169,7 @@ export interface SlamWidgetProperties {
   trim: number | undefined;
   huber: number | undefined;
   axis: 'dx' | 'dy' | undefined;
+  paths: boolean | undefined;
   seed: number | undefined;
   iteration: number | undefined;
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold' | undefined;

@@ -9,5 +9,5 @@ mod outcome;
 mod scene;
 
 pub use map::{BasinMap, BasinMapAxes, OffsetAxis};
-pub use outcome::{BasinOutcome, Minimum};
+pub use outcome::{BasinOutcome, HOME_HEADING_DEG, Minimum};
 pub use scene::{BasinScene, BasinStart, SUCCESS_RADIUS_M};

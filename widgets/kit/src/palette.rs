@@ -39,10 +39,11 @@ pub fn tone(theme: Theme, tone: Tone) -> Rgb {
     }
 }
 
-/// Classes differ in lightness first, so that they stay apart for every kind of colour vision.
+/// Classes differ in lightness first, so that they stay apart for every kind of colour vision. The
+/// first four are areas below marks: they are none of the meanings' colours, nor paper.
 fn class_color(theme: Theme, class: u8) -> Rgb {
-    const LIGHT: [u32; 6] = [0xdbeafe, 0xf59e0b, 0x7c2d12, 0x94a3b8, 0x0f766e, 0x1e293b];
-    const DARK: [u32; 6] = [0x1e3a5f, 0xd97706, 0xfed7aa, 0x64748b, 0x2dd4bf, 0xf8fafc];
+    const LIGHT: [u32; 6] = [0xd6e8fb, 0xf2d84b, 0x772a67, 0x889abf, 0x48a181, 0x1e293b];
+    const DARK: [u32; 6] = [0x113460, 0xe8d84a, 0x9c4b55, 0x6c7aa8, 0x2a9d8f, 0xf8fafc];
     let table = match theme {
         Theme::Light => LIGHT,
         Theme::Dark => DARK,

@@ -141,6 +141,30 @@ fn the_six_classes_stay_apart() {
     }
 }
 
+/// Marks lie on the areas of a picture of classes, and a picture fills in on paper.
+#[test]
+fn the_first_four_classes_are_taken_for_no_meaning_and_not_for_paper() {
+    /// Half as far: an area beside paper needs no name.
+    const FROM_PAPER: f32 = 0.5 * APART;
+    for theme in THEMES {
+        for class in 0..4 {
+            let area = cell(theme, Cell::Class(class));
+            for meaning in MEANINGS {
+                assert_apart(&[area, tone(theme, meaning)], "a class and a meaning");
+            }
+            let [(_, usual), ..] = &VISIONS;
+            let unknown = cell(theme, Cell::Unknown);
+            for back in [tone(theme, Tone::Paper), unknown] {
+                let d = distance(area, back, usual);
+                assert!(
+                    d >= FROM_PAPER,
+                    "{theme:?} class {class}: {d} from {back:?}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn lines_and_marks_stand_out_from_paper_by_three_to_one() {
     for theme in THEMES {

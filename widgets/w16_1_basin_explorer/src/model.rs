@@ -3,6 +3,7 @@
 mod basins;
 mod hands;
 mod letters;
+mod paths;
 mod picture;
 mod settings;
 mod tables;
@@ -20,6 +21,7 @@ use kit::spec::{DEFAULTS, WidgetSpec};
 
 use crate::spec::{OFFSET_SPAN_M, PARAMS, SPEC};
 use basins::Basins;
+use paths::Paths;
 use settings::{config, other_variant, start, variant};
 
 /// Names of the panels.
@@ -34,6 +36,9 @@ pub mod panel {
     pub const CURVE: &str = "rmse";
 }
 
+/// The parameters that say where a run starts.
+const START: [&str; 3] = ["heading", "dx", "dy"];
+
 /// Iterations a second at normal speed.
 const STEPS_PER_S: f64 = 6.0;
 
@@ -47,6 +52,18 @@ pub struct BasinExplorer {
     /// The other variant from the same start, to compare.
     other: BasinOutcome,
     basins: Basins,
+    /// Ways of other starts over the map of the variant that is chosen.
+    paths: Paths,
+    preview: Preview,
+}
+
+/// Whether the end of the run is shown before it is played.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Preview {
+    /// It is for the reader to find out.
+    Hidden,
+    /// The reader moves the start, and sees where it leads.
+    Shown,
 }
 
 /// One registration: how it went, and how it ended.
@@ -72,6 +89,8 @@ impl BasinExplorer {
         let outcome = scene.register_from(&start(&values), &config, &mut workspace);
         let basins = Basins::new(&values);
         let mut explorer = Self {
+            paths: Paths::new(&values),
+            preview: Preview::Hidden,
             run: Run {
                 trace: workspace.trace().to_vec(),
                 outcome,
@@ -117,6 +136,11 @@ impl BasinExplorer {
         &self.run.trace[self.iteration()]
     }
 
+    /// Whether the end of the run is shown ahead of it: while the reader looks for a start.
+    fn previews_end(&self) -> bool {
+        self.preview == Preview::Shown && self.iteration() < self.last()
+    }
+
     /// The pairs at the iteration that is shown.
     fn pairs(&self) -> Vec<Pair> {
         let config = config(&self.values, variant(&self.values));
@@ -143,7 +167,14 @@ impl BasinExplorer {
             self.store(id, value);
         }
         self.register();
+        self.follow();
+        self.preview = Preview::Shown;
+    }
+
+    /// Maps and ways of other starts belong to the settings.
+    fn follow(&mut self) {
         self.basins.follow(&self.values);
+        self.paths.follow(&self.values);
     }
 
     /// Keeps a value that lies in its range by construction.
@@ -173,11 +204,15 @@ impl Model for BasinExplorer {
             "seed" => {
                 self.scene = BasinScene::with_seed(self.values.get("seed") as u32);
                 self.basins.restart(&self.values);
+                self.paths.restart(&self.values);
                 self.register();
             }
             _ => {
+                if START.contains(&id) {
+                    self.preview = Preview::Shown;
+                }
                 self.register();
-                self.basins.follow(&self.values);
+                self.follow();
             }
         }
         Ok(())
@@ -186,16 +221,20 @@ impl Model for BasinExplorer {
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
         let (here, last) = (self.iteration() as f64, self.last() as f64);
         if let Some(position) = self.playback.press(id, here, last) {
+            self.preview = Preview::Hidden;
             self.store("iteration", position);
             return Ok(());
         }
         if id != DEFAULTS.id {
-            return press_preset(self, id);
+            press_preset(self, id)?;
+        } else {
+            self.playback.pause();
+            for spec in PARAMS {
+                self.set(spec.id, spec.default)?;
+            }
         }
-        self.playback.pause();
-        PARAMS
-            .iter()
-            .try_for_each(|spec| self.set(spec.id, spec.default))
+        self.preview = Preview::Hidden;
+        Ok(())
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
@@ -210,6 +249,9 @@ impl Model for BasinExplorer {
     }
 
     fn work(&mut self) -> Activity {
+        if self.paths.work(&self.scene, &mut self.workspace) == Activity::Busy {
+            return Activity::Busy;
+        }
         self.basins.work(&self.scene, &mut self.workspace)
     }
 
@@ -227,7 +269,7 @@ impl Model for BasinExplorer {
 
     fn timeline(&self) -> Option<Timeline> {
         let last = self.last() as f64;
-        let minimum = self.run.outcome.minimum;
+        let minimum = self.run.outcome.ending;
         let standing = words::standing(minimum);
         let name = minimum.name();
         Some(Timeline {

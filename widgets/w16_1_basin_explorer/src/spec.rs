@@ -105,6 +105,14 @@ pub const PARAMS: &[ParamSpec] = &[
         help: "The vertical axis of the basin maps; the other offset comes from its slider.",
     },
     ParamSpec {
+        id: "paths",
+        label: "ways of other starts",
+        unit: "",
+        kind: ParamKind::Switch,
+        default: 0.0,
+        help: "Draws over the basin map which way starts all over it go, iteration by iteration.",
+    },
+    ParamSpec {
         id: "seed",
         label: "seed of the sweeps",
         unit: "",
@@ -117,8 +125,8 @@ pub const PARAMS: &[ParamSpec] = &[
         label: "iteration",
         unit: "",
         kind: ParamKind::Timeline { max: MAX_ITERS },
-        default: MAX_ITERS,
-        help: "Which iteration is shown; 0 is the first guess.",
+        default: 0.0,
+        help: "Which iteration is shown; 0 is the first guess, and past the last one is the end.",
     },
     SPEED,
 ];

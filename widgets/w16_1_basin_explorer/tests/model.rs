@@ -75,7 +75,7 @@ fn the_chapters_seed_is_the_default_one() {
 
 #[test]
 fn what_is_grabbed_becomes_the_start_and_follows_the_pointer() {
-    let mut model = BasinExplorer::new();
+    let mut model = with(&[("iteration", 30.0)]);
     // At the end of the default run the source lies on the target: its sensor near the truth.
     let at = [0.5, -0.35];
     let handle = model
@@ -253,7 +253,7 @@ fn dragging_a_slider_keeps_the_place_on_the_timeline() {
     model.set("heading", 50.0).unwrap();
     assert_eq!(model.values().get("iteration"), 4.0);
     // Past the last iteration means the end, however long the run is.
-    let model = with(&[("variant", 1.0)]);
+    let model = with(&[("variant", 1.0), ("iteration", 30.0)]);
     let timeline = model.timeline().unwrap();
     assert!(timeline.last < model.values().get("iteration"));
     assert!(

@@ -81,6 +81,12 @@ fn every_control_of_the_list_is_on_screen_under_its_name() {
 #[test]
 fn the_cloud_is_dragged_by_its_sensor_and_turned_by_its_handle() {
     let mut harness = harness(1100.0);
+    harness
+        .state_mut()
+        .model_mut()
+        .set("iteration", 30.0)
+        .unwrap();
+    harness.run_steps(2);
     let from = screen(&harness, panel::SWEEPS, [0.5, -0.35]);
     let to = screen(&harness, panel::SWEEPS, [0.9, -0.35]);
     drag(&mut harness, from, to);
@@ -107,6 +113,9 @@ fn the_cloud_is_dragged_by_its_sensor_and_turned_by_its_handle() {
 #[test]
 fn a_click_on_a_basin_map_sets_the_start() {
     let mut harness = harness(1100.0);
+    let model = harness.state_mut().model_mut();
+    model.set("iteration", 30.0).unwrap();
+    harness.run_steps(2);
     let spot = screen(&harness, panel::PLANE, [-90.0, 1.0]);
     drag(&mut harness, spot, spot);
     assert!((value(&harness, "heading") + 90.0).abs() < 1.0);

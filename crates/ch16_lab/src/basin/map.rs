@@ -148,13 +148,13 @@ impl BasinMap {
             };
             let start = self.axes.start(column, row);
             let outcome = scene.register_from(&start, &self.config, workspace);
-            self.cells[row * self.axes.columns + column] = Some(outcome.minimum);
+            self.cells[row * self.axes.columns + column] = Some(outcome.ending);
         }
         self.skip_filled();
         self.is_complete()
     }
 
-    /// The minimum that a cell's start reaches, once it was computed.
+    /// The minimum that a cell's start reaches, once it was computed; home means the heading, too.
     #[must_use]
     pub fn minimum(&self, column: usize, row: usize) -> Option<Minimum> {
         self.cells[row * self.axes.columns + column]
@@ -226,8 +226,8 @@ mod tests {
             for column in 0..axes.columns {
                 let start = axes.start(column, row);
                 let alone = scene.register_from(&start, &config, &mut workspace);
-                assert_eq!(map.minimum(column, row), Some(alone.minimum));
-                assert_eq!(map.shown(column, row), Some(alone.minimum));
+                assert_eq!(map.minimum(column, row), Some(alone.ending));
+                assert_eq!(map.shown(column, row), Some(alone.ending));
             }
         }
     }

@@ -5,13 +5,16 @@ use pr_geom::{SE2, math};
 use super::SUCCESS_RADIUS_M;
 use ch16_slam2d::icp::{IcpSummary, StopReason};
 
+/// At the right place, a registration is home where its heading is this close to the truth, degrees.
+pub const HOME_HEADING_DEG: f64 = 3.0;
+
 /// A heading error this close to a quarter or half turn belongs to that minimum, degrees.
 const TURN_TOLERANCE_DEG: f64 = 10.0;
 
 /// The minimum in which a registration ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Minimum {
-    /// The right one: closer than 0.12 m to the truth.
+    /// The right one: closer than 0.12 m to the truth, and where the heading counts within 3°.
     Right,
     /// The room turned by a quarter, to either side.
     QuarterTurn,
@@ -56,8 +59,10 @@ impl Minimum {
 pub struct BasinOutcome {
     /// `target_from_source` as registered.
     pub pose: SE2,
-    /// Which minimum that is.
+    /// Which minimum that is, as the chapter counts: by the position alone.
     pub minimum: Minimum,
+    /// Which minimum that is where home means the heading, too.
+    pub ending: Minimum,
     /// Length of the translation part of `log(truth⁻¹ ∘ pose)`, m.
     pub error_m: f64,
     /// Its rotation, degrees, with sign.
@@ -81,7 +86,8 @@ impl BasinOutcome {
         let error_deg = error.z.to_degrees();
         Self {
             pose: found.pose,
-            minimum: classify(error_m, error_deg),
+            minimum: classify(error_m, error_deg, f64::INFINITY),
+            ending: classify(error_m, error_deg, HOME_HEADING_DEG),
             error_m,
             error_deg,
             rmse: found.rmse,
@@ -92,9 +98,9 @@ impl BasinOutcome {
     }
 }
 
-fn classify(error_m: f64, error_deg: f64) -> Minimum {
+fn classify(error_m: f64, error_deg: f64, home_deg: f64) -> Minimum {
     let turned_by = |turn_deg: f64| (error_deg.abs() - turn_deg).abs() <= TURN_TOLERANCE_DEG;
-    if error_m < SUCCESS_RADIUS_M {
+    if error_m < SUCCESS_RADIUS_M && error_deg.abs() <= home_deg {
         Minimum::Right
     } else if turned_by(90.0) {
         Minimum::QuarterTurn
@@ -111,11 +117,23 @@ mod tests {
 
     #[test]
     fn the_verdict_follows_position_first_and_heading_second() {
-        assert_eq!(classify(0.119, 2.0), Minimum::Right);
-        assert_eq!(classify(0.121, 2.0), Minimum::Other);
-        assert_eq!(classify(0.943, 89.5), Minimum::QuarterTurn);
-        assert_eq!(classify(0.981, -90.5), Minimum::QuarterTurn);
-        assert_eq!(classify(1.921, -179.9), Minimum::HalfTurn);
-        assert_eq!(classify(0.498, 48.1), Minimum::Other);
+        let by_place = |error_m, error_deg| classify(error_m, error_deg, f64::INFINITY);
+        assert_eq!(by_place(0.119, 2.0), Minimum::Right);
+        assert_eq!(by_place(0.119, 25.0), Minimum::Right);
+        assert_eq!(by_place(0.121, 2.0), Minimum::Other);
+        assert_eq!(by_place(0.943, 89.5), Minimum::QuarterTurn);
+        assert_eq!(by_place(0.981, -90.5), Minimum::QuarterTurn);
+        assert_eq!(by_place(1.921, -179.9), Minimum::HalfTurn);
+        assert_eq!(by_place(0.498, 48.1), Minimum::Other);
+    }
+
+    #[test]
+    fn home_is_the_place_and_the_heading() {
+        let home = |error_m, error_deg| classify(error_m, error_deg, HOME_HEADING_DEG);
+        assert_eq!(home(0.119, 3.0), Minimum::Right);
+        assert_eq!(home(0.0, -3.1), Minimum::Other);
+        assert_eq!(home(0.0, 25.0), Minimum::Other);
+        assert_eq!(home(0.0, 90.0), Minimum::QuarterTurn);
+        assert_eq!(home(0.121, 0.0), Minimum::Other);
     }
 }

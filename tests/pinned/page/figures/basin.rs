@@ -1,6 +1,8 @@
 //! Registrations of w16.1 from a wrong heading: where they end, and how wide the basin is.
 
-use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart, Minimum, SUCCESS_RADIUS_M};
+use ch16_lab::basin::{
+    BasinOutcome, BasinScene, BasinStart, HOME_HEADING_DEG, Minimum, SUCCESS_RADIUS_M,
+};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace, correspondences, icp_information};
 
 /// The widget's own τ, m.
@@ -14,6 +16,7 @@ pub fn value(scene: &BasinScene, path: &[&str]) -> Option<f64> {
     match *path {
         ["points"] => Some(scene.source().len() as f64),
         ["success_m"] => Some(SUCCESS_RADIUS_M),
+        ["home_deg"] => Some(HOME_HEADING_DEG),
         [variant, "from_deg"] => basin_edge(scene, variant, TAU_M, -1),
         [variant, "to_deg"] => basin_edge(scene, variant, TAU_M, 1),
         [variant, "wide", "from_deg"] => basin_edge(scene, variant, WIDE_TAU_M, -1),
@@ -22,9 +25,16 @@ pub fn value(scene: &BasinScene, path: &[&str]) -> Option<f64> {
         [variant, "short", "right"] => {
             let ends_right = |degrees: &i32| {
                 register(scene, variant, SHORT_TAU_M, f64::from(*degrees))
-                    .is_some_and(|found| found.minimum == Minimum::Right)
+                    .is_some_and(|found| found.ending == Minimum::Right)
             };
             Some(whole_degrees().filter(ends_right).count() as f64)
+        }
+        [variant, "short", "placed"] => {
+            let ends_there = |degrees: &i32| {
+                register(scene, variant, SHORT_TAU_M, f64::from(*degrees))
+                    .is_some_and(|found| found.error_m < SUCCESS_RADIUS_M)
+            };
+            Some(whole_degrees().filter(ends_there).count() as f64)
         }
         [variant, heading_deg, "std_mm"] => {
             claimed_std_mm(scene, variant, heading_deg.parse().ok()?)
@@ -91,7 +101,7 @@ fn whole_degrees() -> impl Iterator<Item = i32> {
 fn basin_edge(scene: &BasinScene, name: &str, tau: f64, side: i32) -> Option<f64> {
     let comes_home = |degrees: i32| {
         let found = register(scene, name, tau, f64::from(side * degrees));
-        found.is_some_and(|found| found.minimum == Minimum::Right)
+        found.is_some_and(|found| found.ending == Minimum::Right)
     };
     variant(name)?;
     let first_failure = (0..=180).find(|&degrees| !comes_home(degrees))?;

@@ -174,6 +174,16 @@ fn minima(map: &BasinMap) -> impl Iterator<Item = Option<Minimum>> + '_ {
     (0..ROWS).flat_map(move |row| (0..COLUMNS).map(move |column| map.shown(column, row)))
 }
 
+/// Where a start lies on a map of Δx, or of Δy.
+pub fn start_spot(start: &BasinStart, along_y: bool) -> [f64; 2] {
+    let axis = if along_y {
+        OffsetAxis::Dy
+    } else {
+        OffsetAxis::Dx
+    };
+    [start.heading_deg, offset(axis, start)]
+}
+
 fn offset(axis: OffsetAxis, start: &BasinStart) -> f64 {
     match axis {
         OffsetAxis::Dx => start.dx_m,

@@ -2,17 +2,24 @@
 
 use ch16_lab::basin::{Minimum, OffsetAxis};
 use ch16_slam2d::cloud::PointCloud;
-use ch16_slam2d::icp::IcpVariant;
+use ch16_slam2d::icp::{IcpVariant, Pair};
 use kit::chart::{Series, TimeChart};
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
-use pr_geom::SE2;
+use pr_geom::{Point2, SE2};
 
-use super::basins::{class, spot_of};
+use super::basins::{class, spot_of, start_spot};
 use super::hands::turn_handle;
+use super::paths::broken;
 use super::settings::{axis, start, variant, variant_name};
 use super::words::error_m;
 use super::{BasinExplorer, panel};
 use crate::spec::OFFSET_SPAN_M;
+
+/// Of so many points one leaves a trail.
+const POINTS_PER_TRAIL: usize = 11;
+
+/// Room around a basin map: a mark at its edge is shown whole, ° and m.
+const BASIN_ROOM: [f64; 2] = [12.0, 0.15];
 
 /// Neighbouring points of a sweep farther apart than this lie on different walls, m.
 const WALL_GAP_M: f64 = 0.6;
@@ -35,22 +42,9 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     let iteration = explorer.iteration();
     let turn = turn_handle(explorer);
     let links = explorer.pairs();
+    let source = scene.source().transformed(&pose);
 
     let mut layers = vec![
-        Layer::Segments {
-            segments: links
-                .iter()
-                .map(|pair| {
-                    [
-                        [pair.source.x, pair.source.y],
-                        [pair.target.x, pair.target.y],
-                    ]
-                })
-                .collect(),
-            stroke: Stroke::Solid,
-            tone: Tone::Ink,
-            width_px: 0.75,
-        },
         Layer::Line {
             points: outline(&scene.source().transformed(&scene.truth())),
             stroke: Stroke::Dashed,
@@ -68,13 +62,27 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
             2.0,
         ));
     }
+    if explorer.previews_end() {
+        layers.extend(preview(explorer));
+    }
     layers.extend([
-        points(
-            &scene.source().transformed(&pose),
-            Mark::Square,
-            Tone::Posterior,
-            2.6,
-        ),
+        points(&source, Mark::Square, Tone::Posterior, 2.6),
+        // Above the points: a pair may be shorter than a mark is wide.
+        Layer::Segments {
+            segments: links
+                .iter()
+                .map(|pair| {
+                    [
+                        [pair.source.x, pair.source.y],
+                        [pair.target.x, pair.target.y],
+                    ]
+                })
+                .collect(),
+            stroke: Stroke::Solid,
+            tone: Tone::Ink,
+            width_px: 1.25,
+        },
+        Layer::points(lonely(&source, &links), Mark::Circle, Tone::Prediction, 5.0),
         sensor(SE2::identity(), Mark::Cross, Tone::Measurement),
         sensor(scene.truth(), Mark::Plus, Tone::Truth),
         sensor(guess, Mark::Circle, Tone::Prior),
@@ -124,15 +132,69 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
             entry("source now", Tone::Posterior, Some(Mark::Square), None),
             entry("first guess", Tone::Prior, Some(Mark::Circle), None),
             entry(
-                "where the source belongs",
+                "truth: where the source belongs",
                 Tone::Truth,
-                None,
+                Some(Mark::Plus),
                 Some(Stroke::Dashed),
             ),
             entry("pairs", Tone::Ink, None, Some(Stroke::Solid)),
+            entry(
+                "points without a pair",
+                Tone::Prediction,
+                Some(Mark::Circle),
+                None,
+            ),
+            entry(
+                "where it will end, and the way there",
+                Tone::Posterior,
+                Some(Mark::Dot),
+                Some(Stroke::Dotted),
+            ),
+            entry(
+                "ring: turns the source",
+                Tone::Posterior,
+                Some(Mark::Circle),
+                Some(Stroke::Solid),
+            ),
         ],
         color_bar: None,
     }
+}
+
+/// The end of the run as a ghost, and the way of the sensor and of some points there.
+fn preview(explorer: &BasinExplorer) -> Vec<Layer> {
+    let trace = &explorer.run.trace;
+    let source = explorer.scene.source();
+    let end = explorer.run.outcome.pose;
+    let way = |of: Point2<f64>| {
+        let spots = trace.iter().map(move |state| state.pose.transform(of));
+        spots.map(|spot| [spot.x, spot.y]).collect::<Vec<_>>()
+    };
+    let sensor = Point2::new(0.0, 0.0);
+    let some = source.iter().step_by(POINTS_PER_TRAIL);
+    let trails = some.chain(core::iter::once(sensor)).map(|of| Layer::Line {
+        points: way(of),
+        stroke: Stroke::Dotted,
+        tone: Tone::Posterior,
+        width_px: 1.25,
+    });
+    let ghost = points(&source.transformed(&end), Mark::Dot, Tone::Posterior, 1.3);
+    trails
+        .chain([
+            Layer::points(way(sensor), Mark::Dot, Tone::Posterior, 2.0),
+            ghost,
+        ])
+        .collect()
+}
+
+/// The points that found no partner.
+fn lonely(source: &PointCloud, pairs: &[Pair]) -> Vec<[f64; 2]> {
+    let mut has_pair = vec![false; source.len()];
+    for pair in pairs {
+        has_pair[pair.source_index] = true;
+    }
+    let alone = source.iter().zip(has_pair).filter(|(_, paired)| !paired);
+    alone.map(|(point, _)| [point.x, point.y]).collect()
 }
 
 /// The points of a cloud.
@@ -201,6 +263,7 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
     );
     let spot = spot_of(&explorer.values);
     if chosen {
+        layers.extend(ways(explorer));
         layers.push(Layer::Handle {
             at: spot,
             tone: Tone::Prior,
@@ -227,13 +290,13 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
         aspect: Aspect::Free,
         x: Axis {
             label: "heading error of the first guess (°)".to_owned(),
-            min: -180.0,
-            max: 180.0,
+            min: -180.0 - BASIN_ROOM[0],
+            max: 180.0 + BASIN_ROOM[0],
         },
         y: Axis {
             label: name.to_owned(),
-            min: -OFFSET_SPAN_M,
-            max: OFFSET_SPAN_M,
+            min: -OFFSET_SPAN_M - BASIN_ROOM[1],
+            max: OFFSET_SPAN_M + BASIN_ROOM[1],
         },
         layers,
         // One legend for both maps, below the second.
@@ -244,6 +307,36 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
         },
         color_bar: None,
     }
+}
+
+/// The ways of other starts over the map, each with a dot where it ends, and that of the own start
+/// where its end may be seen.
+fn ways(explorer: &BasinExplorer) -> Vec<Layer> {
+    let line = |points: Vec<[f64; 2]>, tone, width_px| Layer::Line {
+        points,
+        stroke: Stroke::Solid,
+        tone,
+        width_px,
+    };
+    let mut layers = Vec::new();
+    for path in explorer.paths.done() {
+        let end = path.spots.last().copied().into_iter().collect();
+        layers.push(line(path.spots.clone(), Tone::Ink, 1.0));
+        layers.push(Layer::points(end, Mark::Dot, Tone::Ink, 2.5));
+    }
+    let seen = if explorer.previews_end() {
+        explorer.run.trace.len()
+    } else {
+        explorer.iteration() + 1
+    };
+    let along_y = axis(&explorer.values) == OffsetAxis::Dy;
+    let own = explorer.run.trace[..seen].iter();
+    let own = own.map(|state| start_spot(&explorer.scene.start_of(&state.pose), along_y));
+    let own = broken(own);
+    let end = own.last().copied().into_iter().collect();
+    layers.push(line(own, Tone::Posterior, 2.0));
+    layers.push(Layer::points(end, Mark::Square, Tone::Posterior, 4.0));
+    layers
 }
 
 fn curve(explorer: &BasinExplorer) -> Panel {

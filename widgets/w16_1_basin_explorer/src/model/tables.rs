@@ -28,7 +28,7 @@ fn variants(explorer: &BasinExplorer) -> Table {
     let row = |variant: IcpVariant, end: &BasinOutcome| {
         vec![
             variant_name(variant).to_owned(),
-            end.minimum.name().to_owned(),
+            end.ending.name().to_owned(),
             format!("{:.3}", end.error_m),
             signed(end.error_deg, 1),
             format!("{:.3}", end.rmse),

@@ -1,15 +1,12 @@
 //! The result in words and numbers.
 
-use ch16_lab::basin::{BasinOutcome, Minimum};
+use ch16_lab::basin::{BasinOutcome, Minimum, SUCCESS_RADIUS_M};
 use ch16_slam2d::icp::StopReason;
 use kit::model::{Fact, Outcome, Standing};
 use pr_geom::{SE2, math};
 
 use super::BasinExplorer;
 use super::settings::{variant, variant_name};
-
-/// At the right place, a heading this far off is worth a sentence, degrees.
-const WORTH_SAYING_DEG: f64 = 10.0;
 
 /// How the minimum is judged that a run reached: the same that colours its cell of a basin map.
 pub fn standing(minimum: Minimum) -> Standing {
@@ -19,10 +16,10 @@ pub fn standing(minimum: Minimum) -> Standing {
     }
 }
 
-/// What the verdict leaves out: the chapter counts the position alone.
+/// Why the right place is not home.
 fn caveat(end: &BasinOutcome) -> &'static str {
-    if end.minimum == Minimum::Right && end.error_deg.abs() > WORTH_SAYING_DEG {
-        " The verdict counts the place alone: the heading is not home."
+    if end.error_m < SUCCESS_RADIUS_M && end.ending != Minimum::Right {
+        " The place is right, the heading is not."
     } else {
         ""
     }
@@ -31,8 +28,8 @@ fn caveat(end: &BasinOutcome) -> &'static str {
 pub fn outcome(explorer: &BasinExplorer) -> Outcome {
     let end = &explorer.run.outcome;
     Outcome {
-        standing: standing(end.minimum),
-        verdict: end.minimum.name().to_owned(),
+        standing: standing(end.ending),
+        verdict: end.ending.name().to_owned(),
         sentence: format!(
             "From {:.0}° off, {} ends {:.2} m and {:.1}° from the truth: rmse {:.3} m over {} \
              pairs; it {} {}.{}",
