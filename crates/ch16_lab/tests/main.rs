@@ -9,3 +9,4 @@ mod plane_step;
 mod ring;
 mod terrain_rows;
 mod turned_frame;
+mod window_search;

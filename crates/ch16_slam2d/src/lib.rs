@@ -11,4 +11,5 @@ pub mod metrics;
 pub mod ndt;
 pub mod prelude;
 pub mod scan;
+pub mod search;
 pub mod slam;

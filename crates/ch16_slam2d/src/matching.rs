@@ -10,6 +10,7 @@ mod information;
 mod kind;
 mod matcher;
 mod ndt_matcher;
+mod search_matcher;
 
 pub use icp_matcher::IcpMatcher;
 pub use information::{InformationFrame, TrustConfig, chapter_information, match_information};
@@ -18,3 +19,4 @@ pub use matcher::{
     CloneMatcher, MapConfig, MatchRequest, MatchStop, MatchSummary, Matcher, RunnerUp,
 };
 pub use ndt_matcher::{NdtMatcher, NdtMatcherConfig};
+pub use search_matcher::{SearchMatcher, SearchMatcherConfig};

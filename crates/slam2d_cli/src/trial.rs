@@ -1,6 +1,7 @@
-//! What `lap` and `sweep` drive, and with which estimator: `--world`, `--matcher`, `--information`.
+//! What `lap` and `sweep` drive, and with which estimator: `--world`, `--matcher`,
+//! `--loop-matcher`, `--information`.
 
-use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher};
+use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LoopMatcher};
 use ch16_slam2d::matching::InformationFrame;
 use clap::Args;
 use clap::builder::PossibleValue;
@@ -15,6 +16,9 @@ pub struct TrialArgs {
     /// What registers scans, for the front end and for loops.
     #[arg(long, default_value = "p2p", value_parser = choice::<LapMatcher>())]
     matcher: LapMatcher,
+    /// What registers scans for loops alone; that of the front end without it.
+    #[arg(long, value_parser = choice::<LoopMatcher>())]
+    loop_matcher: Option<LoopMatcher>,
     /// What is driven: apartment, ring, or a file that ends in .json.
     #[arg(long, default_value = "apartment")]
     world: WorldArg,
@@ -29,6 +33,7 @@ pub struct TrialArgs {
 pub struct Trial {
     course: Option<Course>,
     matcher: LapMatcher,
+    loop_matcher: Option<LoopMatcher>,
     information: Option<InformationFrame>,
 }
 
@@ -43,6 +48,7 @@ impl TrialArgs {
         Ok(Trial {
             course: course.transpose()?,
             matcher: self.matcher,
+            loop_matcher: self.loop_matcher,
             information: self.information,
         })
     }
@@ -58,6 +64,10 @@ impl Trial {
             None => chapter,
         };
         let lap = lap.with_matcher(self.matcher);
+        let lap = match self.loop_matcher {
+            Some(matcher) => lap.with_loop_matcher(matcher),
+            None => lap,
+        };
         match self.information {
             Some(frame) => lap.with_information(frame),
             None => lap,

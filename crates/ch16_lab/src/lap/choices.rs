@@ -2,7 +2,7 @@
 //!
 //! The command line and the widgets choose from these lists, so that a name means the same everywhere.
 
-use ch16_slam2d::matching::{InformationFrame, MatcherKind, NdtMatcherConfig};
+use ch16_slam2d::matching::{InformationFrame, MatcherKind, NdtMatcherConfig, SearchMatcherConfig};
 use pr_sim::Course;
 
 use super::config::LapConfig;
@@ -111,6 +111,49 @@ impl Choice for LapMatcher {
     }
 }
 
+/// The matchers that verify loops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LoopMatcher {
+    /// One that a front end may have as well.
+    Local(LapMatcher),
+    /// Every pose of ±3 m × 360° around the proposal, then ICP.
+    Search,
+}
+
+impl LoopMatcher {
+    /// The matcher with its settings.
+    #[must_use]
+    pub fn kind(self) -> MatcherKind {
+        match self {
+            Self::Local(matcher) => matcher.kind(),
+            Self::Search => MatcherKind::Search(SearchMatcherConfig::default()),
+        }
+    }
+}
+
+impl Choice for LoopMatcher {
+    const ALL: &'static [Self] = &[
+        Self::Local(LapMatcher::PointToPoint),
+        Self::Local(LapMatcher::PointToPlane),
+        Self::Local(LapMatcher::Ndt),
+        Self::Search,
+    ];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Local(matcher) => matcher.name(),
+            Self::Search => "search",
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Local(matcher) => matcher.label(),
+            Self::Search => "search of a window",
+        }
+    }
+}
+
 impl Choice for InformationFrame {
     const ALL: &'static [Self] = &[Self::Chapter, Self::Exact];
 
@@ -148,6 +191,13 @@ impl LapConfig {
         self
     }
 
+    /// The same lap with another matcher for its loops.
+    #[must_use]
+    pub fn with_loop_matcher(mut self, matcher: LoopMatcher) -> Self {
+        self.slam.loops.matcher = matcher.kind();
+        self
+    }
+
     /// The same lap with the information of its edges in another frame.
     #[must_use]
     pub fn with_information(mut self, frame: InformationFrame) -> Self {
@@ -177,6 +227,7 @@ mod tests {
     fn every_choice_is_found_by_its_name() {
         check::<BuiltInWorld>();
         check::<LapMatcher>();
+        check::<LoopMatcher>();
         check::<InformationFrame>();
     }
 

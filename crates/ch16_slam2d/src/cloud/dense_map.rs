@@ -63,7 +63,7 @@ impl DenseMap {
             cell_m > 0.0 && cell_m.is_finite(),
             "cell size {cell_m} m is not positive"
         );
-        Self {
+        let mut map = Self {
             cell_m,
             max_per_cell,
             table: CellTable::default(),
@@ -72,7 +72,10 @@ impl DenseMap {
             normals: Vec::new(),
             source_indices: Vec::new(),
             scratch: Vec::new(),
-        }
+        };
+        // A search widens its box by cells until it covers the radius: the table needs their size.
+        map.rebuild(&PointCloud::default());
+        map
     }
 
     /// A map of the points of `cloud` in order, with their normals.

@@ -1,6 +1,9 @@
 //! The matchers of this crate by name.
 
-use super::{IcpMatcher, MapConfig, Matcher, NdtMatcher, NdtMatcherConfig};
+use super::{
+    IcpMatcher, MapConfig, Matcher, NdtMatcher, NdtMatcherConfig, SearchMatcher,
+    SearchMatcherConfig,
+};
 use crate::icp::{IcpConfig, IcpVariant};
 
 /// Which matcher a front end or the verification of loops uses.
@@ -15,6 +18,8 @@ pub enum MatcherKind {
     Icp(IcpConfig),
     /// The normal distributions transform.
     Ndt(NdtMatcherConfig),
+    /// Every pose of a window around the guess, then ICP.
+    Search(SearchMatcherConfig),
 }
 
 impl MatcherKind {
@@ -29,7 +34,7 @@ impl MatcherKind {
             Self::PointToPoint => Some(of(IcpVariant::PointToPoint)),
             Self::PointToPlane => Some(of(IcpVariant::PointToPlane)),
             Self::Icp(config) => Some(config),
-            Self::Ndt(_) => None,
+            Self::Ndt(_) | Self::Search(_) => None,
         }
     }
 
@@ -41,6 +46,7 @@ impl MatcherKind {
             Self::PointToPlane => Box::new(IcpMatcher::of(IcpVariant::PointToPlane, map)),
             Self::Icp(config) => Box::new(IcpMatcher::new(config, map)),
             Self::Ndt(config) => Box::new(NdtMatcher::new(config, map)),
+            Self::Search(config) => Box::new(SearchMatcher::new(config, map)),
         }
     }
 }

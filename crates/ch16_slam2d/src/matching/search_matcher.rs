@@ -1,0 +1,196 @@
+//! The search of a whole window as a matcher: no guess is too far off that lies within it.
+
+use core::f64::consts::PI;
+use std::sync::Arc;
+
+use pr_geom::SE2;
+
+use super::{IcpMatcher, MapConfig, MatchRequest, MatchStop, MatchSummary, Matcher, RunnerUp};
+use crate::cloud::PointCloud;
+use crate::icp::{IcpConfig, Pair};
+use crate::search::{
+    LikelihoodConfig, ScanSearch, ScoredPose, SearchMap, SearchNeighborhood, SearchWindow,
+};
+
+/// The window of a [`SearchMatcher`], and what becomes of its answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchMatcherConfig {
+    /// Cells and blur of the target.
+    pub grid: LikelihoodConfig,
+    /// Half the window's width around the guess, along x and along y, m.
+    pub half_width_m: f64,
+    /// Half its range of headings around the guess, rad; π is the whole turn.
+    pub half_turn_rad: f64,
+    /// What counts as the same place when the runner-up is looked for.
+    pub neighborhood: SearchNeighborhood,
+    /// A best pose that scores less, 0 to 1, is no match: the answer has no pairs then.
+    pub min_score: f64,
+    /// The registration from the best pose; its τ is used, its iterations come with each request.
+    pub refine: IcpConfig,
+}
+
+impl Default for SearchMatcherConfig {
+    /// ± 3 m and every heading, refined by ICP with a τ of six cells.
+    fn default() -> Self {
+        Self {
+            grid: LikelihoodConfig::default(),
+            half_width_m: 3.0,
+            half_turn_rad: PI,
+            neighborhood: SearchNeighborhood::default(),
+            min_score: 0.5,
+            refine: IcpConfig {
+                tau: 0.3,
+                ..IcpConfig::default()
+            },
+        }
+    }
+}
+
+/// Branch and bound over the window around the guess, then ICP from the best pose.
+///
+/// The search is as fine as its cells; ICP does the rest. Both look at the target's points, and the
+/// fit is measured with the ruler of every matcher: the distance to the nearest point closer than
+/// the request's τ. A target that no grid can hold, or one without points, is registered as if the
+/// guess had been the answer.
+#[derive(Clone)]
+pub struct SearchMatcher {
+    config: SearchMatcherConfig,
+    map: Option<Arc<SearchMap>>,
+    icp: IcpMatcher,
+}
+
+impl SearchMatcher {
+    /// A matcher without a target; `map` is that of the points for ICP.
+    #[must_use]
+    pub fn new(config: SearchMatcherConfig, map: &MapConfig) -> Self {
+        Self {
+            config,
+            map: None,
+            icp: IcpMatcher::new(config.refine, map),
+        }
+    }
+
+    /// The target as the search sees it.
+    #[must_use]
+    pub fn map(&self) -> Option<&Arc<SearchMap>> {
+        self.map.as_ref()
+    }
+
+    fn search(&self, source: &PointCloud, guess: SE2) -> Option<ScanSearch> {
+        let SearchMatcherConfig {
+            half_width_m,
+            half_turn_rad,
+            neighborhood,
+            ..
+        } = self.config;
+        let window = SearchWindow::around(guess, half_width_m, half_turn_rad);
+        let search = ScanSearch::new(
+            Arc::clone(self.map.as_ref()?),
+            source,
+            &window,
+            &neighborhood,
+        );
+        Some(search.ok()?.with_min_score(self.config.min_score))
+    }
+}
+
+impl Matcher for SearchMatcher {
+    fn set_target(&mut self, target: &PointCloud) {
+        self.map = SearchMap::build(target, self.config.grid)
+            .ok()
+            .map(Arc::new);
+        self.icp.set_target(target);
+    }
+
+    fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
+        let Some(search) = self.search(source, request.guess) else {
+            return self.icp.fit(source, request.guess, request.tau_m);
+        };
+        let Some(found) = search.run() else {
+            return self.icp.fit(source, request.guess, 0.0);
+        };
+        let answer = |fit: MatchSummary, iterations: usize| MatchSummary {
+            iterations,
+            score: Some(found.best.score),
+            runner_up: found.runner_up.map(RunnerUp::from),
+            stop: MatchStop::Searched {
+                poses: found.counts.scored() as usize,
+            },
+            ..fit
+        };
+        let near = MatchRequest {
+            guess: found.best.pose,
+            tau_m: self.config.refine.tau,
+            ..*request
+        };
+        let refined = self.icp.register(source, &near);
+        let fit = self.icp.fit(source, refined.pose, request.tau_m);
+        answer(fit, refined.iterations)
+    }
+
+    fn pairs(&self, pairs: &mut Vec<Pair>) {
+        self.icp.pairs(pairs);
+    }
+}
+
+impl From<ScoredPose> for RunnerUp {
+    fn from(ScoredPose { pose, score }: ScoredPose) -> Self {
+        Self { pose, score }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pr_geom::Point2;
+
+    use super::*;
+
+    const MAP: MapConfig = MapConfig {
+        cell_m: 0.25,
+        max_per_cell: 8,
+    };
+
+    /// Two walls and a post: no turn of it looks like another.
+    fn corner() -> PointCloud {
+        let long = (0..60).map(|k| Point2::new(0.05 * f64::from(k), 0.0));
+        let short = (0..30).map(|k| Point2::new(0.0, 0.05 * f64::from(k)));
+        let post = [Point2::new(1.2, 0.9), Point2::new(1.25, 0.9)];
+        long.chain(short).chain(post).collect()
+    }
+
+    #[test]
+    fn a_guess_that_icp_cannot_use_is_as_good_as_any_within_the_window() {
+        let target = corner();
+        let truth = SE2::new(1.1, -0.7, 2.4);
+        let source = target.transformed(&truth.inverse());
+        let request = MatchRequest::new(SE2::identity(), 1.0, 30);
+        let mut icp = IcpMatcher::new(IcpConfig::default(), &MAP);
+        icp.set_target(&target);
+        let lost = truth.between(&icp.register(&source, &request).pose).log();
+        assert!(lost.norm() > 0.5, "ICP ends {lost} away");
+
+        let mut search = SearchMatcher::new(SearchMatcherConfig::default(), &MAP);
+        search.set_target(&target);
+        let found = search.register(&source, &request);
+        let error = truth.between(&found.pose).log();
+        // 0.05: points lie 5 cm apart, and a point may settle between two others.
+        assert!(error.norm() < 0.05, "{error}");
+        assert_eq!(found.inliers, target.len());
+        assert!(found.margin().unwrap() > 0.1);
+        assert!(matches!(found.stop, MatchStop::Searched { poses } if poses > 0));
+    }
+
+    #[test]
+    fn what_fits_nowhere_has_no_pairs_and_what_has_no_map_stays_at_the_guess() {
+        let request = MatchRequest::new(SE2::new(0.1, 0.2, 0.3), 0.6, 30);
+        let mut search = SearchMatcher::new(SearchMatcherConfig::default(), &MAP);
+        let alone = search.register(&corner(), &request);
+        assert_eq!((alone.pose, alone.inliers), (request.guess, 0));
+        search.set_target(&[Point2::new(0.0, 0.0)].into_iter().collect());
+        let poor = search.register(&corner(), &request);
+        assert_eq!((poor.score, poor.inliers), (None, 0));
+        let mut pairs = Vec::new();
+        search.pairs(&mut pairs);
+        assert!(pairs.is_empty());
+    }
+}

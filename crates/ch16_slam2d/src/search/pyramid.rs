@@ -1,0 +1,248 @@
+//! The grid with the largest scores of ever larger squares beside it.
+
+use super::likelihood_grid::FULL_SCORE;
+use super::{LikelihoodConfig, LikelihoodGrid, SearchError};
+use crate::cloud::PointCloud;
+
+/// Levels of a map: the squares of the last one have `2^(LEVELS−1)` cells a side.
+pub(super) const LEVELS: usize = 7;
+
+/// Points that are looked up together: their indices come out of the processor's wide registers.
+const BATCH: usize = 64;
+
+/// A map made ready for searches: the grid and its sliding maxima.
+///
+/// Level h holds for every cell (i, j) the largest score of the cells `[i, i + 2^h) × [j, j + 2^h)`
+/// (Hess et al. 2016, §IV-D). What lies outside of the grid scores 0.
+#[derive(Clone, Debug)]
+pub struct SearchMap {
+    grid: LikelihoodGrid,
+    levels: Vec<Level>,
+}
+
+/// The maxima of one size of squares, for all squares that touch the grid and a border of zeros.
+#[derive(Clone, Debug)]
+pub(super) struct Level {
+    /// Side of a square in cells, and the index of the grid's own first cell.
+    side: i16,
+    columns: i16,
+    rows: i16,
+    /// A row starts every `2^row_shift` places: a shift is cheaper than a product.
+    row_shift: u32,
+    maxima: Vec<u8>,
+}
+
+/// Cells of some points, an array for each axis.
+#[derive(Clone, Copy)]
+pub(super) struct CellSlice<'a> {
+    pub columns: &'a [i16],
+    pub rows: &'a [i16],
+}
+
+impl<'a> CellSlice<'a> {
+    fn batches(self) -> impl Iterator<Item = Self> + use<'a> {
+        let batches = self.columns.chunks(BATCH).zip(self.rows.chunks(BATCH));
+        batches.map(|(columns, rows)| Self { columns, rows })
+    }
+}
+
+impl SearchMap {
+    /// The map of the finite points of `map`.
+    ///
+    /// # Errors
+    /// Where [`LikelihoodGrid::build`] refuses them.
+    pub fn build(map: &PointCloud, config: LikelihoodConfig) -> Result<Self, SearchError> {
+        Ok(Self::new(LikelihoodGrid::build(map, config)?))
+    }
+
+    /// The map of a grid.
+    #[must_use]
+    pub fn new(grid: LikelihoodGrid) -> Self {
+        let mut levels = vec![Level::ground(&grid)];
+        for _ in 1..LEVELS {
+            let finer = levels.last().expect("the first level is there");
+            levels.push(finer.doubled());
+        }
+        Self { grid, levels }
+    }
+
+    /// The grid.
+    #[must_use]
+    pub fn grid(&self) -> &LikelihoodGrid {
+        &self.grid
+    }
+
+    /// The largest score in the square of `2^level` cells a side whose lower left cell is this one.
+    #[must_use]
+    pub fn largest(&self, level: usize, column: i16, row: i16) -> u8 {
+        match self.levels.get(level) {
+            Some(level) => level.at(column, row),
+            None => FULL_SCORE,
+        }
+    }
+
+    pub(super) fn level(&self, level: usize) -> &Level {
+        &self.levels[level]
+    }
+}
+
+impl Level {
+    /// The grid itself, with a border of one cell without a score.
+    fn ground(grid: &LikelihoodGrid) -> Self {
+        let mut level = Self::empty(1, grid.columns(), grid.rows());
+        let stride = level.stride();
+        for (row, scores) in grid.scores().chunks_exact(grid.columns()).enumerate() {
+            level.maxima[(row + 1) * stride + 1..][..scores.len()].copy_from_slice(scores);
+        }
+        level
+    }
+
+    /// Squares of `side` cells a side that touch a grid of `columns` × `rows`, without a score.
+    fn empty(side: usize, columns: usize, rows: usize) -> Self {
+        let stride = (columns + side + 1).next_power_of_two();
+        Self {
+            side: side as i16,
+            columns: columns as i16,
+            rows: rows as i16,
+            row_shift: stride.ilog2(),
+            maxima: vec![0; stride * (rows + side + 1)],
+        }
+    }
+
+    fn stride(&self) -> usize {
+        1 << self.row_shift
+    }
+
+    /// The maxima of squares of twice the side: each is that of four squares of this one.
+    fn doubled(&self) -> Self {
+        let step = self.side as usize;
+        let (columns, rows) = (self.columns as usize, self.rows as usize);
+        let mut wider = Self::empty(2 * step, columns, rows);
+        let stride = wider.stride();
+        let used = columns + step + 1;
+        let finer = self.maxima.chunks_exact(self.stride());
+        for (from, to) in finer.zip(wider.maxima.chunks_exact_mut(stride)) {
+            to[..used].copy_from_slice(&from[..used]);
+            raise(&mut to[step..], &from[..used]);
+        }
+        // From the top down, so that no row is raised by one that was raised itself.
+        let height = rows + 2 * step + 1;
+        for row in (step..height).rev() {
+            let (below, above) = wider.maxima.split_at_mut(row * stride);
+            raise(
+                &mut above[..stride],
+                &below[(row - step) * stride..][..stride],
+            );
+        }
+        wider
+    }
+
+    /// The sum of the maxima at all cells, moved by an offset in columns and rows.
+    pub(super) fn sum(&self, cells: CellSlice<'_>, offset: [i16; 2]) -> u32 {
+        let (mut in_row, mut rows) = ([0; BATCH], [0; BATCH]);
+        let mut sum = 0;
+        for cells in cells.batches() {
+            self.locate_columns(cells.columns, offset[0], &mut in_row);
+            self.locate_rows(cells.rows, offset[1], &mut rows);
+            for (&column, &row) in in_row.iter().zip(&rows).take(cells.columns.len()) {
+                sum += u32::from(self.maxima[(row + column) as usize]);
+            }
+        }
+        sum
+    }
+
+    /// The sum of the maxima over areas whose corner squares start at these cells, moved alike.
+    pub(super) fn sum_of_areas(
+        &self,
+        low: CellSlice<'_>,
+        high: CellSlice<'_>,
+        offset: [i16; 2],
+    ) -> u32 {
+        let (mut left, mut right) = ([0; BATCH], [0; BATCH]);
+        let (mut bottom, mut top) = ([0; BATCH], [0; BATCH]);
+        let mut sum = 0;
+        for (low, high) in low.batches().zip(high.batches()) {
+            self.locate_columns(low.columns, offset[0], &mut left);
+            self.locate_columns(high.columns, offset[0], &mut right);
+            self.locate_rows(low.rows, offset[1], &mut bottom);
+            self.locate_rows(high.rows, offset[1], &mut top);
+            let columns = left.iter().zip(&right);
+            let rows = bottom.iter().zip(&top);
+            for ((&left, &right), (&bottom, &top)) in columns.zip(rows).take(low.columns.len()) {
+                let at = |row: u32, column: u32| self.maxima[(row + column) as usize];
+                let lower = at(bottom, left).max(at(bottom, right));
+                let upper = at(top, left).max(at(top, right));
+                sum += u32::from(lower.max(upper));
+            }
+        }
+        sum
+    }
+
+    /// Places of columns in a row. One square beyond the grid on either side there are only zeros.
+    #[inline]
+    fn locate_columns(&self, columns: &[i16], offset: i16, places: &mut [u32; BATCH]) {
+        for (place, column) in places.iter_mut().zip(columns) {
+            let column = (column + offset).clamp(-self.side, self.columns) + self.side;
+            *place = u32::from(column as u16);
+        }
+    }
+
+    /// Places where rows start.
+    #[inline]
+    fn locate_rows(&self, rows: &[i16], offset: i16, places: &mut [u32; BATCH]) {
+        for (place, row) in places.iter_mut().zip(rows) {
+            let row = (row + offset).clamp(-self.side, self.rows) + self.side;
+            *place = u32::from(row as u16) << self.row_shift;
+        }
+    }
+
+    /// The maximum of the square whose lower left cell is this one.
+    fn at(&self, column: i16, row: i16) -> u8 {
+        let cells = CellSlice {
+            columns: &[column],
+            rows: &[row],
+        };
+        self.sum(cells, [0, 0]) as u8
+    }
+}
+
+fn raise(to: &mut [u8], from: &[u8]) {
+    for (to, &from) in to.iter_mut().zip(from) {
+        *to = (*to).max(from);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pr_geom::Point2;
+
+    use super::*;
+
+    #[test]
+    fn every_level_holds_the_largest_score_of_its_squares() {
+        let points = [(0.0, 0.0), (0.33, 0.21), (0.4, -0.3), (-0.52, 0.6)];
+        let cloud = points.map(|(x, y)| Point2::new(x, y)).into_iter().collect();
+        let map = SearchMap::build(&cloud, LikelihoodConfig::default()).unwrap();
+        let grid = map.grid();
+        let (columns, rows) = (grid.columns() as i16, grid.rows() as i16);
+        let score = |column: i16, row: i16| {
+            let is_inside = (0..columns).contains(&column) && (0..rows).contains(&row);
+            if is_inside {
+                grid.scores()[row as usize * grid.columns() + column as usize]
+            } else {
+                0
+            }
+        };
+        for level in 0..LEVELS {
+            let side = 1_i16 << level;
+            for row in (-side - 2..rows + 3).step_by(3) {
+                for column in (-side - 2..columns + 3).step_by(3) {
+                    let square = (0..side).flat_map(|j| (0..side).map(move |i| (i, j)));
+                    let largest = square.map(|(i, j)| score(column + i, row + j)).max();
+                    assert_eq!(Some(map.largest(level, column, row)), largest);
+                }
+            }
+        }
+        assert_eq!(map.largest(LEVELS, 0, 0), FULL_SCORE);
+    }
+}

@@ -1,0 +1,372 @@
+//! Branch and bound over the poses of a window, a box at a time.
+
+use core::cmp::Ordering;
+use std::sync::Arc;
+
+use super::lattice::{Lattice, LatticePose, Nearness};
+use super::turned_scan::{BoxShape, TurnedScan};
+use super::{
+    BoxFate, PoseBox, ScoredPose, SearchCounts, SearchError, SearchGoal, SearchMap,
+    SearchNeighborhood, SearchReport, SearchResult, SearchWindow,
+};
+use crate::cloud::PointCloud;
+
+/// A search for the pose of a scan on a map.
+///
+/// [`ScanSearch::step`] takes up one box and says what became of it; [`ScanSearch::run`] does all.
+/// First the best pose is looked for, then the best one that is another place. Both are exact: what
+/// is dropped could not have won.
+#[derive(Clone, Debug)]
+pub struct ScanSearch {
+    map: Arc<SearchMap>,
+    lattice: Lattice,
+    shapes: Vec<BoxShape>,
+    scan: TurnedScan,
+    nearness: Nearness,
+    goal: SearchGoal,
+    /// Boxes to be taken up, the most promising one last.
+    open: Vec<OpenBox>,
+    /// Boxes that hold no best pose, but may hold the runner-up.
+    set_aside: Vec<OpenBox>,
+    /// Boxes of the last split.
+    parts: Vec<OpenBox>,
+    /// What the best pose has to score at least.
+    floor: u32,
+    best: Option<OpenBox>,
+    runner_up: Option<OpenBox>,
+    counts: SearchCounts,
+}
+
+/// A box with its bound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct OpenBox {
+    bound: u32,
+    /// Number of its shape in the schedule.
+    shape: usize,
+    /// Its first pose.
+    first: LatticePose,
+}
+
+impl OpenBox {
+    /// The better one is the greater one: by its bound, then the one that starts earlier.
+    fn promise(&self, other: &Self) -> Ordering {
+        let by_bound = self.bound.cmp(&other.bound);
+        by_bound.then_with(|| other.first.cmp(&self.first))
+    }
+
+    /// Whether a pose in it could win against `champion`.
+    fn challenges(&self, champion: Option<&Self>) -> bool {
+        champion.is_none_or(|champion| self.promise(champion) == Ordering::Greater)
+    }
+}
+
+impl ScanSearch {
+    /// A search of `window` that has not begun.
+    ///
+    /// # Errors
+    /// Where the scan has no finite point or the window cannot be numbered.
+    pub fn new(
+        map: Arc<SearchMap>,
+        scan: &PointCloud,
+        window: &SearchWindow,
+        neighborhood: &SearchNeighborhood,
+    ) -> Result<Self, SearchError> {
+        let lattice = Lattice::new(window, scan, map.grid())?;
+        let shapes = BoxShape::schedule(lattice.columns, lattice.rows, lattice.headings);
+        let scan = TurnedScan::new(scan, &lattice, map.grid(), &shapes);
+        let mut search = Self {
+            nearness: lattice.nearness(neighborhood),
+            counts: SearchCounts {
+                window: lattice.len(),
+                ..SearchCounts::default()
+            },
+            map,
+            lattice,
+            shapes,
+            scan,
+            goal: SearchGoal::Best,
+            open: Vec::new(),
+            set_aside: Vec::new(),
+            parts: Vec::new(),
+            floor: 0,
+            best: None,
+            runner_up: None,
+        };
+        search.bound_parts(LatticePose::default(), search.lattice.last(), 0);
+        core::mem::swap(&mut search.open, &mut search.parts);
+        search.open.sort_by(OpenBox::promise);
+        Ok(search)
+    }
+
+    /// The same search for a pose that scores at least `min_score`, 0 to 1; the runner-up may score
+    /// less.
+    ///
+    /// Where the scan fits nowhere, all poses are about as bad, and a search that has to name the best
+    /// of them looks at most of them. This one gives up early.
+    #[must_use]
+    pub fn with_min_score(mut self, min_score: f64) -> Self {
+        self.floor = (min_score * f64::from(self.scan.full_score())).ceil() as u32;
+        self
+    }
+
+    /// Takes up one box; none once the search is finished.
+    pub fn step(&mut self) -> Option<SearchReport> {
+        if self.open.is_empty() && self.goal == SearchGoal::Best {
+            self.look_for_the_runner_up();
+        }
+        let taken = self.open.pop()?;
+        let fate = match self.goal {
+            SearchGoal::Best => self.judge_for_best(taken),
+            SearchGoal::RunnerUp => self.judge_for_runner_up(taken),
+        };
+        Some(SearchReport {
+            goal: self.goal,
+            taken: self.pose_box(&taken),
+            fate,
+        })
+    }
+
+    /// Searches to the end; none where no pose scores as much as it has to.
+    #[must_use]
+    pub fn run(mut self) -> Option<SearchResult> {
+        loop {
+            if self.open.is_empty() && self.goal == SearchGoal::Best {
+                self.look_for_the_runner_up();
+            }
+            let Some(taken) = self.open.pop() else {
+                return self.result();
+            };
+            match self.goal {
+                SearchGoal::Best => self.judge_for_best(taken),
+                SearchGoal::RunnerUp => self.judge_for_runner_up(taken),
+            };
+        }
+    }
+
+    /// The answer so far; none before a pose was found.
+    ///
+    /// It is final once [`ScanSearch::step`] has nothing left to do.
+    #[must_use]
+    pub fn result(&self) -> Option<SearchResult> {
+        Some(SearchResult {
+            best: self.scored(&self.best?),
+            runner_up: self.runner_up.map(|pose| self.scored(&pose)),
+            counts: self.counts,
+        })
+    }
+
+    /// The boxes that wait to be taken up, the most promising one last.
+    pub fn open_boxes(&self) -> impl ExactSizeIterator<Item = PoseBox> + '_ {
+        self.open.iter().map(|open| self.pose_box(open))
+    }
+
+    /// The work so far.
+    #[must_use]
+    pub fn counts(&self) -> SearchCounts {
+        self.counts
+    }
+
+    /// Number of headings of the window.
+    #[must_use]
+    pub fn headings(&self) -> usize {
+        self.lattice.headings as usize
+    }
+
+    /// A heading of the window, not wrapped, rad.
+    #[must_use]
+    pub fn heading_rad(&self, heading: usize) -> f64 {
+        self.lattice.heading_rad(heading as i32)
+    }
+
+    /// The scores of all places at one heading, 0 to 1, row by row from the lowest y.
+    ///
+    /// This is a slice through the surface that is searched; it counts as no work of the search.
+    pub fn scores_at(&self, heading: usize, scores: &mut Vec<f64>) {
+        scores.clear();
+        let poses = self.poses_at(heading as i32);
+        scores.extend(poses.map(|pose| self.share(pose.bound)));
+    }
+
+    /// The same answer by scoring every pose of the window, for whoever does not believe it.
+    #[must_use]
+    pub fn exhaustive(&self) -> SearchResult {
+        let better = |champion: Option<OpenBox>, pose: OpenBox| match champion {
+            Some(champion) if pose.promise(&champion) != Ordering::Greater => champion,
+            _ => pose,
+        };
+        let best = self
+            .all_poses()
+            .fold(None, |best, pose| Some(better(best, pose)));
+        let best = best.expect("a window has a pose");
+        let elsewhere = self
+            .all_poses()
+            .filter(|pose| !self.is_same_place(&best, pose));
+        let runner_up = elsewhere.fold(None, |best, pose| Some(better(best, pose)));
+        SearchResult {
+            best: self.scored(&best),
+            runner_up: runner_up.map(|pose| self.scored(&pose)),
+            counts: SearchCounts {
+                bounds: 0,
+                poses: self.lattice.len(),
+                window: self.lattice.len(),
+            },
+        }
+    }
+
+    /// Every pose of the window with its score, in the order that decides among equals.
+    fn all_poses(&self) -> impl Iterator<Item = OpenBox> + '_ {
+        (0..self.lattice.headings).flat_map(|heading| self.poses_at(heading))
+    }
+
+    fn poses_at(&self, heading: i32) -> impl Iterator<Item = OpenBox> + '_ {
+        let at = move |row: i32, column: i32| LatticePose {
+            heading,
+            row,
+            column,
+        };
+        let (rows, columns) = (self.lattice.rows, self.lattice.columns);
+        (0..rows).flat_map(move |row| {
+            (0..columns).map(move |column| self.bounded(at(row, column), self.shapes.len() - 1))
+        })
+    }
+
+    fn judge_for_best(&mut self, taken: OpenBox) -> BoxFate {
+        if taken.bound < self.floor || !taken.challenges(self.best.as_ref()) {
+            self.set_aside.push(taken);
+            return BoxFate::Pruned;
+        }
+        if self.shapes[taken.shape].is_pose() {
+            // The runner-up may be the one that was best until now.
+            self.set_aside.extend(self.best.replace(taken));
+            return BoxFate::Best;
+        }
+        self.split(&taken)
+    }
+
+    fn judge_for_runner_up(&mut self, taken: OpenBox) -> BoxFate {
+        if !taken.challenges(self.runner_up.as_ref()) {
+            return BoxFate::Pruned;
+        }
+        if self
+            .best
+            .is_some_and(|best| self.is_same_place(&best, &taken))
+        {
+            return BoxFate::SamePlace;
+        }
+        if self.shapes[taken.shape].is_pose() {
+            self.runner_up = Some(taken);
+            return BoxFate::Best;
+        }
+        self.split(&taken)
+    }
+
+    /// Goes on with what was set aside: the first search has bounded it already.
+    fn look_for_the_runner_up(&mut self) {
+        self.goal = SearchGoal::RunnerUp;
+        let Some(best) = self.best else { return };
+        for aside in &self.set_aside {
+            if self.shapes[aside.shape].is_pose()
+                && aside.challenges(self.runner_up.as_ref())
+                && !self.is_same_place(&best, aside)
+            {
+                self.runner_up = Some(*aside);
+            }
+        }
+        let runner_up = self.runner_up;
+        let set_aside = core::mem::take(&mut self.set_aside);
+        let worth = set_aside
+            .into_iter()
+            .filter(|aside| aside.challenges(runner_up.as_ref()));
+        self.open.extend(worth);
+        self.open.sort_by(OpenBox::promise);
+    }
+
+    /// Puts the parts of a box among the open ones, the most promising one on top.
+    fn split(&mut self, taken: &OpenBox) -> BoxFate {
+        self.bound_parts(taken.first, self.last_of(taken), taken.shape + 1);
+        self.parts.sort_by(OpenBox::promise);
+        let parts = self.parts.len();
+        self.open.append(&mut self.parts);
+        BoxFate::Split { parts }
+    }
+
+    /// Bounds all boxes of a shape from `first` to `last`, both included.
+    fn bound_parts(&mut self, first: LatticePose, last: LatticePose, shape: usize) {
+        let BoxShape { side, turn } = self.shapes[shape];
+        self.parts.clear();
+        for heading in (first.heading..=last.heading).step_by(1 << turn) {
+            for row in (first.row..=last.row).step_by(1 << side) {
+                for column in (first.column..=last.column).step_by(1 << side) {
+                    let pose = LatticePose {
+                        heading,
+                        row,
+                        column,
+                    };
+                    let part = self.bounded(pose, shape);
+                    self.parts.push(part);
+                }
+            }
+        }
+        let made = self.parts.len() as u64;
+        if self.shapes[shape].is_pose() {
+            self.counts.poses += made;
+        } else {
+            self.counts.bounds += made;
+        }
+    }
+
+    fn bounded(&self, first: LatticePose, shape: usize) -> OpenBox {
+        let (column, row) = self.lattice.cells_from_center(first.column, first.row);
+        let group = first.heading >> self.shapes[shape].turn;
+        OpenBox {
+            bound: self.scan.sum(&self.map, shape, group, column, row),
+            shape,
+            first,
+        }
+    }
+
+    /// The last pose of a box that the window still holds.
+    fn last_of(&self, open: &OpenBox) -> LatticePose {
+        let shape = self.shapes[open.shape];
+        let last = self.lattice.last();
+        LatticePose {
+            heading: last.heading.min(open.first.heading + shape.headings() - 1),
+            row: last.row.min(open.first.row + shape.cells() - 1),
+            column: last.column.min(open.first.column + shape.cells() - 1),
+        }
+    }
+
+    fn is_same_place(&self, best: &OpenBox, other: &OpenBox) -> bool {
+        let last = self.last_of(other);
+        self.lattice
+            .is_near(best.first, other.first, last, self.nearness)
+    }
+
+    fn scored(&self, open: &OpenBox) -> ScoredPose {
+        ScoredPose {
+            pose: self.lattice.pose(open.first),
+            score: self.share(open.bound),
+        }
+    }
+
+    fn share(&self, score: u32) -> f64 {
+        f64::from(score) / f64::from(self.scan.full_score())
+    }
+
+    fn pose_box(&self, open: &OpenBox) -> PoseBox {
+        let last = self.last_of(open);
+        let ends = |first: i32, last: i32, at: &dyn Fn(f64) -> f64| {
+            [at(f64::from(first) - 0.5), at(f64::from(last) + 0.5)]
+        };
+        PoseBox {
+            x_m: ends(open.first.column, last.column, &|at| self.lattice.x_m(at)),
+            y_m: ends(open.first.row, last.row, &|at| self.lattice.y_m(at)),
+            heading_rad: [
+                self.lattice.heading_rad(open.first.heading),
+                self.lattice.heading_rad(last.heading),
+            ],
+            bound: self.share(open.bound),
+            is_pose: self.shapes[open.shape].is_pose(),
+        }
+    }
+}

@@ -1,0 +1,312 @@
+//! The scan at every heading of a window, in cells of the map.
+
+use core::ops::Range;
+use std::sync::Arc;
+
+use pr_geom::{Point2, Rotation, math};
+
+use super::lattice::Lattice;
+use super::likelihood_grid::FULL_SCORE;
+use super::pyramid::{CellSlice, LEVELS};
+use super::{LikelihoodGrid, SearchMap};
+use crate::cloud::PointCloud;
+
+/// Cells farther from the map's corner than this count as this far: they are outside either way.
+const FARTHEST_CELL: i64 = 16_383;
+
+/// Boxes of fewer cells a side than `2` to this hold one heading each.
+const FINEST_GROUP: u32 = 2;
+
+/// The size of a box of poses: `2^side` columns and rows, `2^turn` headings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct BoxShape {
+    pub side: u32,
+    pub turn: u32,
+}
+
+impl BoxShape {
+    /// One pose.
+    const POSE: Self = Self { side: 0, turn: 0 };
+
+    /// The shapes of a search from coarse to fine, for windows of `columns` × `rows` × `headings`.
+    ///
+    /// A step of the heading moves a far point by a cell, so a box of as many headings as columns
+    /// is as large one way as the other. Small boxes look up fewer squares with one heading each.
+    pub fn schedule(columns: i32, rows: i32, headings: i32) -> Vec<Self> {
+        let widest = columns.max(rows).ilog2().min(LEVELS as u32 - 2);
+        let is_grouped = headings > 1 << widest;
+        let mut shapes = Vec::new();
+        for side in (0..=widest).rev() {
+            if is_grouped && side >= FINEST_GROUP {
+                shapes.push(Self { side, turn: side });
+            }
+            if !is_grouped || side <= FINEST_GROUP {
+                shapes.push(Self { side, turn: 0 });
+            }
+        }
+        shapes
+    }
+
+    /// Columns and rows of a box.
+    pub fn cells(self) -> i32 {
+        1 << self.side
+    }
+
+    /// Headings of a box.
+    pub fn headings(self) -> i32 {
+        1 << self.turn
+    }
+
+    /// Whether a box is a single pose.
+    pub fn is_pose(self) -> bool {
+        self == Self::POSE
+    }
+}
+
+/// The points of a scan as cells, for every group of headings of every shape.
+#[derive(Clone, Debug)]
+pub(super) struct TurnedScan {
+    points: usize,
+    plans: Vec<Plan>,
+}
+
+/// What a shape of boxes looks up.
+///
+/// Over a box, a point visits the cells from the lowest to the highest that its headings put it in,
+/// and as many more as the box has. Squares of one level, laid over the ends of that area, cover it:
+/// one for a single heading, four otherwise.
+#[derive(Clone, Debug)]
+struct Plan {
+    runs: Vec<Run>,
+    /// Lowest column and row of every point, group by group.
+    low: Arc<Cells>,
+    /// Last column and row of a square that ends with the area; empty where there is one square.
+    high: Cells,
+}
+
+/// Columns and rows, an array each.
+#[derive(Clone, Debug, Default)]
+struct Cells {
+    columns: Vec<i16>,
+    rows: Vec<i16>,
+}
+
+/// Points in a row that look up the same level; none where no level is large enough.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    first: usize,
+    end: usize,
+    level: Option<usize>,
+}
+
+impl TurnedScan {
+    /// The finite points of `scan`, turned by every heading of the lattice and put at its centre.
+    pub fn new(
+        scan: &PointCloud,
+        lattice: &Lattice,
+        grid: &LikelihoodGrid,
+        shapes: &[BoxShape],
+    ) -> Self {
+        let points = far_points_first(scan);
+        let single = Arc::new(Cells::turned(&points, lattice, grid));
+        let plan = |shape: &BoxShape| Plan::new(&single, points.len(), *shape);
+        Self {
+            points: points.len(),
+            plans: shapes.iter().map(plan).collect(),
+        }
+    }
+
+    /// The largest sum of scores that there is.
+    pub fn full_score(&self) -> u32 {
+        self.points as u32 * u32::from(FULL_SCORE)
+    }
+
+    /// A sum over the points that no pose of a box exceeds, of the largest scores around each.
+    ///
+    /// The box has the shape of that number in the schedule and holds the headings of the group;
+    /// its lowest pose is `column` and `row` cells away from the window's centre. For a single pose
+    /// it is the score itself.
+    pub fn sum(&self, map: &SearchMap, shape: usize, group: i32, column: i32, row: i32) -> u32 {
+        let plan = &self.plans[shape];
+        let start = group as usize * self.points;
+        let offset = [column as i16, row as i16];
+        let mut sum = 0;
+        for run in &plan.runs {
+            let Some(level) = run.level else {
+                sum += (run.end - run.first) as u32 * u32::from(FULL_SCORE);
+                continue;
+            };
+            let level = map.level(level);
+            let range = start + run.first..start + run.end;
+            let low = plan.low.slice(range.clone());
+            sum += if plan.high.columns.is_empty() {
+                level.sum(low, offset)
+            } else {
+                level.sum_of_areas(low, plan.high.slice(range), offset)
+            };
+        }
+        sum
+    }
+}
+
+/// Far points move most with the heading; neighbours in this order need the same level.
+fn far_points_first(scan: &PointCloud) -> Vec<Point2<f64>> {
+    let reach = |point: &Point2<f64>| math::norm2(point.x, point.y);
+    let mut points: Vec<_> = scan
+        .iter()
+        .filter(|point| reach(point).is_finite())
+        .collect();
+    points.sort_by(|a, b| reach(b).total_cmp(&reach(a)));
+    points
+}
+
+impl Cells {
+    /// Where the points are at every heading, with the sensor at the window's centre.
+    fn turned(points: &[Point2<f64>], lattice: &Lattice, grid: &LikelihoodGrid) -> Self {
+        let (x_m, y_m) = lattice.center_m();
+        let mut cells = Self::default();
+        for heading in 0..lattice.headings {
+            let rotation = Rotation::new(lattice.heading_rad(heading));
+            for point in points {
+                let (x, y) = rotation.rotate(point.x, point.y);
+                let (column, row) = grid.cell(x + x_m, y + y_m);
+                cells.push([column, row].map(|k| k.clamp(-FARTHEST_CELL, FARTHEST_CELL) as i16));
+            }
+        }
+        cells
+    }
+
+    fn push(&mut self, [column, row]: [i16; 2]) {
+        self.columns.push(column);
+        self.rows.push(row);
+    }
+
+    fn slice(&self, range: Range<usize>) -> CellSlice<'_> {
+        CellSlice {
+            columns: &self.columns[range.clone()],
+            rows: &self.rows[range],
+        }
+    }
+}
+
+impl Plan {
+    fn new(single: &Arc<Cells>, points: usize, shape: BoxShape) -> Self {
+        if shape.turn == 0 {
+            return Self {
+                runs: vec![Run {
+                    first: 0,
+                    end: points,
+                    level: Some(shape.side as usize),
+                }],
+                low: Arc::clone(single),
+                high: Cells::default(),
+            };
+        }
+        let columns = Spans::new(&single.columns, points, shape);
+        let rows = Spans::new(&single.rows, points, shape);
+        let widest = columns.widest.iter().zip(&rows.widest);
+        let runs = runs(widest.map(|(x, y)| x.max(y) + shape.cells()));
+        Self {
+            high: Cells {
+                columns: columns.last_squares(&runs, points, shape),
+                rows: rows.last_squares(&runs, points, shape),
+            },
+            low: Arc::new(Cells {
+                columns: columns.low,
+                rows: rows.low,
+            }),
+            runs,
+        }
+    }
+}
+
+/// Lowest and highest cell of every point over each group of headings, along one axis.
+struct Spans {
+    low: Vec<i16>,
+    high: Vec<i16>,
+    /// How many cells a point moves at most over the headings of any group.
+    widest: Vec<i32>,
+}
+
+impl Spans {
+    fn new(single: &[i16], points: usize, shape: BoxShape) -> Self {
+        let mut spans = Self {
+            low: Vec::new(),
+            high: Vec::new(),
+            widest: vec![0; points],
+        };
+        for group in single.chunks(points << shape.turn) {
+            let start = spans.low.len();
+            spans.low.extend_from_slice(&group[..points]);
+            spans.high.extend_from_slice(&group[..points]);
+            let (low, high) = (&mut spans.low[start..], &mut spans.high[start..]);
+            for heading in group.chunks_exact(points).skip(1) {
+                for ((low, high), &cell) in low.iter_mut().zip(high.iter_mut()).zip(heading) {
+                    *low = cell.min(*low);
+                    *high = cell.max(*high);
+                }
+            }
+            for ((widest, &low), &high) in spans.widest.iter_mut().zip(&*low).zip(&*high) {
+                *widest = (i32::from(high) - i32::from(low)).max(*widest);
+            }
+        }
+        spans
+    }
+
+    /// Where the square starts that ends with the area: no earlier than the first one.
+    fn last_squares(&self, runs: &[Run], points: usize, shape: BoxShape) -> Vec<i16> {
+        let mut last = self.high.clone();
+        for (last, low) in last
+            .chunks_exact_mut(points)
+            .zip(self.low.chunks_exact(points))
+        {
+            for run in runs {
+                let back = run.level.map_or(0, |level| (1 << level) - shape.cells());
+                for k in run.first..run.end {
+                    last[k] = (last[k] - back as i16).max(low[k]);
+                }
+            }
+        }
+        last
+    }
+}
+
+/// The largest levels whose squares fit into areas of these widths, for points in a row.
+fn runs(widths: impl Iterator<Item = i32>) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for (point, width) in widths.enumerate() {
+        // Two squares cover up to twice a side.
+        let level = width.ilog2() as usize;
+        let level = if level < LEVELS {
+            Some(level)
+        } else {
+            (width <= 1 << LEVELS).then_some(LEVELS - 1)
+        };
+        match runs.last_mut() {
+            Some(run) if run.level == level => run.end = point + 1,
+            _ => runs.push(Run {
+                first: point,
+                end: point + 1,
+                level,
+            }),
+        }
+    }
+    runs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_shrink_from_shape_to_shape_down_to_a_pose() {
+        for (columns, rows, headings) in [(121, 121, 754), (1, 1, 754), (40, 40, 20), (9, 9, 1)] {
+            let shapes = BoxShape::schedule(columns, rows, headings);
+            assert!(shapes.last().unwrap().is_pose());
+            for pair in shapes.windows(2) {
+                assert!(pair[1].side <= pair[0].side && pair[1].turn <= pair[0].turn);
+                assert_ne!(pair[0], pair[1]);
+            }
+        }
+    }
+}
