@@ -16,8 +16,8 @@ mod detector;
 mod gate;
 mod verify;
 
-pub use candidates::{LoopCandidate, detect_loop_candidates};
-pub use config::{GateModel, LoopConfig};
+pub use candidates::{LoopCandidate, detect_loop_candidates, detect_visits};
+pub use config::{Detection, GateModel, LoopConfig};
 pub use detector::{CloneDetector, LoopDetector, LoopQuery, NearbyDetector};
 pub use gate::{GateTest, chi_squared_gate, marginal_information, path_information};
 pub use verify::{KeyframeView, LoopRejection, LoopVerification, LoopWorkspace, verify_loop};

@@ -11,12 +11,16 @@ mod kind;
 mod matcher;
 mod ndt_matcher;
 mod search_matcher;
+mod staged_matcher;
 
 pub use icp_matcher::IcpMatcher;
-pub use information::{InformationFrame, TrustConfig, chapter_information, match_information};
+pub use information::{
+    InformationFrame, TrustConfig, chapter_information, match_information, without_aperture,
+};
 pub use kind::MatcherKind;
 pub use matcher::{
     CloneMatcher, MapConfig, MatchRequest, MatchStop, MatchSummary, Matcher, RunnerUp,
 };
 pub use ndt_matcher::{NdtMatcher, NdtMatcherConfig};
 pub use search_matcher::{SearchMatcher, SearchMatcherConfig};
+pub use staged_matcher::{StagedMatcher, StagedMatcherConfig};

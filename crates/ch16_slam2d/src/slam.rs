@@ -12,11 +12,14 @@
 
 mod config;
 mod front_end;
+mod fusion;
 mod loop_closing;
 mod motion;
 mod parts;
 mod pending;
+mod refinement;
 mod report;
+mod robots;
 mod scales;
 
 use std::sync::Arc;
@@ -24,11 +27,12 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use pr_geom::SE2;
 
-pub use config::{LoopClosure, SlamConfig, ThresholdConfig};
+pub use config::{LoopClosure, PredictionUse, SlamConfig, ThresholdConfig};
 pub use front_end::{FrontEnd, Registration, WindowSweep};
 pub use motion::MotionNoise;
 pub use parts::SlamParts;
 pub use pending::PendingFrame;
+pub use refinement::{Refinement, RefinementConfig};
 pub use report::{Change, Keyframe, LoopAttempt, LoopEffect, SlamReport};
 
 use crate::graph::{EdgeKind, PoseGraph};

@@ -8,9 +8,6 @@ use pr_geom::SE2;
 use crate::log::LogFrame;
 use crate::trajectory::{StampedPose, Trajectory};
 
-/// Standard deviation of the ranges of a planar laser, m: what lengths are worked out from.
-const RANGE_SIGMA_M: f64 = 0.01;
-
 /// Whether the wheels are listened to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum OdometryUse {
@@ -71,7 +68,7 @@ impl LogRun {
         }
     }
 
-    /// The same run with a configuration of one's own, in place of the one by the first scan.
+    /// The same run with a configuration of one's own, in place of [`SlamConfig::for_robot`].
     #[must_use]
     pub fn with_config(mut self, config: SlamConfig) -> Self {
         self.config = Some(config);
@@ -95,7 +92,7 @@ impl LogRun {
             scan: log.scan,
         };
         let slam = self.slam.get_or_insert_with(|| {
-            let by_scan = || SlamConfig::for_scan(&frame.scan, RANGE_SIGMA_M);
+            let by_scan = || SlamConfig::for_robot(&frame.scan);
             Slam::new(self.config.take().unwrap_or_else(by_scan))
         });
         let report = match slam.step(&frame) {
@@ -122,7 +119,11 @@ impl LogRun {
     }
 
     /// Says that no scan follows.
-    pub fn finish(&mut self) {}
+    pub fn finish(&mut self) {
+        if let Some(slam) = &mut self.slam {
+            slam.refine();
+        }
+    }
 
     /// The estimator; none before the first scan.
     #[must_use]

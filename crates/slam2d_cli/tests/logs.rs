@@ -58,7 +58,7 @@ fn a_log_is_mapped_and_graded_against_relations() {
     assert!(run["cpu_s"].as_f64().unwrap() > 0.0);
     let error_m = run["relations"]["trans"]["mean"].as_f64().unwrap();
     // The wheels alone are off by 0.39 m; the wall at the end tells better.
-    assert!(error_m < 0.2, "{error_m}");
+    assert!(error_m < 0.1, "{error_m}");
     let trajectory = out.join("trajectory.tum");
     let trajectory = text(&trajectory);
     let graded = json(&["evaluate", trajectory, "--relations", relations, "--json"]);
@@ -97,7 +97,7 @@ fn without_odometry_the_scans_alone_are_followed() {
     let error_m = json(&arguments)["relations"]["trans"]["mean"]
         .as_f64()
         .unwrap();
-    assert!(error_m < 0.5, "{error_m}");
+    assert!(error_m < 0.1, "{error_m}");
 }
 
 #[test]

@@ -62,6 +62,9 @@ impl LapTrace {
                 inliers,
                 min_inliers,
             }) => format!("{head}: {gate}, but only {inliers} pairs of {min_inliers}"),
+            Some(LoopRejection::LowScore { score, min_score }) => {
+                format!("{head}: {gate}, but the score is {score:.2} only, {min_score:.2} is asked")
+            }
             Some(LoopRejection::NoCovariance(error)) => {
                 format!("{head}: the graph has no covariance to test against, {error}")
             }

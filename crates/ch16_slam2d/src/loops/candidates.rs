@@ -42,6 +42,42 @@ pub fn detect_loop_candidates(
     candidates
 }
 
+/// A gap of so many nodes between two near ones ends a visit.
+const VISIT_GAP_NODES: usize = 5;
+/// So far a node stands back for each radian by which it looks another way, m.
+const METRES_PER_RADIAN: f64 = 0.5;
+
+/// The best node of every visit to the surroundings of `poses[node]`, nearest first.
+///
+/// A visit is a run of nodes within the radius. The best of it is the nearest, where a radian of
+/// heading counts as half a metre: scans that look the same way show the same things.
+#[must_use]
+pub fn detect_visits(poses: &[SE2], node: usize, config: &LoopConfig) -> Vec<LoopCandidate> {
+    let here = poses[node];
+    let cost = |candidate: &LoopCandidate| {
+        let turn_rad = here.between(&poses[candidate.node]).theta().abs();
+        candidate.distance_m + METRES_PER_RADIAN * turn_rad
+    };
+    let mut near = detect_loop_candidates(poses, node, config);
+    near.sort_by_key(|candidate| candidate.node);
+    let mut visits: Vec<LoopCandidate> = Vec::new();
+    let mut last_node = None;
+    for candidate in near {
+        let is_same = last_node.is_some_and(|last| candidate.node - last <= VISIT_GAP_NODES);
+        last_node = Some(candidate.node);
+        match visits.last_mut() {
+            Some(best) if is_same => {
+                if cost(&candidate) < cost(best) {
+                    *best = candidate;
+                }
+            }
+            _ => visits.push(candidate),
+        }
+    }
+    visits.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+    visits
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -87,5 +123,24 @@ mod tests {
             ..config
         };
         assert_eq!(detect_loop_candidates(&poses, 32, &off), []);
+    }
+
+    #[test]
+    fn every_visit_has_one_candidate_and_the_one_that_looks_the_same_way_comes_first() {
+        // Out, back with the heading turned, and out again.
+        let turned = |pose: &SE2| *pose * SE2::new(0.0, 0.0, core::f64::consts::PI);
+        let mut poses = there_and_back();
+        for pose in &mut poses[20..] {
+            *pose = turned(pose);
+        }
+        poses.extend((0..20).map(|k| SE2::translation(0.5 * f64::from(k), 0.2)));
+        let config = LoopConfig {
+            min_gap_nodes: 5,
+            ..LoopConfig::default()
+        };
+        // Node 50 stands at x = 5 m: node 10 was there on the way out, node 29 on the way back.
+        let visits = detect_visits(&poses, 50, &config);
+        let nodes: Vec<usize> = visits.iter().map(|visit| visit.node).collect();
+        assert_eq!(nodes, [10, 29]);
     }
 }

@@ -16,9 +16,21 @@ pub enum GateModel {
     ExactMarginal,
 }
 
+/// Which of the near keyframes are proposed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Detection {
+    /// The chapter's: all of them, the nearest first.
+    #[default]
+    Nearest,
+    /// The nearest of every visit: of each run of keyframes that passed by.
+    Visits,
+}
+
 /// Detection, verification and gating of loops; the defaults are the chapter's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopConfig {
+    /// Which of the near keyframes are proposed.
+    pub detection: Detection,
     /// Candidates lie within this distance of the new node in the graph, m.
     pub radius_m: f64,
     /// Candidates are at least so many nodes older.
@@ -41,8 +53,13 @@ pub struct LoopConfig {
     pub max_rmse_m: f64,
     /// A registration with fewer pairs is turned away.
     pub min_inliers: usize,
+    /// A registration whose score is lower is turned away, in the unit of the matcher's score.
+    pub min_score: f64,
     /// Trust in the pairs of an accepted loop.
     pub trust: TrustConfig,
+    /// Share of what a loop knows across a wall that it claims along it by noise alone; see
+    /// [`without_aperture`](crate::matching::without_aperture).
+    pub aperture: f64,
     /// What the gate takes for the drift; the two fields below belong to the path approximation.
     pub gate_model: GateModel,
     /// Drift of x and of y over one node, a standard deviation in metres; grows with √gap.
@@ -56,6 +73,7 @@ pub struct LoopConfig {
 impl Default for LoopConfig {
     fn default() -> Self {
         Self {
+            detection: Detection::Nearest,
             radius_m: 2.0,
             min_gap_nodes: 22,
             attempt_every_nodes: 4,
@@ -70,10 +88,12 @@ impl Default for LoopConfig {
             min_tau_m: 0.6,
             max_rmse_m: 0.16,
             min_inliers: 25,
+            min_score: 0.0,
             trust: TrustConfig {
                 sigma_m: 0.05,
                 inflate: 25.0,
             },
+            aperture: 0.0,
             gate_model: GateModel::PathApproximation,
             drift_sigma_m: 0.045,
             drift_sigma_rad: 0.012,

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::OptimizeError;
 
-use super::{LoopCandidate, LoopConfig, detect_loop_candidates};
+use super::{Detection, LoopCandidate, LoopConfig, detect_loop_candidates, detect_visits};
 use crate::cloud::PointCloud;
 use crate::graph::PoseGraph;
 use crate::slam::Keyframe;
@@ -109,6 +109,9 @@ impl NearbyDetector {
 
 impl LoopDetector for NearbyDetector {
     fn detect(&mut self, query: &mut LoopQuery<'_>) -> Vec<LoopCandidate> {
-        detect_loop_candidates(query.poses(), query.node(), &self.config)
+        match self.config.detection {
+            Detection::Nearest => detect_loop_candidates(query.poses(), query.node(), &self.config),
+            Detection::Visits => detect_visits(query.poses(), query.node(), &self.config),
+        }
     }
 }

@@ -8,7 +8,9 @@ use super::gate::{GateTest, chi_squared_gate};
 use super::{LoopCandidate, LoopConfig};
 use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
-use crate::matching::{InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information};
+use crate::matching::{
+    InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information, without_aperture,
+};
 use crate::slam::Keyframe;
 
 /// Why a loop was turned away, with what was measured.
@@ -27,6 +29,13 @@ pub enum LoopRejection {
         inliers: usize,
         /// The fewest that are accepted.
         min_inliers: usize,
+    },
+    /// Too little of the sweep fits.
+    LowScore {
+        /// The matcher's score.
+        score: f64,
+        /// The lowest that is accepted.
+        min_score: f64,
     },
     /// The innovation is larger than the drift explains.
     OutsideGate(GateTest),
@@ -62,6 +71,8 @@ pub struct LoopVerification {
     pub inliers: usize,
     /// Iterations of the registration.
     pub iterations: usize,
+    /// The matcher's score of it, where it has one.
+    pub score: Option<f64>,
     /// By how much the best other place was behind, in the unit of the matcher's score.
     pub margin: Option<f64>,
     /// `log(T₀⁻¹ T̂)`, in m, m, rad.
@@ -183,7 +194,10 @@ pub fn verify_loop(
         InformationFrame::Chapter => {
             chapter_information(&workspace.pairs, center.theta(), &config.trust)
         }
-        InformationFrame::Exact => workspace.matcher.information(&found.pose, &config.trust),
+        InformationFrame::Exact => {
+            let known = workspace.matcher.information(&found.pose, &config.trust);
+            without_aperture(&known, config.aperture)
+        }
     };
     let innovation = belief.between(&found.pose).log();
     let assumed = gate_information.unwrap_or_default();
@@ -197,6 +211,7 @@ pub fn verify_loop(
         rmse_m: found.rmse_m,
         inliers: found.inliers,
         iterations: found.iterations,
+        score: found.score,
         margin: found.margin(),
         innovation,
         gate_information: assumed,
@@ -217,6 +232,13 @@ fn rejection(found: &MatchSummary, gate: GateTest, config: &LoopConfig) -> Optio
         Some(LoopRejection::FewInliers {
             inliers: found.inliers,
             min_inliers: config.min_inliers,
+        })
+    } else if let Some(score) = found.score
+        && score < config.min_score
+    {
+        Some(LoopRejection::LowScore {
+            score,
+            min_score: config.min_score,
         })
     } else if !gate.passes() {
         Some(LoopRejection::OutsideGate(gate))

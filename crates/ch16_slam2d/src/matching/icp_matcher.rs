@@ -52,6 +52,12 @@ impl IcpMatcher {
         &self.map
     }
 
+    /// Mean over the source of `min(d², τ²)` at the last answer, m².
+    pub(super) fn truncated_cost_m2(&self) -> f64 {
+        let last = self.workspace.trace().last();
+        last.map_or(f64::INFINITY, |trace| trace.truncated_cost_m2)
+    }
+
     /// The pairs of `source` at `target_from_source`, counted as a registration counts them.
     pub(super) fn fit(&mut self, source: &PointCloud, at: SE2, tau_m: f64) -> MatchSummary {
         self.register(

@@ -2,7 +2,7 @@
 
 use pr_geom::SE2;
 
-use super::MotionNoise;
+use super::{MotionNoise, RefinementConfig};
 use crate::loops::LoopConfig;
 use crate::matching::{InformationFrame, MapConfig, MatcherKind, TrustConfig};
 use crate::scan::ScanConfig;
@@ -15,6 +15,16 @@ pub enum LoopClosure {
     On,
     /// The front end alone: odometry edges only.
     Off,
+}
+
+/// Whether a registration is weighed against the motion that was predicted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum PredictionUse {
+    /// The chapter's: the prediction is where registration starts, and forgotten after it.
+    #[default]
+    Start,
+    /// Both are measurements: along a corridor, where the scan says nothing, the prediction stays.
+    Measurement,
 }
 
 /// The adaptive correspondence threshold (Vizzo et al., "KISS-ICP", 2023, §III-B).
@@ -55,6 +65,14 @@ pub struct SlamConfig {
     pub max_iterations: usize,
     /// Registrations with fewer pairs are not believed: the prediction stands.
     pub min_inliers: usize,
+    /// Without odometry the last velocity is expected to stay for so many times the last interval at
+    /// most: stamps that all but coincide make it huge.
+    pub extrapolation: f64,
+    /// Whether a registration is weighed against the prediction.
+    pub prediction_use: PredictionUse,
+    /// Share of what a registration knows across a wall that it claims along it by noise alone; see
+    /// [`without_aperture`](crate::matching::without_aperture).
+    pub aperture: f64,
     /// The adaptive correspondence threshold.
     pub threshold: ThresholdConfig,
     /// Distance in metres after which a keyframe is taken.
@@ -71,6 +89,8 @@ pub struct SlamConfig {
     pub prediction_noise: MotionNoise,
     /// Detection and verification of loops.
     pub loops: LoopConfig,
+    /// How keyframes are linked once more after the last frame.
+    pub refinement: RefinementConfig,
     /// Most Gauss–Newton iterations after a loop.
     pub optimizer_iterations: usize,
     /// The optimizer stops where no node moves farther than this (m + rad).
@@ -114,6 +134,9 @@ impl SlamConfig {
             },
             max_iterations: 15,
             min_inliers: 8,
+            extrapolation: f64::INFINITY,
+            prediction_use: PredictionUse::Start,
+            aperture: 0.0,
             threshold: ThresholdConfig {
                 initial_m: 0.5,
                 min_motion_m: 0.03,
@@ -129,9 +152,19 @@ impl SlamConfig {
             odometry_noise: MotionNoise::default(),
             prediction_noise: MotionNoise::without_odometry(),
             loops: LoopConfig::default(),
+            refinement: RefinementConfig::default(),
             optimizer_iterations: 15,
             optimizer_tolerance: 1e-7,
             huber: 12.0,
+        }
+    }
+
+    /// How far a motion is trusted that the wheels measured, or that nobody did.
+    pub(super) fn motion_noise(&self, is_measured: bool) -> &MotionNoise {
+        if is_measured {
+            &self.odometry_noise
+        } else {
+            &self.prediction_noise
         }
     }
 

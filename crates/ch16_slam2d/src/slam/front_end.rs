@@ -5,12 +5,21 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
 
-use super::config::SlamConfig;
+use super::config::{PredictionUse, SlamConfig};
+use super::fusion::fuse;
 use crate::cloud::PointCloud;
 use crate::icp::{AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
-use crate::matching::{InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information};
+use crate::matching::{
+    InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information, without_aperture,
+};
 use crate::metrics::position_error_m;
 use crate::scan::{PreparedFrame, is_finite};
+
+/// Disagreement of scan and wheels that both allow, a squared norm in three dimensions: 99 of 100 lie
+/// below.
+const BELIEVED_CHI2: f64 = 11.34;
+/// A scan that fits by so much better is believed against the wheels; scores are from 0 to 1.
+const CLEARLY_BETTER: f64 = 0.1;
 
 /// A sweep of the local map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,12 +56,16 @@ pub struct Registration {
 pub struct FrontEnd {
     estimate: SE2,
     velocity: Vector3<f64>,
+    /// How long the last motion took, s.
+    last_dt_s: f64,
     window: Vec<WindowSweep>,
     scans: Vec<Arc<PointCloud>>,
     threshold: AdaptiveThreshold,
     local_cloud: PointCloud,
     matcher: Box<dyn Matcher>,
     pairs: Vec<Pair>,
+    /// Covariance of the predicted motions since the last keyframe, where they are measurements.
+    driven: Matrix3<f64>,
     /// Covariance of the motions since the last registration that was believed, none after one.
     unregistered: Option<Matrix3<f64>>,
 }
@@ -64,6 +77,7 @@ impl FrontEnd {
         Self {
             estimate: config.start,
             velocity: Vector3::zeros(),
+            last_dt_s: f64::INFINITY,
             window: Vec::new(),
             scans: Vec::new(),
             threshold: AdaptiveThreshold::new(
@@ -74,6 +88,7 @@ impl FrontEnd {
             local_cloud: PointCloud::default(),
             matcher,
             pairs: Vec::new(),
+            driven: Matrix3::zeros(),
             unregistered: None,
         }
     }
@@ -129,7 +144,7 @@ impl FrontEnd {
         let before = self.estimate;
         let motion = frame
             .odometry
-            .unwrap_or_else(|| SE2::exp(&(self.velocity * dt_s)));
+            .unwrap_or_else(|| SE2::exp(&(self.velocity * self.extrapolated_s(dt_s, config))));
         // A velocity from two stamps that all but coincide may lead anywhere: then it is none.
         let motion = if is_finite(&(before * motion)) {
             motion
@@ -148,7 +163,15 @@ impl FrontEnd {
         );
         let accepted = matched.inliers >= config.min_inliers && is_finite(&matched.pose);
         self.estimate = if accepted { matched.pose } else { prediction };
+        if config.prediction_use == PredictionUse::Measurement {
+            let noise = config.motion_noise(frame.odometry.is_some());
+            self.driven = noise.then(&self.driven, &motion);
+        }
+        if accepted && config.prediction_use == PredictionUse::Measurement {
+            self.weigh(&matched, &prediction, &motion, frame, config);
+        }
         self.remember_trust(accepted, &motion, frame.odometry.is_some(), config);
+        self.last_dt_s = dt_s;
         self.velocity = before.between(&self.estimate).log() / dt_s;
         self.threshold.update(&prediction, &self.estimate);
         Registration {
@@ -170,7 +193,12 @@ impl FrontEnd {
                 // Every motion noise has a floor, so only an overflow has no inverse.
                 return covariance.try_inverse().unwrap_or_else(Matrix3::identity);
             }
-            (InformationFrame::Exact, None) => self.matcher.information(&self.estimate, trust),
+            (InformationFrame::Exact, None) => {
+                let known = self.matcher.information(&self.estimate, trust);
+                let driven = std::mem::take(&mut self.driven);
+                let wheels = driven.try_inverse().unwrap_or_default();
+                without_aperture(&known, config.aperture) + wheels
+            }
             (InformationFrame::Chapter, _) => {
                 self.matcher.pairs(&mut self.pairs);
                 chapter_information(&self.pairs, source_theta, trust)
@@ -185,6 +213,48 @@ impl FrontEnd {
         for sweep in &mut self.window {
             sweep.pose = *correction * sweep.pose;
         }
+    }
+
+    /// For how long the velocity is expected to stay, s.
+    fn extrapolated_s(&self, dt_s: f64, config: &SlamConfig) -> f64 {
+        dt_s.min(config.extrapolation * self.last_dt_s)
+    }
+
+    /// Moves the estimate from the registration towards the prediction, by what both know.
+    ///
+    /// Where they disagree by more than both allow, wheels have slipped or the scan has: the scan is
+    /// believed where it fits clearly better than at the pose in between.
+    fn weigh(
+        &mut self,
+        matched: &MatchSummary,
+        prediction: &SE2,
+        motion: &SE2,
+        frame: &PreparedFrame,
+        config: &SlamConfig,
+    ) {
+        let share = matched.score.unwrap_or(1.0);
+        let known = self
+            .matcher
+            .information(&matched.pose, &config.odometry_trust);
+        // What fits in part may fit elsewhere as well.
+        let known = known * (share * share * share * share);
+        let known = without_aperture(&known, config.aperture);
+        let noise = config.motion_noise(frame.odometry.is_some());
+        let Some(fusion) = fuse(&matched.pose, &known, prediction, &noise.covariance(motion))
+        else {
+            return;
+        };
+        if fusion.chi2 > BELIEVED_CHI2 {
+            let request = MatchRequest::new(fusion.pose, config.threshold.initial_m, 0);
+            let there = self.matcher.register(&frame.cloud, &request);
+            // The pairs are asked for later: those of the pose that is taken.
+            if there.score.unwrap_or(0.0) < matched.score.unwrap_or(1.0) - CLEARLY_BETTER {
+                let request = MatchRequest::new(matched.pose, config.threshold.initial_m, 0);
+                self.matcher.register(&frame.cloud, &request);
+                return;
+            }
+        }
+        self.estimate = fusion.pose;
     }
 
     fn rebuild_local_map(&mut self) {
@@ -206,11 +276,7 @@ impl FrontEnd {
             self.unregistered = None;
             return;
         }
-        let noise = if is_measured {
-            &config.odometry_noise
-        } else {
-            &config.prediction_noise
-        };
+        let noise = config.motion_noise(is_measured);
         let before = self.unregistered.unwrap_or_default();
         self.unregistered = Some(noise.then(&before, motion));
     }
