@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { SMOOTH_MS } from './clock.mjs';
 import * as h from './harness.mjs';
-import { canvasBox, draggingSpot, restingSpot } from './spots.mjs';
+import { canvasBox, draggingSpot, restingSpot, sliderRail } from './spots.mjs';
 
 const TALL = '<p style="height: 3000px">Much text.</p>';
 const ONE = '<slam-widget name="w16.1"></slam-widget>';
@@ -102,6 +102,32 @@ describe('touch', () => {
       const [x, y] = await draggingSpot(tab);
       const before = await tab.evaluate(() => document.querySelector('slam-widget').query);
       await swipe(tab, [x, y], [x + 60, y - 60]);
+      await tab.waitForFunction((old) => document.querySelector('slam-widget').query !== old, before);
+      assert.equal(await scrolled(tab), 0);
+    }, TOUCH);
+  });
+
+  it('up or down moves the page, also where it starts on a slider or on the map', async () => {
+    await on(ONE + TALL, async (tab) => {
+      await h.ready(tab);
+      const before = await tab.evaluate(() => document.querySelector('slam-widget').query);
+      const rail = await sliderRail(tab, 'heading');
+      for (const [x, y] of [await draggingSpot(tab), [rail.x + rail.width / 2, rail.y]]) {
+        await tab.evaluate(() => scrollTo(0, 0));
+        await swipe(tab, [x, y], [x + 20, y - 250]);
+        await tab.waitForFunction(() => window.scrollY > 100);
+        await h.moreFrames(tab, 2);
+        assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').query), before);
+      }
+    }, TOUCH);
+  });
+
+  it('that rests first drags up and down as well', async () => {
+    await on(ONE + TALL, async (tab) => {
+      await h.ready(tab);
+      const [x, y] = await draggingSpot(tab);
+      const before = await tab.evaluate(() => document.querySelector('slam-widget').query);
+      await swipe(tab, [x, y], [x, y - 60], () => tab.evaluate(() => frameClock.pass(300)));
       await tab.waitForFunction((old) => document.querySelector('slam-widget').query !== old, before);
       assert.equal(await scrolled(tab), 0);
     }, TOUCH);
@@ -263,10 +289,11 @@ async function tabUntil(tab, key, id) {
   return assert.fail(`${key} never reaches #${id}`);
 }
 
-async function swipe(tab, from, to) {
+async function swipe(tab, from, to, pause = () => {}) {
   const session = await tab.context().newCDPSession(tab);
   const touch = (type, points) => session.send('Input.dispatchTouchEvent', { type, touchPoints: points });
   await touch('touchStart', [{ x: from[0], y: from[1] }]);
+  await pause();
   for (let step = 1; step <= 8; step += 1) {
     const share = step / 8;
     await touch('touchMove', [{

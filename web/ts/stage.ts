@@ -2,6 +2,7 @@
 
 import type { Instance } from './instance';
 import { LoadError } from './module';
+import { TouchGate } from './touch';
 
 /** A canvas on which an instance runs. */
 export class Stage {
@@ -67,6 +68,9 @@ export class Stage {
     const wake = (): void => this.#instance.frames.wake();
     const capture = { capture: true, passive: true, signal };
     const element = this.#element;
+    const dragsAt = (x: number, y: number): boolean =>
+      this.#instance.crash() === undefined && this.#instance.use((widget) => widget.dragsAt(x, y));
+    new TouchGate(element, this.canvas, dragsAt, signal);
     for (const type of ['pointerdown', 'pointermove', 'pointerleave', 'touchstart', 'wheel', 'focusin']) {
       element.addEventListener(type, wake, capture);
     }
