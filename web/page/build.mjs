@@ -14,6 +14,7 @@ import katex from 'katex';
 
 import { endWithOneSentence } from '../licences/allowed.mjs';
 import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
+import { drawStills } from './stills.mjs';
 
 const here = path.dirname(fileURLToPath(import.meta.url));
 const root = path.join(here, '..', '..');
@@ -30,7 +31,8 @@ await writeNotices(await bundleScript()).catch(endWithOneSentence);
 
 async function renderPage() {
   const source = await readFile(path.join(root, 'index.html'), 'utf8');
-  const page = addPictures(renderFormulas(source), await widgetSpecs());
+  const page = addStills(addPictures(renderFormulas(source), await widgetSpecs()));
+  await drawStills(outDir);
   await writeFile(path.join(outDir, 'index.html'), page);
 }
 
@@ -58,6 +60,14 @@ function addPictures(html, specOf) {
     <p>This is a still picture of “${escapeHtml(spec.title)}”: the widget needs JavaScript and WebAssembly.</p>
   ${close}`;
   });
+}
+
+/** What the page draws by itself is a picture until the core is there: `<img data-still="lap" alt="…">`. */
+function addStills(html) {
+  return html.replace(/<img data-still="([a-z]+)"([^>]*)>/g, (_, name, rest) => `<picture>
+      <source media="(prefers-color-scheme: dark)" srcset="pictures/${name}-dark.svg">
+      <img src="pictures/${name}-light.svg"${rest}>
+    </picture>`);
 }
 
 /** `<tex>…</tex>` in the line and `<tex display>…</tex>` on lines of its own. */
@@ -115,6 +125,7 @@ async function bundleScript() {
     entryPoints: [path.join(here, 'page.ts')],
     outfile: path.join(outDir, 'page.js'),
     bundle: true,
+    external: ['./slam-widget.js'],
     metafile: true,
     format: 'esm',
     minify: true,

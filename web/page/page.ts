@@ -2,11 +2,30 @@
 // tables that the keyboard can scroll. The widgets and the numbers that set them are the custom
 // element's business.
 
+// @ts-expect-error: a file of its own beside this one, which has the module.
+import { core } from './slam-widget.js';
+import type { Glue } from '../pkg/glue.js';
+import { LapPlayer } from './lap/player';
+import type { Story } from './lap/story';
+
+/** The run that the page calls canonical. */
+const CANONICAL = { seed: 12648430, noise: 1 };
+
 type ThemeChoice = 'auto' | 'light' | 'dark';
 
 document.documentElement.dataset['script'] = 'on';
 listenToThemeButtons();
 letKeyboardScroll(document.querySelectorAll<HTMLElement>('.math, .scroll'));
+void replayLap();
+
+/** The still picture stays where the core cannot be had; the widgets say why. */
+async function replayLap(): Promise<void> {
+  const figure = document.querySelector<HTMLElement>('#lap');
+  const glue = await (core as () => Promise<Glue>)().catch(() => undefined);
+  if (figure === null || glue === undefined) return;
+  const { seed, noise } = CANONICAL;
+  new LapPlayer(figure, JSON.parse(glue.lapStory(seed, noise)) as Story);
+}
 
 /** The choice holds until the page is left: it is not worth storing anything on the reader's disk. */
 function listenToThemeButtons(): void {

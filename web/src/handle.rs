@@ -12,7 +12,8 @@ use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
 
 use crate::app::{Shared, WidgetApp, apply_theme, web_options};
-use crate::{app, registry, schema, state};
+use crate::outcomes::Outcomes;
+use crate::{app, registry, schema, state, story};
 
 /// The schema of every widget, a JSON array.
 #[wasm_bindgen(js_name = widgetSchemas)]
@@ -36,6 +37,33 @@ pub fn after_each_preset(name: &str) -> Result<String, JsError> {
 #[wasm_bindgen(js_name = lapDigest)]
 pub fn lap_digest(seed: u32, noise_factor: f64) -> String {
     format!("{:016x}", ch16_lab::lap::lap_digest(seed, noise_factor))
+}
+
+/// A whole lap as JSON, for a drawing of it; see [`story::story`].
+#[wasm_bindgen(js_name = lapStory)]
+pub fn lap_story(seed: u32, noise_factor: f64) -> String {
+    story::story(seed, noise_factor).to_string()
+}
+
+/// Drives one lap after the other.
+#[wasm_bindgen]
+#[derive(Default)]
+pub struct Laps {
+    outcomes: Outcomes,
+}
+
+#[wasm_bindgen]
+impl Laps {
+    /// Has driven nothing yet.
+    #[wasm_bindgen(constructor)]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// What came out of a lap: end errors of wheels, front end and graph in metres, loops closed, false ones.
+    pub fn drive(&mut self, seed: u32, noise_factor: f64) -> Vec<f64> {
+        self.outcomes.of(seed, noise_factor).to_vec()
+    }
 }
 
 /// Reads a text as the core does: `[true, value as text]` or `[false, what was wrong]`.

@@ -1,12 +1,15 @@
 //! The widgets compiled to WebAssembly: one module for all, one instance of it per widget.
 //!
 //! [`registry`] lists the widgets, [`schema`] and [`state`] write as JSON what the host page needs
-//! to know of them; both are plain Rust and tested natively. The browser half adapts a widget to
+//! to know of them; [`story`] and [`outcomes`] drive laps for the pictures that the page draws by
+//! itself. All of it is plain Rust and tested natively. The browser half adapts a widget to
 //! eframe and to JavaScript; what the host page does with it is in `web/ts`.
 
+pub mod outcomes;
 pub mod registry;
 pub mod schema;
 pub mod state;
+pub mod story;
 
 #[cfg(target_arch = "wasm32")]
 mod app;

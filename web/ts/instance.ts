@@ -1,9 +1,10 @@
 // One instance of the module: its own memory, its own widget. What happens in it, a panic too,
 // stays in it. An instance is never repaired: it is thrown away and made anew from its values.
 
-import { createGlue, type Widget } from '../pkg/glue.js';
+import type { Widget } from '../pkg/glue.js';
+import { core } from './core';
 import { FrameGate } from './frames';
-import { forgetModule, LoadError, loadModule } from './module';
+import { forgetModule, StaleError } from './module';
 
 export interface Outcome {
   standing: 'good' | 'bad' | 'neutral';
@@ -48,16 +49,13 @@ export class Instance {
   }
 
   static async create(name: string, progress: (share: number) => void): Promise<Instance> {
-    const module = await loadModule(progress);
     const frames = new FrameGate();
-    const glue = createGlue(frames);
+    const glue = await core(frames, progress);
     try {
-      await glue({ module_or_path: module });
       return new Instance(new glue.Widget(name), frames);
     } catch {
-      // A whole module, but not the one that this script was built with.
       forgetModule();
-      throw new LoadError('the program does not fit the rest of the page; one of them is an old copy');
+      throw new StaleError();
     }
   }
 

@@ -8,6 +8,7 @@ export type { Outcome, Timeline, TimelineMark, CsvFile } from './instance';
 export type { Value } from './values';
 export { SlamWidget };
 export { widgets } from './schema';
+export { core, coreModule } from './core';
 
 if (customElements.get('slam-widget') === undefined) {
   customElements.define('slam-widget', SlamWidget);

@@ -5,6 +5,13 @@ declare const WASM_FILE: string;
 
 export class LoadError extends Error {}
 
+/** A whole module, but not the one that this script was built with. */
+export class StaleError extends LoadError {
+  constructor() {
+    super('the program does not fit the rest of the page; one of them is an old copy');
+  }
+}
+
 /** So long may a server say nothing, before or between two parts of the program. */
 const SILENCE_MS = 10_000;
 

@@ -1,0 +1,122 @@
+// The strip under the title: the canonical lap, replayed from what the core computes.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { describe, it } from 'node:test';
+import * as h from './harness.mjs';
+
+const visit = h.visitor();
+const reading = (test, options = {}, how = {}) => visit('', test, { path: '/index.html', options, ...how });
+const live = (tab) => tab.waitForSelector('#lap.live');
+const slider = (tab) => tab.locator('.lap-controls input');
+const button = (tab) => tab.locator('.lap-controls button');
+const tick = (tab) => tab.evaluate(() => Number(document.querySelector('#lap').dataset.tick));
+const act = (tab) => tab.locator('.lap-acts li[aria-current]').textContent();
+/** The share of the canvas that is drawn on. */
+const inked = (tab) => tab.evaluate(() => {
+  const canvas = document.querySelector('.lap-picture canvas');
+  const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  return data.reduce((sum, value, at) => sum + (at % 4 === 3 && value > 128 ? 1 : 0), 0) / (data.length / 4);
+});
+
+/** The page, which notes the acts in the order in which they are played. */
+const noting = readFileSync(join(h.DIST, 'index.html'), 'utf8').replace('<head>', `<head><script>
+  window.acts = [];
+  addEventListener('DOMContentLoaded', () => new MutationObserver(() => {
+    const name = document.querySelector('.lap-acts li[aria-current] b')?.textContent;
+    if (name !== undefined && acts.at(-1) !== name) acts.push(name);
+  }).observe(document.querySelector('.lap-acts'), { subtree: true, attributeFilter: ['aria-current'] }));
+</script>`);
+
+describe('the lap under the title', () => {
+  for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 844 }]) {
+    it(`is the first thing that lives, without scrolling, at ${viewport.width}×${viewport.height}`, async () => {
+      await reading(async (tab) => {
+        const place = () => tab.evaluate(() => {
+          const { top, bottom } = document.querySelector('.lap-picture').getBoundingClientRect();
+          return { top, bottom, height: document.querySelector('#lap').offsetHeight };
+        });
+        await tab.waitForFunction(() => document.documentElement.dataset.script === 'on');
+        const before = await place();
+        await live(tab);
+        const after = await place();
+        assert.ok(after.top >= 0 && after.bottom <= viewport.height, JSON.stringify(after));
+        assert.ok((await inked(tab)) > 0.01);
+        // The picture of the build stood where the canvas stands.
+        assert.ok(Math.abs(after.height - before.height) <= 2, `${before.height} px, then ${after.height}`);
+        assert.equal(before.top, after.top);
+      }, { viewport });
+    });
+  }
+
+  it('asks for the program once, for itself and for the widgets', async () => {
+    const asked = [];
+    const answer = (path) => void (path.endsWith('.wasm') && asked.push(path));
+    await reading(async (tab) => {
+      await live(tab);
+      await tab.locator('slam-widget[name="w16.1"]').scrollIntoViewIfNeeded();
+      await h.ready(tab, 'slam-widget[name="w16.1"]');
+      assert.equal(asked.length, 1);
+    }, {}, { server: { answer } });
+  });
+
+  it('plays through its acts in about ten seconds, and stops', async () => {
+    await reading(async (tab) => {
+      await live(tab);
+      const lengthS = Number(await slider(tab).getAttribute('max'));
+      assert.ok(lengthS > 9 && lengthS < 12, `${lengthS} s`);
+      await tab.waitForFunction(() => document.querySelector('.lap-controls button').textContent === 'Play again');
+      assert.equal(await tick(tab), 129);
+      assert.deepEqual(await tab.evaluate(() => acts), ['Wheels leave the building.', 'Walls double.', 'The loop snaps.']);
+      await h.quiet(tab);
+    }, {}, { server: { pages: { '/index.html': noting } } });
+  });
+
+  it('waits while it is out of sight', async () => {
+    await reading(async (tab) => {
+      await live(tab);
+      await tab.evaluate(() => scrollTo(0, 3 * innerHeight));
+      await h.quiet(tab);
+      const stood = await slider(tab).inputValue();
+      await tab.evaluate(() => frameClock.pass(3000));
+      assert.equal(await slider(tab).inputValue(), stood);
+      assert.equal(await button(tab).textContent(), 'Pause');
+      await tab.evaluate(() => scrollTo(0, 0));
+      await tab.waitForFunction((old) => document.querySelector('.lap-controls input').value > old, stood);
+    }, { stepMs: 1000 / 60 });
+  });
+
+  it('rests with reduced motion where the walls stand twice, and is the reader’s by keys and by touch', async () => {
+    await reading(async (tab) => {
+      await live(tab);
+      await h.quiet(tab);
+      assert.match(await act(tab), /^Walls double/);
+      assert.equal(await button(tab).textContent(), 'Play');
+      const rested = await tick(tab);
+      assert.equal(rested, 92);
+      await slider(tab).focus();
+      for (let press = 0; press < 20; press += 1) await tab.keyboard.press('ArrowLeft');
+      assert.ok((await tick(tab)) < rested);
+      assert.match(await slider(tab).getAttribute('aria-valuetext'), /^Walls double, tick \d+$/);
+      await tab.keyboard.press('End');
+      assert.equal(await tick(tab), 129);
+      await tab.getByRole('button', { name: 'Wheels leave the building.' }).tap();
+      assert.equal(await button(tab).textContent(), 'Pause');
+      assert.ok((await tick(tab)) < 64);
+      await button(tab).tap();
+      const { x, y, width, height } = await slider(tab).boundingBox();
+      await tab.touchscreen.tap(x + 0.8 * width, y + height / 2);
+      assert.match(await act(tab), /^The loop snaps/);
+    }, { reducedMotion: 'reduce', hasTouch: true });
+  });
+
+  it('is a picture where no script runs', async () => {
+    await reading(async (tab) => {
+      const picture = tab.locator('#lap img');
+      assert.ok(await picture.evaluate((image) => image.decode().then(() => image.naturalWidth > 300)));
+      assert.ok((await picture.getAttribute('alt')).length > 100);
+      assert.equal(await tab.locator('.lap-controls').count(), 0);
+    }, { javaScriptEnabled: false });
+  });
+});

@@ -1,0 +1,159 @@
+// The strip under the title: the canonical lap, replayed from what the core computes in the page.
+//
+// It plays once, where the reader wants motion and while it is seen; after that, and always by the
+// slider, the reader has the time in hand.
+
+import { ASPECT, draw, type Ink } from './drawing';
+import { Replay, type Story } from './story';
+import { canvasSurface, type Inks } from './surfaces';
+
+/** A step of the slider, and of an arrow key. */
+const STEP_S = 0.05;
+const INKS: Ink[] = ['truth', 'prediction', 'outbound', 'return', 'posterior', 'prior', 'measurement'];
+
+export class LapPlayer {
+  readonly #figure: HTMLElement;
+  readonly #story: Story;
+  readonly #replay: Replay;
+  readonly #canvas = document.createElement('canvas');
+  readonly #slider = document.createElement('input');
+  readonly #button = document.createElement('button');
+  /** One for each caption, which begins with its name. */
+  readonly #acts: HTMLElement[];
+  #inks: Inks | undefined;
+  #seconds = 0;
+  #isPlaying = false;
+  #isSeen = false;
+  #lastFrame: number | undefined;
+  #frame = 0;
+
+  constructor(figure: HTMLElement, story: Story) {
+    this.#figure = figure;
+    this.#story = story;
+    this.#replay = new Replay(story);
+    this.#acts = [...figure.querySelectorAll<HTMLElement>('.lap-acts > li')];
+    this.#addParts();
+    this.#listen();
+    const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
+    this.#seconds = isStill ? this.#replay.doubledS : 0;
+    this.#isPlaying = !isStill;
+    this.#show();
+  }
+
+  #addParts(): void {
+    const picture = this.#figure.querySelector('.lap-picture');
+    this.#canvas.setAttribute('role', 'img');
+    this.#canvas.setAttribute('aria-label', picture?.querySelector('img')?.alt ?? '');
+    picture?.append(this.#canvas);
+    this.#button.type = 'button';
+    Object.assign(this.#slider, { type: 'range', min: '0', max: String(this.#replay.lengthS), step: String(STEP_S) });
+    this.#slider.setAttribute('aria-label', 'Moment of the lap');
+    const controls = document.createElement('div');
+    controls.className = 'lap-controls';
+    controls.append(this.#button, this.#slider);
+    picture?.after(controls);
+    this.#figure.classList.add('live');
+  }
+
+  #listen(): void {
+    this.#button.addEventListener('click', () => (this.#isPlaying ? this.#stop() : this.#play()));
+    this.#slider.addEventListener('input', () => {
+      this.#isPlaying = false;
+      this.#goTo(Number(this.#slider.value));
+    });
+    this.#acts.forEach((caption, act) => {
+      const name = caption.querySelector('b');
+      const button = document.createElement('button');
+      button.type = 'button';
+      button.textContent = name?.textContent ?? '';
+      button.addEventListener('click', () => {
+        this.#goTo(this.#replay.actsS[act] ?? 0);
+        this.#play();
+      });
+      name?.replaceChildren(button);
+    });
+    new IntersectionObserver((entries) => {
+      this.#isSeen = entries.at(-1)?.isIntersecting === true;
+      this.#wake();
+    }, { threshold: 0.3 }).observe(this.#canvas);
+    new ResizeObserver(() => this.#paint()).observe(this.#canvas);
+    const repaint = (): void => {
+      this.#inks = undefined;
+      this.#paint();
+    };
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaint);
+    new MutationObserver(repaint).observe(document.documentElement, { attributeFilter: ['data-theme'] });
+    document.addEventListener('visibilitychange', () => this.#wake());
+  }
+
+  #play(): void {
+    if (this.#seconds >= this.#replay.lengthS) this.#seconds = 0;
+    this.#isPlaying = true;
+    this.#show();
+    this.#wake();
+  }
+
+  #stop(): void {
+    this.#isPlaying = false;
+    this.#show();
+  }
+
+  #goTo(seconds: number): void {
+    this.#seconds = seconds;
+    this.#show();
+  }
+
+  /** Asks for a frame where something moves and somebody sees it. */
+  #wake(): void {
+    if (!this.#isPlaying || !this.#isSeen || document.hidden || this.#frame !== 0) return;
+    this.#lastFrame = undefined;
+    this.#frame = requestAnimationFrame((now) => this.#next(now));
+  }
+
+  #next(now: number): void {
+    this.#frame = 0;
+    if (!this.#isPlaying || !this.#isSeen || document.hidden) return;
+    // The first frame after a pause only starts the clock.
+    const elapsedS = this.#lastFrame === undefined ? 0 : (now - this.#lastFrame) / 1000;
+    this.#lastFrame = now;
+    this.#seconds = Math.min(this.#seconds + elapsedS, this.#replay.lengthS);
+    if (this.#seconds === this.#replay.lengthS) this.#isPlaying = false;
+    else this.#frame = requestAnimationFrame((next) => this.#next(next));
+    this.#show();
+  }
+
+  #show(): void {
+    const { act, tick } = this.#replay.at(this.#seconds);
+    const isOver = this.#seconds >= this.#replay.lengthS;
+    this.#slider.value = String(this.#seconds);
+    this.#slider.setAttribute('aria-valuetext', `${nameOf(this.#acts[act])}, tick ${tick}`);
+    this.#button.textContent = this.#isPlaying ? 'Pause' : isOver ? 'Play again' : 'Play';
+    this.#figure.dataset['tick'] = String(tick);
+    this.#acts.forEach((caption, number) => {
+      if (number === act) caption.setAttribute('aria-current', 'step');
+      else caption.removeAttribute('aria-current');
+    });
+    this.#paint();
+  }
+
+  #paint(): void {
+    const width = this.#canvas.clientWidth;
+    const context = this.#canvas.getContext('2d');
+    if (width === 0 || context === null) return;
+    const ratio = devicePixelRatio;
+    this.#canvas.width = Math.round(width * ratio);
+    this.#canvas.height = Math.round((width / ASPECT) * ratio);
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    this.#inks ??= this.#readInks();
+    draw(this.#story, this.#replay.at(this.#seconds), canvasSurface(context, this.#inks), width);
+  }
+
+  #readInks(): Inks {
+    const style = getComputedStyle(this.#figure);
+    return Object.fromEntries(INKS.map((ink) => [ink, style.getPropertyValue(`--${ink}`).trim()])) as Inks;
+  }
+}
+
+function nameOf(act: HTMLElement | undefined): string {
+  return act?.querySelector('b')?.textContent?.replace(/\.$/, '') ?? '';
+}

@@ -1,0 +1,17 @@
+// The strip as the build draws it: for the time before the module has come, and for pages without script.
+
+import { ASPECT, draw } from './drawing';
+import { Replay, type Story } from './story';
+import { SvgSurface, type Inks } from './surfaces';
+
+/** Width of the picture in its own pixels. */
+const WIDTH = 900;
+
+/** The moment before the first loop closes, as an SVG. */
+export function still(story: Story, inks: Inks): string {
+  const surface = new SvgSurface(inks);
+  const replay = new Replay(story);
+  draw(story, replay.at(replay.doubledS), surface, WIDTH);
+  const height = WIDTH / ASPECT;
+  return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${WIDTH} ${height}" width="${WIDTH}" height="${height}">${surface.text}</svg>\n`;
+}

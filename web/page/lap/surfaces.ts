@@ -1,0 +1,71 @@
+// What a moment of the lap is drawn on: a canvas in the page, an SVG in the build.
+
+import type { Ink, Surface } from './drawing';
+import type { Point } from './story';
+
+export type Inks = Record<Ink, string>;
+
+/** A canvas whose unit is the CSS pixel. */
+export function canvasSurface(context: CanvasRenderingContext2D, inks: Inks): Surface {
+  const trace = (points: readonly Point[]): void => {
+    context.beginPath();
+    for (const [x, y] of points) context.lineTo(x, y);
+  };
+  return {
+    line(points, ink, width, { alpha = 1, dash = [] } = {}) {
+      trace(points);
+      context.globalAlpha = alpha;
+      context.strokeStyle = inks[ink];
+      context.lineWidth = width;
+      context.lineJoin = 'round';
+      context.lineCap = dash.length === 0 ? 'round' : 'butt';
+      context.setLineDash(dash);
+      context.stroke();
+      context.globalAlpha = 1;
+    },
+    dots(points, ink, size) {
+      context.fillStyle = inks[ink];
+      for (const [x, y] of points) context.fillRect(x - size / 2, y - size / 2, size, size);
+    },
+    area(points, ink) {
+      trace(points);
+      context.fillStyle = inks[ink];
+      context.fill();
+    },
+  };
+}
+
+/** Collects the shapes of an SVG; `text` is their source. */
+export class SvgSurface implements Surface {
+  readonly #inks: Inks;
+  text = '';
+
+  constructor(inks: Inks) {
+    this.#inks = inks;
+  }
+
+  line(points: readonly Point[], ink: Ink, width: number, { alpha = 1, dash = [] }: { alpha?: number; dash?: number[] } = {}): void {
+    const dashes = dash.length === 0 ? ' stroke-linecap="round"' : ` stroke-dasharray="${dash.map(short).join(' ')}"`;
+    const opacity = alpha === 1 ? '' : ` stroke-opacity="${alpha}"`;
+    this.text += `<path d="${pathOf(points)}" fill="none" stroke="${this.#inks[ink]}" stroke-width="${short(width)}" stroke-linejoin="round"${dashes}${opacity}/>`;
+  }
+
+  /** Dots of one ink are one path of strokes that have no length. */
+  dots(points: readonly Point[], ink: Ink, size: number): void {
+    const path = points.map(([x, y]) => `M${short(x)} ${short(y)}h0`).join('');
+    this.text += `<path d="${path}" stroke="${this.#inks[ink]}" stroke-width="${short(size)}" stroke-linecap="square"/>`;
+  }
+
+  area(points: readonly Point[], ink: Ink): void {
+    this.text += `<path d="${pathOf(points)}Z" fill="${this.#inks[ink]}"/>`;
+  }
+}
+
+function pathOf(points: readonly Point[]): string {
+  return points.map(([x, y], at) => `${at === 0 ? 'M' : 'L'}${short(x)} ${short(y)}`).join('');
+}
+
+/** A tenth of a pixel is less than anyone sees. */
+function short(value: number): string {
+  return String(Math.round(value * 10) / 10);
+}

@@ -1,0 +1,49 @@
+// The pictures of what the page draws by itself, drawn in the build by the same code and the same core.
+
+import { readFile, writeFile } from 'node:fs/promises';
+import path from 'node:path';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+
+import { build } from 'esbuild';
+
+const here = path.dirname(fileURLToPath(import.meta.url));
+const PKG = path.join(here, '..', 'pkg');
+/** The run that the page calls canonical. */
+const CANONICAL_SEED = 12648430;
+
+/** Writes `pictures/lap-light.svg` and its dark sister. */
+export async function drawStills(outDir) {
+  const { still } = await load('lap/still.ts');
+  const core = await instantiate();
+  const story = JSON.parse(core.lapStory(CANONICAL_SEED, 1));
+  const style = await readFile(path.join(here, 'page.css'), 'utf8');
+  for (const theme of ['light', 'dark']) {
+    await writeFile(path.join(outDir, 'pictures', `lap-${theme}.svg`), still(story, inksOf(style, theme)));
+  }
+}
+
+/** A module of the page in TypeScript, for Node. */
+async function load(file) {
+  const { outputFiles } = await build({
+    entryPoints: [path.join(here, file)],
+    bundle: true,
+    format: 'esm',
+    write: false,
+    logLevel: 'warning',
+  });
+  return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`);
+}
+
+async function instantiate() {
+  const { createGlue } = await import(pathToFileURL(path.join(PKG, 'glue.js')).href);
+  const core = createGlue({ request: () => 0, cancel: () => {}, deviceSize: () => [], pixelRatio: () => 1 });
+  core.initSync({ module: await readFile(path.join(PKG, 'slam_web_bg.wasm')) });
+  return core;
+}
+
+/** The colours of a theme, by the names that the style gives them. */
+function inksOf(style, theme) {
+  const start = theme === 'light' ? style.indexOf(':root {') : style.indexOf(':root[data-theme="dark"] {');
+  const block = style.slice(start, style.indexOf('}', start));
+  return Object.fromEntries([...block.matchAll(/--([a-z-]+): (#[0-9a-f]{6});/g)].map(([, name, color]) => [name, color]));
+}

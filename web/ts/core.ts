@@ -1,0 +1,29 @@
+// An instance of the module: with frames for a widget, or without, for pictures that a page draws by itself.
+
+import { createGlue, type FrameSource, type Glue } from '../pkg/glue.js';
+import { forgetModule, loadModule, StaleError } from './module';
+
+const NO_FRAMES: FrameSource = {
+  request: () => 0,
+  cancel: () => {},
+  pixelRatio: () => 1,
+  deviceSize: () => [],
+};
+
+/** The program of the widgets, compiled: for an instance of one's own, in a worker for example. */
+export function coreModule(progress: (share: number) => void = () => {}): Promise<WebAssembly.Module> {
+  return loadModule(progress);
+}
+
+/** The core without any widget, or with frames for one. */
+export async function core(frames = NO_FRAMES, progress?: (share: number) => void): Promise<Glue> {
+  const module = await coreModule(progress);
+  const glue = createGlue(frames);
+  try {
+    await glue({ module_or_path: module });
+    return glue;
+  } catch {
+    forgetModule();
+    throw new StaleError();
+  }
+}
