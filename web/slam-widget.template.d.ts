@@ -92,7 +92,9 @@ export declare class SlamWidget extends HTMLElement {
   readonly frames: number;
   dragsAt(x: number, y: number): boolean;
   /** Where a control lies on the canvas: left, top, width, height; null while it rests. */
-  controlBox(control: string): [number, number, number, number] | null;
+  controlBox(control: string): readonly [number, number, number, number] | null;
+  /** Where the picture lies on the canvas: left, top, width, height; null while it rests. */
+  sceneBox(): readonly [number, number, number, number] | null;
   /** Where a point of a panel lies on the canvas, in CSS pixels; null where it is not shown. */
   panelToScreen(panel: string, x: number, y: number): [number, number] | null;
   /** Zooms every map, or moves the part that is seen. */

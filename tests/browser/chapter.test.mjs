@@ -81,7 +81,7 @@ describe('the chapter', () => {
         presses += 1;
       }
       assert.ok(presses > 20 && presses < 100, `${presses} presses through the widget`);
-    });
+    }, { viewport: { width: 1000, height: 900 } });
   });
 
   it('gives a widget the width that the window has', async () => {
@@ -91,6 +91,9 @@ describe('the chapter', () => {
       await h.ready(tab, css);
       for (const width of [700, 390, 1100]) {
         await tab.setViewportSize({ width, height: 800 });
+        // The text around it is as high as it is narrow.
+        await tab.locator(css).scrollIntoViewIfNeeded();
+        await h.ready(tab, css);
         await tab.waitForFunction((name) => {
           const host = document.querySelector(name);
           const inside = host.shadowRoot.querySelector('canvas').clientWidth;

@@ -55,7 +55,7 @@ fn no_number_stands_unmarked() {
 fn a_number_that_sets_a_widget_says_what_it_sets() {
     let page = page();
     assert!(page.links.len() >= 10, "the page has lost its links");
-    for NumberLink { href, text } in &page.links {
+    for NumberLink { href, text, .. } in &page.links {
         let set: Vec<f64> = href
             .split(['&', '?'])
             .filter_map(|pair| pair.split_once('=')?.1.parse().ok())
@@ -85,6 +85,49 @@ fn every_link_is_taken_whole_by_a_widget_that_stands_on_the_page() {
         let (number, state) = query.split_once('&').expect("a link sets something");
         widgets.set(&format!("w{number}"), state);
     }
+}
+
+#[test]
+fn the_widget_of_every_link_says_what_the_sentence_of_the_link_says() {
+    let page = page();
+    let mut widgets = Widgets::new();
+    let mut wrong = Vec::new();
+    for link in &page.links {
+        let query = link.href.trim_start_matches("?w=");
+        let (number, state) = query.split_once('&').expect("a link sets something");
+        let outcome = widgets.set(&format!("w{number}"), state).outcome();
+        if let Some(verdict) = &link.verdict {
+            if outcome.verdict != *verdict {
+                wrong.push(format!("{}: {}, not {verdict}", link.href, outcome.verdict));
+            }
+            continue;
+        }
+        let shows = link.shows.as_deref().unwrap_or_default();
+        if shows.is_empty() {
+            wrong.push(format!("{}: nothing says what it shows", link.href));
+        }
+        for pair in shows.split_whitespace() {
+            let (fact, name) = pair.split_once('=').expect("a fact and a figure");
+            let figure = page.figures.iter().find(|figure| figure.name == name);
+            let stands_beside = link.around.contains(&format!("\"{name}\""))
+                || link.around.contains(&format!("{{{name}}}"));
+            let found = outcome.facts.iter().find(|found| found.id == fact);
+            match (figure, found) {
+                (Some(figure), Some(found)) if stands_beside => {
+                    // A heading is printed without its sign where only its size matters.
+                    let says = |value| printed::check(&figure.text, value);
+                    if says(found.value).is_err() && says(-found.value).is_err() {
+                        wrong.push(format!(
+                            "{}: the text says {}, the widget {fact} = {}",
+                            link.href, figure.text, found.value
+                        ));
+                    }
+                }
+                _ => wrong.push(format!("{}: {pair} is not in its sentence", link.href)),
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]

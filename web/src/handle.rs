@@ -309,6 +309,13 @@ impl Widget {
         Some(shell.panel_to_screen(panel, [x, y])?.to_vec())
     }
 
+    /// Where the picture stands on the canvas: left, top, width, height in CSS pixels.
+    #[wasm_bindgen(js_name = sceneBox)]
+    pub fn scene_box(&self) -> Option<Vec<f32>> {
+        let rect = self.shared.shell.borrow().scene_rect()?;
+        Some(vec![rect.left, rect.top, rect.width, rect.height])
+    }
+
     /// Ends every drag, because its touch was cancelled.
     #[wasm_bindgen(js_name = releaseDrags)]
     pub fn release_drags(&self) {

@@ -1,4 +1,6 @@
 // An element and the address of its page: `linked` ones read their state there and keep it there.
+//
+// An entry of the browser's history keeps the states of all linked widgets: Back finds each as it was.
 
 import { readQuery, withState } from './links';
 import type { WidgetSpec } from './schema';
@@ -30,4 +32,37 @@ export function linkTo(element: HTMLElement, spec: WidgetSpec | undefined, query
   const link = new URL(isLinked ? location.href : new URL('embed.html', import.meta.url));
   if (spec !== undefined) link.search = withState(link.search, spec, query);
   return link.href;
+}
+
+/** What an entry of the history keeps of us, beside what others keep there. */
+interface Kept {
+  slam?: Record<string, string>;
+}
+
+/** A linked widget, as far as the history is concerned. */
+interface Linked extends HTMLElement {
+  readonly name: string;
+  readonly query: string;
+}
+
+/** Writes the state of now into the present entry of the history. */
+export function keepEntry(address = location.href): void {
+  history.replaceState(withStates(), '', address);
+}
+
+/** Begins a new entry with the state of now. */
+export function pushEntry(address: string): void {
+  history.pushState(withStates(), '', address);
+}
+
+/** The query of each linked widget in an entry, by its name. */
+export function statesIn(entry: unknown): [name: string, query: string][] {
+  const states = (entry as Kept | null)?.slam;
+  return typeof states === 'object' ? Object.entries(states) : [];
+}
+
+function withStates(): Kept {
+  const linked = document.querySelectorAll<Linked>('slam-widget[linked]');
+  const slam = Object.fromEntries([...linked].map(({ name, query }) => [name, query]));
+  return { ...(history.state as Kept | null), slam };
 }

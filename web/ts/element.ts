@@ -5,12 +5,13 @@
 
 import { linkTo, readAddress } from './address';
 import { Controls } from './controls';
-import { listen, reveal, upgradeProperties } from './dom';
+import { listen, upgradeProperties } from './dom';
 import { takeAwayBar } from './export';
 import type { CsvFile, Outcome, Timeline } from './instance';
 import { Life, TakenAwayError, type LifeHost } from './life';
 import { LoadError } from './module';
 import { lookBar, type Way } from './look';
+import { boxOf, Looks, type Box } from './looks';
 import { News } from './news';
 import { Notes } from './notes';
 import { build, type Parts } from './parts';
@@ -18,11 +19,8 @@ import { Pictures } from './pictures';
 import { Place } from './place';
 import { findParam, findWidget, widgets } from './schema';
 import { State } from './state';
-import { themeOf, watchTheme, type Theme } from './theme';
 import { defaultText, shorten, type Value } from './values';
 import { unwatchVisibility, watchVisibility } from './visibility';
-
-const reducedMotion = globalThis.matchMedia?.('(prefers-reduced-motion: reduce)');
 
 export class SlamWidget extends HTMLElement {
   static readonly observedAttributes: string[] = ['name', 'theme'];
@@ -33,6 +31,7 @@ export class SlamWidget extends HTMLElement {
   readonly #pictures: Pictures;
   readonly #place: Place;
   readonly #life: Life;
+  readonly #looks: Looks;
   #state: State | undefined;
   #isSetUp = false;
   #controls: Controls | undefined;
@@ -47,6 +46,7 @@ export class SlamWidget extends HTMLElement {
     this.#pictures = new Pictures(this.#parts.picture);
     this.#place = new Place(this.#parts.stage);
     this.#life = new Life(this.#parts, this.#lifeHost());
+    this.#looks = new Looks(this, this.#parts, this.#life, this.#pictures);
   }
 
   connectedCallback(): void {
@@ -54,18 +54,14 @@ export class SlamWidget extends HTMLElement {
     if (!this.#isSetUp) this.#setUp();
     upgradeProperties(this);
     this.#unwatch = [
-      watchTheme(this, () => this.#showTheme()),
+      ...this.#looks.watch(),
       listen(window, 'error', () => this.#life.checkCrash()),
-      listen(window, 'beforeprint', () => this.#drawPicture('light')),
       listen(window, 'resize', () => this.#resized()),
       listen(document, 'visibilitychange', () => this.#life.wake()),
       // What the reader turns to comes first where not all can draw.
       listen(this, 'pointerenter', () => this.#life.askAgain()),
       listen(this, 'focusin', () => this.#life.askAgain()),
     ];
-    if (reducedMotion !== undefined) {
-      this.#unwatch.push(listen(reducedMotion, 'change', () => this.#showMotion()));
-    }
     this.#place.fit();
     watchVisibility(this, this.#life);
   }
@@ -87,7 +83,7 @@ export class SlamWidget extends HTMLElement {
       this.#setUp();
       this.#life.restart();
     } else if (name === 'theme') {
-      this.#showTheme();
+      this.#looks.showTheme();
     } else {
       const spec = this.#state && findParam(this.#state.spec, name);
       if (spec !== undefined) this.#tryToSet(name, value ?? defaultText(spec));
@@ -201,9 +197,13 @@ export class SlamWidget extends HTMLElement {
   }
 
   /** Where a control lies on the canvas: left, top, width, height; null while it rests. */
-  controlBox(id: string): [number, number, number, number] | null {
-    const box = this.#life.ask((widget) => widget.controlBox(String(id)));
-    return box === undefined ? null : ([...box] as [number, number, number, number]);
+  controlBox(id: string): Box | null {
+    return boxOf(this.#life.ask((widget) => widget.controlBox(String(id))));
+  }
+
+  /** Where the picture lies on the canvas: left, top, width, height; null while it rests. */
+  sceneBox(): Box | null {
+    return boxOf(this.#life.ask((widget) => widget.sceneBox()));
   }
 
   /** Where a point of a panel lies on the canvas, in CSS pixels; null where it is not shown. */
@@ -253,13 +253,13 @@ export class SlamWidget extends HTMLElement {
     this.#controls = new Controls(spec, {
       set: (id, text) => this.#tryToSet(id, text),
       press: (id) => void this.press(id).catch((error: unknown) => this.#pressFailed(error)),
-      focus: (id) => this.#showFocus(id),
+      focus: (id) => this.#looks.showFocus(id),
     });
     const look = lookBar((way) => this.look(way));
     parts.bar.append(this.#controls.element, look, takeAwayBar(this, spec.id, parts.status));
     parts.frame.setAttribute('aria-label', `Widget ${spec.id.replace(/^w/, '')}: ${spec.title}`);
     parts.summary.textContent = spec.summary;
-    this.#showTheme();
+    this.#looks.become(spec.id);
     for (const param of spec.params) {
       const text = this.getAttribute(param.id);
       if (text !== null) this.#tryToSet(param.id, text);
@@ -290,8 +290,7 @@ export class SlamWidget extends HTMLElement {
         // The model may keep less than was asked for: no moment after the end of its run.
         for (const id of state?.texts.keys() ?? []) state?.keep(id, widget.text(id));
         this.#controls?.show(state?.texts ?? []);
-        widget.setTheme(themeOf(this));
-        widget.setReducedMotion(reducedMotion?.matches === true);
+        this.#looks.prepare(widget);
       },
       live: (milliseconds) => {
         this.#showTimeline();
@@ -300,10 +299,11 @@ export class SlamWidget extends HTMLElement {
       },
       drew: (canvas) => {
         this.#pictures.handOut(canvas);
+        this.#looks.drew(canvas);
         this.#sync();
       },
       leaving: () => {
-        this.#drawPicture(themeOf(this));
+        this.#looks.drawPicture();
         this.#shownOutcome();
         this.#place.keep();
       },
@@ -359,6 +359,11 @@ export class SlamWidget extends HTMLElement {
     this.#controls?.showTimeline(this.#shownTimeline());
   }
 
+  #resized(): void {
+    this.#place.fit();
+    this.#life.wake();
+  }
+
   // ---- values -------------------------------------------------------------------------------
 
   /** Sets a parameter; returns what was wrong. */
@@ -389,42 +394,5 @@ export class SlamWidget extends HTMLElement {
     const stands = label === undefined ? '' : ` It stays at ${label}.`;
     this.#news.wrong('value', `${problem}.${stands}`, id);
     return problem;
-  }
-
-  // ---- looks --------------------------------------------------------------------------------
-
-  #showTheme(): void {
-    const theme = themeOf(this);
-    this.#parts.frame.classList.toggle('dark', theme === 'dark');
-    this.#life.ask((widget) => widget.setTheme(theme));
-    this.#life.wake();
-    const spec = this.#state?.spec;
-    if (!this.#life.hasInstance && spec !== undefined) this.#pictures.showStart(spec.id, theme);
-  }
-
-  #resized(): void {
-    this.#place.fit();
-    this.#life.wake();
-  }
-
-  #showMotion(): void {
-    const reduced = reducedMotion?.matches === true;
-    this.#life.ask((widget) => widget.setReducedMotion(reduced));
-  }
-
-  #showFocus(id: string | undefined): void {
-    this.#life.ask((widget) => widget.setFocus(id));
-    this.#life.wake();
-    const box = id === undefined ? null : this.controlBox(id);
-    const { stage, bar } = this.#parts;
-    // The ring is on the canvas, not where the focus is.
-    if (box !== null) reveal(stage, box, bar.offsetHeight);
-  }
-
-  /** The picture of the state of now, drawn by the widget itself. */
-  #drawPicture(theme: Theme): void {
-    const width = Math.max(this.clientWidth, 320);
-    const svg = this.#life.ask((widget) => widget.picture(width, theme));
-    if (svg !== undefined) this.#pictures.showDrawn(svg, this.summary);
   }
 }

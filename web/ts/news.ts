@@ -1,5 +1,6 @@
 // What is told of a widget: events for programs, sentences for a screen reader, the page's address.
 
+import { keepEntry } from './address';
 import { CrashError, type Outcome, type Timeline } from './instance';
 import type { Notes } from './notes';
 import { failureBox, type Parts } from './parts';
@@ -90,7 +91,7 @@ export class News {
       this.#say(outcome.sentence);
       this.#emit('slam-result', { value: source.value, outcome });
     }
-    if (source.hasAttribute('linked')) history.replaceState(history.state, '', source.link);
+    if (source.hasAttribute('linked')) keepEntry(source.link);
   }
 
   #describe(): void {

@@ -1,10 +1,13 @@
 // Numbers in the text that set a widget: <a class="slam-link" href="?w=16.1&heading=60">60°</a>.
 // Without script the link opens the page with that state; with it the widget on the page takes it.
+// Where the page keeps states in its address, each link is an entry of the browser's history.
 
+import { keepEntry, pushEntry, statesIn } from './address';
 import { SlamWidget } from './element';
 import { keepInView } from './follow';
-import { readQuery } from './links';
+import { readQuery, type LinkedState } from './links';
 import { defaultText } from './values';
+import { endWayBack, offerWayBack } from './way-back';
 
 /** Listens to clicks on every slam-link of the document. */
 export function installLinks(): void {
@@ -15,6 +18,7 @@ export function installLinks(): void {
     const link = origin instanceof Element ? origin.closest('a.slam-link') : null;
     if (link instanceof HTMLAnchorElement && follow(link)) event.preventDefault();
   });
+  window.addEventListener('popstate', ({ state }) => returnTo(state));
   showAddressed();
 }
 
@@ -24,11 +28,29 @@ function follow(link: HTMLAnchorElement): boolean {
   if (linked === undefined || !('widget' in linked)) return false;
   const widget = widgetNamed(linked.widget.id);
   if (widget === undefined) return false;
-  // A link names a whole state: what it leaves out goes back to its default.
-  const asked = new Map(linked.values);
-  for (const spec of linked.widget.params) widget.set(spec.id, asked.get(spec.id) ?? defaultText(spec));
-  bringIntoView(widget);
+  const isKept = widget.hasAttribute('linked');
+  if (isKept) keepEntry();
+  setWhole(widget, linked);
+  if (isKept) pushEntry(widget.link);
+  endWayBack();
+  if (bringIntoView(widget)) offerWayBack(link);
   return true;
+}
+
+/** Puts every linked widget into the state that an entry of the history keeps. */
+function returnTo(entry: unknown): void {
+  endWayBack();
+  for (const [name, query] of statesIn(entry)) {
+    const widget = widgetNamed(name);
+    const kept = readQuery(query);
+    if (widget?.hasAttribute('linked') === true && kept !== undefined && 'widget' in kept) setWhole(widget, kept);
+  }
+}
+
+/** A query names a whole state: what it leaves out goes back to its default. */
+function setWhole(widget: SlamWidget, { widget: spec, values }: LinkedState): void {
+  const asked = new Map(values);
+  for (const param of spec.params) widget.set(param.id, asked.get(param.id) ?? defaultText(param));
 }
 
 /** A page that was opened by a link with a state shows that widget. */
@@ -44,10 +66,11 @@ function widgetNamed(name: string): SlamWidget | undefined {
   return found instanceof SlamWidget ? found : undefined;
 }
 
-/** Scrolls where less than half of the widget, or of the screen, shows it. */
-function bringIntoView(widget: SlamWidget): void {
+/** Scrolls where less than half of the widget, or of the screen, shows it; says whether it did. */
+function bringIntoView(widget: SlamWidget): boolean {
   const { top, bottom } = widget.getBoundingClientRect();
   const visible = Math.min(bottom, innerHeight) - Math.max(top, 0);
-  if (visible >= Math.min(bottom - top, innerHeight) / 2) return;
+  if (visible >= Math.min(bottom - top, innerHeight) / 2) return false;
   keepInView(widget);
+  return true;
 }

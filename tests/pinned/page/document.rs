@@ -17,12 +17,18 @@ pub struct Figure {
 }
 
 /// A number in the text that sets a widget.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct NumberLink {
     /// The query: `?w=16.1&heading=60`.
     pub href: String,
     /// The words of the link.
     pub text: String,
+    /// What the widget says there, and the figure that prints it: `rmse_m=basin.p2p.75.rmse …`.
+    pub shows: Option<String>,
+    /// The verdict of the widget, where the sentence has no number.
+    pub verdict: Option<String>,
+    /// The paragraph or item in which the link stands, as source.
+    pub around: String,
 }
 
 /// A question that the reader answers before the widget may.
@@ -88,6 +94,11 @@ impl Document {
             document.take_text(&mut open, &rest[..start]);
             let end = start + rest[start..].find('>').expect("a tag ends");
             document.take_tag(&mut open, &rest[start + 1..end]);
+            if let Some(Open::Link(link)) = &mut open
+                && link.around.is_empty()
+            {
+                link.around = block_around(html, html.len() - rest.len() + start);
+            }
             rest = &rest[end + 1..];
         }
         document
@@ -124,8 +135,12 @@ impl Document {
             "span" if class == "ordinal" || class == "count" => *open = Some(Open::Count),
             "a" if class.split(' ').any(|class| class == "slam-link") => {
                 let href = attribute("href").expect("a link has a target");
-                let text = String::new();
-                *open = Some(Open::Link(NumberLink { href, text }));
+                *open = Some(Open::Link(NumberLink {
+                    href,
+                    shows: attribute("data-shows"),
+                    verdict: attribute("data-verdict"),
+                    ..NumberLink::default()
+                }));
             }
             "a" if class == "cite" => {
                 let href = attribute("href").expect("a citation has a target");
@@ -201,6 +216,16 @@ impl Document {
             self.loose_numbers.push(tex.to_owned());
         }
     }
+}
+
+/// The paragraph or item of a list that holds a place of the source.
+fn block_around(html: &str, place: usize) -> String {
+    let (before, after) = html.split_at(place);
+    let starts = ["<p>", "<li>", "<li "].map(|tag| before.rfind(tag));
+    let ends = ["</p>", "</li>"].map(|tag| after.find(tag));
+    let start = starts.into_iter().flatten().max().unwrap_or_default();
+    let end = ends.into_iter().flatten().min().unwrap_or(after.len());
+    html[start..place + end].to_owned()
 }
 
 /// The numbers in a text, with their signs.

@@ -15,6 +15,7 @@ use crate::param::Values;
 use crate::pointer::{Pointer, TOUCH_REACH_PX};
 use crate::scene::{Scene, Tone};
 use crate::style;
+use crate::surface::PxRect;
 use crate::svg::picture_svg;
 use crate::transform::Transform;
 use crate::view::View;
@@ -190,6 +191,12 @@ impl Shell {
     #[must_use]
     pub fn control_rect(&self, id: &str) -> Option<Rect> {
         self.hot.rect(id)
+    }
+
+    /// Where the first panel stood in the last frame: what a host keeps in sight while a control moves.
+    #[must_use]
+    pub fn scene_rect(&self) -> Option<PxRect> {
+        Some(self.panels.first()?.1.plot())
     }
 
     /// Lets go of what is dragged: the touch was cancelled.

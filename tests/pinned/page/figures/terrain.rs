@@ -29,7 +29,7 @@ pub fn value(path: &[&str]) -> Option<f64> {
         "x06" => at(PROBE_M, 0.0),
         "y06" => at(0.0, PROBE_M),
         "x13" => at(settings.span_m, 0.0),
-        "peak" => at(0.0, 0.0),
+        "x00" | "peak" => at(0.0, 0.0),
         "beside_peak" => at(settings.offset_m(n / 2 + 1), 0.0),
         "x06_percent" => {
             100.0 * at(PROBE_M, 0.0) / Terrain::compute(&scene, &settings).ndt_maximum()?.value

@@ -1,0 +1,141 @@
+// Links in the text: the scene beside them, the browser's history, and the way back.
+
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import * as h from './harness.mjs';
+
+const visit = h.visitor();
+const reading = (test, options = {}) => visit('', test, { path: '/index.html', options });
+const widget = (id) => `slam-widget[name="${id}"]`;
+const get = (tab, id, param) => tab.evaluate(([css, name]) => document.querySelector(css).get(name), [widget(id), param]);
+const has = (tab, id, param, value) => tab.waitForFunction(
+  ([css, name, wanted]) => document.querySelector(css).get(name) === wanted, [widget(id), param, value]);
+const link = (tab, words) => tab.locator('main a.slam-link', { hasText: words }).first();
+const wayBack = (tab) => tab.locator('.slam-way-back button');
+const scrolled = (tab) => tab.evaluate(() => Math.round(scrollY));
+
+describe('a link in the text', () => {
+  it('changes the scene beside it without a jump, on a wide screen', async () => {
+    await reading(async (tab) => {
+      for (const [id, words] of [['w16.1', '75°'], ['w16.1', '180°'], ['w16.3', 'across'], ['w16.2', '119']]) {
+        await link(tab, words).scrollIntoViewIfNeeded();
+        await tab.evaluate((css) => document.querySelector(css).scrollIntoView({ block: 'nearest' }), widget(id));
+        await link(tab, words).evaluate((a) => a.scrollIntoView({ block: 'center' }));
+        const before = await scrolled(tab);
+        const query = await tab.evaluate((css) => document.querySelector(css).query, widget(id));
+        const { top, bottom } = await tab.evaluate((css) => document.querySelector(css).getBoundingClientRect(), widget(id));
+        assert.ok(top >= 0 && top < 200 && bottom > 450, `${id} stands at ${top} to ${bottom}`);
+        await link(tab, words).click();
+        await tab.waitForFunction(([css, old]) => document.querySelector(css).query !== old, [widget(id), query]);
+        await h.quiet(tab);
+        assert.equal(await scrolled(tab), before, words);
+        assert.equal(await wayBack(tab).count(), 0);
+      }
+    }, { viewport: { width: 1100, height: 900 } });
+  });
+
+  it('is an entry of the history: Back returns to the state before, and stays on the page', async () => {
+    await reading(async (tab) => {
+      const path = await tab.evaluate(() => location.pathname);
+      const start = await get(tab, 'w16.1', 'heading');
+      await link(tab, '75°').click();
+      await has(tab, 'w16.1', 'heading', 75);
+      await link(tab, '45°').click();
+      await has(tab, 'w16.1', 'heading', 45);
+      // What the reader does between two links comes back, too.
+      await tab.evaluate((css) => document.querySelector(css).set('tau', 1.1), widget('w16.1'));
+      await link(tab, '119').click();
+      await has(tab, 'w16.2', 't', 119);
+      assert.match(tab.url(), /w=16.2&t=119/);
+      await tab.goBack();
+      await has(tab, 'w16.2', 't', 92);
+      assert.equal(await get(tab, 'w16.1', 'tau'), 1.1);
+      await tab.goBack();
+      await has(tab, 'w16.1', 'heading', 75);
+      assert.equal(await get(tab, 'w16.1', 'tau'), 0.7);
+      await tab.goBack();
+      await has(tab, 'w16.1', 'heading', start);
+      await tab.goForward();
+      await has(tab, 'w16.1', 'heading', 75);
+      assert.equal(await tab.evaluate(() => location.pathname), path);
+    });
+  });
+
+  it('that leads elsewhere offers the way back to its sentence', async () => {
+    await reading(async (tab) => {
+      const here = link(tab, 'τ = 0.1 m');
+      await here.evaluate((a) => {
+        a.closest('details').open = true;
+        a.scrollIntoView({ block: 'center' });
+      });
+      await here.click();
+      await tab.waitForFunction((css) => document.querySelector(css).getBoundingClientRect().top < innerHeight, widget('w16.1'));
+      assert.equal(await wayBack(tab).textContent(), 'Back to “τ = 0.1 m”');
+      await wayBack(tab).click();
+      assert.equal(await wayBack(tab).count(), 0);
+      assert.ok(await here.evaluate((a) => {
+        const { top, bottom } = a.getBoundingClientRect();
+        return document.activeElement === a && top > 0 && bottom < innerHeight;
+      }));
+      assert.equal(await get(tab, 'w16.1', 'tau'), 0.1, 'the widget stays as the link has set it');
+    });
+  });
+
+  it('sets its widget to exactly what it names, each of them', async () => {
+    await reading(async (tab) => {
+      const asked = await tab.evaluate(() => [...document.querySelectorAll('a.slam-link')].map((a) => {
+        a.closest('details')?.setAttribute('open', '');
+        a.click();
+        const query = new URLSearchParams(a.search);
+        const element = document.querySelector(`slam-widget[name="w${query.get('w')}"]`);
+        const wrong = [...query].filter(([id, text]) => id !== 'w' && String(element.get(id)) !== text);
+        const back = new URLSearchParams(location.search);
+        return { href: a.search, wrong, kept: [...query].every(([id, text]) => id === 'w' || back.get(id) === text
+          || !element.query.includes(`${id}=`)) };
+      }));
+      assert.ok(asked.length >= 24);
+      for (const { href, wrong, kept } of asked) assert.deepEqual([wrong, kept], [[], true], href);
+    });
+  });
+});
+
+describe('on a narrow screen', () => {
+  it('the scene stays in sight while one moves a slider below it', async () => {
+    await reading(async (tab) => {
+      const css = widget('w16.1');
+      await tab.locator(css).scrollIntoViewIfNeeded();
+      await h.ready(tab, css);
+      // The slider stands where the picture has left the screen.
+      await tab.evaluate((name) => {
+        const element = document.querySelector(name);
+        const canvas = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
+        scrollBy(0, canvas.top + element.controlBox('heading')[1] - 0.7 * innerHeight);
+      }, css);
+      const pinned = () => tab.evaluate((name) => {
+        const copy = document.querySelector(name).shadowRoot.querySelector('.pinned');
+        if (copy === null) return null;
+        const { top, bottom, left, right } = copy.getBoundingClientRect();
+        const { data } = copy.getContext('2d').getImageData(0, 0, copy.width, copy.height);
+        return { top, bottom, left, right, colors: new Set(new Uint32Array(data.buffer)).size };
+      }, css);
+      const isPinned = (wanted) => tab.waitForFunction(
+        ([name, is]) => (document.querySelector(name).shadowRoot.querySelector('.pinned') !== null) === is, [css, wanted]);
+      const at = await tab.evaluate((name) => {
+        const element = document.querySelector(name);
+        const { left, top } = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
+        const [x, y, width, height] = element.controlBox('heading');
+        return [left + x + 0.3 * width, top + y + height - 8];
+      }, css);
+      await h.quiet(tab);
+      assert.equal(await pinned(), null);
+      await tab.mouse.move(...at);
+      await tab.mouse.down();
+      await isPinned(true);
+      const shown = await pinned();
+      assert.ok(shown.top === 0 && shown.bottom < at[1] - 20 && shown.colors > 3, JSON.stringify(shown));
+      assert.ok(shown.left >= 0 && shown.right <= 390);
+      await tab.mouse.up();
+      await isPinned(false);
+    }, { viewport: { width: 390, height: 844 }, sees: true });
+  });
+});

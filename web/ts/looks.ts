@@ -1,0 +1,105 @@
+// How a widget looks on its page: light or dark, moving or still, where the focus is, on paper.
+
+import type { Widget } from '../pkg/glue.js';
+import { listen, reveal } from './dom';
+import type { Life } from './life';
+import type { Parts } from './parts';
+import { Pinned } from './pinned';
+import type { Pictures } from './pictures';
+import { themeOf, watchTheme, type Theme } from './theme';
+
+const reducedMotion = globalThis.matchMedia?.('(prefers-reduced-motion: reduce)');
+/** Narrower no picture is drawn. */
+const NARROWEST_PX = 320;
+
+/** Left, top, width and height of something on the canvas, in CSS pixels. */
+export type Box = readonly [left: number, top: number, width: number, height: number];
+
+/** The element, as far as its looks go. */
+export interface LooksHost extends HTMLElement {
+  readonly summary: string;
+  controlBox(id: string): Box | null;
+  sceneBox(): Box | null;
+}
+
+export class Looks {
+  readonly #host: LooksHost;
+  readonly #parts: Parts;
+  readonly #life: Life;
+  readonly #pictures: Pictures;
+  readonly #pinned: Pinned;
+  /** The widget whose picture stands for it while it rests. */
+  #widget: string | undefined;
+
+  constructor(host: LooksHost, parts: Parts, life: Life, pictures: Pictures) {
+    this.#host = host;
+    this.#parts = parts;
+    this.#life = life;
+    this.#pictures = pictures;
+    this.#pinned = new Pinned(parts, {
+      sceneBox: () => host.sceneBox() ?? undefined,
+      wake: () => life.wake(),
+    });
+  }
+
+  /** Follows the page until one of the returned functions is called. */
+  watch(): (() => void)[] {
+    const ends = [
+      watchTheme(this.#host, () => this.showTheme()),
+      listen(window, 'beforeprint', () => this.drawPicture('light')),
+      this.#pinned.watch(),
+    ];
+    if (reducedMotion === undefined) return ends;
+    return [...ends, listen(reducedMotion, 'change', () => this.#life.ask(showMotion))];
+  }
+
+  /** Another widget comes. */
+  become(widget: string): void {
+    this.#widget = widget;
+    this.showTheme();
+  }
+
+  /** A fresh instance takes on the looks of the page. */
+  prepare(widget: Widget): void {
+    widget.setTheme(themeOf(this.#host));
+    showMotion(widget);
+  }
+
+  showTheme(): void {
+    const theme = themeOf(this.#host);
+    this.#parts.frame.classList.toggle('dark', theme === 'dark');
+    this.#life.ask((widget) => widget.setTheme(theme));
+    this.#life.wake();
+    if (!this.#life.hasInstance && this.#widget !== undefined) this.#pictures.showStart(this.#widget, theme);
+  }
+
+  showFocus(id: string | undefined): void {
+    this.#life.ask((widget) => widget.setFocus(id));
+    this.#life.wake();
+    const box = id === undefined ? null : this.#host.controlBox(id);
+    const { stage, bar } = this.#parts;
+    // The ring is on the canvas, not where the focus is.
+    if (box !== null) reveal(stage, box, bar.offsetHeight);
+  }
+
+  /** A frame was drawn; the canvas holds it until the end of this task. */
+  drew(canvas: HTMLCanvasElement): void {
+    this.#pinned.drew(canvas);
+  }
+
+  /** The picture of the state of now, drawn by the widget itself. */
+  drawPicture(theme: Theme = themeOf(this.#host)): void {
+    const width = Math.max(this.#host.clientWidth, NARROWEST_PX);
+    const svg = this.#life.ask((widget) => widget.picture(width, theme));
+    if (svg !== undefined) this.#pictures.showDrawn(svg, this.#host.summary);
+  }
+}
+
+function showMotion(widget: Widget): void {
+  widget.setReducedMotion(reducedMotion?.matches === true);
+}
+
+/** What the module says of a place. */
+export function boxOf(numbers: Float32Array | undefined): Box | null {
+  return numbers === undefined ? null : ([...numbers] as unknown as Box);
+}

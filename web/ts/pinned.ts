@@ -1,0 +1,112 @@
+// On a narrow screen the picture and the slider that changes it do not fit together: while a control
+// below it is moved, a copy of the picture stands at the top of the screen.
+
+import { create } from './dom';
+import type { Box } from './looks';
+
+/** From this width on, the page has room for both. */
+const NARROW = '(width < 1100px)';
+/** Of a picture that is seen by more than this, no copy is needed. */
+const SEEN_SHARE = 0.6;
+/** The copy leaves the rest of the screen to the controls. */
+const MOST_HEIGHT = 0.45;
+/** Titles and axes stand around what is drawn. */
+const MARGIN_PX = 34;
+
+export interface PinnedHost {
+  /** The part of the canvas that holds the picture; undefined while nothing is drawn. */
+  sceneBox(): Box | undefined;
+  /** Asks for a frame. */
+  wake(): void;
+}
+
+export class Pinned {
+  readonly #stage: HTMLElement;
+  readonly #bar: HTMLElement;
+  readonly #host: PinnedHost;
+  readonly #frame: HTMLElement;
+  #copy: HTMLCanvasElement | undefined;
+  #isMoved = false;
+
+  constructor({ frame, stage, bar }: { frame: HTMLElement; stage: HTMLElement; bar: HTMLElement }, host: PinnedHost) {
+    this.#frame = frame;
+    this.#stage = stage;
+    this.#bar = bar;
+    this.#host = host;
+    stage.addEventListener('pointerdown', (event) => this.#begin(event), { capture: true, passive: true });
+    bar.addEventListener('focusin', () => this.#set(this.#holdsControl()));
+    bar.addEventListener('focusout', () => this.#set(false));
+  }
+
+  /** What listens beyond the element; returns what ends it. */
+  watch(): () => void {
+    const end = (): void => this.#set(this.#holdsControl());
+    const moves = ['pointerup', 'pointercancel', 'blur'];
+    for (const type of moves) window.addEventListener(type, end, { passive: true });
+    const follow = (): void => this.#host.wake();
+    window.addEventListener('scroll', follow, { passive: true });
+    return () => {
+      for (const type of moves) window.removeEventListener(type, end);
+      window.removeEventListener('scroll', follow);
+      this.#set(false);
+    };
+  }
+
+  /** A frame was drawn; the canvas holds it until the end of this task. */
+  drew(canvas: HTMLCanvasElement): void {
+    const box = this.#isMoved && matchMedia(NARROW).matches ? this.#host.sceneBox() : undefined;
+    if (box === undefined || this.#isSeen(canvas, box)) {
+      this.#hide();
+      return;
+    }
+    this.#show(canvas, box);
+  }
+
+  /** The pointer went down below the picture: on a control. */
+  #begin({ clientY, target }: PointerEvent): void {
+    const box = this.#host.sceneBox();
+    if (box === undefined || !(target instanceof HTMLCanvasElement)) return;
+    this.#set(clientY - target.getBoundingClientRect().top > box[1] + box[3]);
+  }
+
+  #set(isMoved: boolean): void {
+    if (this.#isMoved === isMoved) return;
+    this.#isMoved = isMoved;
+    if (!isMoved) this.#hide();
+    this.#host.wake();
+  }
+
+  #hide(): void {
+    this.#copy?.remove();
+    this.#copy = undefined;
+  }
+
+  #holdsControl(): boolean {
+    return this.#bar.querySelector('.control:focus-within') !== null;
+  }
+
+  #isSeen(canvas: HTMLCanvasElement, [, top, , height]: Box): boolean {
+    const above = canvas.getBoundingClientRect().top + top;
+    const seen = Math.min(above + height, window.innerHeight) - Math.max(above, 0);
+    return seen >= SEEN_SHARE * height;
+  }
+
+  #show(canvas: HTMLCanvasElement, [, top, , height]: Box): void {
+    const { left, width } = this.#stage.getBoundingClientRect();
+    const from = Math.max(top - MARGIN_PX, 0);
+    const tall = Math.min(height + 2 * MARGIN_PX, canvas.clientHeight - from);
+    const scale = Math.min(1, (MOST_HEIGHT * window.innerHeight) / tall);
+    const ratio = canvas.width / canvas.clientWidth;
+    this.#copy ??= create('canvas', { class: 'pinned', 'aria-hidden': 'true' });
+    const copy = this.#copy;
+    if (!copy.isConnected) this.#frame.append(copy);
+    Object.assign(copy.style, {
+      left: `${left + ((1 - scale) * width) / 2}px`,
+      width: `${scale * width}px`,
+      height: `${scale * tall}px`,
+    });
+    copy.width = Math.round(canvas.width);
+    copy.height = Math.round(tall * ratio);
+    copy.getContext('2d')?.drawImage(canvas, 0, from * ratio, canvas.width, tall * ratio, 0, 0, copy.width, copy.height);
+  }
+}
