@@ -119,11 +119,11 @@ async function copyKatex() {
   });
 }
 
-/** What esbuild took into the script. */
+/** What esbuild took into the scripts: that of the page, and that of its workers. */
 async function bundleScript() {
   const { metafile } = await build({
-    entryPoints: [path.join(here, 'page.ts')],
-    outfile: path.join(outDir, 'page.js'),
+    entryPoints: { page: path.join(here, 'page.ts'), 'laps-worker': path.join(here, 'laps', 'worker.ts') },
+    outdir: outDir,
     bundle: true,
     external: ['./slam-widget.js'],
     metafile: true,

@@ -3,10 +3,12 @@
 // element's business.
 
 // @ts-expect-error: a file of its own beside this one, which has the module.
-import { core } from './slam-widget.js';
+import { core, coreModule } from './slam-widget.js';
 import type { Glue } from '../pkg/glue.js';
+import { addCopyButtons } from './copy';
 import { LapPlayer } from './lap/player';
 import type { Story } from './lap/story';
+import { LapsFigure } from './laps/laps';
 
 /** The run that the page calls canonical. */
 const CANONICAL = { seed: 12648430, noise: 1 };
@@ -16,7 +18,9 @@ type ThemeChoice = 'auto' | 'light' | 'dark';
 document.documentElement.dataset['script'] = 'on';
 listenToThemeButtons();
 letKeyboardScroll(document.querySelectorAll<HTMLElement>('.math, .scroll'));
+addCopyButtons(document.querySelectorAll<HTMLElement>('figure.listing'));
 void replayLap();
+driveLaps();
 
 /** The still picture stays where the core cannot be had; the widgets say why. */
 async function replayLap(): Promise<void> {
@@ -25,6 +29,16 @@ async function replayLap(): Promise<void> {
   if (figure === null || glue === undefined) return;
   const { seed, noise } = CANONICAL;
   new LapPlayer(figure, JSON.parse(glue.lapStory(seed, noise)) as Story);
+}
+
+/** A thousand laps, once one comes to look at them. */
+function driveLaps(): void {
+  const figure = document.querySelector<HTMLElement>('#laps');
+  if (figure === null) return;
+  new LapsFigure(figure, {
+    module: coreModule as () => Promise<WebAssembly.Module>,
+    driver: async () => new (await (core as () => Promise<Glue>)()).Laps(),
+  });
 }
 
 /** The choice holds until the page is left: it is not worth storing anything on the reader's disk. */

@@ -1,0 +1,95 @@
+// A thousand laps as a picture; here some of them.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { describe, it } from 'node:test';
+import { wasm } from '../wasm/module.mjs';
+import * as h from './harness.mjs';
+
+const SEEDS = 3;
+const LEVELS = [0.25, 1, 2, 4];
+const pages = {
+  '/index.html': readFileSync(join(h.DIST, 'index.html'), 'utf8').replace('data-seeds="1000"', `data-seeds="${SEEDS}"`),
+};
+const visit = h.visitor();
+const reading = (test, { options = {}, server = {}, path = '/index.html', quiet } = {}) =>
+  visit('', test, { path, options, quiet, server: { ...server, pages: { ...pages, ...server.pages } } });
+
+/** What the core says of the same laps, in Node: by level, front end and with loops. */
+const laps = new wasm.Laps();
+const errors = LEVELS.map((noise) => {
+  const numbers = Array.from({ length: SEEDS }, (_, at) => laps.drive(at + 1, noise));
+  return [1, 2].map((column) => numbers.map((lap) => lap[column]).sort((a, b) => a - b));
+});
+
+const look = (tab) => tab.locator('#laps').scrollIntoViewIfNeeded();
+const done = (tab, frame = tab) => frame.waitForFunction(() => /^(\d+) of \1 seeds/.test(
+  document.querySelector('.laps-count')?.textContent ?? ''));
+const medians = (frame) => frame.evaluate(() => new Promise((resolve) => {
+  const read = () => {
+    const strips = [...document.querySelectorAll('.laps-grid canvas')];
+    if (strips.every(({ dataset }) => Number(dataset.laps) === Number(document.querySelector('#laps').dataset.seeds))) {
+      resolve(strips.map(({ dataset }) => dataset.median));
+    } else requestAnimationFrame(read);
+  };
+  read();
+}));
+const expected = errors.flat().map((sorted) => sorted[(SEEDS - 1) / 2].toFixed(2));
+
+describe('the thousand laps', () => {
+  it('are driven by workers while one looks, and say what the core says', async () => {
+    await reading(async (tab) => {
+      assert.equal(tab.workers().length, 0, 'nobody looks yet');
+      await look(tab);
+      await tab.waitForEvent('worker', { predicate: () => true }).catch(() => {});
+      await done(tab);
+      assert.deepEqual(await medians(tab), expected);
+    });
+  });
+
+  it('are driven between frames where workers are not to be had', async () => {
+    const framed = '<!doctype html><title>Around</title><link rel="icon" href="data:,"><iframe sandbox="allow-scripts" '
+      + 'src="/index.html#laps" style="width: 1000px; height: 800px"></iframe>';
+    await reading(async (tab) => {
+      const frame = tab.frames()[1];
+      await frame.waitForSelector('.laps-count');
+      await done(tab, frame);
+      assert.equal(tab.workers().length, 0);
+      assert.deepEqual(await medians(frame), expected);
+    }, { path: '/around.html', server: { pages: { '/around.html': framed } }, quiet: false });
+  });
+
+  it('are said in words under the arrow keys, and one is driven in w16.2 by a click', async () => {
+    await reading(async (tab) => {
+      await look(tab);
+      await done(tab);
+      const strip = tab.getByRole('slider', { name: 'Laps at wheel noise ×4, with loops' });
+      await strip.focus();
+      await tab.keyboard.press('End');
+      const worst = errors[3][1].at(-1).toFixed(2);
+      assert.match(await strip.getAttribute('aria-valuetext'), new RegExp(`^seed \\d: ${worst} m$`));
+      assert.equal(await strip.getAttribute('aria-valuenow'), String(SEEDS));
+      assert.match(await tab.locator('.laps-chosen').textContent(), /^Seed \d at noise ×4: .* m with \d loops?/);
+      const { x, y, width, height } = await strip.boundingBox();
+      await tab.mouse.click(x + width / 2, y + height / 2);
+      await tab.waitForFunction(() => {
+        const lap = document.querySelector('slam-widget[name="w16.2"]');
+        return lap.get('noise') === 4 && lap.get('t') === 129 && lap.get('seed') <= 3;
+      });
+      const seed = await tab.evaluate(() => document.querySelector('slam-widget[name="w16.2"]').get('seed'));
+      assert.match(await tab.locator('.laps-chosen').textContent(), new RegExp(`^Seed ${seed} `));
+      await tab.goBack();
+      await tab.waitForFunction(() => document.querySelector('slam-widget[name="w16.2"]').get('noise') === 1);
+    });
+  });
+
+  it('leave their table folded, and open for those who ask', async () => {
+    await reading(async (tab) => {
+      const table = tab.locator('table.spread');
+      assert.equal(await table.isVisible(), false);
+      await tab.getByText('The same laps as a table').click();
+      assert.equal(await table.isVisible(), true);
+    });
+  });
+});

@@ -1,0 +1,100 @@
+// A thousand laps as a picture: a dot for each, at four levels of the wheels' noise, the front end
+// alone beside the lap with its loops. They are driven in the page, while one looks.
+
+import { Pool, type Core } from './pool';
+import { LEVELS, type Lap } from './protocol';
+import { nameOf, Strip, type Kind } from './strip';
+
+const KINDS: Kind[] = ['frontEnd', 'withLoops'];
+/** The last tick of the lap. */
+const LAST_TICK = 129;
+
+export class LapsFigure {
+  readonly #figure: HTMLElement;
+  readonly #strips: Strip[][] = [];
+  readonly #count = document.createElement('p');
+  readonly #link = document.createElement('a');
+  readonly #about = document.createElement('span');
+  readonly #seeds: number;
+  #driven = 0;
+
+  constructor(figure: HTMLElement, core: Core) {
+    this.#figure = figure;
+    this.#seeds = Number(figure.dataset['seeds'] ?? 0);
+    this.#build();
+    const pool = new Pool(core, this.#seeds, (laps) => this.#add(laps));
+    new IntersectionObserver((entries) => {
+      const entry = entries.at(-1);
+      pool.turn(entry?.isIntersecting === true);
+    }).observe(figure);
+  }
+
+  #build(): void {
+    const grid = document.createElement('div');
+    grid.className = 'laps-grid';
+    grid.append(text('', 'laps-corner'), ...KINDS.map((kind) => text(capital(nameOf(kind)), 'laps-head')));
+    LEVELS.forEach((noise, level) => {
+      const strips = KINDS.map((kind) => new Strip(kind, level, {
+        looked: (lap) => this.#look(lap),
+        chosen: (lap) => this.#choose(lap),
+      }));
+      this.#strips.push(strips);
+      grid.append(text(`×${noise}`, 'laps-level'), ...strips.map(({ element }) => element));
+    });
+    const ends = KINDS.map(() => text('', 'laps-axis'));
+    for (const axis of ends) axis.append(...['0', '1', '≥ 2 m'].map((label) => text(label)));
+    grid.append(text('', 'laps-corner'), ...ends);
+    this.#count.className = 'laps-count';
+    this.#count.setAttribute('role', 'status');
+    const chosen = document.createElement('p');
+    chosen.className = 'laps-chosen';
+    this.#link.className = 'slam-link';
+    this.#about.textContent = 'Point at a dot, or walk along a strip with the arrow keys. A click or Enter drives that lap.';
+    chosen.append(this.#about, ' ', this.#link);
+    this.#link.hidden = true;
+    this.#figure.querySelector('.laps-place')?.replaceChildren(grid, this.#count, chosen);
+    this.#tell();
+  }
+
+  #add(laps: Lap[]): void {
+    for (const lap of laps) for (const strip of this.#strips[lap.level] ?? []) strip.add(lap);
+    this.#driven += 1;
+    this.#tell();
+  }
+
+  #tell(): void {
+    const isDone = this.#driven === this.#seeds;
+    const words = `${this.#driven} of ${this.#seeds} seeds driven in this page${isDone ? '.' : ' …'}`;
+    // A screen reader hears of hundreds, not of each.
+    this.#count.ariaLive = isDone || this.#driven % 100 === 0 ? 'polite' : 'off';
+    this.#count.textContent = words;
+  }
+
+  #look(lap: Lap): void {
+    const { seed, level, frontEnd, withLoops, closed, wrong } = lap;
+    for (const strips of this.#strips) for (const strip of strips) strip.select(lap);
+    const noise = LEVELS[level];
+    const false_ = wrong > 0 ? `, ${wrong} of them false` : '';
+    this.#about.textContent = `Seed ${seed} at noise ×${noise}: ${frontEnd.toFixed(2)} m by the front end alone, `
+      + `${withLoops.toFixed(2)} m with ${closed} loop${closed === 1 ? '' : 's'}${false_}.`;
+    this.#link.hidden = false;
+    this.#link.textContent = 'Drive it';
+    this.#link.href = `?w=16.2&seed=${seed}&noise=${noise}&t=${LAST_TICK}`;
+  }
+
+  #choose(lap: Lap): void {
+    this.#look(lap);
+    this.#link.click();
+  }
+}
+
+function text(words: string, className = ''): HTMLElement {
+  const made = document.createElement('span');
+  made.textContent = words;
+  made.className = className;
+  return made;
+}
+
+function capital(words: string): string {
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}

@@ -1,0 +1,193 @@
+// One strip of dots: a lap each, by the error at its end.
+
+import { LEVELS, type Lap } from './protocol';
+import { spreadOf } from './spread';
+
+/** What the strip counts: the front end alone, or the lap with its loops. */
+export type Kind = 'frontEnd' | 'withLoops';
+
+/** Where the axis ends, m; what is beyond stands at its end. */
+export const AXIS_END_M = 2;
+const HEIGHT_PX = 64;
+const DOT_PX = 2.6;
+/** Room for half a dot at either end. */
+const EDGE_PX = 6;
+/** Names of colours in the style of the page, by loops closed. */
+const INKS = ['--laps-none', '--laps-one', '--laps-two', '--laps-more'];
+
+export interface StripHost {
+  /** A lap is looked at. */
+  looked(lap: Lap): void;
+  /** A lap shall be driven. */
+  chosen(lap: Lap): void;
+}
+
+export class Strip {
+  readonly element = document.createElement('canvas');
+  readonly #kind: Kind;
+  readonly #host: StripHost;
+  /** In the order of their errors, once somebody asks. */
+  #laps: Lap[] = [];
+  #isSorted = true;
+  #selected: Lap | undefined;
+  #asked = 0;
+
+  constructor(kind: Kind, level: number, host: StripHost) {
+    this.#kind = kind;
+    this.#host = host;
+    const { element } = this;
+    element.tabIndex = 0;
+    element.setAttribute('role', 'slider');
+    element.setAttribute('aria-label', `Laps at wheel noise ×${LEVELS[level]}, ${nameOf(kind)}`);
+    for (const [name, value] of [['min', '0'], ['now', '0'], ['text', 'no lap is chosen']]) {
+      element.setAttribute(`aria-value${name}`, value ?? '');
+    }
+    element.addEventListener('pointermove', (event) => this.#point(event));
+    element.addEventListener('click', (event) => {
+      const lap = this.#point(event);
+      if (lap !== undefined) this.#host.chosen(lap);
+    });
+    element.addEventListener('keydown', (event) => this.#key(event));
+    new ResizeObserver(() => this.draw()).observe(element);
+  }
+
+  add(lap: Lap): void {
+    this.#laps.push(lap);
+    this.#isSorted = false;
+    this.draw();
+  }
+
+  /** The lap that the reader looks at stands out in every strip that has it. */
+  select(lap: Lap): void {
+    this.#selected = this.#laps.find(({ seed }) => seed === lap.seed);
+    const sorted = this.#sorted();
+    const rank = this.#selected === undefined ? 0 : sorted.indexOf(this.#selected) + 1;
+    this.element.setAttribute('aria-valuemax', String(sorted.length));
+    this.element.setAttribute('aria-valuenow', String(rank));
+    const errorM = this.#selected?.[this.#kind].toFixed(2);
+    this.element.setAttribute('aria-valuetext', errorM === undefined ? 'no lap is chosen' : `seed ${lap.seed}: ${errorM} m`);
+    this.draw();
+  }
+
+  /** With the next frame: many laps may come at once. */
+  draw(): void {
+    if (this.#asked !== 0) return;
+    this.#asked = requestAnimationFrame(() => {
+      this.#asked = 0;
+      this.#paint();
+    });
+  }
+
+  #paint(): void {
+    const { element } = this;
+    const width = element.clientWidth;
+    const context = element.getContext('2d');
+    if (width === 0 || context === null) return;
+    element.width = Math.round(width * devicePixelRatio);
+    element.height = Math.round(HEIGHT_PX * devicePixelRatio);
+    context.scale(devicePixelRatio, devicePixelRatio);
+    const style = getComputedStyle(element);
+    const ink = (name: string): string => style.getPropertyValue(name).trim();
+    const colors = INKS.map(ink);
+    context.strokeStyle = ink('--faint');
+    for (let at = 0; at <= AXIS_END_M; at += 0.5) line(context, this.#x(at, width), 0, HEIGHT_PX, 1);
+    for (const lap of this.#laps) {
+      context.fillStyle = colors[Math.min(lap.closed, 3)] ?? '';
+      const [x, y] = this.#place(lap, width);
+      context.fillRect(x - DOT_PX / 2, y - DOT_PX / 2, DOT_PX, DOT_PX);
+    }
+    context.strokeStyle = ink('--laps-false');
+    for (const lap of this.#laps.filter(({ wrong }) => wrong > 0)) cross(context, this.#place(lap, width));
+    this.#paintSpread(context, width, ink('--ink'));
+    if (this.#selected === undefined) return;
+    const [x, y] = this.#place(this.#selected, width);
+    context.strokeStyle = ink('--focus');
+    context.lineWidth = 2.5;
+    context.beginPath();
+    context.arc(x, y, 7, 0, 7);
+    context.stroke();
+  }
+
+  /** The median as a long line, the tails as short ones. */
+  #paintSpread(context: CanvasRenderingContext2D, width: number, ink: string): void {
+    const spread = spreadOf(this.#laps.map((lap) => lap[this.#kind]));
+    if (spread === undefined) return;
+    context.strokeStyle = ink;
+    line(context, this.#x(spread.median, width), 0, HEIGHT_PX, 2.5);
+    for (const tail of [spread.p05, spread.p95]) {
+      line(context, this.#x(tail, width), 0, 10, 1.5);
+      line(context, this.#x(tail, width), HEIGHT_PX - 10, HEIGHT_PX, 1.5);
+    }
+    this.element.dataset['median'] = spread.median.toFixed(2);
+    this.element.dataset['laps'] = String(this.#laps.length);
+  }
+
+  #x(errorM: number, width: number): number {
+    return EDGE_PX + (Math.min(errorM, AXIS_END_M) / AXIS_END_M) * (width - 2 * EDGE_PX);
+  }
+
+  /** Seeds spread evenly over the height: the golden section never repeats itself. */
+  #place(lap: Lap, width: number): [number, number] {
+    const share = (lap.seed * 0.6180339887) % 1;
+    return [this.#x(lap[this.#kind], width), EDGE_PX + share * (HEIGHT_PX - 2 * EDGE_PX)];
+  }
+
+  #point({ offsetX, offsetY }: MouseEvent): Lap | undefined {
+    const width = this.element.clientWidth;
+    const distance = (lap: Lap): number => {
+      const [x, y] = this.#place(lap, width);
+      return Math.hypot(x - offsetX, y - offsetY);
+    };
+    const [first, ...rest] = this.#laps;
+    if (first === undefined) return undefined;
+    const nearest = rest.reduce((near, lap) => (distance(lap) < distance(near) ? lap : near), first);
+    if (nearest !== this.#selected) this.#host.looked(nearest);
+    return nearest;
+  }
+
+  #key(event: KeyboardEvent): void {
+    const sorted = this.#sorted();
+    const at = this.#selected === undefined ? -1 : sorted.indexOf(this.#selected);
+    const goal = {
+      ArrowRight: at + 1, ArrowUp: at + 1, ArrowLeft: at - 1, ArrowDown: at - 1,
+      PageUp: at + 50, PageDown: at - 50, Home: 0, End: sorted.length - 1,
+    }[event.key];
+    if (goal !== undefined) {
+      const lap = sorted[Math.min(Math.max(goal, 0), sorted.length - 1)];
+      if (lap !== undefined) this.#host.looked(lap);
+    } else if (event.key === 'Enter' && this.#selected !== undefined) {
+      this.#host.chosen(this.#selected);
+    } else {
+      return;
+    }
+    event.preventDefault();
+  }
+
+  #sorted(): Lap[] {
+    if (!this.#isSorted) this.#laps.sort((a, b) => a[this.#kind] - b[this.#kind]);
+    this.#isSorted = true;
+    return this.#laps;
+  }
+}
+
+export function nameOf(kind: Kind): string {
+  return kind === 'frontEnd' ? 'front end alone' : 'with loops';
+}
+
+function line(context: CanvasRenderingContext2D, x: number, from: number, to: number, width: number): void {
+  context.lineWidth = width;
+  context.beginPath();
+  context.moveTo(x, from);
+  context.lineTo(x, to);
+  context.stroke();
+}
+
+function cross(context: CanvasRenderingContext2D, [x, y]: readonly [number, number]): void {
+  context.lineWidth = 1.5;
+  context.beginPath();
+  context.moveTo(x - 3, y - 3);
+  context.lineTo(x + 3, y + 3);
+  context.moveTo(x + 3, y - 3);
+  context.lineTo(x - 3, y + 3);
+  context.stroke();
+}
