@@ -14,6 +14,7 @@ import katex from 'katex';
 
 import { endWithOneSentence } from '../licences/allowed.mjs';
 import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
+import { addListings } from './listings.mjs';
 import { drawStills } from './stills.mjs';
 
 const here = path.dirname(fileURLToPath(import.meta.url));
@@ -31,7 +32,8 @@ await writeNotices(await bundleScript()).catch(endWithOneSentence);
 
 async function renderPage() {
   const source = await readFile(path.join(root, 'index.html'), 'utf8');
-  const page = addStills(addPictures(renderFormulas(source), await widgetSpecs()));
+  const drawn = addStills(addPictures(renderFormulas(source), await widgetSpecs()));
+  const page = await addListings(drawn, root);
   await drawStills(outDir);
   await writeFile(path.join(outDir, 'index.html'), page);
 }
