@@ -10,7 +10,7 @@
 
 import { createHash } from 'node:crypto';
 import { cp, mkdir, readFile, rm, writeFile } from 'node:fs/promises';
-import { dirname, join } from 'node:path';
+import { basename, dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { gzipSync } from 'node:zlib';
 import * as esbuild from 'esbuild';
@@ -158,8 +158,10 @@ async function writePackage() {
   await writeFile(join(dist, 'package.json'), `${JSON.stringify(source, null, 2)}\n`);
 }
 
+/** The slides stay in the repository: they run beside an installed reveal.js, which the site has not. */
 async function copyExamples() {
-  await cp(join(WEB, 'examples'), join(dist, 'examples'), { recursive: true });
+  const isWhole = (file) => !basename(file).startsWith('reveal');
+  await cp(join(WEB, 'examples'), join(dist, 'examples'), { recursive: true, filter: isWhole });
 }
 
 /** Sizes of the program; over the budget, the build of the published profile fails. */

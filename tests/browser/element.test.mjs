@@ -80,7 +80,7 @@ describe('values', () => {
         const element = shadowRoot.querySelector('.note');
         return { text: element.textContent, images: element.querySelectorAll('img').length, heading };
       });
-      assert.match(note.text, /`heading` takes a number, not `<img/);
+      assert.match(note.text, /^heading takes a number, not <img/m);
       assert.equal(note.images, 0);
       assert.equal(note.heading, h.schema[0].params.find((param) => param.id === 'heading').default);
       assert.equal(await tab.title(), 'Test');
@@ -93,7 +93,7 @@ describe('values', () => {
       const note = await tab.evaluate(
         () => document.querySelector('slam-widget').shadowRoot.querySelector('.note').textContent,
       );
-      assert.match(note, /has no parameter `bogus`/);
+      assert.match(note, /has no parameter bogus;/);
       await h.ready(tab);
       await tab.evaluate(() => (document.querySelector('slam-widget').heading = 20));
       await tab.waitForURL(/heading=20/);
@@ -105,7 +105,7 @@ describe('values', () => {
     await on(two, async (tab) => {
       const notes = await tab.evaluate(() => [...document.querySelectorAll('slam-widget')].map(
         (widget) => widget.shadowRoot.querySelector('.note').textContent));
-      assert.deepEqual(notes, ['There is no widget `99`.', '']);
+      assert.deepEqual(notes, ['There is no widget 99.', '']);
     }, { path: '/t.html?w=99' });
   });
 
@@ -149,7 +149,7 @@ describe('values', () => {
         await tab.keyboard.press('ControlOrMeta+a');
         await tab.keyboard.type(typed);
         await tab.keyboard.press('Enter');
-        assert.equal(await note(), `\`heading\` takes -180 to 180, not \`${typed}\`. It stays at 25°.`);
+        assert.equal(await note(), `heading takes -180 to 180, not ${typed}. It stays at 25°.`);
         assert.equal(await field.getAttribute('aria-invalid'), 'true');
         assert.equal(await field.inputValue(), typed, 'what was typed is not lost');
       }
@@ -189,7 +189,7 @@ describe('values', () => {
       const note = await tab.evaluate(
         () => document.querySelector('slam-widget').shadowRoot.querySelector('.note').textContent,
       );
-      assert.match(note, /There is no widget `w99`; there are w16.1/);
+      assert.match(note, /There is no widget w99; there are w16.1/);
     });
   });
 });

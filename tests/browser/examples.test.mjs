@@ -11,6 +11,7 @@ import * as h from './harness.mjs';
 import { installPackage } from './package.mjs';
 
 const REVEAL = fileURLToPath(new URL('./node_modules/reveal.js/dist/', import.meta.url));
+const EXAMPLES = fileURLToPath(new URL('../../web/examples/', import.meta.url));
 
 const visit = h.visitor();
 
@@ -32,8 +33,11 @@ function send(file, response) {
 
 /** Opens an example as it lies beside the widgets; axe has nothing against it at its end. */
 function example(file, test) {
-  const answer = (path, response) => path.startsWith('/examples/reveal/')
-    && send(join(REVEAL, path.slice('/examples/reveal/'.length)), response);
+  const answer = (path, response) => {
+    if (path.startsWith('/examples/reveal/')) return send(join(REVEAL, path.slice('/examples/reveal/'.length)), response);
+    // The slides are no part of the site.
+    return path.startsWith('/examples/reveal') && send(join(EXAMPLES, path.slice('/examples/'.length)), response);
+  };
   return visit('', async (tab) => {
     await test(tab);
     assert.deepEqual(await violations(tab), []);
@@ -250,6 +254,15 @@ it('the npm package, packed and installed, works from a bundler and links to its
     }, { server: { pages: { '/t.html': page }, answer }, options });
   } finally {
     project.remove();
+  }
+});
+
+it('the examples of the site ask for nothing that it has not', () => {
+  const folder = join(h.DIST, 'examples');
+  for (const file of readdirSync(folder).filter((name) => /\.(html|js|mjs)$/.test(name))) {
+    const text = readFileSync(join(folder, file), 'utf8');
+    const asked = [...text.matchAll(/(?:src|href)="((?!\w+:)[^"#?]+)|from '(\.[^']+)'/g)].map(([, a, b]) => a ?? b);
+    for (const path of asked) assert.ok(existsSync(join(folder, path)), `${file} asks for ${path}`);
   }
 });
 

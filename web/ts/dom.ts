@@ -49,3 +49,13 @@ export function upgradeProperties(element: HTMLElement): void {
     early[key] = value;
   }
 }
+
+/** A sentence in which `names` are marked, as text and never as HTML. */
+export function marked(sentence: string): (string | HTMLElement)[] {
+  return sentence.split('`').map((part, at) => {
+    if (at % 2 === 0) return part;
+    const name = create('code');
+    name.textContent = part;
+    return name;
+  });
+}

@@ -1,6 +1,6 @@
 // What a widget has to say about what came from outside: lines of text under the picture.
 
-import { create } from './dom';
+import { create, marked } from './dom';
 
 export class Notes {
   readonly #box: HTMLElement;
@@ -13,7 +13,7 @@ export class Notes {
   /** Says something; about one subject only the latest stands. As text, never as HTML. */
   say(message: string, subject?: string): void {
     const line = create('p');
-    line.textContent = message;
+    line.append(...marked(message));
     if (subject !== undefined) {
       this.settle(subject);
       this.#lines.set(subject, line);

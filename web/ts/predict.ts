@@ -12,7 +12,7 @@
 
 // @ts-expect-error: stays a file of its own beside this one.
 import './slam-widget.js';
-import { keepKeys } from './dom';
+import { keepKeys, marked } from './dom';
 import type { SlamWidget } from './element';
 import type { Outcome } from './instance';
 import type { Prediction } from '../slam-predict';
@@ -29,6 +29,9 @@ input[type='number'], button { font: inherit; min-height: 2rem; padding: 0.1rem 
 .answer { outline: none; }
 .answer:not(:empty) { border-top: 1px solid currentColor; margin-top: 0.75rem; }
 `;
+
+/** A result is told with so many decimals at least. */
+const DECIMALS = 3;
 
 export class SlamPredict extends HTMLElement {
   #form: HTMLFormElement | undefined;
@@ -118,14 +121,27 @@ export class SlamPredict extends HTMLElement {
   }
 
   #show(verdict: Verdict, outcome: Outcome, widget: SlamWidget): void {
+    const { correct, gap, prediction, result } = verdict;
     const unit = this.getAttribute('unit') ?? '';
-    const gap = verdict.gap === null ? '' : ` You are off by ${Math.abs(verdict.gap).toPrecision(2)}${unit}.`;
-    const judged = verdict.correct ? 'You were right.' : `You said ${verdict.prediction}${unit}.${gap}`;
-    this.#say([`${judged} ${outcome.sentence}`]);
+    const judged = correct ? 'Right.' : 'Not right.';
+    if (gap === null) {
+      this.#say([`${judged} You said: ${this.#wordsOf(prediction)}. ${outcome.sentence}`]);
+    } else {
+      // The widget's own sentence may be about another moment than the number that was asked for.
+      const digits = Math.max(decimalsOf(prediction), DECIMALS);
+      const said = `It is ${Number(result).toFixed(digits)}${unit}.`;
+      this.#say([`${judged} ${said} You said ${prediction}${unit} and are off by ${Math.abs(gap).toPrecision(2)}${unit}.`]);
+    }
     // The widget may stand pages away: the reader decides when to leave the answer.
     const show = button('Show it in the widget', () => widget.scrollIntoView({ block: 'start' }));
     const again = button('Predict again', () => this.#reset());
     this.#answer?.append(show, ' ', again);
+  }
+
+  /** A choice as the page words it. */
+  #wordsOf(choice: string): string {
+    const item = this.querySelector(`[data-choice="${CSS.escape(choice)}"]`);
+    return item?.textContent?.trim() ?? choice;
   }
 
   #reset(): void {
@@ -150,7 +166,7 @@ export class SlamPredict extends HTMLElement {
     this.#answer?.replaceChildren(
       ...sentences.map((sentence) => {
         const line = document.createElement('p');
-        line.textContent = sentence;
+        line.append(...marked(sentence));
         return line;
       }),
     );
@@ -164,6 +180,10 @@ async function outcomeAt(widget: SlamWidget, state: string): Promise<Outcome> {
   const { outcome } = widget;
   if (outcome === undefined) throw new Error('the widget cannot run here');
   return outcome;
+}
+
+function decimalsOf(number: string): number {
+  return number.split('.')[1]?.length ?? 0;
 }
 
 function button(text: string, press: () => void): HTMLButtonElement {

@@ -43,7 +43,8 @@ input[type='checkbox'] { width: 1.5rem; height: 1.5rem; accent-color: var(--acce
 .status { color: var(--soft); }
 @media print {
   .bar, progress, .note { display: none; }
-  .stage, .stage .picture { height: auto !important; }
+  .stage, .stage .picture { height: auto !important; min-height: 0; }
+  .stage .picture { max-height: 15cm; object-fit: contain; object-position: top left; }
   .stage canvas { display: none; }
   .stage .picture, .stage.live .picture { display: block; }
   .frame { --paper: #fff; --ink: #1f2937; border-color: #999; break-inside: avoid; }
