@@ -140,7 +140,7 @@ describe('the chapter', () => {
       await question.locator('button').first().click();
       await why.waitFor({ state: 'visible' });
       const said = await question.evaluate((element) => element.shadowRoot.querySelector('.answer').textContent);
-      assert.match(said, /You said 0.2 m/);
+      assert.match(said, /^Not right\. It is 0\.015 m\. You said 0\.2 m and are off by 0\.18 m\./);
       assert.ok(await tab.evaluate(isSeen, '#exercise-5 slam-predict'), 'the page stays at the answer');
       await question.getByRole('button', { name: 'Show it in the widget' }).click();
       await tab.waitForFunction(isSeen, widget('w16.1'));
@@ -209,6 +209,41 @@ describe('the chapter', () => {
     }, { javaScriptEnabled: false });
   });
 
+  it('says right or wrong in words, and of the number that was asked for', async () => {
+    await reading(async (tab) => {
+      const question = tab.locator('#exercise-7 slam-predict');
+      await question.scrollIntoViewIfNeeded();
+      await tab.waitForFunction(() => customElements.get('slam-predict') !== undefined);
+      await question.locator('input').fill('0.05');
+      await question.locator('button').first().click();
+      await question.locator('[data-why]').waitFor({ state: 'visible' });
+      const said = await question.evaluate((element) => element.shadowRoot.querySelector('.answer p').textContent);
+      assert.match(said, /^Right\. It is 0\.026 m\. You said 0\.05 m and are off by 0\.024 m\.$/);
+    });
+  });
+
+  it('lists code as it stands in the tested files, and copies it', async () => {
+    await reading(async (tab) => {
+      const listings = await tab.evaluate(() => [...document.querySelectorAll('figure.listing')].map((figure) => ({
+        file: figure.querySelector('figcaption code').textContent,
+        code: figure.querySelector('pre').textContent,
+        words: figure.querySelectorAll('.code-word, .code-type').length,
+      })));
+      assert.ok(listings.length >= 4);
+      for (const { file, code, words } of listings) {
+        const source = readFileSync(join(h.DIST, '..', file), 'utf8');
+        for (const item of code.split(/\n\n(?=(?:pub )?fn )/)) assert.ok(source.includes(item), `${file}: ${item}`);
+        assert.ok(words > 5, file);
+      }
+      await tab.evaluate(() => {
+        window.copied = [];
+        navigator.clipboard.writeText = (text) => Promise.resolve(void window.copied.push(text));
+      });
+      await tab.locator('figure.listing').first().getByRole('button', { name: 'Copy' }).click();
+      assert.deepEqual(await tab.evaluate(() => copied), [listings[0].code]);
+    });
+  });
+
   it('is not built without the picture of a widget', () => {
     const out = mkdtempSync(join(tmpdir(), 'chapter-'));
     const build = () => {
@@ -228,7 +263,18 @@ describe('the chapter', () => {
       assert.equal(await tab.locator('.theme').isVisible(), false);
       assert.equal(await tab.locator('.contents').isVisible(), false);
       assert.ok(await tab.locator('h1').isVisible());
-      assert.ok((await tab.pdf({ format: 'A4' })).length > 100_000);
+      // The answers stand open, asked or not.
+      for (const css of ['.exercise details > p', 'slam-predict [data-why]', 'table.spread']) {
+        for (const part of await tab.locator(css).all()) assert.ok(await part.isVisible(), css);
+      }
+      const pdf = await tab.pdf({ format: 'A4', margin: { top: '1cm', bottom: '1cm', left: '1cm', right: '1cm' } });
+      assert.ok(pdf.length > 100_000);
+      const pages = pdf.toString('latin1').match(/\/Type\s*\/Page\b/g).length;
+      // 19 cm by 27.7 cm at 96 px an inch.
+      await tab.setViewportSize({ width: 718, height: 1047 });
+      const heightPx = await tab.evaluate(() => document.documentElement.scrollHeight);
+      const full = heightPx / 1047;
+      assert.ok(pages < 1.2 * full + 1, `${pages} pages for what fills ${full.toFixed(1)}`);
     });
   });
 });

@@ -171,7 +171,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "quarter-turn",
             label: "Start 60° off",
-            help: "The same room, a quarter turn away: it converges to the wrong answer.",
+            help: "The same room: on its way to the quarter turn its iterations run out.",
             set: &[
                 ("heading", 60.0),
                 ("dx", 0.0),
