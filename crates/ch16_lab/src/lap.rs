@@ -13,11 +13,13 @@ mod judge;
 mod loop_error;
 mod loop_words;
 mod newest;
+mod ranges;
 mod record;
 mod replay;
 mod report;
 mod run;
 mod runner;
+mod soundness;
 
 use std::sync::Arc;
 
@@ -29,6 +31,7 @@ pub use drive::{Drive, DriveSimulation, DriveTick, Sweep};
 pub use judge::Judge;
 pub use loop_error::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopError, LoopJudgement};
 pub use newest::{NewestLap, NewestStep};
+pub use ranges::{ConfigRange, RANGES, random_config};
 pub use record::{Epoch, LAST_KEYFRAMES, LapRecord, LapSummary, LapTrace, RecordedEdge};
 pub use replay::RegistrationView;
 pub use report::{Keyframe, LoopAttempt, LoopEffect, TickMetrics, TickReport, WindowSweep};

@@ -6,6 +6,7 @@ mod exact_gate;
 mod icp_laws;
 mod patience;
 mod plane_step;
+mod random_laps;
 mod ring;
 mod terrain_rows;
 mod turned_frame;

@@ -14,7 +14,8 @@ pub const CANONICAL_SEED: u32 = 0x00C0_FFEE;
 /// changes them. Another start, driver or duration of a tick does.
 pub const LAP_TICKS: usize = 129;
 
-/// What is driven and sensed: all that the estimator cannot change.
+/// What is driven and sensed: all that the estimator cannot change; the range of each number is in
+/// [`RANGES`](super::RANGES).
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveConfig {
     /// Seed of the generator that all noise of the lap comes from.
@@ -81,7 +82,7 @@ impl DriveConfig {
     }
 }
 
-/// A lap: what is driven, and the estimator that is tried on it.
+/// A lap: what is driven, and the estimator that is tried on it; ranges in [`RANGES`](super::RANGES).
 #[derive(Clone, Debug, PartialEq)]
 pub struct LapConfig {
     /// The simulated drive.
