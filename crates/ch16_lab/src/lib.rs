@@ -3,6 +3,7 @@
 
 pub mod basin;
 pub mod lap;
+pub mod nudge;
 pub mod results;
 pub mod samples;
 mod scenes;

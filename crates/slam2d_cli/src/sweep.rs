@@ -1,5 +1,8 @@
 //! `slam2d sweep`: the lap at many seeds and noise factors, over all cores. One seed is an anecdote.
 
+mod nudge;
+mod random;
+
 use std::num::NonZeroUsize;
 
 use ch16_lab::lap::LapRunner;
@@ -44,6 +47,13 @@ pub struct SweepArgs {
     /// Number of threads, at most one for each seed; all cores without it.
     #[arg(long, value_parser = numbers::threads, allow_hyphen_values = true)]
     threads: Option<NonZeroUsize>,
+    /// Drive each lap once more with its start moved by 4e-16 of itself, and count other laps.
+    #[arg(long)]
+    nudge: bool,
+    /// Draw the configuration of each lap from the documented ranges, noise included, and check
+    /// that every figure is finite.
+    #[arg(long, conflicts_with_all = ["nudge", "noise", "world", "matcher", "information"])]
+    random: bool,
     /// Print one JSON list, an object for each noise factor.
     #[arg(long)]
     json: bool,
@@ -61,6 +71,14 @@ pub enum SweepFailure {
     /// There is no such world.
     #[error(transparent)]
     World(#[from] WorldError),
+    /// A lap within the documented ranges broke down.
+    #[error("the lap at the random configuration {seed} is not sound: {fault}")]
+    Unsound {
+        /// Which one.
+        seed: u32,
+        /// What is wrong with it.
+        fault: String,
+    },
     /// The threads could not be started.
     #[error(transparent)]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -110,7 +128,8 @@ struct Entry {
 /// Runs all laps and prints their distribution.
 ///
 /// # Errors
-/// Where the sweep is too large, the world cannot be driven or the threads cannot be started.
+/// Where the sweep is too large, the world cannot be driven, the threads cannot be started, or a random
+/// lap is not sound.
 pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
     let laps = args.seeds.count() * args.noise.len() as u64;
     if laps > MAX_LAPS {
@@ -122,7 +141,15 @@ pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
         let useful = usize::try_from(args.seeds.count()).unwrap_or(usize::MAX);
         pool = pool.num_threads(threads.get().min(useful).min(MAX_THREADS));
     }
-    let by_seed = pool.build()?.install(|| all_runs(args, &trial));
+    let pool = pool.build()?;
+    if args.random {
+        return pool.install(|| random::print(args));
+    }
+    if args.nudge {
+        pool.install(|| nudge::print(args, &trial));
+        return Ok(());
+    }
+    let by_seed = pool.install(|| all_runs(args, &trial));
     let levels: Vec<Level> = args
         .noise
         .iter()
@@ -142,9 +169,7 @@ pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
 
 /// The runs of every seed, in order of the seeds; each has one run for each noise factor.
 fn all_runs(args: &SweepArgs, trial: &Trial) -> Vec<Vec<LapOutcome>> {
-    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} seeds, {eta} left")
-        .expect("the template is well formed");
-    let bar = ProgressBar::new(args.seeds.count()).with_style(style);
+    let bar = progress_bar(args.seeds.count());
     let runs = (args.seeds.first..=args.seeds.last)
         .into_par_iter()
         .map_init(LapRunner::new, |runner, seed| {
@@ -156,6 +181,13 @@ fn all_runs(args: &SweepArgs, trial: &Trial) -> Vec<Vec<LapOutcome>> {
         .collect();
     bar.finish_and_clear();
     runs
+}
+
+/// A bar on a terminal's standard error, one step for each seed.
+fn progress_bar(seeds: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} seeds, {eta} left")
+        .expect("the template is well formed");
+    ProgressBar::new(seeds).with_style(style)
 }
 
 impl Level {

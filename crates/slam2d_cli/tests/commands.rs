@@ -179,6 +179,25 @@ fn a_million_threads_are_no_more_than_there_are_seeds() {
 }
 
 #[test]
+fn a_start_moved_by_its_last_digits_makes_another_lap_of_seed_2_and_not_of_1_and_3() {
+    let arguments = ["sweep", "--nudge", "--seeds", "1..=3", "--noise", "1"];
+    let level = json(&[&arguments[..], &["--json"]].concat())[0].take();
+    assert_eq!(level["runs"], 3);
+    assert_eq!(level["changed"], 1);
+    // 32 mm, of a start that moved by less than 1e-15 m.
+    let farthest_m = level["farthest_m"].as_f64().unwrap();
+    assert_close("farthest", farthest_m, 0.032, 5e-4);
+}
+
+#[test]
+fn laps_at_random_configurations_are_counted_with_those_that_are_sound() {
+    let all = json(&["sweep", "--random", "--seeds", "1..=4", "--json"]);
+    assert_eq!(all["laps"], 4);
+    assert_eq!(all["sound"], 4);
+    assert!(all["ticks"].as_u64().unwrap() > 4, "{all}");
+}
+
+#[test]
 fn sweep_counts_every_run_once_and_does_not_depend_on_threads() {
     let arguments = ["sweep", "--seeds", "1..=3", "--noise", "1,4", "--json"];
     let levels = json(&arguments);
@@ -297,6 +316,10 @@ fn wrong_arguments_end_in_one_line_and_exit_code_2() {
         (&["sweep", "--seeds", "0..=4294967295"], "too many"),
         (&["sweep", "--seeds", "-1..3"], "4294967295"),
         (&["sweep", "--threads", "0"], "whole number from 1 on"),
+        (
+            &["sweep", "--random", "--noise", "2"],
+            "cannot be used with",
+        ),
         (&["sweep", "--noise", "1,-2"], "0 to 100"),
         (&["register", "absent.csv", "absent.csv"], "absent.csv"),
         (&["register", "a.csv", "b.csv", "--repeat", "0"], "0"),

@@ -10,7 +10,7 @@ use ch16_slam2d::matching::{InformationFrame, MatcherKind, NdtMatcherConfig};
 use pr_geom::SE2;
 use pr_sim::Rng;
 
-use super::{LoopClosure, LapConfig};
+use super::{LapConfig, LoopClosure};
 
 /// The range of one number.
 #[derive(Clone, Copy, Debug)]

@@ -31,7 +31,11 @@ impl LapTrace {
             let numbers = [
                 report.registration.tau_m,
                 report.registration.next_tau_m,
-                if matched.inliers == 0 { 0.0 } else { matched.rmse_m },
+                if matched.inliers == 0 {
+                    0.0
+                } else {
+                    matched.rmse_m
+                },
                 metrics.odometry_error_m,
                 metrics.estimate_error_m,
                 metrics.odometry_rms_m,
@@ -72,7 +76,7 @@ fn is_finite(pose: &SE2) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::lap::{LapRunner, LapConfig};
+    use crate::lap::{LapConfig, LapRunner};
 
     #[test]
     fn one_figure_that_is_no_number_is_found_and_named() {

@@ -6,9 +6,15 @@ use std::ops::RangeInclusive;
 use std::thread;
 
 use ch16_lab::lap::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LapConfig, LapRunner, LapSummary};
+use ch16_lab::nudge::{CHANGED_M, NUDGE, NudgeStatistics, farthest_keyframe_m, nudged};
 use ch16_lab::results::{Column, LapOutcome, LapStatistics, Row};
+use ch16_slam2d::metrics::position_error_m;
 
 const SEEDS: RangeInclusive<u32> = 1..=1000;
+/// Those of them that are driven once more from a start a hair's breadth away, at noise ×1.
+const NUDGED_SEEDS: RangeInclusive<u32> = 1..=300;
+/// The level of [`NOISE`] of the canonical run.
+const ONCE: usize = 1;
 /// Factors of the wheels' noise, by the names that the page gives them.
 const NOISE: [(&str, f64); 4] = [
     ("quarter", 0.25),
@@ -20,6 +26,7 @@ const NOISE: [(&str, f64); 4] = [
 /// The laps of all seeds at all noise factors.
 pub struct Sweep {
     levels: [LapStatistics; 4],
+    nudged: NudgeStatistics,
     canonical: LapOutcome,
 }
 
@@ -29,7 +36,7 @@ impl Sweep {
         let seeds: Vec<u32> = SEEDS.collect();
         let workers = thread::available_parallelism().map_or(1, usize::from);
         let shares = seeds.chunks(seeds.len().div_ceil(workers));
-        let by_seed: Vec<[LapOutcome; 4]> = thread::scope(|scope| {
+        let by_seed: Vec<OfSeed> = thread::scope(|scope| {
             let running: Vec<_> = shares.map(|share| scope.spawn(|| laps(share))).collect();
             let finished = running.into_iter();
             finished
@@ -37,10 +44,13 @@ impl Sweep {
                 .collect()
         });
         let level = |k: usize| LapStatistics {
-            outcomes: by_seed.iter().map(|laps| laps[k]).collect(),
+            outcomes: by_seed.iter().map(|laps| laps.outcomes[k]).collect(),
         };
         Self {
             levels: [0, 1, 2, 3].map(level),
+            nudged: NudgeStatistics {
+                moved_m: by_seed.iter().filter_map(|laps| laps.moved_m).collect(),
+            },
             canonical: LapOutcome::of(&LapRunner::new().run(&LapConfig::default())),
         }
     }
@@ -65,6 +75,11 @@ impl Sweep {
             ["canonical_noise"] => Some(LapConfig::default().drive.noise_factor),
             ["false_m"] => Some(FALSE_LOOP_DISTANCE_M),
             ["false_deg"] => Some(FALSE_LOOP_TURN_DEG),
+            ["nudge", "laps"] => Some(self.nudged.moved_m.len() as f64),
+            ["nudge", "start_fm"] => Some(1e15 * nudge_m()),
+            ["nudge", "changed_um"] => Some(1e6 * CHANGED_M),
+            ["nudge", "changed"] => Some(self.nudged.changed() as f64),
+            ["nudge", "farthest_m"] => Some(self.nudged.farthest_m()),
             _ => None,
         }
     }
@@ -104,15 +119,37 @@ impl Sweep {
     }
 }
 
+/// The laps of one seed.
+struct OfSeed {
+    /// One for each noise factor.
+    outcomes: [LapOutcome; 4],
+    /// How far the lap at noise ×1 moved with its start, where that was tried, m.
+    moved_m: Option<f64>,
+}
+
 /// One runner for all: it keeps what a seed simulates over the noise factors.
-fn laps(seeds: &[u32]) -> Vec<[LapOutcome; 4]> {
+fn laps(seeds: &[u32]) -> Vec<OfSeed> {
     let mut runner = LapRunner::new();
-    let mut lap = |seed, noise| {
-        let config = LapConfig::with_seed_and_noise(seed, noise);
-        LapOutcome::of(&runner.run(&config))
+    let of_seed = |&seed: &u32| {
+        let configs = NOISE.map(|(_, noise)| LapConfig::with_seed_and_noise(seed, noise));
+        let records = configs.each_ref().map(|config| runner.run(config));
+        let moved_m = NUDGED_SEEDS.contains(&seed).then(|| {
+            let twin = runner.run(&nudged(&configs[ONCE], NUDGE));
+            farthest_keyframe_m(&records[ONCE], &twin)
+        });
+        OfSeed {
+            outcomes: records.each_ref().map(LapOutcome::of),
+            moved_m,
+        }
     };
-    let of_seed = |&seed: &u32| NOISE.map(|(_, noise)| lap(seed, noise));
     seeds.iter().map(of_seed).collect()
+}
+
+/// How far the start of a twin lies from the start, m.
+fn nudge_m() -> f64 {
+    let config = LapConfig::default();
+    let twin = nudged(&config, NUDGE);
+    position_error_m(&config.drive.start, &twin.drive.start)
 }
 
 /// Whether closing loops made an error larger.

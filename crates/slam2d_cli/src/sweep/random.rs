@@ -1,0 +1,92 @@
+//! `slam2d sweep --random`: laps at configurations drawn from the documented ranges.
+
+use std::panic::catch_unwind;
+
+use ch16_lab::lap::{LapRunner, random_config};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{SweepArgs, SweepFailure, progress_bar};
+use crate::output::{print_json, say};
+
+/// What random laps came to.
+#[derive(Serialize)]
+struct RandomJson {
+    laps: usize,
+    /// Laps of which every figure is finite.
+    sound: usize,
+    /// Loops closed in all.
+    loops: usize,
+    /// Ticks of all of them.
+    ticks: usize,
+}
+
+/// What one lap came to.
+struct Random {
+    seed: u32,
+    loops: usize,
+    ticks: usize,
+    fault: Option<String>,
+}
+
+/// Drives a lap at a random configuration for every seed, and prints whether all were sound.
+///
+/// # Errors
+/// The first lap that panicked or has a figure that is not finite.
+pub fn print(args: &SweepArgs) -> Result<(), SweepFailure> {
+    let bar = progress_bar(args.seeds.count());
+    let laps: Vec<Random> = (args.seeds.first..=args.seeds.last)
+        .into_par_iter()
+        .map(|seed| {
+            let lap = run(seed);
+            bar.inc(1);
+            lap
+        })
+        .collect();
+    bar.finish_and_clear();
+    let sum = |count: fn(&Random) -> usize| laps.iter().map(count).sum();
+    let summary = RandomJson {
+        laps: laps.len(),
+        sound: laps.iter().filter(|lap| lap.fault.is_none()).count(),
+        loops: sum(|lap| lap.loops),
+        ticks: sum(|lap| lap.ticks),
+    };
+    if args.json {
+        print_json(&summary);
+    } else {
+        say!(
+            "{} of {} laps at random configurations ended with finite figures alone; {} ticks, {} loops \
+             closed",
+            summary.sound,
+            summary.laps,
+            summary.ticks,
+            summary.loops
+        );
+    }
+    match laps.into_iter().find(|lap| lap.fault.is_some()) {
+        None => Ok(()),
+        Some(Random { seed, fault, .. }) => Err(SweepFailure::Unsound {
+            seed,
+            fault: fault.unwrap_or_default(),
+        }),
+    }
+}
+
+/// One lap; a panic is a fault like any other, so that the seed is told.
+fn run(seed: u32) -> Random {
+    let lap = catch_unwind(|| LapRunner::new().run(&random_config(seed)));
+    match lap {
+        Ok(record) => Random {
+            seed,
+            loops: record.lap.summary.loops,
+            ticks: record.ticks(),
+            fault: record.first_fault(),
+        },
+        Err(_) => Random {
+            seed,
+            loops: 0,
+            ticks: 0,
+            fault: Some("it panicked".to_owned()),
+        },
+    }
+}
