@@ -12,6 +12,10 @@ const CELLS_PER_POINT: i64 = 64;
 /// Cells for every point where the table may choose: along a wall, a few points in each.
 const CHOSEN_CELLS_PER_POINT: f64 = 3.0;
 
+/// Chosen cells are larger than this, m: the squares of distances between neighbouring cells do not
+/// vanish, so that ties are seen.
+const MIN_CHOSEN_M: f64 = 1e-150;
+
 /// Where each cell's run of points starts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CellTable {
@@ -36,7 +40,7 @@ pub(super) fn free_cell_m(cloud: &PointCloud) -> Option<f64> {
     let (width, height) = (span(cloud.xs()), span(cloud.ys()));
     let cells = CHOSEN_CELLS_PER_POINT * cloud.len() as f64;
     let cell_m = math::sqrt(width * height / cells).max((width + height) / cells);
-    (cell_m > 0.0 && cell_m.is_finite()).then_some(cell_m)
+    (cell_m > MIN_CHOSEN_M && cell_m.is_finite()).then_some(cell_m)
 }
 
 impl CellTable {
