@@ -97,11 +97,15 @@ impl Optimizer {
             settings.ridge,
         );
         let (cost, chi2) = (self.equations.cost, self.equations.chi2);
-        self.best.arrived(cost, &self.trial);
-        if !(cost.is_finite() && chi2.is_finite()) {
-            return Err(OptimizeError::NotFinite);
+        let is_finite = cost.is_finite() && chi2.is_finite();
+        // A kernel's cost can look fine where χ² is infinite.
+        let known = if is_finite { cost } else { f64::NAN };
+        self.best.arrived(known, &self.trial);
+        if is_finite {
+            Ok(cost)
+        } else {
+            Err(OptimizeError::NotFinite)
         }
-        Ok(cost)
     }
 
     /// The second half: solves the normal equations that were added up at the present poses, and moves.
