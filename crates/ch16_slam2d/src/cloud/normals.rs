@@ -104,5 +104,6 @@ fn normal_of(neighbors: &[(f64, f64)]) -> Option<Vector2<f64>> {
         (xy, yy - smallest)
     };
     let length = math::norm2(along_x, along_y);
-    (length > 0.0).then(|| Vector2::new(-along_y / length, along_x / length))
+    // Of points 1e150 m apart it is infinite.
+    (length > 0.0 && length.is_finite()).then(|| Vector2::new(-along_y / length, along_x / length))
 }
