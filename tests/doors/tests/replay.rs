@@ -11,7 +11,7 @@ use slam2d_doors::DOORS;
 
 /// The inputs are part of the repository: a few hundred small files at most.
 const MAX_FILES: usize = 600;
-const MAX_BYTES: usize = 300_000;
+const MAX_BYTES: usize = 100_000;
 
 fn fuzz() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz")
