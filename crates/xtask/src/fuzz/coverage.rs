@@ -83,6 +83,8 @@ fn replay(build: &std::path::Path) -> std::process::Command {
             "replay",
         ])
         .env("RUSTFLAGS", "-Cinstrument-coverage")
+        // What runs during the build is instrumented, too.
+        .env("LLVM_PROFILE_FILE", build.join("build.profraw"))
         .env("CARGO_TARGET_DIR", build);
     command
 }
