@@ -72,9 +72,10 @@ impl Laps {
 /// Where there is no such widget or parameter.
 #[wasm_bindgen(js_name = parseParam)]
 pub fn parse_param(name: &str, id: &str, text: &str) -> Result<String, JsError> {
-    let shell = registry::make(name).ok_or_else(|| unknown_widget(name))?;
-    let mut params = shell.model().spec().params.iter();
-    let spec = params
+    let widget = registry::spec(name).ok_or_else(|| unknown_widget(name))?;
+    let spec = widget
+        .params
+        .iter()
         .find(|param| param.id == id)
         .ok_or_else(|| JsError::new("no such parameter"))?;
     let answer = match spec.parse(text) {

@@ -1,6 +1,7 @@
 //! Every widget there is, in the order of the chapter.
 
 use kit::shell::Shell;
+use kit::spec::WidgetSpec;
 
 /// How a widget is made.
 pub type Maker = fn() -> Shell;
@@ -12,6 +13,20 @@ pub const WIDGETS: [(&str, Maker); 4] = [
     ("w16.3", w16_3_cost_terraces::widget),
     ("w16.4", w16_4_control_room::widget),
 ];
+
+/// What never changes about them, in the same order.
+const SPECS: [&WidgetSpec; WIDGETS.len()] = [
+    &w16_1_basin_explorer::spec::SPEC,
+    &w16_2_full_lap::spec::SPEC,
+    &w16_3_cost_terraces::spec::SPEC,
+    &w16_4_control_room::spec::SPEC,
+];
+
+/// What never changes about the widget of that name; nothing is computed for it.
+#[must_use]
+pub fn spec(name: &str) -> Option<&'static WidgetSpec> {
+    SPECS.into_iter().find(|spec| spec.id == name)
+}
 
 /// A fresh widget of that name.
 #[must_use]
@@ -33,7 +48,10 @@ mod tests {
     #[test]
     fn a_widget_is_registered_under_its_own_name() {
         for (name, maker) in WIDGETS {
-            assert_eq!(maker().model().spec().id, name);
+            let model_spec = maker().model().spec();
+            assert_eq!(model_spec.id, name);
+            let known_as = spec(name).map(|known| format!("{known:?}"));
+            assert_eq!(known_as, Some(format!("{model_spec:?}")));
         }
     }
 
@@ -57,6 +75,7 @@ mod tests {
     #[test]
     fn an_unknown_name_gives_none() {
         assert!(make("w16.9").is_none());
+        assert!(spec("w16.9").is_none());
         assert!(names().contains("w16.4"));
     }
 }
