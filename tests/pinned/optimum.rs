@@ -7,11 +7,9 @@
 
 use std::path::PathBuf;
 
-use measuring::skip::skip;
+use measuring::skip::{NO_RECORDED_GRAPHS, skip};
 use pr_optim::g2o::G2oFile;
 use pr_optim::{JacobianModel, Optimizer, Outcome, Problem, Session, Settings, Start, StopReason};
-
-const NO_DATA: &str = "the folder with the reference data is absent";
 
 /// Best known χ², seven digits.
 const OPTIMA: [(&str, f64); 8] = [
@@ -55,7 +53,7 @@ fn solved(name: &str, optimizer: &mut Optimizer) -> Option<(Problem, Outcome)> {
 fn every_recorded_graph_reaches_the_best_known_optimum() {
     for (name, best) in OPTIMA {
         let Some((problem, outcome)) = solved(name, &mut Optimizer::new(settings())) else {
-            skip(&format!("the optimum of {name}"), NO_DATA);
+            skip(&format!("the optimum of {name}"), NO_RECORDED_GRAPHS);
             continue;
         };
         assert!(
@@ -83,7 +81,7 @@ fn every_recorded_graph_reaches_the_best_known_optimum() {
 fn a_start_whose_first_step_breaks_its_promise_is_left_after_that_step() {
     for name in ["ais2klinik", "m3500b", "mit"] {
         let Some((_, outcome)) = solved(name, &mut Optimizer::new(settings())) else {
-            skip(&format!("the starts tried on {name}"), NO_DATA);
+            skip(&format!("the starts tried on {name}"), NO_RECORDED_GRAPHS);
             continue;
         };
         let [other, first, chordal] = outcome.tried.as_slice() else {
@@ -107,7 +105,7 @@ fn a_second_solve_with_the_analysis_kept_has_the_same_bits() {
     let mut optimizer = Optimizer::new(settings());
     let mut poses = || solved("m3500", &mut optimizer).map(|(problem, _)| problem.poses().to_vec());
     let Some(first) = poses() else {
-        skip("a second solve of m3500", NO_DATA);
+        skip("a second solve of m3500", NO_RECORDED_GRAPHS);
         return;
     };
     assert_eq!(poses(), Some(first));

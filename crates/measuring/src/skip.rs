@@ -9,6 +9,14 @@ use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::Path;
 
+/// The reason of a test that wants a recorded pose graph.
+pub const NO_RECORDED_GRAPHS: &str = "the graph is not in ../shared/data/graphs, beside the repository; \
+     docs/testing.md says where recorded graphs come from";
+
+/// The reason of what counts instructions.
+pub const NO_VALGRIND: &str =
+    "valgrind is not installed; `sudo apt-get install valgrind` installs it on Debian";
+
 /// Says that a test leaves something out, and why; the test returns after it.
 ///
 /// # Panics

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::support::{assert_refused, json, slam2d};
-use measuring::skip::skip;
+use measuring::skip::{NO_RECORDED_GRAPHS, skip};
 use pr_optim::g2o::G2oFile;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -338,10 +338,7 @@ fn recorded(name: &str) -> Option<PathBuf> {
 #[test]
 fn a_kernel_costs_no_more_on_mit_than_at_the_plain_optimum() {
     let Some(path) = recorded("mit.g2o") else {
-        skip(
-            "kernels on mit",
-            "the folder with the reference data is absent",
-        );
+        skip("kernels on mit", NO_RECORDED_GRAPHS);
         return;
     };
     let path = path.to_str().unwrap();
