@@ -15,7 +15,7 @@ export async function addListings(html, root) {
   for (const [place, file, items] of places) {
     const source = await readFile(path.join(root, file), 'utf8');
     const code = items.split(' ').map((name) => itemOf(source, name, file)).join('\n\n');
-    const name = `From <code>${file}</code>`;
+    const name = `<span>From <code>${file}</code></span>`;
     html = html.replace(place, () => `<figure class="listing"><figcaption>${name}</figcaption><pre tabindex="0"><code>${highlight(code)}</code></pre></figure>`);
   }
   return html;

@@ -10,8 +10,9 @@ const NARROW = '(width < 1100px)';
 const SEEN_SHARE = 0.6;
 /** The copy leaves the rest of the screen to the controls. */
 const MOST_HEIGHT = 0.45;
-/** Titles and axes stand around what is drawn. */
-const MARGIN_PX = 34;
+/** The title stands above what is drawn, the axis below it. */
+const ABOVE_PX = 54;
+const BELOW_PX = 34;
 
 export interface PinnedHost {
   /** The part of the canvas that holds the picture; undefined while nothing is drawn. */
@@ -93,8 +94,8 @@ export class Pinned {
 
   #show(canvas: HTMLCanvasElement, [, top, , height]: Box): void {
     const { left, width } = this.#stage.getBoundingClientRect();
-    const from = Math.max(top - MARGIN_PX, 0);
-    const tall = Math.min(height + 2 * MARGIN_PX, canvas.clientHeight - from);
+    const from = Math.max(top - ABOVE_PX, 0);
+    const tall = Math.min(top + height + BELOW_PX, canvas.clientHeight) - from;
     const scale = Math.min(1, (MOST_HEIGHT * window.innerHeight) / tall);
     const ratio = canvas.width / canvas.clientWidth;
     this.#copy ??= create('canvas', { class: 'pinned', 'aria-hidden': 'true' });
