@@ -8,7 +8,7 @@ import { canvasBox } from './spots.mjs';
 
 const visit = h.visitor();
 
-const body = (name) => `<main><h1 tabindex="-1">A page</h1><slam-widget name="${name}"></slam-widget></main>`;
+const body = (name) => `<main><h1 tabindex="-1">A page</h1><slam-widget name="${name}" more="on"></slam-widget></main>`;
 
 /** Types over what stands in the field that has the focus. */
 async function type(tab, text) {
@@ -134,6 +134,7 @@ for (const widget of h.schema) {
         // What a press does is told by a widget that is not drawn, and so does not play on.
         const other = document.createElement('slam-widget');
         other.name = widget.name;
+        other.more = widget.more;
         window.expected = async (id) => {
           await other.press('defaults');
           await other.press(id);

@@ -75,7 +75,7 @@ describe('eighteen widgets in view at once', () => {
 });
 
 it('a widget longer than a canvas can be is drawn coarser, to its end', async () => {
-  await on('<slam-widget name="w16.3"></slam-widget>', async (tab) => {
+  await on('<slam-widget name="w16.3" more="on"></slam-widget>', async (tab) => {
     await h.ready(tab);
     const canvas = await tab.evaluate(() => {
       const { width, height, clientWidth, clientHeight } =

@@ -47,10 +47,13 @@ function returnTo(entry: unknown): void {
   }
 }
 
-/** A query names a whole state: what it leaves out goes back to its default. */
+/** A query names a whole state: what it leaves out goes back to its default. What is opened stays open. */
 function setWhole(widget: SlamWidget, { widget: spec, values }: LinkedState): void {
   const asked = new Map(values);
-  for (const param of spec.params) widget.set(param.id, asked.get(param.id) ?? defaultText(param));
+  for (const param of spec.params) {
+    const text = asked.get(param.id) ?? (param.id === 'more' ? undefined : defaultText(param));
+    if (text !== undefined) widget.set(param.id, text);
+  }
 }
 
 /** A page that was opened by a link with a state shows that widget. */

@@ -4,6 +4,7 @@ use egui::accesskit::Role;
 use egui::{Align, Button, DragValue, Layout, Slider, Ui, WidgetInfo, WidgetText};
 
 use crate::hot::Hot;
+use crate::layers::MORE;
 use crate::model::Model;
 use crate::param::{Choice, ParamKind, ParamSpec};
 use crate::ticks::signed;
@@ -11,12 +12,14 @@ use crate::ticks::signed;
 /// Width below which a column of controls is not split in two.
 const TWO_COLUMNS: f32 = 480.0;
 
-/// Shows every parameter that has no place of its own on the transport bar.
+/// Shows every parameter of the layer that has no place of its own elsewhere.
 pub fn params(ui: &mut Ui, model: &mut dyn Model, hot: &mut Hot) {
+    let layer = model.layer();
     let specs: Vec<_> = model
         .values()
         .iter()
-        .filter(|(spec, _)| !on_transport_bar(spec))
+        .filter(|(spec, _)| !on_transport_bar(spec) && spec.id != MORE.id)
+        .filter(|(spec, _)| layer.has_param(spec.id))
         .collect();
     if ui.available_width() < TWO_COLUMNS {
         for (spec, value) in specs {

@@ -1,5 +1,6 @@
 //! What every widget's `model.rs` implements: state in, scene out, no egui, no clock.
 
+use crate::layers::Layer;
 use crate::param::{ParamError, Values, printable};
 use crate::scene::Scene;
 use crate::spec::{Preset, WidgetSpec};
@@ -14,6 +15,11 @@ pub trait Model {
 
     /// The current value of every parameter.
     fn values(&self) -> &Values;
+
+    /// What is shown of the widget.
+    fn layer(&self) -> Layer {
+        Layer::of(self.spec().opening, self.values())
+    }
 
     /// Sets one parameter and recomputes what depends on it.
     ///

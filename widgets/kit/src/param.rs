@@ -6,6 +6,8 @@
 
 use thiserror::Error;
 
+use crate::layers::MORE;
+
 /// One option of a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Choice {
@@ -241,6 +243,16 @@ impl Values {
         Self {
             specs,
             values: specs.iter().map(|spec| spec.default).collect(),
+        }
+    }
+
+    /// Puts every parameter back to its default, but for [`MORE`]: what the reader has opened stays
+    /// open.
+    pub fn reset(&mut self) {
+        for (spec, value) in self.specs.iter().zip(&mut self.values) {
+            if spec.id != MORE.id {
+                *value = spec.default;
+            }
         }
     }
 

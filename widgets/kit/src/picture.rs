@@ -48,7 +48,8 @@ pub fn picture(
 
     let title = format!("{} {}", spec.id, spec.title);
     y = paragraph(surface, y, &title, TextSize::Title, ink) + 0.5 * GAP;
-    let arrangement = view.arrange(&scene, width);
+    let layer = model.layer();
+    let arrangement = view.arrange(&scene, width).of_layer(&layer);
     for rows in [&arrangement.stage, &arrangement.below] {
         let (placed, height) = place(&scene, rows, width, surface);
         for placed in &placed {
@@ -66,6 +67,9 @@ pub fn picture(
     let verdict = palette::standing(theme, outcome.standing);
     y = paragraph(surface, y, &outcome.verdict, TextSize::Body, verdict);
     y = paragraph(surface, y, &outcome.sentence, TextSize::Body, ink);
+    if !layer.is_all() {
+        return y + MARGIN;
+    }
     let facts: Vec<_> = outcome
         .facts
         .iter()

@@ -15,8 +15,8 @@ const FACT_ROW: f32 = 18.0;
 /// From this width on, facts stand in two columns.
 const TWO_COLUMNS: f32 = 460.0;
 
-/// The verdict, its sentence, and the facts.
-pub fn outcome(ui: &mut Ui, outcome: &Outcome, theme: Theme) {
+/// The verdict and its sentence.
+pub fn verdict(ui: &mut Ui, outcome: &Outcome, theme: Theme) {
     let ink = palette::standing(theme, outcome.standing);
     ui.horizontal(|ui| {
         sign(ui, outcome.standing, ink);
@@ -28,6 +28,10 @@ pub fn outcome(ui: &mut Ui, outcome: &Outcome, theme: Theme) {
         );
     });
     ui.label(&outcome.sentence);
+}
+
+/// The numbers of an outcome.
+pub fn facts(ui: &mut Ui, outcome: &Outcome) {
     ui.add_space(4.0);
     // Nothing here is pressed: the rows may stand closer than controls.
     ui.spacing_mut().interact_size.y = FACT_ROW;

@@ -1,5 +1,6 @@
 //! What a widget says of itself: title, words, parameters, buttons, presets.
 
+use crate::layers::Opening;
 use crate::param::ParamSpec;
 
 /// Everything about a widget that never changes.
@@ -13,6 +14,8 @@ pub struct WidgetSpec {
     pub misconception: &'static str,
     /// "What to notice", a sentence each.
     pub notice: &'static [&'static str],
+    /// What it shows until the reader asks for more.
+    pub opening: Opening,
     /// The parameters, in the order of their controls.
     pub params: &'static [ParamSpec],
     /// The buttons, in their order: transport first.

@@ -25,17 +25,22 @@ const MARK_REACH: f32 = 7.0;
 /// of them was used.
 pub fn bar(ui: &mut Ui, model: &mut dyn Model, theme: Theme, hot: &mut Hot) -> Touched {
     let mut touched = Touched::No;
+    let layer = model.layer();
     let timeline = model.timeline();
     let playing = timeline.as_ref().is_some_and(|timeline| timeline.playing);
     ui.horizontal_wrapped(|ui| {
         for spec in model.spec().buttons {
-            if spec.id != DEFAULTS.id && button(ui, spec, playing, hot).clicked() {
+            if spec.id != DEFAULTS.id
+                && layer.has_button(spec.id)
+                && button(ui, spec, playing, hot).clicked()
+            {
                 // The list names only buttons that the model has.
                 let _ = model.press(spec.id);
                 touched = Touched::Yes;
             }
         }
-        if let Some((spec, value)) = model.values().find(SPEED.id)
+        if layer.is_all()
+            && let Some((spec, value)) = model.values().find(SPEED.id)
             && let ParamKind::Choice { options } = spec.kind
         {
             // What is left of a row may be too narrow for the choices, which do not break apart.

@@ -1,5 +1,6 @@
 //! Where a widget's panels stand: rows of columns of panels.
 
+use crate::layers::Layer;
 use crate::layout::{PanelLayout, PlotHeight};
 use crate::scene::{Aspect, Panel, Scene, Weight};
 use crate::surface::{Measure, Px};
@@ -73,6 +74,23 @@ pub struct Arrangement {
 }
 
 impl Arrangement {
+    /// What a layer shows of it: the panels of the scene, and no plots below.
+    #[must_use]
+    pub fn of_layer(mut self, layer: &Layer) -> Self {
+        if layer.is_all() {
+            return self;
+        }
+        for row in &mut self.stage {
+            for column in &mut row.columns {
+                column.slots.retain(|slot| layer.has_panel(slot.panel));
+            }
+            row.columns.retain(|column| !column.slots.is_empty());
+        }
+        self.stage.retain(|row| !row.columns.is_empty());
+        self.below.clear();
+        self
+    }
+
     /// Main panels over the whole width, halves in pairs, side plots in pairs below.
     #[must_use]
     pub fn by_weight(scene: &Scene, width: f32) -> Self {

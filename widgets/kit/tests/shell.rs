@@ -26,6 +26,10 @@ fn value(harness: &Harness<'_, Shell>, id: &str) -> f64 {
     harness.state().model().values().get(id)
 }
 
+fn is_shown(harness: &Harness<'_, Shell>, role: Role, label: &str) -> bool {
+    harness.query_by_role_and_label(role, label).is_some()
+}
+
 /// Presses at one place, moves to another, lets go.
 fn drag(harness: &mut Harness<'_, Shell>, from: Pos2, to: Pos2) {
     for (pos, pressed) in [(from, Some(true)), (to, None), (to, Some(false))] {
@@ -61,6 +65,73 @@ fn every_slider_has_its_parameters_name_and_takes_arrow_keys() {
         "{changes:?}"
     );
     assert!(harness.state_mut().take_changes().is_empty());
+}
+
+#[test]
+fn a_widget_opens_with_its_scene_one_control_the_verdict_and_play() {
+    for width in [390.0, 1100.0] {
+        let mut harness = harness(width);
+        let all = harness.state().content_height();
+        harness.state_mut().model_mut().set("more", 0.0).unwrap();
+        harness.run_steps(3);
+        let rest = [
+            (Role::RadioButton, "kind: two"),
+            (Role::CheckBox, "show the ghost"),
+            (Role::Button, "Step"),
+            (Role::Button, "Defaults"),
+            (Role::Button, "Far away"),
+            (Role::RadioButton, "speed: ×4"),
+        ];
+        for (role, label) in [
+            (Role::Slider, "place along x"),
+            (Role::Slider, "tick"),
+            (Role::Button, "Play"),
+            (Role::Button, "More"),
+        ] {
+            assert!(is_shown(&harness, role, label), "{label} at {width}");
+        }
+        for (role, label) in rest {
+            assert!(!is_shown(&harness, role, label), "{label} at {width}");
+        }
+        let verdict = harness.state().model().outcome().verdict;
+        assert!(harness.query_by_label(&verdict).is_some());
+        assert!(harness.state().content_height() < 0.8 * all);
+        harness.get_by_role_and_label(Role::Button, "More").click();
+        harness.run_steps(3);
+        for (role, label) in rest {
+            assert!(is_shown(&harness, role, label), "{label} at {width}");
+        }
+        assert_eq!(harness.state().content_height(), all);
+        let changes = harness.state_mut().take_changes();
+        assert!(
+            changes.contains(&Change {
+                id: "more",
+                value: 1.0
+            }),
+            "links have it: {changes:?}"
+        );
+    }
+}
+
+#[test]
+fn what_was_opened_stays_open_after_presets_and_defaults() {
+    let mut harness = harness(1100.0);
+    for label in ["Far away", "Defaults"] {
+        harness.get_by_role_and_label(Role::Button, label).click();
+        harness.run_steps(2);
+        assert_eq!(value(&harness, "more"), 1.0, "{label}");
+    }
+    harness.state_mut().model_mut().set("more", 0.0).unwrap();
+    let model = harness.state_mut().model_mut();
+    let [far] = model.spec().presets else {
+        panic!("one preset");
+    };
+    kit::model::apply_preset(model, far).unwrap();
+    assert_eq!(
+        value(&harness, "more"),
+        0.0,
+        "nor does a preset open anything"
+    );
 }
 
 #[test]
@@ -201,6 +272,16 @@ fn the_wheel_belongs_to_the_page_and_with_ctrl_to_the_map() {
         .click();
     harness.run_steps(3);
     assert_eq!(harness.state().panel_to_screen("map", [1.0, 1.0]), before);
+}
+
+#[test]
+fn the_static_picture_has_the_layer_that_is_shown() {
+    let mut shell = shell();
+    let all = shell.picture_svg(390.0, Theme::Light);
+    shell.model_mut().set("more", 0.0).unwrap();
+    let first = shell.picture_svg(390.0, Theme::Light);
+    assert!(first.len() < all.len());
+    assert_well_formed(&first);
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod words;
 
 use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart};
 use ch16_slam2d::icp::{IcpTrace, IcpWorkspace, Pair, correspondences};
+use kit::layers::MORE;
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
 };
@@ -200,7 +201,7 @@ impl Model for BasinExplorer {
             return Ok(());
         }
         match id {
-            "iteration" | "speed" => {}
+            "iteration" | "speed" | "more" => {}
             "seed" => {
                 self.scene = BasinScene::with_seed(self.values.get("seed") as u32);
                 self.basins.restart(&self.values);
@@ -229,7 +230,7 @@ impl Model for BasinExplorer {
             press_preset(self, id)?;
         } else {
             self.playback.pause();
-            for spec in PARAMS {
+            for spec in PARAMS.iter().filter(|spec| spec.id != MORE.id) {
                 self.set(spec.id, spec.default)?;
             }
         }

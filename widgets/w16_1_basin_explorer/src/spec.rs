@@ -1,6 +1,7 @@
 //! The widget's words and its one list of parameters.
 
 use ch16_lab::basin::BasinScene;
+use kit::layers::{MORE, Opening};
 use kit::param::{Choice, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
@@ -129,6 +130,7 @@ pub const PARAMS: &[ParamSpec] = &[
         help: "Which iteration is shown; 0 is the first guess, and past the last one is the end.",
     },
     SPEED,
+    MORE,
 ];
 
 const fn offset(id: &'static str, label: &'static str, default: f64) -> ParamSpec {
@@ -158,6 +160,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "Point to plane needs fewer iterations, and its right basin is wider with no offset.",
         "The verdict uses the truth. A robot has only rmse and pairs, and both look fine when it is wrong.",
     ],
+    opening: Opening {
+        panels: &["sweeps", "basin-point-to-point", "basin-point-to-plane"],
+        params: &["heading"],
+        buttons: &["play"],
+    },
     params: PARAMS,
     buttons: &[PLAY, STEP, RESET, DEFAULTS],
     presets: &[

@@ -11,12 +11,11 @@ use w16_1_basin_explorer::spec::{PARAMS, SPEC};
 use w16_1_basin_explorer::view::BasinView;
 
 fn harness(width: f32) -> Harness<'static, Shell> {
+    let mut shell = w16_1_basin_explorer::widget();
+    shell.model_mut().set("more", 1.0).unwrap();
     let mut harness = Harness::builder()
         .with_size(vec2(width, 2600.0))
-        .build_ui_state(
-            |ui, shell: &mut Shell| shell.ui(ui),
-            w16_1_basin_explorer::widget(),
-        );
+        .build_ui_state(|ui, shell: &mut Shell| shell.ui(ui), shell);
     harness.run_steps(2);
     harness
 }
@@ -52,7 +51,8 @@ fn drag(harness: &mut Harness<'_, Shell>, from: Pos2, to: Pos2) {
 fn every_control_of_the_list_is_on_screen_under_its_name() {
     for width in [340.0, 700.0, 1100.0] {
         let harness = harness(width);
-        for spec in PARAMS {
+        harness.get_by_role_and_label(Role::Button, "Less");
+        for spec in PARAMS.iter().filter(|spec| spec.id != "more") {
             let (role, name) = match spec.kind {
                 ParamKind::Slider { .. } | ParamKind::Timeline { .. } => {
                     (Role::Slider, spec.label.to_owned())

@@ -119,7 +119,7 @@ impl FullLap {
     }
 
     fn back_to_defaults(&mut self) {
-        self.values = Values::defaults(SPEC.params);
+        self.values.reset();
         self.playback.pause();
         self.transition = None;
         self.pressed.clear();
@@ -201,7 +201,7 @@ impl Model for FullLap {
         }
         match id {
             "t" => self.go_to(self.tick()),
-            "speed" => {}
+            "speed" | "more" | "future" => {}
             _ => self.recompute(),
         }
         Ok(())

@@ -2,6 +2,7 @@
 
 use ch16_lab::lap;
 use ch16_slam2d::chi_squared::CHAPTER_QUANTILE;
+use kit::layers::{MORE, Opening};
 use kit::param::{Choice, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::run::{LOOPS, NOISE, seed};
@@ -99,7 +100,16 @@ pub const PARAMS: &[ParamSpec] = &[
         default: FIRST_LOOP_TICK,
         help: "The moment shown; a tick is a quarter of a second, and the marks are loops.",
     },
+    ParamSpec {
+        id: "future",
+        label: "show what is to come",
+        unit: "",
+        kind: ParamKind::Switch,
+        default: 0.0,
+        help: "Draws the whole lap into the plots, also what comes after the moment shown.",
+    },
     SPEED,
+    MORE,
 ];
 
 /// One tick before the loop.
@@ -145,6 +155,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "A small χ² alone does not pass: the sweep must also fit the old walls to 0.16 m, with at least 25 pairs.",
         "The exact gate adds up what the edges say of themselves, and knows the truth no better. Over seeds 1 to 50 at four times the noise the chapter's closes 78 loops, 3 of them wrong; the exact one closes 123, 7 of them wrong. Wrong is more than 0.3 m or 5° off the truth.",
     ],
+    opening: Opening {
+        panels: &["map", "loop"],
+        params: &["loops"],
+        buttons: &["play"],
+    },
     params: PARAMS,
     buttons: &[PLAY, STEP, RESET, BEFORE, AT, AFTER, NEXT, DEFAULTS],
     presets: &[

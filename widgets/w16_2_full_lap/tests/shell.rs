@@ -11,6 +11,7 @@ use w16_2_full_lap::widget;
 
 fn harness(width: f32) -> Harness<'static, Shell> {
     let mut shell = widget();
+    shell.model_mut().set("more", 1.0).unwrap();
     // Animations of egui and of the loop would take frames to settle.
     shell.set_motion(Motion::Reduced);
     let mut harness = Harness::builder()

@@ -128,7 +128,7 @@ impl Model for CostTerraces {
             "drop" => self.drop_balls(),
             "defaults" => {
                 self.playback.pause();
-                self.values = Values::defaults(PARAMS);
+                self.values.reset();
                 self.terrains.update(self.settings());
             }
             _ => return press_preset(self, id),

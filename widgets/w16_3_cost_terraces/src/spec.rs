@@ -1,6 +1,7 @@
 //! The widget's words and its one list of parameters.
 
 use ch16_lab::terrain::TerrainScene;
+use kit::layers::{MORE, Opening};
 use kit::param::{Choice, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
@@ -146,6 +147,7 @@ pub const PARAMS: &[ParamSpec] = &[
         help: "How many gradient steps both balls have taken.",
     },
     SPEED,
+    MORE,
 ];
 
 /// Drops both balls from the cross hair.
@@ -218,6 +220,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "A wide τ lets ICP reach farther than NDT. Neither measure wins everywhere.",
         "In the corridor both valleys run along x. The ellipse shows why: it is a needle along x, where the walls say almost nothing.",
     ],
+    opening: Opening {
+        panels: &["icp", "ndt"],
+        params: &["tau"],
+        buttons: &["play"],
+    },
     params: PARAMS,
     buttons: &[DROP, PLAY, STEP, RESET, DEFAULTS],
     presets: PRESETS,

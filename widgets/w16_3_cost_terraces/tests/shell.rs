@@ -7,13 +7,12 @@ use egui_kittest::kittest::Queryable as _;
 use kit::shell::Shell;
 
 fn harness(width: f32) -> Harness<'static, Shell> {
+    let mut shell = w16_3_cost_terraces::widget();
+    shell.model_mut().set("more", 1.0).unwrap();
     let mut harness = Harness::builder()
         .with_size(vec2(width, 2400.0))
         .with_max_steps(3000)
-        .build_ui_state(
-            |ui, shell: &mut Shell| shell.ui(ui),
-            w16_3_cost_terraces::widget(),
-        );
+        .build_ui_state(|ui, shell: &mut Shell| shell.ui(ui), shell);
     harness.run_steps(3);
     harness
 }

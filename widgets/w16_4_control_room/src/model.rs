@@ -127,7 +127,7 @@ impl ControlRoom {
 
     fn back_to_defaults(&mut self) {
         self.playback.pause();
-        self.values = Values::defaults(SPEC.params);
+        self.values.reset();
         self.next_events = 0;
         self.run_again();
         self.show();
@@ -169,7 +169,7 @@ impl Model for ControlRoom {
         }
         match id {
             "t" => self.go_to(value),
-            "speed" => {}
+            "speed" | "more" => {}
             _ => self.run_again(),
         }
         Ok(())

@@ -1,6 +1,7 @@
 //! The widget's words and its one list of parameters.
 
 use ch16_lab::lap;
+use kit::layers::{MORE, Opening};
 use kit::param::{ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::run::{LOOPS, NOISE, seed};
@@ -23,6 +24,7 @@ pub const PARAMS: &[ParamSpec] = &[
         help: "The moment shown; a tick is a quarter of a second, and the marks are loops.",
     },
     SPEED,
+    MORE,
 ];
 
 /// On to the next event of the log.
@@ -42,8 +44,14 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "The back end works only at keyframes, and its big moment is a loop: then old poses move.",
         "The grid stores no poses. After an accepted loop it is thrown away and drawn again from every keyframe's sweep.",
         "A cell takes the ink of these words where it is likely occupied, and the colour of the paper where it is likely free. Of the tinted rest nothing was seen.",
+        "Each lane is one thing that the system does. The upper two run at every tick, the rest waits for a keyframe; a press on a mark goes there.",
         "Walls blur where two passes disagree. At the first loop they sharpen: the cells that are more than 90 % likely to be occupied go from 110 to 156.",
     ],
+    opening: Opening {
+        panels: &["map", "registration", "lanes"],
+        params: &["noise"],
+        buttons: &["play"],
+    },
     params: PARAMS,
     buttons: &[PLAY, STEP, RESET, NEXT_EVENT, DEFAULTS],
     presets: &[

@@ -3,6 +3,7 @@
 use egui::{Button, Frame, RichText, Ui, vec2};
 
 use super::Shell;
+use crate::layers::MORE;
 use crate::model::apply_preset;
 use crate::pointer::Touched;
 use crate::spec::DEFAULTS;
@@ -18,7 +19,7 @@ impl Shell {
             ui.heading(spec.title);
         });
         ui.label(spec.misconception);
-        if spec.presets.is_empty() {
+        if spec.presets.is_empty() || !self.model.layer().is_all() {
             return;
         }
         ui.add_space(2.0);
@@ -39,7 +40,7 @@ impl Shell {
     /// What to notice.
     pub(super) fn notice(&mut self, ui: &mut Ui) {
         let spec = self.model.spec();
-        if spec.notice.is_empty() {
+        if spec.notice.is_empty() || !self.model.layer().is_all() {
             return;
         }
         ui.label(RichText::new("What to notice").strong());
@@ -62,12 +63,13 @@ impl Shell {
     /// The controls, with "defaults" below them.
     pub(super) fn controls(&mut self, ui: &mut Ui) {
         controls::params(ui, self.model.as_mut(), &mut self.hot);
+        let layer = self.model.layer();
         let defaults = self
             .model
             .spec()
             .buttons
             .iter()
-            .find(|button| button.id == DEFAULTS.id);
+            .find(|button| button.id == DEFAULTS.id && layer.has_button(button.id));
         if let Some(spec) = defaults
             && transport::button(ui, spec, false, &mut self.hot).clicked()
         {
@@ -82,12 +84,33 @@ impl Shell {
         self.refresh();
         Frame::group(ui.style()).inner_margin(10.0).show(ui, |ui| {
             ui.set_min_width(ui.available_width());
-            readout::outcome(ui, &self.shown.outcome, self.theme);
+            readout::verdict(ui, &self.shown.outcome, self.theme);
+            if self.model.layer().is_all() {
+                readout::facts(ui, &self.shown.outcome);
+            }
         });
+    }
+
+    /// The button that shows everything, or takes it away again.
+    pub(super) fn more(&mut self, ui: &mut Ui) {
+        let Some((spec, shown)) = self.model.values().find(MORE.id) else {
+            return;
+        };
+        let label = if shown == 0.0 { "More" } else { "Less" };
+        let response = ui.add(Button::new(label).min_size(vec2(64.0, TARGET)));
+        self.hot.control(spec.id, &response);
+        if response.on_hover_text(spec.help).clicked() {
+            // The list has it, and a switch is 0 or 1.
+            let _ = self.model.set(spec.id, 1.0 - shown);
+            self.touch();
+        }
     }
 
     /// Tables beside the picture.
     pub(super) fn tables(&mut self, ui: &mut Ui) {
+        if !self.model.layer().is_all() {
+            return;
+        }
         for table in &self.shown.tables {
             readout::table(ui, table, self.theme);
             ui.add_space(6.0);
@@ -99,6 +122,8 @@ impl Shell {
         self.controls(ui);
         ui.add_space(6.0);
         self.outcome(ui);
+        ui.add_space(6.0);
+        self.more(ui);
         ui.add_space(6.0);
         self.tables(ui);
     }

@@ -30,7 +30,7 @@ impl Shell {
         width: f32,
         out: &mut Vec<Reserved>,
     ) -> f32 {
-        let Arrangement { stage, below } = self.view.arrange(&self.shown.scene, width);
+        let Arrangement { stage, below } = self.arrange(width);
         let y = self.reserve(ui, at, width, &stage, out);
         let y = self.block(ui, [at[0], y], width, Self::transport);
         self.reserve(ui, [at[0], y], width, &below, out)
@@ -44,13 +44,19 @@ impl Shell {
         width: f32,
         out: &mut Vec<Reserved>,
     ) -> f32 {
-        let Arrangement { stage, below } = self.view.arrange(&self.shown.scene, width);
+        let Arrangement { stage, below } = self.arrange(width);
         let y = self.reserve(ui, at, width, &stage, out);
         let y = self.block(ui, [at[0], y], width, Self::transport);
         let y = self.block(ui, [at[0], y], width, Self::controls);
         let y = self.block(ui, [at[0], y], width, Self::outcome);
+        let y = self.block(ui, [at[0], y], width, Self::more);
         let y = self.reserve(ui, [at[0], y], width, &below, out);
         self.block(ui, [at[0], y], width, Self::tables)
+    }
+
+    fn arrange(&self, width: f32) -> Arrangement {
+        let arrangement = self.view.arrange(&self.shown.scene, width);
+        arrangement.of_layer(&self.model.layer())
     }
 
     /// Settles the places of panels, and lets the pointer act on them.

@@ -1,5 +1,6 @@
 //! A small model with one of everything, for tests of what draws and drives models.
 
+use kit::layers::{MORE, Opening};
 use kit::model::{
     Activity, Fact, Handle, Model, Outcome, Standing, Table, TablePlace, Timeline, TimelineMark,
     unknown_button,
@@ -71,6 +72,11 @@ const PARAMS: &[ParamSpec] = &[
         help: "Which tick is shown.",
     },
     SPEED,
+    // Everything is shown, as without layers, until a test asks for less.
+    ParamSpec {
+        default: 1.0,
+        ..MORE
+    },
 ];
 
 const SPEC: WidgetSpec = WidgetSpec {
@@ -81,6 +87,11 @@ const SPEC: WidgetSpec = WidgetSpec {
         "The thing follows the pointer.",
         "The timeline plays to its end.",
     ],
+    opening: Opening {
+        panels: &["map"],
+        params: &["x"],
+        buttons: &["play"],
+    },
     params: PARAMS,
     buttons: &[PLAY, STEP, RESET, DEFAULTS],
     presets: &[Preset {
@@ -135,7 +146,9 @@ impl Model for Fake {
             "step" => self.set("time", (time + 1.0).min(20.0)),
             "reset" => self.set("time", 0.0),
             "defaults" => {
-                *self = Self::new();
+                self.values.reset();
+                self.playback.pause();
+                self.filled = 0;
                 Ok(())
             }
             _ => Err(unknown_button(&SPEC, id)),
