@@ -25,6 +25,8 @@ pub fn tone(theme: Theme, tone: Tone) -> Rgb {
         (Theme::Dark, Tone::Prediction) => hex(0xf97316),
         (Theme::Light, Tone::Measurement) => hex(0x166534),
         (Theme::Dark, Tone::Measurement) => hex(0x86efac),
+        (Theme::Light, Tone::Revisit) => hex(0x3ca860),
+        (Theme::Dark, Tone::Revisit) => hex(0x247848),
         (Theme::Light, Tone::Posterior) => hex(0x581c87),
         (Theme::Dark, Tone::Posterior) => hex(0xf0abfc),
         (Theme::Light, Tone::Truth) => hex(0x6b7280),

@@ -15,6 +15,8 @@ pub enum Tone {
     Prediction,
     /// What was sensed: green, ×.
     Measurement,
+    /// What was sensed at a second visit: the other green, ×.
+    Revisit,
     /// What is believed after: purple, ■.
     Posterior,
     /// What really is: grey, dashed.

@@ -134,6 +134,18 @@ fn the_five_meanings_stay_apart() {
 }
 
 #[test]
+fn a_second_visit_is_another_green_and_no_other_meaning() {
+    for theme in THEMES {
+        let seen_again = tone(theme, Tone::Revisit);
+        for meaning in MEANINGS {
+            assert_apart(&[seen_again, tone(theme, meaning)], "a second visit");
+        }
+        let ratio = contrast(seen_again, tone(theme, Tone::Paper));
+        assert!(ratio >= 3.0, "{theme:?}: {ratio}");
+    }
+}
+
+#[test]
 fn the_six_classes_stay_apart() {
     for theme in THEMES {
         let classes: [Rgb; 6] = core::array::from_fn(|k| cell(theme, Cell::Class(k as u8)));

@@ -182,7 +182,12 @@ impl FullLap {
 
     fn moment(&self) -> Moment<'_> {
         let share = self.transition.as_ref().map_or(1.0, Transition::share);
-        Moment::new(&self.runs, self.tick(), share)
+        let seen_until = if self.values.get("future") == 0.0 {
+            self.tick()
+        } else {
+            self.runs.ticks()
+        };
+        Moment::new(&self.runs, self.tick(), share, seen_until)
     }
 }
 

@@ -180,3 +180,19 @@ fn all_controls_are_there_at_every_width_and_in_both_themes() {
         }
     }
 }
+
+#[test]
+fn no_label_overlaps_another_while_the_lap_by_ndt_runs() {
+    let mut shell = widget();
+    for (id, value) in [("more", 1.0), ("matcher", 2.0)] {
+        shell.model_mut().set(id, value).unwrap();
+    }
+    shell.settle();
+    for tick in [92.0, 104.0, 110.0, 116.0, 122.0, 129.0] {
+        shell.model_mut().set("t", tick).unwrap();
+        for width in [390.0, 700.0, 1100.0] {
+            let faults = shell.text_faults(width);
+            assert!(faults.is_empty(), "tick {tick} at {width}: {faults:#?}");
+        }
+    }
+}

@@ -12,6 +12,8 @@ pub struct Moment<'a> {
     pub runs: &'a Runs,
     /// Ticks done.
     pub tick: usize,
+    /// The last tick of which the plots tell: the one shown, or the end of the lap.
+    pub seen_until: usize,
     /// The attempt made in this tick.
     pub attempt: Option<&'a LoopAttempt>,
     /// Poses of the graph's nodes before the attempt; empty without one.
@@ -24,7 +26,7 @@ pub struct Moment<'a> {
 
 impl<'a> Moment<'a> {
     /// The state at `tick`; `share` is the part of a loop's correction that is shown.
-    pub fn new(runs: &'a Runs, tick: usize, share: f64) -> Self {
+    pub fn new(runs: &'a Runs, tick: usize, share: f64, seen_until: usize) -> Self {
         let attempt = runs.graph.attempt_at(tick);
         let mut nodes = runs.graph.poses_at(tick).to_vec();
         let mut estimate = runs.graph.estimate(tick);
@@ -42,6 +44,7 @@ impl<'a> Moment<'a> {
         Self {
             runs,
             tick,
+            seen_until,
             attempt,
             old_nodes,
             nodes,
@@ -49,11 +52,11 @@ impl<'a> Moment<'a> {
         }
     }
 
-    /// The loops closed up to here.
-    pub fn closed_loops(&self) -> impl Iterator<Item = &LoopAttempt> {
+    /// The loops tried up to here.
+    pub fn loops_tried(&self) -> impl Iterator<Item = &LoopAttempt> {
         let tick = self.tick;
         let attempts = self.runs.graph.attempts().iter();
-        attempts.filter(move |attempt| attempt.accepted() && attempt.tick <= tick)
+        attempts.filter(move |attempt| attempt.tick <= tick)
     }
 }
 

@@ -6,7 +6,7 @@ mod reference;
 mod settings;
 
 use kit::model::Fact;
-use kit::scene::{Layer, Mark, Tone};
+use kit::scene::{Layer, Mark, Stroke, Tone};
 
 use super::*;
 

@@ -6,22 +6,26 @@ use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, We
 use pr_geom::SE2;
 
 use crate::model::gates::{Gate, Region};
+use crate::model::moment::Moment;
 use crate::model::runs::Runs;
 use crate::model::words::{ends, model_name};
 
 /// Half width and half height of the view, m: the corridor is 1.2 m wide.
 const HALF_VIEW_M: [f64; 2] = [2.0, 1.3];
 
-/// The loop that the buttons belong to at `tick`, or words where no loop was tried in the lap.
-pub fn closeup(runs: &Runs, tick: usize) -> Panel {
-    match runs.graph.attempt_near(tick) {
+/// The newest loop, from the tick before it is tried, or words where none was tried so far.
+pub fn closeup(moment: &Moment) -> Panel {
+    let runs = moment.runs;
+    let seen = moment.seen_until.max(moment.tick + 1);
+    let near = runs.graph.attempt_near(moment.tick);
+    match near.filter(|attempt| attempt.tick <= seen) {
         Some(attempt) => of_loop(runs, attempt),
         None => panel(
-            "No loop tried in this lap".to_owned(),
+            "No loop tried so far".to_owned(),
             [0.0, 0.0],
             vec![Layer::Text {
                 at: [0.0, 0.0],
-                text: "no loop tried".to_owned(),
+                text: "no loop tried so far".to_owned(),
                 tone: Tone::Ink,
             }],
             Vec::new(),

@@ -5,6 +5,7 @@ use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, We
 use pr_geom::{SE2, math};
 use pr_sim::World;
 
+use super::LoopLook;
 use crate::model::moment::Moment;
 
 /// Room around the Apartment, m.
@@ -12,6 +13,9 @@ const MARGIN_M: f64 = 0.4;
 
 /// Lowest and highest arc of a loop, m; in between it is as high as its ends are apart.
 const ARC_HEIGHT_M: [f64; 2] = [0.7, 1.2];
+
+/// Length of the head of an arrow, m.
+const ARROW_HEAD_M: f64 = 0.09;
 
 /// Segments of a loop's arc.
 const ARC_STEPS: u32 = 24;
@@ -61,7 +65,8 @@ fn apartment() -> Vec<Layer> {
     layers
 }
 
-/// The sweeps of the keyframes at the graph's poses: dots from the way out, × from the way back.
+/// The sweeps of the keyframes at the graph's poses: dots from the way out, × in the other green from
+/// the way back, so that a wall that is drawn twice is seen as two.
 fn map_points(moment: &Moment) -> [Layer; 2] {
     let turn = moment.runs.graph.turn_node();
     let mut out = Vec::new();
@@ -76,7 +81,7 @@ fn map_points(moment: &Moment) -> [Layer; 2] {
     }
     [
         Layer::points(out, Mark::Dot, Tone::Measurement, 1.2),
-        Layer::points(back, Mark::Cross, Tone::Measurement, 1.8),
+        Layer::points(back, Mark::Cross, Tone::Revisit, 2.2),
     ]
 }
 
@@ -112,14 +117,27 @@ fn graph(moment: &Moment) -> Vec<Layer> {
         tone: Tone::Posterior,
         width_px: 1.0,
     }];
-    layers.extend(moment.closed_loops().map(|attempt| Layer::Line {
-        points: arc(moment, attempt),
-        stroke: Stroke::Solid,
-        tone: Tone::Posterior,
-        width_px: 2.0,
+    layers.extend(moment.loops_tried().flat_map(|attempt| {
+        let arc = arc(moment, attempt);
+        let top = arc[arc.len() / 2];
+        loop_layers(attempt, arc, top)
     }));
     layers.push(Layer::points(nodes, Mark::Square, Tone::Posterior, 3.0));
     layers
+}
+
+/// A loop that was accepted is solid and green, a refused one dotted, grey and hollow.
+fn loop_layers(attempt: &LoopAttempt, arc: Vec<[f64; 2]>, top: [f64; 2]) -> [Layer; 2] {
+    let look = LoopLook::of(attempt);
+    [
+        Layer::Line {
+            points: arc,
+            stroke: look.stroke,
+            tone: look.tone,
+            width_px: 2.5,
+        },
+        Layer::points(vec![top], look.mark, look.tone, 4.5),
+    ]
 }
 
 /// A loop's factor, bent to the north: straight it would hide behind the factors of the corridor.
@@ -149,36 +167,41 @@ fn history(moment: &Moment) -> Vec<Layer> {
     let moved = old.iter().zip(moment.nodes.iter().map(xy));
     vec![
         Layer::Segments {
-            segments: moved.map(|(old, new)| [*old, new]).collect(),
+            segments: moved.flat_map(|(old, new)| arrow(*old, new)).collect(),
             stroke: Stroke::Solid,
             tone: Tone::Prior,
-            width_px: 1.0,
+            width_px: 1.5,
         },
         Layer::points(old, Mark::Circle, Tone::Prior, 3.5),
     ]
 }
 
-/// The loop tried in this tick, by name; a rejected one has no factor and is dotted.
+/// A line with a head, as segments; no head where it would be longer than the line.
+fn arrow(from: [f64; 2], to: [f64; 2]) -> Vec<[[f64; 2]; 2]> {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = math::norm2(along[0], along[1]);
+    let mut segments = vec![[from, to]];
+    if length > ARROW_HEAD_M {
+        let [x, y] = along.map(|value| value / length * ARROW_HEAD_M);
+        for aside in [-0.5, 0.5] {
+            segments.push([to, [to[0] - x - aside * y, to[1] - y + aside * x]]);
+        }
+    }
+    segments
+}
+
+/// The loop tried in this tick, by name.
 fn attempt_now(moment: &Moment) -> Vec<Layer> {
     let Some(attempt) = moment.attempt else {
         return Vec::new();
     };
     let arc = arc(moment, attempt);
     let top = arc[arc.len() / 2];
-    let mut layers = vec![Layer::Text {
+    vec![Layer::Text {
         at: [top[0], top[1] + 0.35],
         text: moment.runs.graph.lap().loop_headline(attempt),
         tone: Tone::Ink,
-    }];
-    if !attempt.accepted() {
-        layers.push(Layer::Line {
-            points: arc,
-            stroke: Stroke::Dotted,
-            tone: Tone::Measurement,
-            width_px: 2.5,
-        });
-    }
-    layers
+    }]
 }
 
 /// Where each estimate has the robot now.
@@ -222,7 +245,9 @@ fn legend() -> Vec<LegendEntry> {
             Stroke::Solid,
         ),
         LegendEntry::mark("map, way out", Tone::Measurement, Mark::Dot),
-        LegendEntry::mark("map, way back", Tone::Measurement, Mark::Cross),
+        LegendEntry::mark("map, way back", Tone::Revisit, Mark::Cross),
+        LoopLook::ACCEPTED.entry("loop accepted"),
+        LoopLook::REFUSED.entry("loop refused"),
     ]
 }
 

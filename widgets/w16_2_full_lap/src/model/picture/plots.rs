@@ -4,6 +4,8 @@ use ch16_lab::lap::LoopAttempt;
 use kit::chart::{Series, TimeChart, axis_from_zero};
 use kit::scene::{Aspect, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
+use super::LoopLook;
+use crate::model::moment::Moment;
 use crate::model::runs::Runs;
 use crate::model::words::ends;
 
@@ -17,7 +19,8 @@ const ROOM_TICKS: f64 = 5.0;
 const GATES_SHOWN: f64 = 3.0;
 
 /// Position error over time of the three estimates.
-pub fn errors(runs: &Runs, tick: usize) -> Panel {
+pub fn errors(moment: &Moment) -> Panel {
+    let (runs, tick) = (moment.runs, moment.tick);
     let odometry = Series {
         label: "odometry",
         values: &runs.odometry_errors_m,
@@ -30,18 +33,30 @@ pub fn errors(runs: &Runs, tick: usize) -> Panel {
         graph(&runs.graph.errors_m),
     ];
     let title = "Position error over time";
-    with_room_at_the_end(chart(runs, tick, "errors", title, "error (m)").panel(&series))
+    let panel = chart(runs, tick, "errors", title, "error (m)").panel(&series);
+    with_room_at_the_end(until(moment, panel))
 }
 
 /// Distance between the map of the way out and that of the way back, over time.
-pub fn disagreement(runs: &Runs, tick: usize) -> Panel {
+pub fn disagreement(moment: &Moment) -> Panel {
+    let (runs, tick) = (moment.runs, moment.tick);
     let series = [
         front_end(&runs.front_end.disagreement_m),
         graph(&runs.graph.disagreement_m),
     ];
     let title = "Map disagreement over time";
     let chart = chart(runs, tick, "disagreement", title, "rms distance (m)");
-    with_room_at_the_end(chart.panel(&series))
+    with_room_at_the_end(until(moment, chart.panel(&series)))
+}
+
+/// A plot without what is still to come; its axes stay, so that nothing jumps while it plays.
+fn until(moment: &Moment, mut panel: Panel) -> Panel {
+    for layer in &mut panel.layers {
+        if let Layer::Line { points, .. } = layer {
+            points.retain(|point| point[0] <= moment.seen_until as f64);
+        }
+    }
+    panel
 }
 
 fn front_end(values: &[f64]) -> Series<'_> {
@@ -79,12 +94,15 @@ fn chart<'a>(
     }
 }
 
-/// χ² of each attempt with the gate: an accepted loop became part of the belief (■), a rejected one
-/// stays a measurement (×).
-pub fn gate(runs: &Runs, tick: usize) -> Panel {
-    let attempts = runs.graph.attempts();
+/// χ² of each attempt so far with the gate: accepted ones are solid, refused ones hollow.
+pub fn gate(moment: &Moment) -> Panel {
+    let (runs, tick) = (moment.runs, moment.tick);
+    let all = runs.graph.attempts();
+    let seen = all.partition_point(|attempt| attempt.tick <= moment.seen_until);
+    let attempts = &all[..seen];
     let gate = runs.gate_chi2();
-    let highest = attempts
+    // Of the whole lap: the axis does not jump while it plays.
+    let highest = all
         .iter()
         .map(|a| a.verification.gate.chi2)
         .fold(gate, f64::max)
@@ -97,8 +115,7 @@ pub fn gate(runs: &Runs, tick: usize) -> Panel {
             .map(|a| [a.tick as f64, a.verification.gate.chi2.min(y.max)])
             .collect::<Vec<_>>()
     };
-    let labels = attempts.iter().enumerate();
-    let labels = labels.map(|(index, attempt)| label(index, attempt, runs.ticks(), y.max));
+    let labels = labels(attempts, runs.ticks(), y.max);
     let mut layers = vec![
         chart.now_line(y.max),
         Layer::Line {
@@ -107,8 +124,8 @@ pub fn gate(runs: &Runs, tick: usize) -> Panel {
             tone: Tone::Ink,
             width_px: 1.5,
         },
-        Layer::points(of(true), Mark::Square, Tone::Posterior, 5.0),
-        Layer::points(of(false), Mark::Cross, Tone::Measurement, 6.0),
+        look(&LoopLook::ACCEPTED, of(true)),
+        look(&LoopLook::REFUSED, of(false)),
     ];
     layers.extend(labels);
     with_room_at_the_end(Panel {
@@ -120,35 +137,62 @@ pub fn gate(runs: &Runs, tick: usize) -> Panel {
         y,
         layers,
         legend: vec![
-            LegendEntry::mark("accepted", Tone::Posterior, Mark::Square),
-            LegendEntry::mark("rejected", Tone::Measurement, Mark::Cross),
+            LegendEntry::mark("accepted", LoopLook::ACCEPTED.tone, LoopLook::ACCEPTED.mark),
+            LegendEntry::mark("refused", LoopLook::REFUSED.tone, LoopLook::REFUSED.mark),
             LegendEntry::line(&format!("gate {gate:.3}"), Tone::Ink, Stroke::Dotted),
         ],
         color_bar: None,
     })
 }
 
-/// `29 to 7` by turns above and below the marks, which may stand side by side; with the number
-/// where the mark is at the edge.
-fn label(index: usize, attempt: &LoopAttempt, last: usize, top: f64) -> Layer {
-    let chi2 = attempt.verification.gate.chi2;
-    let share = (chi2 / top).min(1.0);
-    let above = share < 0.2 || (share < 0.8 && index.is_multiple_of(2));
-    let away = if above { 0.11 } else { -0.11 };
-    let text = if chi2 > top {
-        format!("{}: {chi2:.0}", ends(attempt))
-    } else {
-        ends(attempt)
-    };
-    Layer::Text {
-        // The words of a loop in the last ticks would leave the plot.
-        at: [
-            (attempt.tick as f64).min(last as f64 - ROOM_TICKS),
-            (share + away) * top,
-        ],
-        text,
-        tone: Tone::Ink,
+fn look(look: &LoopLook, at: Vec<[f64; 2]>) -> Layer {
+    Layer::points(at, look.mark, look.tone, 5.5)
+}
+
+/// Half the width of a letter and half the height of a word, as shares of a narrow plot.
+const HALF_LETTER: f64 = 0.012;
+const HALF_WORD: f64 = 0.06;
+
+/// `29 to 7` near each mark where no word stands yet, with the number where the mark is at the edge.
+fn labels(attempts: &[LoopAttempt], last: usize, top: f64) -> Vec<Layer> {
+    let width = last as f64 + ROOM_TICKS;
+    // Middle and half size of each word, as shares of the plot.
+    let mut placed: Vec<([f64; 2], [f64; 2])> = Vec::new();
+    let mut layers = Vec::new();
+    for attempt in attempts {
+        let chi2 = attempt.verification.gate.chi2;
+        let share = (chi2 / top).min(1.0);
+        let text = if chi2 > top {
+            format!("{}: {chi2:.0}", ends(attempt))
+        } else {
+            ends(attempt)
+        };
+        let half = [HALF_LETTER * text.chars().count() as f64, HALF_WORD];
+        let x = (attempt.tick as f64 / width).clamp(half[0], 1.0 - half[0]);
+        let is_free = |y: &f64| {
+            let inside = (half[1]..=1.0 - half[1]).contains(y);
+            let crowded = placed.iter().any(|([px, py], other)| {
+                (px - x).abs() < half[0] + other[0] && (py - y).abs() < half[1] + other[1]
+            });
+            inside && !crowded
+        };
+        // Beside the mark first, then ever farther off.
+        let away = [
+            0.12, -0.12, 0.25, -0.25, 0.38, -0.38, 0.51, -0.51, 0.64, -0.64,
+        ];
+        let mut candidates = away.iter().map(|away| share + away);
+        let Some(y) = candidates.find(is_free) else {
+            // Nothing fits: the table has it.
+            continue;
+        };
+        placed.push(([x, y], half));
+        layers.push(Layer::Text {
+            at: [x * width, y * top],
+            text,
+            tone: Tone::Ink,
+        });
     }
+    layers
 }
 
 fn with_room_at_the_end(mut panel: Panel) -> Panel {

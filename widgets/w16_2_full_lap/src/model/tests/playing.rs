@@ -162,3 +162,98 @@ fn with_reduced_motion_play_is_at_the_end_at_once() {
     assert_eq!(model.tick(), 129);
     assert_eq!(model.advance(0.1), Activity::Idle);
 }
+
+/// The last tick that any line over time reaches, in the plots over time.
+fn told_until(model: &FullLap) -> f64 {
+    let scene = model.scene();
+    let plots = scene.panels.iter().filter(|panel| panel.x.label == "tick");
+    let layers = plots.flat_map(|panel| &panel.layers);
+    let times = layers.flat_map(|layer| match layer {
+        // The gate is a level and no event.
+        Layer::Line { points, stroke, .. } if *stroke == Stroke::Solid => points.clone(),
+        Layer::Points { points, .. } => points.clone(),
+        _ => Vec::new(),
+    });
+    times.map(|point| point[0]).fold(0.0, f64::max)
+}
+
+#[test]
+fn nothing_of_the_future_is_drawn_unless_the_reader_asks_for_it() {
+    for tick in [0.0, 50.0, 91.0, 100.0] {
+        let mut model = at(&[("t", tick)]);
+        assert_eq!(told_until(&model), tick);
+        set(&mut model, "future", 1.0);
+        assert_eq!(told_until(&model), 129.0);
+    }
+    let closeup = |tick| {
+        let scene = at(&[("t", tick)]).scene();
+        scene.panels[1].title.clone()
+    };
+    assert_eq!(closeup(50.0), "No loop tried so far");
+    assert!(closeup(92.0).starts_with("Loop 29 to 7"));
+}
+
+/// The marks of loops on a panel: solid and green, hollow and grey.
+fn loops_on(model: &FullLap, panel: usize) -> [usize; 2] {
+    let scene = model.scene();
+    let layers = &scene.panels[panel].layers;
+    [(Mark::Dot, Tone::Measurement), (Mark::Circle, Tone::Truth)].map(|look| {
+        let marks = layers.iter().map(|layer| match layer {
+            // The points of the map are smaller.
+            Layer::Points {
+                points,
+                mark,
+                tone,
+                radius_px,
+            } if (*mark, *tone) == look && *radius_px > 4.0 => points.len(),
+            _ => 0,
+        });
+        marks.sum()
+    })
+}
+
+#[test]
+fn accepted_loops_are_solid_and_refused_ones_hollow_on_the_map_and_in_the_plot() {
+    // Seed 6: one loop turned away at tick 90, others accepted.
+    let model = at(&[("seed", 6.0), ("t", 129.0)]);
+    let attempts = model.runs.graph.attempts();
+    let accepted = attempts.iter().filter(|a| a.accepted()).count();
+    let expected = [accepted, attempts.len() - accepted];
+    assert!(expected[0] > 0 && expected[1] > 0);
+    let map = 0;
+    let gate = model.scene().panels.len() - 1;
+    for panel in [map, gate] {
+        assert_eq!(loops_on(&model, panel), expected, "panel {panel}");
+    }
+}
+
+#[test]
+fn the_way_out_and_the_way_back_are_two_shades() {
+    let points = |tick: f64, tone: Tone| {
+        let scene = at(&[("t", tick)]).scene();
+        let layers = scene.panels[0].layers.iter();
+        let counts = layers.map(|layer| match layer {
+            Layer::Points {
+                points,
+                tone: of,
+                radius_px,
+                ..
+            } if *of == tone && *radius_px < 3.0 => points.len(),
+            _ => 0,
+        });
+        counts.sum::<usize>()
+    };
+    assert_eq!(points(20.0, Tone::Revisit), 0);
+    assert!(points(20.0, Tone::Measurement) > 500);
+    assert!(points(129.0, Tone::Revisit) > 500);
+}
+
+#[test]
+fn a_closed_loop_shows_by_arrows_how_its_history_moved() {
+    let model = at(&[("t", 92.0)]);
+    let scene = model.scene();
+    let heads = scene.panels[0].layers.iter().any(|layer| {
+        matches!(layer, Layer::Segments { segments, tone: Tone::Prior, .. } if segments.len() > 30)
+    });
+    assert!(heads, "a line and a head for each node that moved");
+}
