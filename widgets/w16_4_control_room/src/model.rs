@@ -24,6 +24,7 @@ use crate::spec::SPEC;
 use grid::GridView;
 use history::History;
 use log::Event;
+use picture::lanes;
 use settings::config;
 
 /// Ticks a second at speed 1: twice as fast as the robot.
@@ -249,8 +250,18 @@ impl Model for ControlRoom {
         tables::shown(self)
     }
 
-    /// The line at the moment shown, in both plots over time.
+    /// The line at the moment shown, in every plot over time, and each mark of the lanes.
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        if panel == lanes::ID
+            && let Some(tick) = lanes::event_at(&self.record, self.tick(), at, reach)
+        {
+            // The press goes to the tick of the mark, however far beside it the pointer is.
+            return Some(Handle {
+                panel: lanes::ID,
+                id: "event",
+                offset: [at[0] - tick, 0.0],
+            });
+        }
         let panel = *picture::OVER_TIME.iter().find(|id| **id == panel)?;
         grab_now(panel, self.values.get("t"), at, reach)
     }

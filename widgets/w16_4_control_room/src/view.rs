@@ -9,10 +9,11 @@ use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 pub struct ControlRoomView;
 
 impl View for ControlRoomView {
-    fn arrange(&self, scene: &Scene, width: f32) -> Arrangement {
-        if width < SIDE_BY_SIDE {
-            return Arrangement::by_weight(scene, width);
-        }
+    fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
+        let lanes = Slot {
+            panel: "lanes",
+            height: PlotHeight::Fixed(220.0),
+        };
         let natural = |panel| Slot {
             panel,
             height: PlotHeight::Natural { most: 480.0 },
@@ -21,17 +22,27 @@ impl View for ControlRoomView {
             panel,
             height: PlotHeight::Fixed(130.0),
         };
+        if width < SIDE_BY_SIDE {
+            let rows = |slots: &[Slot]| slots.iter().map(|slot| Row::of(&[*slot])).collect();
+            return Arrangement {
+                stage: rows(&[natural("map"), natural("registration"), lanes]),
+                below: rows(&[plot("tau"), plot("errors")]),
+            };
+        }
         let column = |share, slot| Column {
             share,
             slots: vec![slot],
         };
         Arrangement {
-            stage: vec![Row {
-                columns: vec![
-                    column(3.0, natural("map")),
-                    column(2.0, natural("registration")),
-                ],
-            }],
+            stage: vec![
+                Row {
+                    columns: vec![
+                        column(3.0, natural("map")),
+                        column(2.0, natural("registration")),
+                    ],
+                },
+                Row::of(&[lanes]),
+            ],
             below: vec![Row::of(&[plot("tau"), plot("errors")])],
         }
     }

@@ -150,7 +150,7 @@ fn with_reduced_motion_play_is_at_the_end_at_once() {
 }
 
 #[test]
-fn the_line_at_the_moment_shown_can_be_dragged_in_both_plots_over_time() {
+fn the_line_at_the_moment_shown_can_be_dragged_in_every_plot_over_time() {
     let mut room = ControlRoom::new();
     for panel in &room.scene().panels {
         let grabbed = room.grab(panel.id, [61.0, 0.1], [3.0, 0.1]);
@@ -272,4 +272,57 @@ fn every_lap_ends_where_the_timeline_does() {
         set(&mut room, "t", last);
         assert_eq!(room.outcome().verdict, "run finished");
     }
+}
+
+/// The marks of the lanes: those that passed, and those that were refused.
+fn lane_marks(room: &ControlRoom) -> [Vec<[f64; 2]>; 2] {
+    let scene = room.scene();
+    let panel = scene.panels.iter().find(|panel| panel.id == "lanes");
+    let layers = &panel.expect("the lanes").layers;
+    [Tone::Measurement, Tone::Truth].map(|wanted| {
+        let points = layers.iter().find_map(|layer| match layer {
+            Layer::Points { points, tone, .. } if *tone == wanted => Some(points.clone()),
+            _ => None,
+        });
+        points.expect("both kinds of marks")
+    })
+}
+
+#[test]
+fn every_lane_has_a_mark_for_what_was_done_up_to_the_tick_shown() {
+    let mut room = ControlRoom::new();
+    set(&mut room, "t", 92.0);
+    let [passed, refused] = lane_marks(&room);
+    let lane = |height: f64| passed.iter().filter(|mark| mark[1] == height).count();
+    // Predict and register at every tick; candidate, fit, gate, optimize and repaint at the first
+    // loop, in tick 92.
+    assert_eq!((lane(8.0), lane(7.0)), (92, 92));
+    assert_eq!(
+        lane(6.0) as f64,
+        fact(&room, "keyframes") - 1.0,
+        "but the first"
+    );
+    for height in [5.0, 4.0, 3.0, 2.0, 1.0] {
+        assert_eq!(lane(height), 1, "lane {height}");
+    }
+    assert!(refused.is_empty());
+    // Seed 6: at tick 90 a candidate passes the gate and not the fit.
+    set(&mut room, "seed", 6.0);
+    set(&mut room, "t", 90.0);
+    let [passed, refused] = lane_marks(&room);
+    assert!(passed.contains(&[90.0, 3.0]));
+    assert!(refused.contains(&[90.0, 4.0]));
+}
+
+#[test]
+fn a_press_on_a_mark_of_a_lane_shows_its_data() {
+    let mut room = ControlRoom::new();
+    set(&mut room, "t", 129.0);
+    let handle = room
+        .grab("lanes", [93.0, 3.1], [2.0, 0.4])
+        .expect("the gate at tick 92");
+    room.drag(handle, [93.0, 3.1]);
+    assert_eq!(room.values().get("t"), 92.0);
+    let sentence = room.outcome().sentence;
+    assert!(sentence.starts_with("loop 29 to 7 accepted"), "{sentence}");
 }

@@ -1,5 +1,6 @@
 //! The panels: the map with its graph, the registration of the newest sweep, the plots over time.
 
+pub mod lanes;
 mod plots;
 
 use ch16_lab::lap::{LapRecord, RegistrationView};
@@ -25,6 +26,7 @@ pub fn scene(room: &ControlRoom) -> Scene {
         panels: vec![
             map(record, now, room.grid.raster(), &room.world),
             registration(record, now, room.registration.as_ref()),
+            lanes::lanes(record, now),
             plots::threshold(&room.history, now),
             plots::errors(&room.history, now),
         ],

@@ -3,10 +3,11 @@
 use kit::chart::{Series, TimeChart};
 use kit::scene::{Mark, Panel, Tone};
 
+use super::lanes;
 use crate::model::history::History;
 
 /// The panels whose horizontal axis is the time.
-pub const OVER_TIME: [&str; 2] = ["tau", "errors"];
+pub const OVER_TIME: [&str; 3] = [lanes::ID, "tau", "errors"];
 
 /// The correspondence threshold over time.
 pub fn threshold(history: &History, now: usize) -> Panel {
