@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::page::document::source;
 
 /// Every package with its layer; a package may use only packages of lower layers.
-const LAYERS: [(&str, u8); 17] = [
+const LAYERS: [(&str, u8); 18] = [
     ("crates/pr_geom", 0),
     ("crates/pr_sim", 1),
     ("crates/pr_grid", 1),
@@ -23,6 +23,7 @@ const LAYERS: [(&str, u8); 17] = [
     ("widgets/w16_2_full_lap", 4),
     ("widgets/w16_3_cost_terraces", 4),
     ("widgets/w16_4_control_room", 4),
+    ("widgets/w16_5_pose_graph_toy", 4),
     ("web", 5),
 ];
 

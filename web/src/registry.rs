@@ -7,11 +7,12 @@ use kit::spec::WidgetSpec;
 pub type Maker = fn() -> Shell;
 
 /// The widgets with their names.
-pub const WIDGETS: [(&str, Maker); 4] = [
+pub const WIDGETS: [(&str, Maker); 5] = [
     ("w16.1", w16_1_basin_explorer::widget),
     ("w16.2", w16_2_full_lap::widget),
     ("w16.3", w16_3_cost_terraces::widget),
     ("w16.4", w16_4_control_room::widget),
+    ("w16.5", w16_5_pose_graph_toy::widget),
 ];
 
 /// What never changes about them, in the same order.
@@ -20,6 +21,7 @@ const SPECS: [&WidgetSpec; WIDGETS.len()] = [
     &w16_2_full_lap::spec::SPEC,
     &w16_3_cost_terraces::spec::SPEC,
     &w16_4_control_room::spec::SPEC,
+    &w16_5_pose_graph_toy::spec::SPEC,
 ];
 
 /// What never changes about the widget of that name; nothing is computed for it.
@@ -44,6 +46,7 @@ pub fn names() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use kit::layers::MORE;
 
     #[test]
     fn a_widget_is_registered_under_its_own_name() {
@@ -64,11 +67,81 @@ mod tests {
             for state in states {
                 shell.model_mut().press(state).expect("the widget has it");
                 shell.settle();
-                for width in [320.0, 390.0, 700.0, 1100.0] {
-                    let faults = shell.text_faults(width);
-                    assert!(faults.is_empty(), "{name} after {state}: {faults:#?}");
+                for more in [0.0, 1.0] {
+                    let model = shell.model_mut();
+                    model.set(MORE.id, more).expect("every widget has layers");
+                    for width in [320.0, 390.0, 700.0, 1100.0] {
+                        let faults = shell.text_faults(width);
+                        assert!(faults.is_empty(), "{name} after {state}: {faults:#?}");
+                    }
                 }
             }
+        }
+    }
+
+    /// A phone, in points.
+    const PHONE: egui::Vec2 = egui::vec2(390.0, 844.0);
+    const TWO_SCREENS: f32 = 2.0 * PHONE.y;
+
+    /// What the module measures in the browser, with egui's own fonts in place of ours.
+    fn height_on_a_phone(ctx: &egui::Context, shell: &mut Shell) -> f32 {
+        let input = egui::RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, PHONE)),
+            ..Default::default()
+        };
+        for _ in 0..3 {
+            let mut output = ctx.run_ui(input.clone(), |ui| shell.ui(ui));
+            // Nothing is drawn: the font's texture is not wanted.
+            output.textures_delta.clear();
+        }
+        shell.content_height()
+    }
+
+    #[test]
+    fn no_widget_is_higher_than_two_screens_of_a_phone_until_more_is_asked_for() {
+        let ctx = egui::Context::default();
+        for (name, maker) in WIDGETS {
+            let mut shell = maker();
+            let presets = shell.model().spec().presets;
+            let states = core::iter::once("defaults").chain(presets.iter().map(|p| p.id));
+            for state in states {
+                shell.model_mut().press(state).expect("the widget has it");
+                shell.settle();
+                let height = height_on_a_phone(&ctx, &mut shell);
+                assert!(height <= TWO_SCREENS, "{name} after {state}: {height}");
+            }
+            let opening = height_on_a_phone(&ctx, &mut shell);
+            shell.model_mut().set(MORE.id, 1.0).expect("a switch");
+            let all = height_on_a_phone(&ctx, &mut shell);
+            assert!(all > opening + 200.0, "{name}: {opening} and {all}");
+        }
+    }
+
+    #[test]
+    fn what_a_widget_opens_with_is_there() {
+        for (name, maker) in WIDGETS {
+            let shell = maker();
+            let model = shell.model();
+            let spec = model.spec();
+            let panels: Vec<_> = model.scene().panels.iter().map(|panel| panel.id).collect();
+            let params: Vec<_> = spec.params.iter().map(|param| param.id).collect();
+            let buttons: Vec<_> = spec.buttons.iter().map(|button| button.id).collect();
+            for (known, named) in [
+                (panels, spec.opening.panels),
+                (params, spec.opening.params),
+                (buttons, spec.opening.buttons),
+            ] {
+                assert!(!named.is_empty(), "{name}");
+                for id in named {
+                    assert!(known.contains(id), "{name} has no {id}");
+                }
+            }
+            assert_eq!(
+                spec.opening.params.len(),
+                1,
+                "{name} opens with one control"
+            );
+            assert!(spec.opening.buttons.contains(&"play"), "{name}");
         }
     }
 

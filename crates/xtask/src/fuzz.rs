@@ -61,6 +61,7 @@ pub const TARGETS: [Target; 7] = [
             "widgets/w16_2_full_lap/src/model",
             "widgets/w16_3_cost_terraces/src/model",
             "widgets/w16_4_control_room/src/model",
+            "widgets/w16_5_pose_graph_toy/src/model",
         ],
     },
 ];

@@ -1,0 +1,4 @@
+//! The toy's rules and its view.
+
+mod model;
+mod view;
