@@ -132,6 +132,8 @@ export class SlamWidget extends HTMLElement {
     const problem = this.#state?.buttonProblem(button);
     if (problem !== undefined) throw new RangeError(problem);
     await this.#life.ensureInstance();
+    // A button acts on the values that are set, not on what the picture still waits for.
+    this.#settle();
     this.#life.ask((widget) => widget.press(button));
     this.#sync();
     this.#showTimeline();
