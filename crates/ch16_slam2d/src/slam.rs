@@ -21,6 +21,8 @@ mod refinement;
 mod report;
 mod robots;
 mod scales;
+#[cfg(test)]
+mod test_room;
 
 use std::sync::Arc;
 
@@ -51,6 +53,8 @@ pub struct Slam {
     graph: PoseGraph,
     keyframes: Vec<Keyframe>,
     last_attempt_node: Option<usize>,
+    /// The newest node at which a loop was closed; the first before any was.
+    last_loop_node: usize,
     detector: Box<dyn LoopDetector>,
     loop_workspace: LoopWorkspace,
     chi2: f64,
@@ -77,6 +81,7 @@ impl Slam {
             frames: 0,
             last_stamp_s: f64::NEG_INFINITY,
             last_attempt_node: None,
+            last_loop_node: 0,
             chi2: 0.0,
             config,
         }

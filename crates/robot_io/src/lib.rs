@@ -4,6 +4,7 @@
 //! - [`carmen`]: the text format of CARMEN.
 //! - [`info`]: what is in a log.
 //! - [`run`]: a log through [`Slam`](ch16_slam2d::slam::Slam), frame by frame.
+//! - [`quality`]: how far each keyframe and each loop is to be trusted, and what is to be doubted.
 //! - [`trajectory`]: stamped poses, and the TUM format in both directions.
 //! - [`relations`]: reference relations between two times.
 //! - [`evaluate`]: errors against relations or against a true trajectory.
@@ -16,6 +17,7 @@ pub mod carmen;
 pub mod evaluate;
 pub mod info;
 pub mod log;
+pub mod quality;
 pub mod relations;
 pub mod run;
 pub mod trajectory;

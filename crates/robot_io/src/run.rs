@@ -6,6 +6,7 @@ use ch16_slam2d::slam::{Slam, SlamConfig, SlamReport};
 use pr_geom::SE2;
 
 use crate::log::LogFrame;
+use crate::quality::Quality;
 use crate::trajectory::{StampedPose, Trajectory};
 
 /// Whether the wheels are listened to.
@@ -27,6 +28,18 @@ pub struct TriedLoop {
     pub accepted: bool,
 }
 
+/// A scan that hardly fits the map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoorFit {
+    /// Its time, s.
+    pub stamp_s: f64,
+    /// Share of it that fits, 0 to 1.
+    pub score: f64,
+}
+
+/// Scans of which less than this fits are told.
+const POOR_SCORE: f64 = 0.5;
+
 /// A log under way: the estimator, and where each scan was taken from.
 ///
 /// The pose of a scan is kept in the frame of the keyframe before it, so that every loop moves the
@@ -39,6 +52,8 @@ pub struct LogRun {
     last_stamp_s: f64,
     scans: Vec<ScanPlace>,
     loops: Vec<TriedLoop>,
+    links: Vec<LoopVerification>,
+    poor: Vec<PoorFit>,
     late: usize,
     refused: Option<FrameError>,
 }
@@ -63,6 +78,8 @@ impl LogRun {
             last_stamp_s: f64::NEG_INFINITY,
             scans: Vec::new(),
             loops: Vec::new(),
+            links: Vec::new(),
+            poor: Vec::new(),
             late: 0,
             refused: None,
         }
@@ -110,6 +127,13 @@ impl LogRun {
             keyframe,
             keyframe_from_body: slam.graph().pose(keyframe).between(&report.estimate),
         });
+        let score = report.registration.and_then(|found| found.matched.score);
+        if let Some(score) = score.filter(|score| *score < POOR_SCORE) {
+            self.poor.push(PoorFit {
+                stamp_s: frame.stamp_s,
+                score,
+            });
+        }
         let tried = report.loop_attempts.iter().map(|attempt| TriedLoop {
             verification: attempt.verification,
             accepted: attempt.accepted(),
@@ -121,7 +145,7 @@ impl LogRun {
     /// Says that no scan follows.
     pub fn finish(&mut self) {
         if let Some(slam) = &mut self.slam {
-            slam.refine();
+            self.links = slam.refine().links().to_vec();
         }
     }
 
@@ -141,6 +165,23 @@ impl LogRun {
     #[must_use]
     pub fn loops(&self) -> &[TriedLoop] {
         &self.loops
+    }
+
+    /// The links of the last pass after the end, accepted or not.
+    #[must_use]
+    pub fn links(&self) -> &[LoopVerification] {
+        &self.links
+    }
+
+    /// The scans that hardly fit.
+    #[must_use]
+    pub fn poor(&self) -> &[PoorFit] {
+        &self.poor
+    }
+
+    /// What is known of the map's quality.
+    pub fn quality(&mut self) -> Quality {
+        Quality::of(self.slam.as_mut(), &self.loops, &self.links, &self.poor)
     }
 
     /// Scans left out because their stamp was not after the one before.

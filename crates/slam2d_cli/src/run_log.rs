@@ -1,13 +1,13 @@
 //! `slam2d run`: a recorded log through the estimator.
 
 use std::fs;
-use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
 use measuring::process;
+use robot_io::quality::Quality;
 use robot_io::run::{LogRun, OdometryUse};
 use serde::Serialize;
 use thiserror::Error;
@@ -66,6 +66,10 @@ struct RunJson {
     peak_mb: Option<f64>,
     /// Whether Ctrl-C ended the run before the log's end.
     interrupted: bool,
+    /// What should be looked at, a sentence each.
+    doubts: Vec<String>,
+    /// Every keyframe with its covariance, every loop with its evidence.
+    quality: Quality,
     #[serde(skip_serializing_if = "Option::is_none")]
     relations: Option<Grade>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -119,8 +123,9 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
         .as_ref()
         .map(|reference| reference.grade(&trajectory))
         .transpose();
+    let mut quality = run.quality();
     if let Some(folder) = &args.output {
-        write_results(folder, &run)?;
+        write_results(folder, &run, &quality)?;
     }
     // The results are written before anything that may still fail is told.
     let grade = grade?;
@@ -128,6 +133,7 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
         return Err(FileError::from(error).into());
     }
     let of = |wanted: bool| grade.filter(|grade| wanted == matches!(grade, Grade::Relations(_)));
+    let doubts = std::mem::take(&mut quality.doubts);
     let result = RunJson {
         scans: run.scans(),
         keyframes: run.slam().map_or(0, |slam| slam.keyframes().len()),
@@ -136,6 +142,8 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
         cpu_s: process::cpu_s(),
         peak_mb: process::peak_mb(),
         interrupted: is_interrupted.load(Ordering::Relaxed),
+        doubts,
+        quality,
         relations: of(true),
         truth: of(false),
     };
@@ -162,20 +170,58 @@ fn tell_notes(run: &LogRun, sentences: &[String], name: &str) {
     }
 }
 
-/// Writes the trajectory and the graph into a folder, which is made where it is missing.
-fn write_results(folder: &Path, run: &LogRun) -> Result<(), FileError> {
+/// Writes trajectory, graph, quality and doubts into a folder, which is made where it is missing.
+fn write_results(folder: &Path, run: &LogRun, quality: &Quality) -> Result<(), FileError> {
     let told = |path: &Path| {
         let path = path.to_owned();
         move |source| FileError::Io { path, source }
     };
     fs::create_dir_all(folder).map_err(told(folder))?;
-    let path = folder.join("trajectory.tum");
-    let file = fs::File::create(&path).map_err(told(&path))?;
-    let mut file = BufWriter::new(file);
+    let write = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        fs::write(&path, bytes).map_err(told(&path))
+    };
+    let mut trajectory = Vec::new();
     run.trajectory()
-        .write_tum(&mut file)
-        .and_then(|()| file.flush())
-        .map_err(told(&path))
+        .write_tum(&mut trajectory)
+        .expect("memory takes all");
+    write("trajectory.tum", &trajectory)?;
+    let json = serde_json::to_vec(quality).expect("plain numbers, strings and lists");
+    write("quality.json", &json)?;
+    write("report.txt", report(run, quality).as_bytes())
+}
+
+/// The quality in words.
+fn report(run: &LogRun, quality: &Quality) -> String {
+    let mut text = format!(
+        "{} scans, {} keyframes, {} loops in the graph\n\n",
+        run.scans(),
+        quality.keyframes.len(),
+        quality.links.len()
+    );
+    if quality.doubts.is_empty() {
+        text.push_str("Nothing is to be doubted.\n");
+    } else {
+        text.push_str("To be doubted:\n");
+    }
+    for doubt in &quality.doubts {
+        text.push_str(&format!("- {doubt}\n"));
+    }
+    text.push_str("\nLoops: from, to, share that fits, fit (m), points, chi-squared (gate)\n");
+    for link in &quality.links {
+        let number = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.3}"));
+        text.push_str(&format!(
+            "{} {} {} {} {} {} ({:.1})\n",
+            link.from,
+            link.to,
+            number(link.score),
+            number(link.rmse_m),
+            link.inliers,
+            number(link.chi2),
+            link.gate_chi2
+        ));
+    }
+    text
 }
 
 fn print_text(result: &RunJson) {
@@ -189,6 +235,9 @@ fn print_text(result: &RunJson) {
     say!("CPU              {:.2} s", result.cpu_s);
     if let Some(peak_mb) = result.peak_mb {
         say!("memory           {peak_mb:.0} MB at most");
+    }
+    for doubt in &result.doubts {
+        say!("doubt            {doubt}");
     }
     if let Some(grade) = result.relations.or(result.truth) {
         grade.print();

@@ -59,6 +59,12 @@ fn a_log_is_mapped_and_graded_against_relations() {
     let error_m = run["relations"]["trans"]["mean"].as_f64().unwrap();
     // The wheels alone are off by 0.39 m; the wall at the end tells better.
     assert!(error_m < 0.1, "{error_m}");
+    let report = fs::read_to_string(out.join("report.txt")).unwrap();
+    assert!(report.starts_with("40 scans, "), "{report}");
+    let keyframes = run["quality"]["keyframes"].as_array().unwrap();
+    assert_eq!(keyframes.len() as u64, run["keyframes"].as_u64().unwrap());
+    let last = &keyframes[keyframes.len() - 1]["covariance"];
+    assert!(last[0][0].as_f64().unwrap() > 0.0);
     let trajectory = out.join("trajectory.tum");
     let trajectory = text(&trajectory);
     let graded = json(&["evaluate", trajectory, "--relations", relations, "--json"]);

@@ -65,6 +65,9 @@ impl LapTrace {
             Some(LoopRejection::LowScore { score, min_score }) => {
                 format!("{head}: {gate}, but the score is {score:.2} only, {min_score:.2} is asked")
             }
+            Some(LoopRejection::Ambiguous { margin, min_margin }) => format!(
+                "{head}: {gate}, but another place is behind by {margin:.2} only, {min_margin:.2} is asked"
+            ),
             Some(LoopRejection::NoCovariance(error)) => {
                 format!("{head}: the graph has no covariance to test against, {error}")
             }

@@ -1,7 +1,7 @@
 //! The constants of loop closure; the defaults are the chapter's.
 
 use crate::chi_squared::CHAPTER_GATE;
-use crate::matching::{MapConfig, MatcherKind, TrustConfig};
+use crate::matching::{MapConfig, MatcherKind, SearchMatcherConfig, TrustConfig};
 
 /// What the gate takes for the drift between two nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -24,6 +24,21 @@ pub enum Detection {
     Nearest,
     /// The nearest of every visit: of each run of keyframes that passed by.
     Visits,
+}
+
+/// A search of a whole window, for a robot that has not seen a known place for long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WideSearch {
+    /// Grid, score and refinement; the window's width follows from the drift.
+    pub matcher: SearchMatcherConfig,
+    /// It is made once the way since the last loop is longer than this, m.
+    pub min_way_m: f64,
+    /// At most so many candidates are searched at a node.
+    pub candidates: usize,
+    /// A best place whose score is ahead of the best other place by less is no loop.
+    pub min_margin: f64,
+    /// A search whose score is lower is no loop.
+    pub min_score: f64,
 }
 
 /// Detection, verification and gating of loops; the defaults are the chapter's.
@@ -60,6 +75,13 @@ pub struct LoopConfig {
     /// Share of what a loop knows across a wall that it claims along it by noise alone; see
     /// [`without_aperture`](crate::matching::without_aperture).
     pub aperture: f64,
+    /// Drift for each metre since the last loop that goes one way, as that of a wheel of the wrong size: candidates
+    /// are looked for so much farther, and the gate is half of it wider, a standard deviation.
+    pub drift_share: f64,
+    /// The radius grows with the drift up to this, m.
+    pub max_radius_m: f64,
+    /// What is done where every candidate was turned away.
+    pub search: Option<WideSearch>,
     /// What the gate takes for the drift; the two fields below belong to the path approximation.
     pub gate_model: GateModel,
     /// Drift of x and of y over one node, a standard deviation in metres; grows with √gap.
@@ -94,6 +116,9 @@ impl Default for LoopConfig {
                 inflate: 25.0,
             },
             aperture: 0.0,
+            drift_share: 0.0,
+            max_radius_m: f64::INFINITY,
+            search: None,
             gate_model: GateModel::PathApproximation,
             drift_sigma_m: 0.045,
             drift_sigma_rad: 0.012,

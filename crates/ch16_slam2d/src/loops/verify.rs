@@ -37,6 +37,13 @@ pub enum LoopRejection {
         /// The lowest that is accepted.
         min_score: f64,
     },
+    /// Another place fits about as well.
+    Ambiguous {
+        /// By how much the best other place was behind, in the unit of the matcher's score.
+        margin: f64,
+        /// The smallest that is accepted.
+        min_margin: f64,
+    },
     /// The innovation is larger than the drift explains.
     OutsideGate(GateTest),
     /// The graph has no covariance to test against.

@@ -1,12 +1,18 @@
 //! The back end: candidates are verified in order, and the first that passes corrects the graph.
 
+use nalgebra::{Matrix3, Vector3};
+use pr_geom::math;
+use pr_optim::OptimizeError;
+
 use super::pending::PendingFrame;
 use super::{Change, LoopAttempt, LoopClosure, LoopEffect, Slam};
 use crate::graph::EdgeKind;
 use crate::loops::{
-    GateModel, KeyframeView, LoopCandidate, LoopQuery, LoopRejection, LoopVerification,
-    marginal_information, path_information, verify_loop,
+    Detection, GateModel, KeyframeView, LoopCandidate, LoopConfig, LoopQuery, LoopRejection,
+    LoopVerification, LoopWorkspace, detect_visits, marginal_information, path_information,
+    verify_loop,
 };
+use crate::matching::{MatcherKind, SearchMatcherConfig};
 use crate::metrics::position_error_m;
 
 impl Slam {
@@ -42,6 +48,107 @@ impl Slam {
                 return;
             }
         }
+        self.search_widely(node, pending);
+    }
+
+    /// Searches the whole window of the drift where no candidate passed and no loop was closed for long.
+    fn search_widely(&mut self, node: usize, pending: &mut PendingFrame) {
+        let loops = self.config.loops;
+        let way_m = self.way_since_loop_m(node);
+        let Some(wide) = loops.search.filter(|wide| way_m > wide.min_way_m) else {
+            return;
+        };
+        let half_width_m = math::min(
+            loops.radius_m + loops.drift_share * way_m,
+            loops.max_radius_m,
+        );
+        let wider = LoopConfig {
+            detection: Detection::Visits,
+            radius_m: half_width_m,
+            min_score: wide.min_score,
+            // The fit is measured once the place is found.
+            max_rmse_m: f64::INFINITY,
+            ..loops
+        };
+        let matcher = MatcherKind::Search(SearchMatcherConfig {
+            half_width_m,
+            ..wide.matcher
+        });
+        let mut workspace = LoopWorkspace::new(matcher.build(&loops.submap));
+        let candidates = detect_visits(self.graph.poses(), node, &wider);
+        for candidate in candidates.into_iter().take(wide.candidates) {
+            let gate_information = self.gate_information(node, candidate.node);
+            let view = KeyframeView {
+                poses: self.graph.poses(),
+                keyframes: &self.keyframes,
+            };
+            let mut verification = verify_loop(
+                view,
+                node,
+                candidate,
+                gate_information,
+                self.config.information_frame,
+                &wider,
+                &mut workspace,
+            );
+            let margin = verification.margin.unwrap_or(f64::INFINITY);
+            if verification.accepted() && margin < wide.min_margin {
+                verification.rejection = Some(LoopRejection::Ambiguous {
+                    margin,
+                    min_margin: wide.min_margin,
+                });
+            }
+            if verification.accepted() {
+                // The search proposes; what decides is what decides on every loop.
+                let proposal = Some(verification.registered);
+                let proposed = LoopCandidate {
+                    proposal,
+                    ..candidate
+                };
+                verification = LoopVerification {
+                    margin: verification.margin,
+                    ..self.verify(node, proposed)
+                };
+            }
+            let is_last = verification.accepted();
+            pending.loop_attempts.push(LoopAttempt {
+                frame: self.frames - 1,
+                verification,
+                effect: None,
+            });
+            if is_last {
+                return;
+            }
+        }
+    }
+
+    /// Length of the way of the keyframes since the last loop, m.
+    fn way_since_loop_m(&self, node: usize) -> f64 {
+        let way = &self.graph.poses()[self.last_loop_node..=node];
+        let steps = way.windows(2);
+        steps.map(|pair| position_error_m(&pair[0], &pair[1])).sum()
+    }
+
+    /// The S⁻¹ of the gate between two nodes.
+    fn gate_information(
+        &mut self,
+        node: usize,
+        candidate: usize,
+    ) -> Result<Matrix3<f64>, OptimizeError> {
+        let loops = &self.config.loops;
+        let information = match loops.gate_model {
+            GateModel::PathApproximation => path_information(node - candidate, loops),
+            GateModel::ExactMarginal => marginal_information(&mut self.graph, candidate, node)?,
+        };
+        if self.config.loops.drift_share == 0.0 {
+            return Ok(information);
+        }
+        let drift_m = 0.5 * self.config.loops.drift_share * self.way_since_loop_m(node);
+        let drift = Matrix3::from_diagonal(&Vector3::new(drift_m, drift_m, 0.0).map(|s| s * s));
+        let covariance = information.try_inverse().unwrap_or_default() + drift;
+        covariance
+            .try_inverse()
+            .ok_or(OptimizeError::NotPositiveDefinite { node })
     }
 
     /// Third part: adds the edge of a loop that passed and spreads the correction; takes it back where
@@ -60,11 +167,8 @@ impl Slam {
     }
 
     fn verify(&mut self, node: usize, candidate: LoopCandidate) -> LoopVerification {
+        let gate_information = self.gate_information(node, candidate.node);
         let loops = &self.config.loops;
-        let gate_information = match loops.gate_model {
-            GateModel::PathApproximation => Ok(path_information(node - candidate.node, loops)),
-            GateModel::ExactMarginal => marginal_information(&mut self.graph, candidate.node, node),
-        };
         let view = KeyframeView {
             poses: self.graph.poses(),
             keyframes: &self.keyframes,
@@ -122,6 +226,7 @@ impl Slam {
             return Err(rejection);
         }
         self.chi2 = self.graph.chi2();
+        self.last_loop_node = verification.from_node;
         let newest = verification.from_node;
         let correction = self.graph.pose(newest) * poses_before[newest].inverse();
         self.front_end.correct(&correction);

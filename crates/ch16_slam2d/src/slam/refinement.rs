@@ -200,37 +200,8 @@ mod tests {
     use super::*;
     use crate::loops::LoopRejection;
     use crate::metrics::position_error_m;
-    use crate::scan::{Frame, LaserScan};
     use crate::slam::SlamConfig;
-
-    /// Twice around a circle in a room of 8 m × 6 m, in steps of 9 cm.
-    fn truth(step: usize) -> SE2 {
-        let twist = Vector3::new(1.5, 0.0, 1.0) * 0.06;
-        SE2::new(4.0, 1.5, 0.0) * SE2::exp(&(twist * step as f64))
-    }
-
-    fn frame(step: usize) -> Frame {
-        let (pose, last) = (truth(step), truth(step.saturating_sub(1)));
-        let mut scan = LaserScan {
-            angle_step_rad: 1_f64.to_radians(),
-            range_max_m: 12.0,
-            ..LaserScan::default()
-        };
-        let bearings = (0..360).map(|beam| scan.bearing_rad(beam));
-        scan.ranges_m = bearings
-            .map(|bearing| {
-                let (sin, cos) = pr_geom::math::sin_cos(pose.theta() + bearing);
-                let to_wall =
-                    |at: f64, step: f64, size: f64| (size * f64::from(step > 0.0) - at) / step;
-                to_wall(pose.x(), cos, 8.0).min(to_wall(pose.y(), sin, 6.0))
-            })
-            .collect();
-        Frame {
-            stamp_s: 0.25 * step as f64,
-            odometry: (step > 0).then(|| last.between(&pose) * SE2::new(0.0, 0.0, 0.005)),
-            scan,
-        }
-    }
+    use crate::slam::test_room::{frame, truth};
 
     fn two_laps() -> Slam {
         let mut config = SlamConfig::for_robot(&frame(0).scan);

@@ -2,8 +2,11 @@
 
 use super::config::{PredictionUse, SlamConfig, ThresholdConfig};
 use super::{MotionNoise, RefinementConfig};
-use crate::loops::{Detection, LoopConfig};
-use crate::matching::{MapConfig, MatcherKind, StagedMatcherConfig, TrustConfig};
+use crate::icp::{IcpConfig, IcpVariant};
+use crate::loops::{Detection, LoopConfig, WideSearch};
+use crate::matching::{
+    MapConfig, MatcherKind, SearchMatcherConfig, StagedMatcherConfig, TrustConfig,
+};
 use crate::scan::{LaserScan, ScanConfig};
 
 /// Radius within which points give each other normals, m, for each degree from beam to beam.
@@ -68,9 +71,28 @@ impl SlamConfig {
                 matcher: MatcherKind::Staged(near),
                 min_tau_m: 0.3,
                 max_rmse_m: 0.1,
-                min_score: 0.6,
+                min_score: 0.7,
                 max_iterations: 10,
                 aperture: 0.05,
+                drift_share: 0.1,
+                max_radius_m: 10.0,
+                search: Some(WideSearch {
+                    matcher: SearchMatcherConfig {
+                        half_turn_rad: 0.35,
+                        min_score: 0.5,
+                        refine: IcpConfig {
+                            variant: IcpVariant::PointToPlane,
+                            tau: 0.3,
+                            huber_width_m: 0.05,
+                            ..IcpConfig::default()
+                        },
+                        ..SearchMatcherConfig::default()
+                    },
+                    min_way_m: 20.0,
+                    candidates: 1,
+                    min_margin: 0.1,
+                    min_score: 0.75,
+                }),
                 drift_sigma_m: 0.07,
                 trust: TrustConfig {
                     sigma_m: SIGMA_M,

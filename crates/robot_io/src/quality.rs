@@ -1,0 +1,324 @@
+//! How far a map is to be trusted: keyframes, loops, and a list of what is to be doubted.
+//!
+//! A keyframe's covariance is that of the graph, against its first keyframe. A loop that is in the graph
+//! is tested against all else that the graph knows: with the residual e of its edge, the information
+//! Ω of its measurement and the marginal covariance P of the relative pose by the whole graph, the loop
+//! included, `eᵀ(Ω⁻¹ − P)⁻¹e` has three degrees of freedom. It is the innovation of the loop against the
+//! graph without it.
+//!
+//! Source: Cook & Weisberg, "Residuals and influence in regression", 1982, §2.1.2.
+
+use ch16_slam2d::graph::{EdgeKind, EdgeView};
+use ch16_slam2d::loops::{LoopRejection, LoopVerification};
+use ch16_slam2d::slam::Slam;
+use pr_geom::{Matrix3, SE2, math};
+use serde::Serialize;
+
+use crate::run::{PoorFit, TriedLoop};
+
+/// Of three degrees of freedom, 999 of 1,000 lie below.
+const GATE_CHI2: f64 = 16.266;
+/// Keyframes that are known so many times worse than the median one are doubted.
+const UNSURE_TIMES: f64 = 3.0;
+/// Better known keyframes are not doubted, m.
+const UNSURE_M: f64 = 0.1;
+/// Most doubts of one kind that are spelled out.
+const MOST_DOUBTS: usize = 10;
+
+/// What is known of a map's quality.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Quality {
+    /// The keyframes in order.
+    pub keyframes: Vec<KeyframeQuality>,
+    /// The loops of the graph.
+    pub links: Vec<LinkQuality>,
+    /// The loops that were tried while scans came in.
+    pub tried: Vec<LinkQuality>,
+    /// What should be looked at, a sentence each.
+    pub doubts: Vec<String>,
+}
+
+/// A keyframe and how well it is known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct KeyframeQuality {
+    /// Time of its scan, s.
+    pub stamp_s: f64,
+    /// `[x, y, θ]`, `world_from_body`, m and rad.
+    pub pose: [f64; 3],
+    /// Covariance against the first keyframe in the body's frame, x, y, θ: m² and rad².
+    pub covariance: [[f64; 3]; 3],
+}
+
+/// A loop and its evidence.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LinkQuality {
+    /// The newer keyframe.
+    pub from: usize,
+    /// The older keyframe.
+    pub to: usize,
+    /// Share of the newer scan that fits, 0 to 1.
+    pub score: Option<f64>,
+    /// Root mean square distance of what fits, m; null where nothing does.
+    pub rmse_m: Option<f64>,
+    /// Points that fit.
+    pub inliers: usize,
+    /// By how much the best other place was behind, where one was looked for.
+    pub margin: Option<f64>,
+    /// Squared innovation; null where it is not to be had.
+    pub chi2: Option<f64>,
+    /// The largest that passes.
+    pub gate_chi2: f64,
+    /// Whether it is in the graph.
+    pub accepted: bool,
+    /// Why it is not.
+    pub reason: Option<String>,
+}
+
+impl Quality {
+    /// The quality of the graph as it is; nothing where there is none.
+    pub(crate) fn of(
+        slam: Option<&mut Slam>,
+        tried: &[TriedLoop],
+        links: &[LoopVerification],
+        poor: &[PoorFit],
+    ) -> Self {
+        let Some(slam) = slam else {
+            return Self::default();
+        };
+        let mut quality = Self {
+            keyframes: keyframes(slam),
+            links: Vec::new(),
+            tried: tried.iter().map(LinkQuality::tried).collect(),
+            doubts: Vec::new(),
+        };
+        let tests = edge_tests(slam);
+        let closed = tried.iter().filter(|tried| tried.accepted);
+        let evidence: Vec<&LoopVerification> = if links.is_empty() {
+            closed.map(|tried| &tried.verification).collect()
+        } else {
+            links.iter().filter(|link| link.accepted()).collect()
+        };
+        for link in evidence {
+            let test = tests
+                .iter()
+                .find(|(view, _)| view.edge.measurement == link.registered);
+            quality.links.push(LinkQuality {
+                chi2: test.and_then(|(_, chi2)| *chi2),
+                gate_chi2: GATE_CHI2,
+                ..LinkQuality::new(link, true)
+            });
+        }
+        quality.doubt(poor);
+        quality
+    }
+
+    fn doubt(&mut self, poor: &[PoorFit]) {
+        let sigma_m = |keyframe: &KeyframeQuality| {
+            let covariance = keyframe.covariance;
+            math::sqrt(covariance[0][0].max(covariance[1][1]).max(0.0))
+        };
+        let mut sorted: Vec<f64> = self.keyframes.iter().map(sigma_m).collect();
+        sorted.sort_by(f64::total_cmp);
+        let median_m = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
+        let limit_m = (UNSURE_TIMES * median_m).max(UNSURE_M);
+        let is_unsure = |number: &usize| sigma_m(&self.keyframes[*number]) > limit_m;
+        let unsure: Vec<usize> = (0..self.keyframes.len()).filter(is_unsure).collect();
+        let mut said = Vec::new();
+        for run in unsure.chunk_by(|a, b| b - a == 1) {
+            let (first, last) = (run[0], run[run.len() - 1]);
+            let worst_m = run.iter().map(|k| sigma_m(&self.keyframes[*k]));
+            let worst_m = worst_m.fold(0.0, f64::max);
+            said.push(format!(
+                "keyframes {first} to {last} are known to {worst_m:.2} m only, the median one to {median_m:.2} m"
+            ));
+        }
+        let mut contradict: Vec<(f64, String)> = Vec::new();
+        for link in &self.links {
+            let Some(chi2) = link.chi2.filter(|chi2| *chi2 > link.gate_chi2) else {
+                continue;
+            };
+            let sentence = format!(
+                "the loop from keyframe {} to {} contradicts the rest of the graph: chi-squared {chi2:.1} above {:.1}",
+                link.from, link.to, link.gate_chi2
+            );
+            contradict.push((chi2, sentence));
+        }
+        contradict.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let contradict = contradict.into_iter().map(|(_, sentence)| sentence);
+        let mut poor = poor.to_vec();
+        poor.sort_by(|a, b| a.score.total_cmp(&b.score));
+        let poor = poor.iter().map(|poor| {
+            let (stamp_s, share) = (poor.stamp_s, 100.0 * poor.score);
+            format!("of the scan at {stamp_s:.3} s only {share:.0} % fits the map")
+        });
+        for kind in [said, contradict.collect(), poor.collect()] {
+            let more = kind.len().saturating_sub(MOST_DOUBTS);
+            self.doubts.extend(kind.into_iter().take(MOST_DOUBTS));
+            if more > 0 {
+                self.doubts.push(format!("and {more} more of this kind"));
+            }
+        }
+    }
+}
+
+impl LinkQuality {
+    fn new(found: &LoopVerification, accepted: bool) -> Self {
+        Self {
+            from: found.from_node,
+            to: found.candidate.node,
+            score: found.score,
+            rmse_m: found.rmse_m.is_finite().then_some(found.rmse_m),
+            inliers: found.inliers,
+            margin: found.margin.filter(|margin| margin.is_finite()),
+            chi2: found.gate.chi2.is_finite().then_some(found.gate.chi2),
+            gate_chi2: found.gate.gate_chi2,
+            accepted,
+            reason: found.rejection.map(|rejection| reason(&rejection)),
+        }
+    }
+
+    fn tried(tried: &TriedLoop) -> Self {
+        Self::new(&tried.verification, tried.accepted)
+    }
+}
+
+/// Why a loop was turned away, in words.
+fn reason(rejection: &LoopRejection) -> String {
+    match rejection {
+        LoopRejection::PoorFit { rmse_m, max_rmse_m } => {
+            format!("what fits is {rmse_m:.3} m off, {max_rmse_m:.3} m is asked")
+        }
+        LoopRejection::FewInliers {
+            inliers,
+            min_inliers,
+        } => format!("{inliers} points fit, {min_inliers} are asked"),
+        LoopRejection::LowScore { score, min_score } => {
+            format!("{score:.2} of the scan fits, {min_score:.2} is asked")
+        }
+        LoopRejection::Ambiguous { margin, min_margin } => {
+            format!("another place is behind by {margin:.2} only, {min_margin:.2} is asked")
+        }
+        LoopRejection::OutsideGate(gate) => {
+            format!(
+                "chi-squared {:.1} is above {:.1}",
+                gate.chi2, gate.gate_chi2
+            )
+        }
+        LoopRejection::NoCovariance(error) => format!("the graph has no covariance: {error}"),
+        LoopRejection::OptimizationFailed(stop) => {
+            format!("the graph cannot be optimized with it: {stop}")
+        }
+        LoopRejection::CostRose { before, after } => {
+            format!("the cost rose from {before:.1} to {after:.1}")
+        }
+    }
+}
+
+fn keyframes(slam: &mut Slam) -> Vec<KeyframeQuality> {
+    let Ok(covariances) = slam.graph_mut().pose_covariances() else {
+        return Vec::new();
+    };
+    let places = slam.keyframes().iter().zip(slam.graph().poses());
+    places
+        .zip(&covariances)
+        .map(|((keyframe, pose), covariance)| KeyframeQuality {
+            stamp_s: keyframe.stamp_s,
+            pose: pose.to_array(),
+            covariance: core::array::from_fn(|i| core::array::from_fn(|j| covariance[(i, j)])),
+        })
+        .collect()
+}
+
+/// The loops of the graph with their innovation against the rest of it.
+fn edge_tests(slam: &mut Slam) -> Vec<(EdgeView, Option<f64>)> {
+    let Ok(covariances) = slam.graph_mut().edge_covariances() else {
+        return Vec::new();
+    };
+    let graph = slam.graph();
+    let edges = graph.edges().zip(&covariances);
+    edges
+        .filter(|(view, _)| view.edge.kind == EdgeKind::Loop)
+        .map(|(view, covariance)| {
+            let relative = graph.pose(view.from).between(&graph.pose(view.to));
+            let chi2 = innovation_chi2(
+                &view.edge.measurement,
+                &view.edge.information,
+                &relative,
+                covariance,
+            );
+            (view, chi2)
+        })
+        .collect()
+}
+
+/// `eᵀ(Ω⁻¹ − P)⁻¹e`; none where the measurement alone holds the two nodes together.
+fn innovation_chi2(
+    measured: &SE2,
+    information: &Matrix3<f64>,
+    relative: &SE2,
+    covariance: &Matrix3<f64>,
+) -> Option<f64> {
+    let residual = measured.between(relative).log();
+    let left = (information.try_inverse()? - covariance).try_inverse()?;
+    let chi2 = residual.dot(&(left * residual));
+    (chi2.is_finite() && chi2 >= 0.0).then_some(chi2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_innovation_is_that_against_the_graph_without_the_loop() {
+        // Along x: odometry says 0 ± 1, the loop says 3 ± 2. The mean is 3 · (1/4) / (1 + 1/4).
+        let information = Matrix3::identity() * 0.25;
+        let covariance = Matrix3::identity() / 1.25;
+        let relative = SE2::translation(0.6, 0.0);
+        let measured = SE2::translation(3.0, 0.0);
+        let chi2 = innovation_chi2(&measured, &information, &relative, &covariance).unwrap();
+        // Against the graph without it: 3² / (1 + 4).
+        assert!((chi2 - 1.8).abs() < 1e-12, "{chi2}");
+    }
+
+    #[test]
+    fn a_scan_that_hardly_fits_and_a_loop_that_contradicts_are_doubted() {
+        let keyframe = |sigma_m: f64| KeyframeQuality {
+            stamp_s: 0.0,
+            pose: [0.0; 3],
+            covariance: [
+                [sigma_m * sigma_m, 0.0, 0.0],
+                [0.0, 1e-4, 0.0],
+                [0.0, 0.0, 1e-6],
+            ],
+        };
+        let link = |chi2| LinkQuality {
+            from: 9,
+            to: 2,
+            score: Some(0.8),
+            rmse_m: Some(0.02),
+            inliers: 90,
+            margin: None,
+            chi2: Some(chi2),
+            gate_chi2: GATE_CHI2,
+            accepted: true,
+            reason: None,
+        };
+        let mut quality = Quality {
+            keyframes: [0.02, 0.02, 0.02, 0.4, 0.5].map(keyframe).to_vec(),
+            links: vec![link(3.0), link(40.0)],
+            ..Quality::default()
+        };
+        quality.doubt(&[PoorFit {
+            stamp_s: 12.5,
+            score: 0.31,
+        }]);
+        assert_eq!(
+            quality.doubts,
+            [
+                "keyframes 3 to 4 are known to 0.50 m only, the median one to 0.02 m",
+                "the loop from keyframe 9 to 2 contradicts the rest of the graph: chi-squared 40.0 above 16.3",
+                "of the scan at 12.500 s only 31 % fits the map",
+            ]
+        );
+    }
+}
