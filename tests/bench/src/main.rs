@@ -18,7 +18,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use measured::Measured;
-use measuring::skip::tell;
+use measuring::skip::{NO_VALGRIND, tell};
 use page::{Block, write_into};
 use serde::Serialize;
 use slam2d_bench::measure::{self, Turns};
@@ -44,7 +44,7 @@ slam2d_bench sweep SLAM2D PAGE.md        run the sweep of 4,000 laps with the pr
                                          print its distribution and write it into a page
 slam2d_bench --counts check              fail where a workload takes 10 % more instructions than recorded
 slam2d_bench --counts accept             record the instruction counts
-slam2d_bench --run ID TIMES              run one workload, without a clock";
+slam2d_bench --run ID                    run one workload twice, without a clock";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -70,7 +70,7 @@ fn main() -> ExitCode {
             .and_then(|block| publish(Path::new(page), Block::Sweep, &block)),
         ["--counts", "check"] => judge_counts(counts::compare),
         ["--counts", "accept"] => judge_counts(counts::accept),
-        ["--run", id, times] => run(id, times),
+        ["--run", id] => counts::run_twice(id),
         ["--help"] => say(USAGE),
         _ => Err(USAGE.to_owned()),
     };
@@ -137,25 +137,15 @@ fn tables(turns: &Path, counts: &Path, page: &str) -> Result<(), String> {
     publish(page, Block::Workloads, &report::table(&measured, &counts))?;
     publish(page, Block::Ratios, &ratios::table(&measured))?;
     if counts.is_empty() {
-        say("valgrind is not installed: no instructions were counted")?;
+        say(&format!("no instructions were counted: {NO_VALGRIND}"))?;
     }
     Ok(())
 }
 
 fn judge_counts(judge: impl FnOnce(&counts::Counts) -> Result<(), String>) -> Result<(), String> {
     if !counts::is_available() {
-        return tell("instruction counts", "valgrind is not installed");
+        return tell("instruction counts", NO_VALGRIND);
     }
     let counts = counts::count_all(&|id, count| say(&format!("{id:14} {count:>12} instructions")))?;
     judge(&counts)
-}
-
-fn run(id: &str, times: &str) -> Result<(), String> {
-    let times: u32 = times.parse().map_err(|_| USAGE.to_owned())?;
-    let workload = measure::find(id)?;
-    let mut run = (workload.prepare)();
-    for _ in 0..times {
-        run.once();
-    }
-    Ok(())
 }
