@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::chromium;
 use crate::run::{Failure, program, root, show, step};
 use crate::site::{self, Speed};
-use crate::suite::native;
+use crate::suite::native::Tools;
 use crate::tools;
 
 /// Where the tables stand.
@@ -22,7 +22,7 @@ pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
     tools::ensure_build_tools()?;
     let chromium = chromium::ensure_chromium()?;
     tools::ensure_node_modules(&root().join("tests/browser"))?;
-    native::compile_tools()?;
+    Tools::AsShipped.compile()?;
     let web = root().join("target/bench-web");
     step(
         "Compiling the workloads to WebAssembly",
@@ -45,19 +45,19 @@ pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
                 "-c",
                 "exec node tests/bench/measure.mjs \"$0\" \"$1\" >\"$2\"",
             ])
-            .args([&native::tool("slam2d_bench"), &web, &figures.turns])
+            .args([&Tools::AsShipped.path("slam2d_bench"), &web, &figures.turns])
             .env("CHROMIUM", &chromium),
     )?;
     step(
         "Counting instructions, where valgrind is installed",
         program("sh")
             .args(["-c", "exec \"$0\" count >\"$1\""])
-            .arg(native::tool("slam2d_bench"))
+            .arg(Tools::AsShipped.path("slam2d_bench"))
             .arg(&figures.instructions),
     )?;
     show(
         "Times, ratios and instructions",
-        program(native::tool("slam2d_bench"))
+        program(Tools::AsShipped.path("slam2d_bench"))
             .arg("table")
             .args([&figures.turns, &figures.instructions])
             .arg(PAGE),
@@ -67,21 +67,24 @@ pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
     }
     show(
         "The port in JavaScript",
-        program(native::tool("slam2d_bench")).args(["peer", PAGE]),
+        program(Tools::AsShipped.path("slam2d_bench")).args(["peer", PAGE]),
     )?;
     tools::ensure_nanoflann();
     show(
         "Registration of files",
-        program(native::tool("slam2d_bench"))
+        program(Tools::AsShipped.path("slam2d_bench"))
             .arg("registration")
-            .args([native::tool("slam2d"), root().join("target/bench-clouds")])
+            .args([
+                Tools::AsShipped.path("slam2d"),
+                root().join("target/bench-clouds"),
+            ])
             .arg(PAGE),
     )?;
     show(
         "The lap at many seeds",
-        program(native::tool("slam2d_bench"))
+        program(Tools::AsShipped.path("slam2d_bench"))
             .arg("sweep")
-            .arg(native::tool("slam2d"))
+            .arg(Tools::AsShipped.path("slam2d"))
             .arg(PAGE),
     )?;
     site::build(Speed::SmallAndFast)?;
@@ -94,7 +97,7 @@ pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
     // Last, so that every table is written.
     show(
         "The limits",
-        program(native::tool("slam2d_bench"))
+        program(Tools::AsShipped.path("slam2d_bench"))
             .arg("judge")
             .arg(&figures.turns),
     )

@@ -36,11 +36,12 @@ pub fn test(skipped: &SkipList, ledger: &mut Ledger) -> Result<(), Failure> {
 /// # Errors
 /// The workloads that got slower.
 pub fn counts(skipped: &SkipList, ledger: &mut Ledger) -> Result<(), Failure> {
-    ledger.time("native: tools", compile_tools)?;
+    ledger.time("native: tools", || Tools::BesideTests.compile())?;
     timed(
         ledger,
         "counts",
-        skipped.told_to(program(tool("slam2d_bench")).args(["--counts", "check"])),
+        skipped
+            .told_to(program(Tools::BesideTests.path("slam2d_bench")).args(["--counts", "check"])),
     )
 }
 
@@ -49,39 +50,60 @@ pub fn counts(skipped: &SkipList, ledger: &mut Ledger) -> Result<(), Failure> {
 /// # Errors
 /// Where they do not compile, or valgrind is missing.
 pub fn record_counts() -> Result<(), Failure> {
-    compile_tools()?;
+    Tools::BesideTests.compile()?;
     show(
         "Recording the instruction counts",
-        program(tool("slam2d_bench"))
+        program(Tools::BesideTests.path("slam2d_bench"))
             .args(["--counts", "accept"])
             .env("SLAM_NO_SKIP", "1"),
     )
 }
 
-/// Compiles the programs that are counted, or compared with the module in Node.
-///
-/// # Errors
-/// Where they do not compile.
-pub fn compile_tools() -> Result<(), Failure> {
-    show(
-        "Compiling slam2d, states and slam2d_bench",
-        unincremental(&mut cargo())
-            .args(["build", "--quiet", "--release"])
+/// The programs that are counted, timed, or compared with the module in Node.
+#[derive(Clone, Copy, Debug)]
+pub enum Tools {
+    /// Profile `dev`, which shares the crates of others with the tests.
+    BesideTests,
+    /// Profile `release`: what is timed.
+    AsShipped,
+}
+
+impl Tools {
+    /// Compiles them.
+    ///
+    /// # Errors
+    /// Where they do not compile.
+    pub fn compile(self) -> Result<(), Failure> {
+        let mut command = cargo();
+        unincremental(&mut command)
+            .args(["build", "--quiet"])
             .args(["--package=slam2d_bench", "--package=slam2d_cli"])
-            .args(["--package=slam_web", "--bins"])
-            .arg("--target-dir")
-            .arg(root().join("target")),
-    )
-}
+            .args(["--package=slam_web", "--bins"]);
+        match self {
+            // With a bench cargo counts in what only tests need, so that the crates of others have
+            // the features, and the one build, that the tests have.
+            Self::BesideTests => command.arg("--bench=workloads"),
+            Self::AsShipped => command.arg("--release"),
+        };
+        show(
+            "Compiling slam2d, states and slam2d_bench",
+            command.arg("--target-dir").arg(root().join("target")),
+        )
+    }
 
-/// A program of [`compile_tools`].
-pub fn tool(name: &str) -> PathBuf {
-    folder_of_tools().join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
-}
+    /// One of them.
+    pub fn path(self, name: &str) -> PathBuf {
+        self.folder()
+            .join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+    }
 
-/// Where [`compile_tools`] leaves the programs.
-pub fn folder_of_tools() -> PathBuf {
-    root().join("target/release")
+    /// Where they are.
+    pub fn folder(self) -> PathBuf {
+        root().join(match self {
+            Self::BesideTests => "target/debug",
+            Self::AsShipped => "target/release",
+        })
+    }
 }
 
 /// `cargo xtask peers`: lints and tests of the crate that times other people's solvers.

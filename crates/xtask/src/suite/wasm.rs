@@ -1,6 +1,6 @@
 //! What becomes of the workspace as WebAssembly: its lints, the site, the module in Node.
 
-use super::native::{compile_tools, folder_of_tools};
+use super::native::Tools;
 use super::skipped::SkipList;
 use super::{test_files, timed};
 use crate::committed::{Committed, Strictness};
@@ -46,7 +46,7 @@ pub fn site(ledger: &mut Ledger) -> Result<(), Failure> {
 /// # Errors
 /// The test that failed.
 pub fn node(skipped: &SkipList, ledger: &mut Ledger) -> Result<(), Failure> {
-    ledger.time("native: tools", compile_tools)?;
+    ledger.time("native: tools", || Tools::BesideTests.compile())?;
     timed(
         ledger,
         "node tests",
@@ -54,7 +54,7 @@ pub fn node(skipped: &SkipList, ledger: &mut Ledger) -> Result<(), Failure> {
             program("node")
                 .arg("--test")
                 .args(test_files("tests/wasm")?)
-                .env("SLAM_NATIVE", folder_of_tools()),
+                .env("SLAM_NATIVE", Tools::BesideTests.folder()),
         ),
     )
 }
