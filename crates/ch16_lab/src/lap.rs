@@ -12,6 +12,7 @@ mod drive;
 mod judge;
 mod loop_error;
 mod loop_words;
+mod map;
 mod newest;
 mod ranges;
 mod record;
@@ -20,6 +21,7 @@ mod report;
 mod run;
 mod runner;
 mod soundness;
+mod way;
 
 use std::sync::Arc;
 
@@ -30,6 +32,7 @@ pub use digest::lap_digest;
 pub use drive::{Drive, DriveSimulation, DriveTick, Sweep};
 pub use judge::Judge;
 pub use loop_error::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopError, LoopJudgement};
+pub use map::GridExtent;
 pub use newest::{NewestLap, NewestStep};
 pub use ranges::{ConfigRange, RANGES, random_config};
 pub use record::{Epoch, LAST_KEYFRAMES, LapRecord, LapSummary, LapTrace, RecordedEdge};
@@ -37,6 +40,7 @@ pub use replay::RegistrationView;
 pub use report::{Keyframe, LoopAttempt, LoopEffect, TickMetrics, TickReport, WindowSweep};
 pub use run::LapRun;
 pub use runner::LapRunner;
+pub use way::{WAY_SHARES, WayErrors};
 
 use ch16_slam2d::graph::PoseGraph;
 use ch16_slam2d::slam::{PendingFrame, Slam, SlamReport};

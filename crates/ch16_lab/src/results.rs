@@ -3,7 +3,7 @@
 //! One seed is an anecdote. Everything here is about laps that have been run; who runs them, and on
 //! how many threads, is up to the caller.
 
-use crate::lap::{LapRecord, LapSummary};
+use crate::lap::{LapRecord, LapSummary, WAY_SHARES, WayErrors};
 
 /// A column of the results table: whose errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +29,10 @@ pub enum Row {
     LastKeyframesMax,
     /// Largest error of all keyframes.
     KeyframeMax,
+    /// Position error at half of the way.
+    HalfWay,
+    /// Standard deviation that the graph gives the position at half of the way.
+    HalfWaySigma,
     /// Distance between what the way out mapped and what the way back saw.
     MapDisagreement,
 }
@@ -40,12 +44,14 @@ impl Column {
 
 impl Row {
     /// All rows, from top to bottom.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 8] = [
         Self::EndError,
         Self::Rms,
         Self::LastKeyframesMin,
         Self::LastKeyframesMax,
         Self::KeyframeMax,
+        Self::HalfWay,
+        Self::HalfWaySigma,
         Self::MapDisagreement,
     ];
 }
@@ -57,6 +63,10 @@ pub struct LapOutcome {
     pub lap: LapSummary,
     /// Its front end alone.
     pub front_end: LapSummary,
+    /// Errors of the lap along its way.
+    pub lap_way: WayErrors,
+    /// Those of its front end alone.
+    pub front_end_way: WayErrors,
     /// Loops that were closed although they are false.
     pub false_acceptances: usize,
     /// Digest of all poses; see [`LapRecord::digest`].
@@ -70,6 +80,8 @@ impl LapOutcome {
         Self {
             lap: record.lap.summary,
             front_end: record.front_end.summary,
+            lap_way: record.way_errors(),
+            front_end_way: record.front_end_way_errors(),
             false_acceptances: record.lap.false_acceptances().count(),
             digest: record.digest(),
         }
@@ -78,10 +90,10 @@ impl LapOutcome {
     /// An entry of the results table, m; none where the table has a gap.
     #[must_use]
     pub fn entry(&self, column: Column, row: Row) -> Option<f64> {
-        let summary = match column {
+        let (summary, way) = match column {
             Column::Odometry => return self.odometry_entry(row),
-            Column::FrontEnd => &self.front_end,
-            Column::WithLoops => &self.lap,
+            Column::FrontEnd => (&self.front_end, &self.front_end_way),
+            Column::WithLoops => (&self.lap, &self.lap_way),
         };
         match row {
             Row::EndError => Some(summary.keyframe_end_error_m),
@@ -89,6 +101,8 @@ impl LapOutcome {
             Row::LastKeyframesMin => Some(summary.last_keyframes_m.0),
             Row::LastKeyframesMax => Some(summary.last_keyframes_m.1),
             Row::KeyframeMax => Some(summary.keyframe_max_m),
+            Row::HalfWay => Some(way.half_way_m()),
+            Row::HalfWaySigma => way.half_way_sigma_m,
             Row::MapDisagreement => summary.map_disagreement_m,
         }
     }
@@ -116,6 +130,23 @@ impl LapStatistics {
     pub fn spread(&self, column: Column, row: Row) -> Option<Spread> {
         let entries = self.outcomes.iter();
         Spread::of(entries.filter_map(|outcome| outcome.entry(column, row)))
+    }
+
+    /// Medians of the position errors along the way, m, at the ends of its shares; wheels have none,
+    /// and no laps have none.
+    #[must_use]
+    pub fn along_the_way_m(&self, column: Column) -> Option<[f64; WAY_SHARES + 1]> {
+        let way = |outcome: &LapOutcome| match column {
+            Column::Odometry => None,
+            Column::FrontEnd => Some(outcome.front_end_way),
+            Column::WithLoops => Some(outcome.lap_way),
+        };
+        let ways: Vec<WayErrors> = self.outcomes.iter().filter_map(way).collect();
+        let mut medians = [0.0; WAY_SHARES + 1];
+        for (k, median) in medians.iter_mut().enumerate() {
+            *median = Spread::of(ways.iter().map(|way| way.errors_m[k]))?.median;
+        }
+        Some(medians)
     }
 
     /// Share of the laps of which something is true; not a number of no laps.
@@ -228,6 +259,6 @@ mod tests {
             let rows = Row::ALL.into_iter();
             rows.filter_map(|row| outcome.entry(column, row)).count()
         };
-        assert_eq!(Column::ALL.map(entries_of), [2, 6, 6]);
+        assert_eq!(Column::ALL.map(entries_of), [2, 8, 8]);
     }
 }

@@ -1,6 +1,10 @@
 //! A world with a true cycle, and other matchers, run through the same code as the chapter's lap.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, Lap, LapConfig, LapMatcher, LapRecord, LapRunner};
+use ch16_slam2d::scan::ScanConfig;
+use ch16_slam2d::slam::SlamConfig;
+use pr_geom::{Point2, SE2};
+use pr_sim::{Course, World};
 
 /// The lap around the ring with the estimator that is not the chapter's.
 fn ring(seed: u32, matcher: LapMatcher) -> LapRecord {
@@ -22,15 +26,84 @@ fn ndt_closes_the_cycle_of_the_ring_and_the_whole_way_around_gets_better() {
     }
 }
 
+/// The ring driven clockwise, from the end of the usual way to its start.
+fn clockwise() -> Course {
+    let (west, east, south, north) = (0.7, 11.3, 0.7, 8.3);
+    let stops = [
+        (west, south),
+        (west, north),
+        (east, north),
+        (east, south),
+        (8.0, south),
+        (2.0, south),
+    ];
+    let way_points = stops.map(|(x, y)| Point2::new(x, y)).to_vec();
+    let start = SE2::new(8.0, south, core::f64::consts::PI);
+    Course::new(World::ring(), start, way_points, Some(4)).expect("the ring is clear either way")
+}
+
+/// By how much the front end turned too far to the left, in degrees: while it turned, and while it drove.
+fn turned_too_far_deg(config: &LapConfig) -> [f64; 2] {
+    let record = LapRunner::new().run(config);
+    let (mut truth, mut estimate) = (config.drive.start, config.drive.start);
+    let mut turned = [0.0, 0.0];
+    for report in &record.front_end.reports {
+        let (true_step, step) = (
+            truth.between(&report.truth),
+            estimate.between(&report.estimate),
+        );
+        let drives = usize::from(report.command.omega_radps.abs() < 0.3);
+        turned[drives] += true_step.between(&step).theta().to_degrees();
+        (truth, estimate) = (report.truth, report.estimate);
+    }
+    turned
+}
+
 #[test]
-fn point_to_point_turns_so_far_on_the_ring_that_its_end_is_not_found() {
+fn point_to_point_turns_toward_the_outer_wall_of_the_ring_either_way_around() {
+    let mean_deg = |course: &Course| {
+        let seeds = 8;
+        let sums = (1..=seeds).map(|seed| {
+            let config = LapConfig::with_seed_and_noise(seed, 1.0).elsewhere(course);
+            turned_too_far_deg(&config)
+        });
+        let sums = sums.fold([0.0, 0.0], |sum, turned| {
+            [sum[0] + turned[0], sum[1] + turned[1]]
+        });
+        sums.map(|sum| sum / f64::from(seeds))
+    };
+    let [in_turns, driving] = mean_deg(&Course::ring());
+    assert!(
+        in_turns.abs() < 4.0 && (-60.0..-40.0).contains(&driving),
+        "{in_turns} {driving}"
+    );
+    let [in_turns, driving] = mean_deg(&clockwise());
+    assert!(
+        in_turns.abs() < 4.0 && (30.0..50.0).contains(&driving),
+        "{in_turns} {driving}"
+    );
+    // So the end is not found: old keyframes are near again and tried, and the fit turns them away.
     let record = ring(1, LapMatcher::PointToPoint);
-    let end = record.lap.reports.last().unwrap();
-    // Old keyframes are near again and tried, and the fit turns them away.
     assert!(record.lap.loop_attempts().count() > 0);
     assert_eq!(record.lap.summary.loops, 0);
-    let turned_rad = end.truth.between(&end.estimate).theta();
-    assert!(turned_rad.abs() > 0.5, "{turned_rad}");
+}
+
+#[test]
+fn point_to_plane_closes_on_the_ring_by_normals_of_the_defaults_radius_and_not_by_the_chapters() {
+    let closed = |scan: ScanConfig| {
+        (1..=12)
+            .filter(|&seed| {
+                let config = LapConfig::in_world(BuiltInWorld::Ring, seed, 1.0);
+                let config = config
+                    .with_matcher(LapMatcher::PointToPlane)
+                    .with_scan(scan);
+                let lap = LapRunner::new().run(&config).lap;
+                lap.summary.loops > 0 && lap.false_acceptances().count() == 0
+            })
+            .count()
+    };
+    assert!(closed(SlamConfig::default().scan) >= 11);
+    assert!(closed(SlamConfig::chapter().scan) < 11);
 }
 
 #[test]

@@ -97,8 +97,17 @@ struct Level {
     /// Share of the runs with a false acceptance.
     false_run_share: f64,
     entries: Vec<Entry>,
+    /// Medians of the errors at equal shares of the way, from its start to its end.
+    along_the_way: AlongTheWay,
     /// Digests of some of the laps, evenly spaced: who drives only these compares bits.
     samples: Vec<Sample>,
+}
+
+/// Medians of position errors, m.
+#[derive(Serialize)]
+struct AlongTheWay {
+    front_end: Vec<f64>,
+    with_loops: Vec<f64>,
 }
 
 /// A lap by its bits.
@@ -200,7 +209,21 @@ impl Level {
             false_acceptances: statistics.false_acceptances(),
             false_run_share: statistics.false_run_share(),
             entries: entries(statistics),
+            along_the_way: AlongTheWay::of(statistics),
             samples: samples(first_seed, statistics),
+        }
+    }
+}
+
+impl AlongTheWay {
+    fn of(statistics: &LapStatistics) -> Self {
+        let medians = |column| {
+            let medians = statistics.along_the_way_m(column);
+            medians.map(Vec::from).unwrap_or_default()
+        };
+        Self {
+            front_end: medians(Column::FrontEnd),
+            with_loops: medians(Column::WithLoops),
         }
     }
 }
@@ -251,6 +274,8 @@ fn row_id<S: Serializer>(row: &Row, serializer: S) -> Result<S::Ok, S::Error> {
         Row::LastKeyframesMin => "last_nine_min",
         Row::LastKeyframesMax => "last_nine_max",
         Row::KeyframeMax => "max_error",
+        Row::HalfWay => "half_way",
+        Row::HalfWaySigma => "half_way_sigma",
         Row::MapDisagreement => "map_disagreement",
     })
 }
@@ -270,6 +295,8 @@ fn row_title(row: Row) -> &'static str {
         Row::LastKeyframesMin => "best of the last nine keyframes (m)",
         Row::LastKeyframesMax => "worst of the last nine keyframes (m)",
         Row::KeyframeMax => "largest keyframe error (m)",
+        Row::HalfWay => "error at half of the way (m)",
+        Row::HalfWaySigma => "its deviation, by the graph (m)",
         Row::MapDisagreement => "map self-disagreement (m)",
     }
 }

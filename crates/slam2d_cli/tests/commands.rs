@@ -162,12 +162,14 @@ fn table_prints_what_the_chapter_prints() {
 }
 
 const COLUMNS: [&str; 3] = ["odometry", "front_end", "with_loops"];
-const ROWS: [&str; 6] = [
+const ROWS: [&str; 8] = [
     "end_error",
     "rms",
     "last_nine_min",
     "last_nine_max",
     "max_error",
+    "half_way",
+    "half_way_sigma",
     "map_disagreement",
 ];
 
@@ -210,7 +212,11 @@ fn sweep_counts_every_run_once_and_does_not_depend_on_threads() {
         let total: f64 = shares.iter().map(|share| share.as_f64().unwrap()).sum();
         assert_close("shares", total, 1.0, 1e-12);
         let entries = level["entries"].as_array().unwrap();
-        assert_eq!(entries.len(), 14);
+        assert_eq!(entries.len(), 18);
+        for column in ["front_end", "with_loops"] {
+            let medians = level["along_the_way"][column].as_array().unwrap();
+            assert_eq!((medians.len(), medians[0].as_f64()), (21, Some(0.0)));
+        }
         // Ids as the figures of the page have them, no prose.
         for entry in entries {
             let [column, row] = ["column", "row"].map(|key| entry[key].as_str().unwrap());

@@ -57,7 +57,7 @@ fn every_drawing_uses_the_mark_that_belongs_to_its_colour() {
         }
     }
     assert_eq!(
-        marks, 5,
-        "sweep points, map points, poses, loop edge and its cross"
+        marks, 7,
+        "sweep points, map points, poses, loop edge and its cross, errors without and with loops"
     );
 }

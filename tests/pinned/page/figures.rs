@@ -52,6 +52,7 @@ impl Figures {
             }
             ["grid", run, what] => lap::grid(self.lap(run)?, what),
             ["lap", run, what @ ..] => lap::value(self.lap(run)?, what),
+            ["worlds", what @ ..] => crate::worlds::value(what),
             ["sweep", what @ ..] => self.sweep.get_or_init(Sweep::run).value(what),
             _ => None,
         }

@@ -3,6 +3,7 @@
 //! The command line and the widgets choose from these lists, so that a name means the same everywhere.
 
 use ch16_slam2d::matching::{InformationFrame, MatcherKind, NdtMatcherConfig, SearchMatcherConfig};
+use ch16_slam2d::slam::SlamConfig;
 use pr_sim::Course;
 
 use super::config::LapConfig;
@@ -185,10 +186,16 @@ impl LapConfig {
     }
 
     /// The same lap with another matcher, for the front end and for loops.
+    ///
+    /// Point to plane gets the default's normals: with the chapter's, which only weigh edges there, it
+    /// slides along the corridor and half of the laps close no loop.
     #[must_use]
     pub fn with_matcher(mut self, matcher: LapMatcher) -> Self {
         self.slam = self.slam.with_matcher(matcher.kind());
-        self
+        match matcher {
+            LapMatcher::PointToPlane => self.with_scan(SlamConfig::default().scan),
+            LapMatcher::PointToPoint | LapMatcher::Ndt => self,
+        }
     }
 
     /// The same lap with another matcher for its loops.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::map::GridExtent;
 use ch16_slam2d::scan::ScanConfig;
 use ch16_slam2d::slam::{SlamConfig, ThresholdConfig};
 use pr_geom::SE2;
@@ -89,6 +90,8 @@ pub struct LapConfig {
     pub drive: DriveConfig,
     /// The estimator; the drive decides on its start and on how its scans become clouds.
     pub slam: SlamConfig,
+    /// What the grid covers that its keyframes paint.
+    pub grid: GridExtent,
 }
 
 impl Default for LapConfig {
@@ -104,6 +107,7 @@ impl Default for LapConfig {
                 ..chapter
             },
             drive,
+            grid: GridExtent::Plan,
         }
     }
 }
@@ -122,13 +126,24 @@ impl LapConfig {
     /// would be nobody's figures there.
     #[must_use]
     pub fn elsewhere(self, course: &Course) -> Self {
+        let slam = SlamConfig {
+            threshold: self.slam.threshold,
+            ..SlamConfig::default()
+        };
         Self {
             drive: self.drive.on_course(course),
-            slam: SlamConfig {
-                threshold: self.slam.threshold,
-                ..SlamConfig::default()
-            },
+            slam: slam.clone(),
+            grid: GridExtent::Poses,
         }
+        .with_scan(slam.scan)
+    }
+
+    /// The same lap with clouds made otherwise of its sweeps.
+    #[must_use]
+    pub fn with_scan(mut self, scan: ScanConfig) -> Self {
+        self.drive.scan = scan;
+        self.slam.scan = scan;
+        self
     }
 
     /// The same lap with loop closure off.

@@ -1,13 +1,11 @@
-//! What a tick saw: its local map, its registration iteration by iteration, the grid so far, and
-//! the graph that a loop met.
+//! What a tick saw: its local map, its registration iteration by iteration, and the graph that a
+//! loop met.
 //!
 //! A record does not keep these; they are worked out again for the one tick that is looked at.
 
 use pr_geom::SE2;
-use pr_grid::{Beams, GridConfig, OccupancyGrid};
-use pr_sim::Lidar;
 
-use super::record::{LapRecord, LapTrace};
+use super::record::{LapRecord, LapTrace, RecordedEdge};
 use super::{Drive, LapConfig, LoopAttempt, WindowSweep};
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
@@ -31,25 +29,6 @@ impl LapRecord {
     #[must_use]
     pub fn registration(&self, tick: usize) -> Option<RegistrationView> {
         self.lap.registration(tick, &self.drive, &self.config)
-    }
-
-    /// The occupancy grid of the keyframes up to `tick`, at their poses of that tick.
-    #[must_use]
-    pub fn occupancy_grid(&self, tick: usize) -> OccupancyGrid {
-        let lidar = self.config.drive.lidar;
-        let bounds = self.config.drive.world.bounds();
-        let mut config = GridConfig {
-            min_m: bounds.min,
-            max_m: bounds.max,
-            ..GridConfig::default()
-        };
-        config.sensor.max_range_m = lidar.max_range_m;
-        let mut grid = OccupancyGrid::new(config);
-        let beams = Beams::new(Lidar::new(lidar).bearings_rad());
-        for (pose, keyframe) in self.lap.poses(tick).iter().zip(&self.lap.keyframes) {
-            grid.integrate(pose, &beams, &self.drive.sweep(keyframe.tick).ranges_m);
-        }
-        grid
     }
 }
 
@@ -101,26 +80,39 @@ impl LapTrace {
             Some((before, _)) => before,
             None => self.poses(tick),
         };
-        let mut graph = PoseGraph::new();
-        for (node, pose) in poses.iter().enumerate() {
-            match node {
-                0 => graph.add_fixed_node(*pose),
-                _ => graph.add_node(*pose),
-            };
-        }
-        for edge in self.edges(tick) {
-            if edge.kind == EdgeKind::Odometry || edge.tick < tick {
-                graph.add_edge(
-                    edge.from,
-                    edge.to,
-                    edge.measurement,
-                    edge.information,
-                    edge.kind,
-                );
-            }
-        }
-        graph
+        let edges = self.edges(tick).iter();
+        graph_of(
+            poses,
+            edges.filter(|edge| edge.kind == EdgeKind::Odometry || edge.tick < tick),
+        )
     }
+
+    /// The graph at the end of `tick`.
+    #[must_use]
+    pub fn graph(&self, tick: usize) -> PoseGraph {
+        graph_of(self.poses(tick), self.edges(tick).iter())
+    }
+}
+
+/// The graph with these poses, the first of them fixed.
+fn graph_of<'a>(poses: &[SE2], edges: impl Iterator<Item = &'a RecordedEdge>) -> PoseGraph {
+    let mut graph = PoseGraph::new();
+    for (node, pose) in poses.iter().enumerate() {
+        match node {
+            0 => graph.add_fixed_node(*pose),
+            _ => graph.add_node(*pose),
+        };
+    }
+    for edge in edges {
+        graph.add_edge(
+            edge.from,
+            edge.to,
+            edge.measurement,
+            edge.information,
+            edge.kind,
+        );
+    }
+    graph
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use pr_geom::SE2;
 
+use super::scales::NORMAL_RADIUS_CELLS;
 use super::{MotionNoise, RefinementConfig};
 use crate::loops::LoopConfig;
 use crate::matching::{InformationFrame, MapConfig, MatcherKind, TrustConfig};
@@ -103,6 +104,10 @@ impl Default for SlamConfig {
     fn default() -> Self {
         let chapter = Self::chapter();
         Self {
+            scan: ScanConfig {
+                normal_radius_m: NORMAL_RADIUS_CELLS * chapter.scan.cell_m,
+                ..chapter.scan
+            },
             window_distance_m: 0.1,
             window_turn_rad: 0.1,
             information_frame: InformationFrame::Exact,

@@ -173,6 +173,8 @@ fn row_of(name: &str) -> Option<Row> {
         "last_nine_min" => Some(Row::LastKeyframesMin),
         "last_nine_max" => Some(Row::LastKeyframesMax),
         "max_error" => Some(Row::KeyframeMax),
+        "half_way" => Some(Row::HalfWay),
+        "half_way_sigma" => Some(Row::HalfWaySigma),
         "map_disagreement" => Some(Row::MapDisagreement),
         _ => None,
     }

@@ -1,0 +1,50 @@
+//! The occupancy grid that the keyframes of a lap paint.
+
+use pr_grid::{Beams, GridConfig, OccupancyGrid};
+use pr_sim::Lidar;
+
+use super::record::LapRecord;
+
+/// What the grid of a lap covers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GridExtent {
+    /// The plan of the world, as in the chapter's figures: beams beyond it are cut at its border.
+    Plan,
+    /// Whatever the sensor reaches from the poses: nobody has the plan of a world to be mapped, and an
+    /// estimate that drifts leaves it.
+    #[default]
+    Poses,
+}
+
+impl LapRecord {
+    /// The occupancy grid of the keyframes up to `tick`, at their poses of that tick.
+    ///
+    /// A grid that grows stays as it is where it would be too large, and beams are cut at its border.
+    #[must_use]
+    pub fn occupancy_grid(&self, tick: usize) -> OccupancyGrid {
+        let drive = &self.config.drive;
+        let mut config = match self.config.grid {
+            GridExtent::Plan => {
+                let bounds = drive.world.bounds();
+                GridConfig {
+                    min_m: bounds.min,
+                    max_m: bounds.max,
+                    ..GridConfig::default()
+                }
+            }
+            GridExtent::Poses => {
+                GridConfig::growing_from(drive.start.position(), GridConfig::default().cell_m)
+            }
+        };
+        config.sensor.max_range_m = drive.lidar.max_range_m;
+        let mut grid = OccupancyGrid::new(config);
+        let beams = Beams::new(Lidar::new(drive.lidar).bearings_rad());
+        for (pose, keyframe) in self.lap.poses(tick).iter().zip(&self.lap.keyframes) {
+            if self.config.grid == GridExtent::Poses {
+                let _ = grid.cover(pose.position(), drive.lidar.max_range_m);
+            }
+            grid.integrate(pose, &beams, &self.drive.sweep(keyframe.tick).ranges_m);
+        }
+        grid
+    }
+}

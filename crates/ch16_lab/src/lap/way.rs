@@ -1,0 +1,106 @@
+//! Errors by place: how far along the way the estimate is off, and how far the graph thinks it is.
+//!
+//! An error at the end, or the largest one, does not tell which places a loop has mended. Here the
+//! lap is cut into equal shares of the way that was truly driven.
+
+use pr_geom::math;
+
+use super::record::{LapRecord, LapTrace};
+
+/// Equal shares into which the way is cut.
+pub const WAY_SHARES: usize = 20;
+
+/// The errors of one estimator at the ends of the shares, from the start to the end of the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WayErrors {
+    /// Position errors at the final poses, m; linear between keyframes.
+    pub errors_m: [f64; WAY_SHARES + 1],
+    /// What the graph takes for the standard deviation of the position at half of the way,
+    /// `√(σ_x² + σ_y²)` in m; none where it has no covariance.
+    pub half_way_sigma_m: Option<f64>,
+}
+
+impl WayErrors {
+    /// Position error at half of the way, m.
+    #[must_use]
+    pub fn half_way_m(&self) -> f64 {
+        self.errors_m[WAY_SHARES / 2]
+    }
+}
+
+impl LapRecord {
+    /// The errors of the lap along its way.
+    #[must_use]
+    pub fn way_errors(&self) -> WayErrors {
+        self.way_errors_of(&self.lap)
+    }
+
+    /// Those of its front end alone.
+    #[must_use]
+    pub fn front_end_way_errors(&self) -> WayErrors {
+        self.way_errors_of(&self.front_end)
+    }
+
+    fn way_errors_of(&self, trace: &LapTrace) -> WayErrors {
+        let end = self.ticks();
+        let shares = self.shares_of_the_way(trace);
+        let errors_m: Vec<f64> = trace.keyframe_errors_m(end).collect();
+        let sigmas_m = trace.graph(end).pose_covariances().map(|covariances| {
+            let positions = covariances.iter().map(|c| math::sqrt(c.m11 + c.m22));
+            positions.collect::<Vec<f64>>()
+        });
+        WayErrors {
+            errors_m: core::array::from_fn(|k| {
+                interpolated(&shares, &errors_m, k as f64 / WAY_SHARES as f64)
+            }),
+            half_way_sigma_m: sigmas_m
+                .ok()
+                .map(|sigmas| interpolated(&shares, &sigmas, 0.5)),
+        }
+    }
+
+    /// Share of the way at which each keyframe was taken, ascending from 0.
+    fn shares_of_the_way(&self, trace: &LapTrace) -> Vec<f64> {
+        let place = |tick: usize| self.drive.truth(tick).position();
+        let mut way_m = vec![0.0];
+        for tick in 1..=self.ticks() {
+            let step = place(tick) - place(tick - 1);
+            way_m.push(way_m[tick - 1] + math::norm2(step.x, step.y));
+        }
+        let whole_m = way_m[self.ticks()];
+        let share = |way_m: f64| if whole_m > 0.0 { way_m / whole_m } else { 0.0 };
+        let keyframes = trace.keyframes.iter();
+        keyframes
+            .map(|keyframe| share(way_m[keyframe.tick]))
+            .collect()
+    }
+}
+
+/// The value at `share`, linear between keyframes; beyond the last one it is that one's.
+fn interpolated(shares: &[f64], values: &[f64], share: f64) -> f64 {
+    let after = shares.partition_point(|&known| known <= share);
+    let before = after.saturating_sub(1);
+    let (Some(&next_share), Some(&next)) = (shares.get(after), values.get(after)) else {
+        return values[before];
+    };
+    let (last_share, last) = (shares[before], values[before]);
+    if next_share <= last_share {
+        return next;
+    }
+    last + (next - last) * (share - last_share) / (next_share - last_share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_between_keyframes_lie_on_the_line_between_them() {
+        let (shares, values) = ([0.0, 0.4, 0.4, 0.8], [0.0, 2.0, 6.0, 8.0]);
+        let at = |share| interpolated(&shares, &values, share);
+        assert_eq!((at(0.0), at(0.2), at(0.4)), (0.0, 1.0, 6.0));
+        // 1e-12: 0.6 lies in the middle of 0.4 and 0.8 but for rounding.
+        assert!((at(0.6) - 7.0).abs() < 1e-12);
+        assert_eq!((at(0.8), at(1.0)), (8.0, 8.0));
+    }
+}
