@@ -4,6 +4,7 @@
 pub mod basin;
 pub mod lap;
 pub mod nudge;
+pub mod places;
 pub mod results;
 pub mod samples;
 mod scenes;

@@ -9,6 +9,7 @@ pub mod loops;
 pub mod matching;
 pub mod metrics;
 pub mod ndt;
+pub mod places;
 pub mod prelude;
 pub mod scan;
 pub mod search;

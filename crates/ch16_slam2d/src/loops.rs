@@ -17,7 +17,7 @@ mod gate;
 mod verify;
 
 pub use candidates::{LoopCandidate, detect_loop_candidates, detect_visits};
-pub use config::{Detection, GateModel, LoopConfig, WideSearch};
+pub use config::{Detection, DetectorKind, GateModel, LoopConfig, WideSearch};
 pub use detector::{CloneDetector, LoopDetector, LoopQuery, NearbyDetector};
 pub use gate::{GateTest, chi_squared_gate, marginal_information, path_information};
 pub use verify::{KeyframeView, LoopRejection, LoopVerification, LoopWorkspace, verify_loop};

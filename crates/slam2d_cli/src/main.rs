@@ -12,6 +12,7 @@ mod log_file;
 mod numbers;
 mod optimize;
 mod output;
+mod places;
 mod register;
 mod run_log;
 mod sweep;
@@ -42,6 +43,7 @@ enum Command {
     Terrain(terrain::TerrainArgs),
     Table(table::TableArgs),
     Register(register::RegisterArgs),
+    Places(places::PlacesArgs),
     Sweep(sweep::SweepArgs),
     Optimize(optimize::OptimizeArgs),
     Info(info::InfoArgs),
@@ -69,6 +71,7 @@ fn main() -> ExitCode {
             Ok(())
         }
         Command::Register(args) => register::run(args).map_err(|e| e.to_string()),
+        Command::Places(args) => places::run(args).map_err(|e| e.to_string()),
         Command::Sweep(args) => sweep::run(args).map_err(|e| e.to_string()),
         Command::Optimize(args) => optimize::run(args).map_err(|e| e.to_string()),
         Command::Info(args) => info::run(args).map_err(|e| e.to_string()),

@@ -1,7 +1,7 @@
 //! What `lap` and `sweep` drive, and with which estimator: `--world`, `--matcher`,
-//! `--loop-matcher`, `--information`.
+//! `--loop-matcher`, `--detector`, `--information`.
 
-use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LoopMatcher};
+use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapDetector, LapMatcher, LoopMatcher};
 use ch16_slam2d::matching::InformationFrame;
 use clap::Args;
 use clap::builder::PossibleValue;
@@ -19,6 +19,9 @@ pub struct TrialArgs {
     /// What registers scans for loops alone; that of the front end without it.
     #[arg(long, value_parser = choice::<LoopMatcher>())]
     loop_matcher: Option<LoopMatcher>,
+    /// What proposes loops.
+    #[arg(long, default_value = "nearby", value_parser = choice::<LapDetector>())]
+    detector: LapDetector,
     /// What is driven: apartment, ring, or a file that ends in .json.
     #[arg(long, default_value = "apartment")]
     world: WorldArg,
@@ -34,6 +37,7 @@ pub struct Trial {
     course: Option<Course>,
     matcher: LapMatcher,
     loop_matcher: Option<LoopMatcher>,
+    detector: LapDetector,
     information: Option<InformationFrame>,
 }
 
@@ -49,6 +53,7 @@ impl TrialArgs {
             course: course.transpose()?,
             matcher: self.matcher,
             loop_matcher: self.loop_matcher,
+            detector: self.detector,
             information: self.information,
         })
     }
@@ -63,7 +68,7 @@ impl Trial {
             Some(course) => chapter.elsewhere(course),
             None => chapter,
         };
-        let lap = lap.with_matcher(self.matcher);
+        let lap = lap.with_matcher(self.matcher).with_detector(self.detector);
         let lap = match self.loop_matcher {
             Some(matcher) => lap.with_loop_matcher(matcher),
             None => lap,

@@ -227,7 +227,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "sliding",
             label: "The same lap by planes",
-            help: "The same sweeps, each point free to slide along its wall: the lap ends 1.56 m off instead of 0.24 m.",
+            help: "The same sweeps, each point free to slide along its wall: the lap ends 0.05 m off instead of 0.24 m.",
             set: &[("matcher", 1.0), ("t", LAP_TICKS)],
             then: &[],
         },

@@ -2,7 +2,9 @@
 //!
 //! The command line and the widgets choose from these lists, so that a name means the same everywhere.
 
+use ch16_slam2d::loops::DetectorKind;
 use ch16_slam2d::matching::{InformationFrame, MatcherKind, NdtMatcherConfig, SearchMatcherConfig};
+use ch16_slam2d::places::PlaceDetectorConfig;
 use ch16_slam2d::slam::SlamConfig;
 use pr_sim::Course;
 
@@ -155,6 +157,38 @@ impl Choice for LoopMatcher {
     }
 }
 
+/// Who proposes loops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LapDetector {
+    /// What is near in the graph, the chapter's.
+    #[default]
+    Nearby,
+    /// What has a like histogram of ranges.
+    Histogram,
+    /// What is occupied alike, around.
+    Context,
+}
+
+impl Choice for LapDetector {
+    const ALL: &'static [Self] = &[Self::Nearby, Self::Histogram, Self::Context];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Nearby => "nearby",
+            Self::Histogram => "histogram",
+            Self::Context => "context",
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Nearby => "near in the graph",
+            Self::Histogram => "histogram of ranges",
+            Self::Context => "Scan Context",
+        }
+    }
+}
+
 impl Choice for InformationFrame {
     const ALL: &'static [Self] = &[Self::Chapter, Self::Exact];
 
@@ -205,6 +239,26 @@ impl LapConfig {
         self
     }
 
+    /// The same lap with another detector of loops.
+    #[must_use]
+    pub fn with_detector(mut self, detector: LapDetector) -> Self {
+        let max_range_m = self.drive.lidar.max_range_m;
+        let loops = &mut self.slam.loops;
+        let gap = loops.min_gap_nodes;
+        let for_sensor = |places: PlaceDetectorConfig| {
+            DetectorKind::Place(PlaceDetectorConfig {
+                descriptor: places.descriptor.with_max_range_m(max_range_m),
+                ..places
+            })
+        };
+        loops.detector = match detector {
+            LapDetector::Nearby => DetectorKind::Nearby,
+            LapDetector::Histogram => for_sensor(PlaceDetectorConfig::histogram(gap)),
+            LapDetector::Context => for_sensor(PlaceDetectorConfig::context(gap)),
+        };
+        self
+    }
+
     /// The same lap with the information of its edges in another frame.
     #[must_use]
     pub fn with_information(mut self, frame: InformationFrame) -> Self {
@@ -234,6 +288,7 @@ mod tests {
     fn every_choice_is_found_by_its_name() {
         check::<BuiltInWorld>();
         check::<LapMatcher>();
+        check::<LapDetector>();
         check::<LoopMatcher>();
         check::<InformationFrame>();
     }

@@ -2,6 +2,7 @@
 
 use crate::chi_squared::CHAPTER_GATE;
 use crate::matching::{MapConfig, MatcherKind, SearchMatcherConfig, TrustConfig};
+use crate::places::PlaceDetectorConfig;
 
 /// What the gate takes for the drift between two nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -41,9 +42,21 @@ pub struct WideSearch {
     pub min_score: f64,
 }
 
+/// Who proposes loops.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum DetectorKind {
+    /// The chapter's: what is near in the graph.
+    #[default]
+    Nearby,
+    /// What looks alike, wherever it is in the graph.
+    Place(PlaceDetectorConfig),
+}
+
 /// Detection, verification and gating of loops; the defaults are the chapter's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopConfig {
+    /// Who proposes loops; the next two fields belong to what is near.
+    pub detector: DetectorKind,
     /// Which of the near keyframes are proposed.
     pub detection: Detection,
     /// Candidates lie within this distance of the new node in the graph, m.
@@ -95,6 +108,7 @@ pub struct LoopConfig {
 impl Default for LoopConfig {
     fn default() -> Self {
         Self {
+            detector: DetectorKind::Nearby,
             detection: Detection::Nearest,
             radius_m: 2.0,
             min_gap_nodes: 22,

@@ -1,8 +1,9 @@
 //! What of the estimator can be exchanged.
 
 use super::SlamConfig;
-use crate::loops::{LoopDetector, NearbyDetector};
+use crate::loops::{DetectorKind, LoopDetector, NearbyDetector};
 use crate::matching::Matcher;
+use crate::places::PlaceDetector;
 
 /// The parts of the estimator that can be exchanged.
 #[derive(Clone)]
@@ -22,7 +23,10 @@ impl SlamParts {
         Self {
             front_end: config.matcher.build(&config.local_map),
             loops: config.loops.matcher.build(&config.loops.submap),
-            detector: Box::new(NearbyDetector::new(config.loops)),
+            detector: match config.loops.detector {
+                DetectorKind::Nearby => Box::new(NearbyDetector::new(config.loops)),
+                DetectorKind::Place(places) => Box::new(PlaceDetector::new(places)),
+            },
         }
     }
 }

@@ -1,0 +1,200 @@
+//! How well places are recognized: every pair of keyframes of many laps, by every detector.
+//!
+//! A pair is the same place where the truths are within [`SAME_PLACE_M`]. A detector gives a pair a
+//! distance; at a threshold it calls the pairs below it the same. Precision is the share of those
+//! that are, recall the share of the same that it finds.
+
+use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::loops::path_information;
+use ch16_slam2d::places::{ContextConfig, HistogramConfig, PlaceDescriptor, PlaceDetector};
+use pr_geom::{SE2, math};
+
+use crate::lap::{Choice, Lap, LapConfig, LapDetector};
+
+/// Truths this near are the same place, m.
+pub const SAME_PLACE_M: f64 = 1.0;
+
+/// Points of a curve.
+const CURVE_POINTS: usize = 50;
+
+/// A pair of keyframes that are far apart in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacePair {
+    /// The lap's seed.
+    pub seed: u32,
+    /// The older and the newer keyframe.
+    pub nodes: [usize; 2],
+    /// Whether the truths are within [`SAME_PLACE_M`].
+    pub is_same: bool,
+    /// The distance by each detector, in the order of [`LapDetector::ALL`].
+    pub distances: [f64; 3],
+}
+
+/// How a detector does at one threshold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OperatingPoint {
+    /// Pairs at this distance or below are called the same.
+    pub threshold: f64,
+    /// Share of those that are.
+    pub precision: f64,
+    /// Share of the same that are among those.
+    pub recall: f64,
+}
+
+/// How a detector does at all thresholds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlaceCurve {
+    /// Who it is.
+    pub detector: LapDetector,
+    /// From the strictest threshold to the loosest, evenly spaced in recall.
+    pub points: Vec<OperatingPoint>,
+    /// Mean precision over the recall: the area below the curve.
+    pub average_precision: f64,
+    /// Recall at the loosest threshold without a false pair.
+    pub recall_without_errors: f64,
+}
+
+/// The pairs of one lap, driven by the front end alone.
+///
+/// What is near is measured by the front end's poses, in standard deviations of the drift that the
+/// gate assumes: all that is known before a loop is closed.
+#[must_use]
+pub fn place_pairs(config: &LapConfig) -> Vec<PlacePair> {
+    let config = config.clone().without_loops();
+    let mut lap = Lap::new(config.clone());
+    lap.run();
+    let truths: Vec<SE2> = lap.keyframes().map(|keyframe| keyframe.truth).collect();
+    let keyframes = lap.slam().keyframes();
+    let poses = lap.graph().poses();
+    let max_range_m = config.drive.lidar.max_range_m;
+    let histogram = PlaceDescriptor::Histogram(HistogramConfig::default());
+    let context = PlaceDescriptor::Context(ContextConfig::default());
+    let looks = [histogram, context].map(|descriptor| descriptor.with_max_range_m(max_range_m));
+    let scan = |node: usize| -> &PointCloud { &keyframes[node].scan };
+    let mut pairs = Vec::new();
+    for new in 0..keyframes.len() {
+        for old in 0..(new + 1).saturating_sub(config.slam.loops.min_gap_nodes) {
+            let between = truths[old].between(&truths[new]);
+            let drift = path_information(new - old, &config.slam.loops);
+            let apart = poses[old].between(&poses[new]);
+            let distance_m = math::norm2(apart.x(), apart.y());
+            let by_look = looks.map(|look| PlaceDetector::distance(&look, scan(old), scan(new)));
+            pairs.push(PlacePair {
+                seed: config.drive.seed,
+                nodes: [old, new],
+                is_same: math::norm2(between.x(), between.y()) <= SAME_PLACE_M,
+                distances: [
+                    distance_m * math::sqrt(drift[(0, 0)]),
+                    by_look[0],
+                    by_look[1],
+                ],
+            });
+        }
+    }
+    pairs
+}
+
+/// The curve of every detector over these pairs.
+#[must_use]
+pub fn place_curves(pairs: &[PlacePair]) -> Vec<PlaceCurve> {
+    let detectors = LapDetector::ALL.iter().enumerate();
+    detectors
+        .map(|(index, &detector)| curve(pairs, index, detector))
+        .collect()
+}
+
+fn curve(pairs: &[PlacePair], index: usize, detector: LapDetector) -> PlaceCurve {
+    let mut ranked: Vec<(f64, bool)> = pairs
+        .iter()
+        .map(|pair| (pair.distances[index], pair.is_same))
+        .collect();
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let same = ranked.iter().filter(|(_, is_same)| *is_same).count();
+    let mut curve = PlaceCurve {
+        detector,
+        points: Vec::new(),
+        average_precision: 0.0,
+        recall_without_errors: 0.0,
+    };
+    let (mut found, mut last_recall) = (0, 0.0);
+    for (k, &(threshold, is_same)) in ranked.iter().enumerate() {
+        found += usize::from(is_same);
+        // Equal distances stand or fall together.
+        if ranked.get(k + 1).is_some_and(|next| next.0 == threshold) || same == 0 {
+            continue;
+        }
+        let point = OperatingPoint {
+            threshold,
+            precision: found as f64 / (k + 1) as f64,
+            recall: found as f64 / same as f64,
+        };
+        curve.average_precision += (point.recall - last_recall) * point.precision;
+        if found == k + 1 {
+            curve.recall_without_errors = point.recall;
+        }
+        let due = curve.points.len() as f64 / CURVE_POINTS as f64;
+        if point.recall > last_recall && point.recall >= due {
+            curve.points.push(point);
+        }
+        last_recall = point.recall;
+    }
+    curve
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pair(is_same: bool, distance: f64) -> PlacePair {
+        PlacePair {
+            seed: 1,
+            nodes: [0, 30],
+            is_same,
+            distances: [distance; 3],
+        }
+    }
+
+    #[test]
+    fn the_area_and_the_recall_are_those_of_a_ranking_by_hand() {
+        // Ranked: same, same, other, same, other.
+        let pairs = [
+            pair(true, 0.1),
+            pair(true, 0.2),
+            pair(false, 0.3),
+            pair(true, 0.4),
+            pair(false, 0.5),
+        ];
+        let curve = &place_curves(&pairs)[0];
+        // ⅓ · 1 + ⅓ · 1 + ⅓ · ¾.
+        assert!((curve.average_precision - 11.0 / 12.0).abs() < 1e-12);
+        assert!((curve.recall_without_errors - 2.0 / 3.0).abs() < 1e-12);
+        let last = curve.points.last().unwrap();
+        assert_eq!(
+            (last.threshold, last.precision, last.recall),
+            (0.4, 0.75, 1.0)
+        );
+    }
+
+    #[test]
+    fn pairs_at_equal_distance_stand_or_fall_together() {
+        let pairs = [pair(false, 0.1), pair(true, 0.1)];
+        let curve = &place_curves(&pairs)[0];
+        assert!((curve.average_precision - 0.5).abs() < 1e-12);
+        assert_eq!(curve.recall_without_errors, 0.0);
+    }
+
+    #[test]
+    fn looks_recognize_places_of_the_lap_better_than_chance_and_context_better_than_ranges() {
+        let pairs: Vec<_> = (1..=3)
+            .flat_map(|seed| place_pairs(&LapConfig::with_seed_and_noise(seed, 1.0)))
+            .collect();
+        let same = pairs.iter().filter(|pair| pair.is_same).count();
+        let chance = same as f64 / pairs.len() as f64;
+        let [nearby, histogram, context] = place_curves(&pairs).try_into().unwrap();
+        assert!(same > 50 && chance < 0.5, "{same} of {}", pairs.len());
+        assert!(histogram.average_precision > 1.2 * chance);
+        assert!(context.average_precision > histogram.average_precision);
+        // On a short lap with good scan matching the pose itself says most.
+        assert!(nearby.average_precision > histogram.average_precision);
+    }
+}

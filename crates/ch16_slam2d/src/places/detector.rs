@@ -1,0 +1,237 @@
+//! Detectors that propose what looks alike.
+
+use pr_geom::{SE2, math};
+
+use super::{ContextConfig, HistogramConfig, RangeHistogram, ScanContext};
+use crate::cloud::PointCloud;
+use crate::loops::{LoopCandidate, LoopDetector, LoopQuery};
+
+/// What a place is recognized by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlaceDescriptor {
+    /// The histogram of ranges, by χ² distance.
+    Histogram(HistogramConfig),
+    /// Rings and sectors, by the cosine distance of the sectors.
+    Context(ContextConfig),
+}
+
+impl PlaceDescriptor {
+    /// The same descriptor for a sensor that sees so far, m.
+    #[must_use]
+    pub fn with_max_range_m(self, max_range_m: f64) -> Self {
+        match self {
+            Self::Histogram(config) => Self::Histogram(HistogramConfig {
+                max_range_m,
+                ..config
+            }),
+            Self::Context(config) => Self::Context(ContextConfig {
+                max_range_m,
+                ..config
+            }),
+        }
+    }
+}
+
+/// When a [`PlaceDetector`] proposes an old keyframe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaceDetectorConfig {
+    /// What is compared.
+    pub descriptor: PlaceDescriptor,
+    /// Keyframes farther apart in appearance than this are no candidates, 0 to 1.
+    pub max_distance: f64,
+    /// Contexts are compared with so many keyframes at most, those whose ring keys are nearest.
+    pub keys_compared: usize,
+    /// Candidates are at least so many nodes older.
+    pub min_gap_nodes: usize,
+}
+
+impl PlaceDetectorConfig {
+    /// By the histogram.
+    #[must_use]
+    pub fn histogram(min_gap_nodes: usize) -> Self {
+        Self {
+            descriptor: PlaceDescriptor::Histogram(HistogramConfig::default()),
+            max_distance: 0.15,
+            keys_compared: usize::MAX,
+            min_gap_nodes,
+        }
+    }
+
+    /// By Scan Context.
+    #[must_use]
+    pub fn context(min_gap_nodes: usize) -> Self {
+        Self {
+            descriptor: PlaceDescriptor::Context(ContextConfig::default()),
+            max_distance: 0.4,
+            keys_compared: 20,
+            min_gap_nodes,
+        }
+    }
+}
+
+/// The descriptor of one scan.
+#[derive(Clone, Debug)]
+enum Look {
+    Histogram(RangeHistogram),
+    Context(ScanContext),
+}
+
+impl Look {
+    fn of(scan: &PointCloud, descriptor: &PlaceDescriptor) -> Self {
+        match descriptor {
+            PlaceDescriptor::Histogram(config) => {
+                Self::Histogram(RangeHistogram::new(scan, config))
+            }
+            PlaceDescriptor::Context(config) => Self::Context(ScanContext::new(scan, config)),
+        }
+    }
+
+    /// Distance and, where the descriptor knows it, how the other scan is turned against this one.
+    fn compare(&self, other: &Self) -> (f64, Option<f64>) {
+        match (self, other) {
+            (Self::Histogram(a), Self::Histogram(b)) => (a.distance(b), None),
+            (Self::Context(a), Self::Context(b)) => {
+                let found = a.compare(b);
+                (found.distance, Some(found.turn_rad))
+            }
+            _ => (1.0, None),
+        }
+    }
+
+    /// A cheap distance that orders the candidates beforehand.
+    fn key_distance(&self, other: &Self) -> f64 {
+        match (self, other) {
+            (Self::Context(a), Self::Context(b)) => a.key_distance(b),
+            _ => 0.0,
+        }
+    }
+}
+
+/// Proposes old keyframes by their looks, wherever the graph has them.
+///
+/// The best ones in appearance come first. Where the descriptor knows the heading, the proposal is
+/// the old keyframe's own place at that heading; elsewhere registration starts at the graph's belief.
+#[derive(Clone, Debug)]
+pub struct PlaceDetector {
+    config: PlaceDetectorConfig,
+    looks: Vec<Look>,
+}
+
+impl PlaceDetector {
+    /// A detector that has seen nothing.
+    #[must_use]
+    pub fn new(config: PlaceDetectorConfig) -> Self {
+        Self {
+            config,
+            looks: Vec::new(),
+        }
+    }
+
+    /// How different two scans look, 0 to 1.
+    #[must_use]
+    pub fn distance(descriptor: &PlaceDescriptor, a: &PointCloud, b: &PointCloud) -> f64 {
+        Look::of(a, descriptor).compare(&Look::of(b, descriptor)).0
+    }
+}
+
+impl LoopDetector for PlaceDetector {
+    fn detect(&mut self, query: &mut LoopQuery<'_>) -> Vec<LoopCandidate> {
+        let node = query.node();
+        for known in self.looks.len()..query.keyframes().len() {
+            let look = Look::of(query.scan(known), &self.config.descriptor);
+            self.looks.push(look);
+        }
+        let Some(here) = self.looks.get(node) else {
+            return Vec::new();
+        };
+        let old_enough = (node + 1)
+            .saturating_sub(self.config.min_gap_nodes)
+            .min(node);
+        let mut keyed: Vec<(f64, usize)> = self.looks[..old_enough]
+            .iter()
+            .enumerate()
+            .map(|(old, look)| (look.key_distance(here), old))
+            .collect();
+        keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
+        keyed.truncate(self.config.keys_compared);
+        let mut alike: Vec<(f64, usize, Option<f64>)> = keyed
+            .into_iter()
+            .map(|(_, old)| {
+                let (distance, turn_rad) = self.looks[old].compare(here);
+                (distance, old, turn_rad)
+            })
+            .filter(|(distance, ..)| *distance <= self.config.max_distance)
+            .collect();
+        alike.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let poses = query.poses();
+        let candidate = |(_, old, turn_rad): (f64, usize, Option<f64>)| LoopCandidate {
+            node: old,
+            distance_m: math::norm2(
+                poses[old].x() - poses[node].x(),
+                poses[old].y() - poses[node].y(),
+            ),
+            proposal: turn_rad.map(|turn_rad| SE2::new(0.0, 0.0, turn_rad)),
+        };
+        alike.into_iter().map(candidate).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use pr_geom::Point2;
+
+    use super::*;
+    use crate::graph::PoseGraph;
+    use crate::slam::Keyframe;
+
+    /// What is seen in place `k`, from a robot turned by `turn_rad`.
+    fn seen(k: usize, turn_rad: f64) -> PointCloud {
+        let side = 1.0 + 0.35 * k as f64;
+        let wall = (0..30).map(|i| 0.1 * f64::from(i));
+        let points = wall.flat_map(|along| {
+            [
+                Point2::new(along - 1.0, side),
+                Point2::new(2.0 * side, along - 2.0),
+            ]
+        });
+        let cloud: PointCloud = points.collect();
+        cloud.transformed(&SE2::new(0.0, 0.0, turn_rad).inverse())
+    }
+
+    #[test]
+    fn the_place_that_was_seen_before_comes_first_however_wrong_the_pose_and_the_heading() {
+        for config in [
+            PlaceDetectorConfig::histogram(3),
+            PlaceDetectorConfig::context(3),
+        ] {
+            let mut graph = PoseGraph::new();
+            let mut keyframes = Vec::new();
+            let mut visit = |graph: &mut PoseGraph, scan: PointCloud| {
+                let pose = SE2::new(50.0 * keyframes.len() as f64, 0.0, 0.0);
+                let node = graph.add_node(pose).index();
+                keyframes.push(Keyframe {
+                    node,
+                    frame: node,
+                    stamp_s: node as f64,
+                    scan: Arc::new(scan),
+                });
+            };
+            for place in 0..6 {
+                visit(&mut graph, seen(place, 0.0));
+            }
+            visit(&mut graph, seen(2, 1.2));
+            let mut detector = PlaceDetector::new(config);
+            let found = detector.detect(&mut LoopQuery::new(&mut graph, &keyframes));
+            assert_eq!(found[0].node, 2, "{config:?}");
+            assert!((found[0].distance_m - 200.0).abs() < 1e-9);
+            match found[0].proposal {
+                // One of 60 sectors is 0.105 rad.
+                Some(pose) => assert!((pose.theta() - 1.2).abs() < 0.105),
+                None => assert!(matches!(config.descriptor, PlaceDescriptor::Histogram(_))),
+            }
+            assert!(found.iter().all(|candidate| candidate.node <= 3));
+        }
+    }
+}

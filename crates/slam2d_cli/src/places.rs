@@ -1,0 +1,138 @@
+//! `slam2d places`: how well places are recognized, as curves of precision over recall.
+
+use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher};
+use ch16_lab::places::{PlaceCurve, PlacePair, place_curves, place_pairs};
+use clap::Args;
+use rayon::prelude::*;
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::numbers::{self, Seeds};
+use crate::output::{print_json, say};
+
+/// Most seeds: every lap has a thousand pairs.
+const MAX_SEEDS: u64 = 10_000;
+
+/// Compare detectors of places over many laps in both built-in worlds.
+///
+/// Pairs of keyframes at least 22 apart count; they are the same place where the truths are within
+/// 1 m. The laps are driven by NDT, with no loop closed.
+#[derive(Args, Clone, Debug)]
+pub struct PlacesArgs {
+    /// Seeds: A..=B, A..B or one.
+    #[arg(long, default_value = "1..=20", value_parser = numbers::seeds, allow_hyphen_values = true)]
+    seeds: Seeds,
+    /// Print one JSON list, an object with all curves for each world.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Why nothing was compared.
+#[derive(Debug, Error)]
+pub enum PlacesFailure {
+    /// More laps than anyone waits for.
+    #[error("{seeds} seeds are too many, at most {MAX_SEEDS}")]
+    TooMany {
+        /// How many.
+        seeds: u64,
+    },
+}
+
+#[derive(Serialize)]
+struct WorldJson {
+    world: &'static str,
+    pairs: usize,
+    same: usize,
+    detectors: Vec<DetectorJson>,
+}
+
+#[derive(Serialize)]
+struct DetectorJson {
+    detector: &'static str,
+    average_precision: f64,
+    recall_without_errors: f64,
+    /// Threshold, precision, recall.
+    curve: Vec<[f64; 3]>,
+}
+
+impl WorldJson {
+    fn new(world: BuiltInWorld, pairs: &[PlacePair]) -> Self {
+        Self {
+            world: world.name(),
+            pairs: pairs.len(),
+            same: pairs.iter().filter(|pair| pair.is_same).count(),
+            detectors: place_curves(pairs).iter().map(DetectorJson::new).collect(),
+        }
+    }
+}
+
+impl DetectorJson {
+    fn new(curve: &PlaceCurve) -> Self {
+        let points = curve.points.iter();
+        Self {
+            detector: curve.detector.name(),
+            average_precision: curve.average_precision,
+            recall_without_errors: curve.recall_without_errors,
+            curve: points
+                .map(|point| [point.threshold, point.precision, point.recall])
+                .collect(),
+        }
+    }
+}
+
+/// Drives the laps and prints how each detector does.
+///
+/// # Errors
+/// Where there are too many seeds.
+pub fn run(args: &PlacesArgs) -> Result<(), PlacesFailure> {
+    let seeds = args.seeds.count();
+    if seeds > MAX_SEEDS {
+        return Err(PlacesFailure::TooMany { seeds });
+    }
+    let worlds: Vec<WorldJson> = BuiltInWorld::ALL
+        .iter()
+        .map(|&world| {
+            let lap = |seed| {
+                let lap = LapConfig::in_world(world, seed, 1.0);
+                place_pairs(&lap.with_matcher(LapMatcher::Ndt))
+            };
+            let laps: Vec<Vec<PlacePair>> = (args.seeds.first..=args.seeds.last)
+                .into_par_iter()
+                .map(lap)
+                .collect();
+            WorldJson::new(world, &laps.concat())
+        })
+        .collect();
+    if args.json {
+        print_json(&worlds);
+    } else {
+        worlds.iter().for_each(print_world);
+    }
+    Ok(())
+}
+
+fn print_world(world: &WorldJson) {
+    say!(
+        "{}: {} pairs, {} of them the same place",
+        world.world,
+        world.pairs,
+        world.same
+    );
+    say!(
+        "  {:<12} {:>18} {:>24} {:>20}",
+        "detector",
+        "average precision",
+        "recall without errors",
+        "precision at half"
+    );
+    for detector in &world.detectors {
+        let half = detector.curve.iter().find(|[_, _, recall]| *recall >= 0.5);
+        say!(
+            "  {:<12} {:>18.3} {:>24.3} {:>20.3}",
+            detector.detector,
+            detector.average_precision,
+            detector.recall_without_errors,
+            half.map_or(0.0, |[_, precision, _]| *precision)
+        );
+    }
+}
