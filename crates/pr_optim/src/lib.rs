@@ -29,6 +29,7 @@ mod optimizer;
 pub mod ordering;
 mod problem;
 mod report;
+pub mod robust;
 mod selected_inverse;
 mod session;
 mod settings;

@@ -143,6 +143,15 @@ impl Problem {
         )
     }
 
+    /// `eᵀΩe` of every measurement at other poses, by index.
+    pub(crate) fn squared_norms_at(&self, poses: &[SE2]) -> Vec<f64> {
+        let poses: Vec<_> = poses.iter().map(PreparedPose::new).collect();
+        let factors = self.factors.iter().zip(&self.prepared);
+        factors
+            .map(|(factor, prepared)| prepared.squared_norm(&poses[factor.from], &poses[factor.to]))
+            .collect()
+    }
+
     /// `χ² = Σ eᵀΩe`: no kernel, no factor ½.
     #[must_use]
     pub fn chi2(&self) -> f64 {

@@ -1,6 +1,7 @@
 //! `slam2d optimize`: solve a pose graph in a g2o file.
 
 mod args;
+mod robust;
 mod solve;
 mod tried;
 mod whole_file;
@@ -13,6 +14,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 pub use self::args::OptimizeArgs;
+use self::robust::Believed;
 use self::solve::solve_repeatedly;
 use self::tried::{Tried, start_name};
 use self::whole_file::write_whole;
@@ -86,6 +88,9 @@ struct Summary {
     stop: String,
     /// Every start that was looked at, in this order.
     tried: Vec<Tried>,
+    /// What `--robust` believed; χ² is that of the measurements that are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    robust: Option<Believed>,
     cpu_ms: f64,
     cpu_ms_first: f64,
 }
@@ -140,6 +145,7 @@ fn solve_file(args: &OptimizeArgs) -> Result<(G2oFile, Summary), OptimizeFailure
         cost: report.cost,
         stop: report.stop.to_string(),
         tried: solved.outcome.tried.iter().map(Tried::from).collect(),
+        robust: solved.believed,
         cpu_ms: solved.best_ms,
         cpu_ms_first: solved.first_ms,
     };
@@ -193,6 +199,12 @@ fn print_summary(summary: &Summary, args: &OptimizeArgs) {
     say!("chi2          {:.6}", summary.chi2);
     if args.kernel.0 != RobustKernel::None {
         say!("cost          {:.6}, by the kernel", summary.cost);
+    }
+    if let Some(Believed {
+        loops, believed, ..
+    }) = summary.robust
+    {
+        say!("believed      {believed} of {loops} loops");
     }
     say!("stop          {}", summary.stop);
     say!(

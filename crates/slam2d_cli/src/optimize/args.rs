@@ -6,6 +6,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use pr_optim::{RobustKernel, Start};
 
+use super::robust::RobustName;
 use crate::numbers;
 
 /// Solve a pose graph: g2o in, g2o out.
@@ -27,6 +28,10 @@ pub struct OptimizeArgs {
     /// Robust kernel: none, huber:W (Mahalanobis norm) or dcs:PHI (squared norm).
     #[arg(long, value_parser = KernelName::from_str, default_value = "none")]
     pub kernel: KernelName,
+    /// Which loops are believed: none doubts no measurement; gnc and gnc-gm are graduated
+    /// non-convexity, pcm is pairwise consistency. What is between neighbours in time always is.
+    #[arg(long, value_enum, default_value_t = RobustName::None)]
+    pub robust: RobustName,
     /// Largest number of iterations of one attempt.
     #[arg(long, value_name = "N", default_value_t = 100)]
     pub max_iters: usize,

@@ -8,6 +8,7 @@ use pr_optim::{
 };
 
 use super::args::{MethodName, OptimizeArgs};
+use super::robust::{Believed, select};
 
 /// First damping of `--method lm`, relative to the diagonal.
 const INITIAL_DAMPING: f64 = 1e-6;
@@ -20,6 +21,8 @@ const STEP_TOLERANCE: f64 = 1e-10;
 pub struct Solved {
     /// The last solve; all are the same.
     pub outcome: Outcome,
+    /// What `--robust` believed.
+    pub believed: Option<Believed>,
     /// CPU time of the first solve, with ordering and symbolic analysis, ms.
     pub first_ms: f64,
     /// CPU time of the fastest solve, ms.
@@ -35,18 +38,17 @@ pub fn solve_repeatedly(
     args: &OptimizeArgs,
 ) -> Result<Solved, OptimizeError> {
     let mut optimizer = Optimizer::new(settings(args));
-    let start = args.init.start();
     let bar = progress_bar(u64::from(args.repeat) * args.max_iters as u64);
     let given = problem.poses().to_vec();
     let mut times_ms = Vec::new();
-    let outcome = loop {
+    let (outcome, believed) = loop {
         problem.poses_mut().copy_from_slice(&given);
-        let (outcome, elapsed_ms) = solve_once(&mut optimizer, problem, start, &bar)?;
+        let (outcome, believed, elapsed_ms) = solve_once(&mut optimizer, problem, args, &bar)?;
         // Every solve takes as many iterations as the first: from now on the share is exact.
         bar.set_length(u64::from(args.repeat) * outcome.total_iterations as u64);
         times_ms.push(elapsed_ms);
         if times_ms.len() >= args.repeat as usize {
-            break outcome;
+            break (outcome, believed);
         }
     };
     bar.finish_and_clear();
@@ -58,6 +60,7 @@ pub fn solve_repeatedly(
     }
     Ok(Solved {
         outcome,
+        believed,
         first_ms: times_ms[0],
         best_ms: times_ms.into_iter().fold(f64::INFINITY, f64::min),
     })
@@ -84,10 +87,35 @@ fn settings(args: &OptimizeArgs) -> Settings {
 fn solve_once(
     optimizer: &mut Optimizer,
     problem: &mut Problem,
-    start: Start,
+    args: &OptimizeArgs,
     bar: &ProgressBar,
-) -> Result<(Outcome, f64), OptimizeError> {
+) -> Result<(Outcome, Option<Believed>, f64), OptimizeError> {
     let mut clock = CpuClock::start();
+    let start = args.init.start();
+    let Some(mut selected) = select(problem, args.robust, settings(args), start)? else {
+        let outcome = solve_session(optimizer, problem, start, &mut clock, bar)?;
+        return Ok((outcome, None, clock.elapsed_ms()));
+    };
+    let outcome = solve_session(
+        optimizer,
+        &mut selected.problem,
+        selected.start,
+        &mut clock,
+        bar,
+    )?;
+    let solved = selected.problem.poses();
+    problem.poses_mut().copy_from_slice(solved);
+    Ok((outcome, Some(selected.believed), clock.elapsed_ms()))
+}
+
+/// The steps of a session; the clock stands still at its end.
+fn solve_session(
+    optimizer: &mut Optimizer,
+    problem: &mut Problem,
+    start: Start,
+    clock: &mut CpuClock,
+    bar: &ProgressBar,
+) -> Result<Outcome, OptimizeError> {
     let mut session = Session::new(optimizer, problem, start)?;
     loop {
         let more = session.step();
@@ -104,7 +132,7 @@ fn solve_once(
     bar.inc(1);
     let outcome = session.finish();
     clock.pause();
-    Ok((outcome, clock.elapsed_ms()))
+    Ok(outcome)
 }
 
 /// A bar on a terminal's standard error; nothing where it is not a terminal.
