@@ -17,11 +17,14 @@
 mod fields;
 mod raw_scans;
 mod sensor;
+mod write;
 
 use std::io::BufRead;
 
+pub use write::write_carmen;
+
 use crate::lines::{LineEnd, next_line, printable};
-use crate::log::{BrokenLine, LogError, LogFrame, LogNotes, LogReader};
+use crate::log::{BrokenRecord, LogError, LogFrame, LogNotes, LogReader, Place};
 use fields::{Fields, laser_message, odometry_message};
 use raw_scans::RawScans;
 use sensor::FrontLaser;
@@ -167,7 +170,7 @@ impl<R: BufRead> CarmenReader<R> {
         }
         let detail = match (&self.notes.first_broken, &self.notes.half_written) {
             (Some(broken), _) | (None, Some(broken)) => {
-                format!("line {}: {}", broken.line, broken.problem)
+                format!("{}: {}", broken.place, broken.problem)
             }
             (None, None) => {
                 "no line starts with FLASER, ROBOTLASER1 or RAWLASER1; record the laser as well"
@@ -191,7 +194,7 @@ impl<R: BufRead> LogReader for CarmenReader<R> {
             let read =
                 next_line(&mut self.source, &mut self.line).map_err(|source| LogError::Io {
                     name: self.name.clone(),
-                    line: self.notes.lines + 1,
+                    place: Place::Line(self.notes.lines + 1),
                     source,
                 })?;
             let Some((end, bytes)) = read else {
@@ -215,12 +218,15 @@ impl<R: BufRead> LogReader for CarmenReader<R> {
                 }
                 Ok(None) => {}
                 Err(problem) if end == LineEnd::CutOff => {
-                    self.notes.half_written = Some(BrokenLine {
-                        line: self.notes.lines,
+                    self.notes.half_written = Some(BrokenRecord {
+                        place: Place::Line(self.notes.lines),
                         problem,
                     });
                 }
-                Err(problem) => self.notes.leave_out(problem),
+                Err(problem) => {
+                    let place = Place::Line(self.notes.lines);
+                    self.notes.leave_out(place, problem);
+                }
             }
             if self.known_lines == 0 && self.notes.lines >= FOREIGN_AFTER_LINES {
                 return Err(self.nothing_found());

@@ -1,7 +1,12 @@
 //! Recorded logs of real robots: read, run through the estimator, and graded.
 //!
 //! - [`log`]: what every log yields, frames in the order of the file, and what is told of it.
-//! - [`carmen`]: the text format of CARMEN.
+//! - [`carmen`]: the text format of CARMEN, in both directions.
+//! - [`ros`]: recordings of ROS 2 (MCAP) and ROS 1 (bags).
+//! - [`json_log`]: a log as lines of JSON, in both directions.
+//! - [`graph_file`]: pose graphs of g2o, TORO and JSON.
+//! - [`map_image`]: maps for Nav2's map_server.
+//! - [`recorder`] and [`report`]: what a run leaves for a map, and one HTML file with pictures.
 //! - [`info`]: what is in a log.
 //! - [`run`]: a log through [`Slam`](ch16_slam2d::slam::Slam), frame by frame.
 //! - [`quality`]: how far each keyframe and each loop is to be trusted, and what is to be doubted.
@@ -15,10 +20,16 @@
 
 pub mod carmen;
 pub mod evaluate;
+pub mod graph_file;
 pub mod info;
+pub mod json_log;
 pub mod log;
+pub mod map_image;
 pub mod quality;
+pub mod recorder;
 pub mod relations;
+pub mod report;
+pub mod ros;
 pub mod run;
 pub mod trajectory;
 

@@ -1,6 +1,7 @@
 //! What every log yields, whatever its format.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::io::{self, BufRead};
 
 use ch16_slam2d::scan::LaserScan;
@@ -8,6 +9,8 @@ use pr_geom::SE2;
 use thiserror::Error;
 
 use crate::carmen::CarmenReader;
+use crate::json_log::JsonLogReader;
+use crate::ros::RosReader;
 
 /// A scan of a log, with the odometry at its time.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,11 +23,43 @@ pub struct LogFrame {
     pub scan: LaserScan,
 }
 
+/// A place in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Number of the line, counted from 1.
+    Line(usize),
+    /// Bytes before it, or before the end of the record that it is in.
+    Byte(u64),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Byte(byte) => write!(f, "byte {byte}"),
+        }
+    }
+}
+
+/// Which of several topics and frames of a recording are meant; none: found by type.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LogOptions {
+    /// The topic that scans come from; else the first one with scans.
+    pub scan_topic: Option<String>,
+    /// The topic that the wheels' poses come from, or /tf; else the first one of nav_msgs/Odometry,
+    /// and /tf where there is none.
+    pub odometry_topic: Option<String>,
+    /// The frame that /tf gives the wheels' poses in; else one whose name holds ‘odom’.
+    pub odometry_frame: Option<String>,
+    /// The frame of the robot's body; else the one that the odometry moves.
+    pub body_frame: Option<String>,
+}
+
 /// A line or record that could not be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct BrokenLine {
-    /// Number of the line, counted from 1.
-    pub line: usize,
+pub struct BrokenRecord {
+    /// Where it is.
+    pub place: Place,
     /// What was expected, and what stands there.
     pub problem: String,
 }
@@ -34,16 +69,22 @@ pub struct BrokenLine {
 pub struct LogNotes {
     /// How many records of each kind were read.
     pub records: BTreeMap<String, usize>,
-    /// Lines that were left out because they could not be read.
+    /// Lines or records that were left out because they could not be read.
     pub broken: usize,
     /// The first of them.
-    pub first_broken: Option<BrokenLine>,
-    /// The last line, where it was cut off in the middle.
-    pub half_written: Option<BrokenLine>,
+    pub first_broken: Option<BrokenRecord>,
+    /// The last line or record, where it was cut off in the middle.
+    pub half_written: Option<BrokenRecord>,
     /// Lines read.
     pub lines: usize,
     /// Bytes read.
     pub bytes: u64,
+    /// What was chosen and found: topics, frames, where the laser sits.
+    pub about: Vec<String>,
+    /// What was missing and how it was made up for.
+    pub warnings: Vec<String>,
+    /// Why what follows in the file was not read.
+    pub ended_early: Option<String>,
 }
 
 impl LogNotes {
@@ -52,31 +93,47 @@ impl LogNotes {
     pub fn sentences(&self, name: &str) -> Vec<String> {
         let mut said = Vec::new();
         if let Some(first) = &self.first_broken {
+            let thing = match first.place {
+                Place::Line(_) => "line",
+                Place::Byte(_) => "record",
+            };
             let count = match self.broken {
-                1 => "one line was left out".to_owned(),
-                many => format!("{many} lines were left out"),
+                1 => format!("one {thing} was left out"),
+                many => format!("{many} {thing}s were left out"),
+            };
+            let rest = self.ended_early.as_ref();
+            let rest = rest.map_or(String::new(), |rest| format!("; {rest}"));
+            let at = if first.place == Place::Byte(0) || thing == "line" {
+                "is"
+            } else {
+                "ends at"
             };
             said.push(format!(
-                "{name}: {count}; the first is line {}: {}",
-                first.line, first.problem
+                "{name}: {count}; the first {at} {}: {}{rest}",
+                first.place, first.problem
             ));
         }
         if let Some(last) = &self.half_written {
-            said.push(format!(
-                "{name}: the last line, {}, is half written and was left out: {}",
-                last.line, last.problem
-            ));
+            said.push(match last.place {
+                Place::Line(line) => format!(
+                    "{name}: the last line, {line}, is half written and was left out: {}",
+                    last.problem
+                ),
+                Place::Byte(byte) => format!(
+                    "{name}: the file is cut off at byte {byte}, and what stood there was left out: {}",
+                    last.problem
+                ),
+            });
         }
+        let warnings = self.warnings.iter();
+        said.extend(warnings.map(|warning| format!("{name}: {warning}")));
         said
     }
 
-    pub(crate) fn leave_out(&mut self, problem: String) {
+    pub(crate) fn leave_out(&mut self, place: Place, problem: String) {
         self.broken += 1;
         if self.first_broken.is_none() {
-            self.first_broken = Some(BrokenLine {
-                line: self.lines,
-                problem,
-            });
+            self.first_broken = Some(BrokenRecord { place, problem });
         }
     }
 }
@@ -85,12 +142,12 @@ impl LogNotes {
 #[derive(Debug, Error)]
 pub enum LogError {
     /// The system could not give its bytes.
-    #[error("{name}: line {line}: {source}")]
+    #[error("{name}: {place}: {source}")]
     Io {
         /// The log's name.
         name: String,
-        /// The line at which it happened.
-        line: usize,
+        /// Where it happened.
+        place: Place,
         /// What the system says.
         source: io::Error,
     },
@@ -143,10 +200,14 @@ pub enum LogFormat {
     Mcap,
     /// A recording of ROS 1.
     RosBag,
+    /// A database of SQLite, the older container of ROS 2.
+    Sqlite,
     /// Compressed by gzip.
     Gzip,
     /// A pose graph of g2o or TORO.
     Graph,
+    /// Lines of JSON, one frame each.
+    Json,
 }
 
 impl LogFormat {
@@ -158,10 +219,14 @@ impl LogFormat {
             Self::Mcap
         } else if starts(b"#ROSBAG") {
             Self::RosBag
+        } else if starts(b"SQLite format 3\0") {
+            Self::Sqlite
         } else if starts(b"\x1f\x8b") {
             Self::Gzip
         } else if starts(b"VERTEX") || starts(b"EDGE") {
             Self::Graph
+        } else if starts(b"{") {
+            Self::Json
         } else {
             Self::Carmen
         }
@@ -174,10 +239,11 @@ impl LogFormat {
     pub fn open<'a>(
         mut bytes: impl BufRead + 'a,
         name: &str,
+        options: &LogOptions,
     ) -> Result<Box<dyn LogReader + 'a>, LogError> {
         let start = bytes.fill_buf().map_err(|source| LogError::Io {
             name: name.to_owned(),
-            line: 1,
+            place: Place::Byte(0),
             source,
         })?;
         if start.is_empty() {
@@ -192,17 +258,16 @@ impl LogFormat {
         };
         match Self::detect(start) {
             Self::Carmen => Ok(Box::new(CarmenReader::new(bytes, name))),
-            Self::Mcap => Err(foreign(
-                "a recording of ROS 2 (MCAP)",
-                "give a CARMEN log with FLASER, ROBOTLASER1 or RAWLASER1 lines",
-            )),
-            Self::RosBag => Err(foreign(
-                "a recording of ROS 1 (bag)",
-                "give a CARMEN log with FLASER, ROBOTLASER1 or RAWLASER1 lines",
-            )),
+            Self::Mcap => Ok(Box::new(RosReader::mcap(bytes, name, options))),
+            Self::RosBag => Ok(Box::new(RosReader::bag(bytes, name, options))),
+            Self::Json => Ok(Box::new(JsonLogReader::new(bytes, name))),
             Self::Gzip => Err(foreign(
                 "compressed by gzip",
                 "unpack it with gunzip and give the result",
+            )),
+            Self::Sqlite => Err(foreign(
+                "a recording of ROS 2 in SQLite",
+                "convert it to MCAP with ros2 bag convert",
             )),
             Self::Graph => Err(foreign(
                 "a pose graph, not a log of scans",
@@ -225,16 +290,16 @@ mod tests {
                 "x.log is compressed by gzip; unpack it with gunzip and give the result",
             ),
             (
+                b"SQLite format 3\0",
+                "x.log is a recording of ROS 2 in SQLite; convert it to MCAP with ros2 bag convert",
+            ),
+            (
                 b"VERTEX_SE2 0 0 0 0\n",
                 "x.log is a pose graph, not a log of scans; optimize it with slam2d optimize",
             ),
         ] {
-            let error = LogFormat::open(bytes, "x.log").err().unwrap();
-            assert_eq!(error.to_string(), said);
-        }
-        for bytes in [&b"\x89MCAP0\r\n"[..], b"#ROSBAG V2.0\n"] {
-            let error = LogFormat::open(bytes, "x.log").err().unwrap();
-            assert!(error.to_string().contains("a recording of ROS"));
+            let opened = LogFormat::open(bytes, "x.log", &LogOptions::default());
+            assert_eq!(opened.err().unwrap().to_string(), said);
         }
     }
 }

@@ -112,21 +112,32 @@ impl Quality {
         quality
     }
 
+    /// Length of the way over the keyframes, m.
+    #[must_use]
+    pub fn way_m(&self) -> f64 {
+        let steps = self.keyframes.windows(2);
+        let steps = steps.map(|two| {
+            let [[ax, ay, _], [bx, by, _]] = [two[0].pose, two[1].pose];
+            math::norm2(bx - ax, by - ay)
+        });
+        steps.sum()
+    }
+
     fn doubt(&mut self, poor: &[PoorFit]) {
-        let sigma_m = |keyframe: &KeyframeQuality| {
-            let covariance = keyframe.covariance;
-            math::sqrt(covariance[0][0].max(covariance[1][1]).max(0.0))
-        };
-        let mut sorted: Vec<f64> = self.keyframes.iter().map(sigma_m).collect();
+        let mut sorted: Vec<f64> = self
+            .keyframes
+            .iter()
+            .map(KeyframeQuality::sigma_m)
+            .collect();
         sorted.sort_by(f64::total_cmp);
         let median_m = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
         let limit_m = (UNSURE_TIMES * median_m).max(UNSURE_M);
-        let is_unsure = |number: &usize| sigma_m(&self.keyframes[*number]) > limit_m;
+        let is_unsure = |number: &usize| self.keyframes[*number].sigma_m() > limit_m;
         let unsure: Vec<usize> = (0..self.keyframes.len()).filter(is_unsure).collect();
         let mut said = Vec::new();
         for run in unsure.chunk_by(|a, b| b - a == 1) {
             let (first, last) = (run[0], run[run.len() - 1]);
-            let worst_m = run.iter().map(|k| sigma_m(&self.keyframes[*k]));
+            let worst_m = run.iter().map(|k| self.keyframes[*k].sigma_m());
             let worst_m = worst_m.fold(0.0, f64::max);
             said.push(format!(
                 "keyframes {first} to {last} are known to {worst_m:.2} m only, the median one to {median_m:.2} m"
@@ -158,6 +169,35 @@ impl Quality {
                 self.doubts.push(format!("and {more} more of this kind"));
             }
         }
+    }
+}
+
+impl KeyframeQuality {
+    /// Standard deviation of the position along its worst direction, m.
+    #[must_use]
+    pub fn sigma_m(&self) -> f64 {
+        self.ellipse().0
+    }
+
+    /// Half axes (m) and the heading (rad, world frame) of the position's 1σ ellipse.
+    #[must_use]
+    pub fn ellipse(&self) -> (f64, f64, f64) {
+        let [[xx, xy, _], [_, yy, _], _] = self.covariance;
+        let (mean, half) = ((xx + yy) / 2.0, (xx - yy) / 2.0);
+        let radius = math::norm2(half, xy);
+        let angle = math::atan2(xy, half) / 2.0;
+        let axis = |variance: f64| math::sqrt(math::max(variance, 0.0));
+        (
+            axis(mean + radius),
+            axis(mean - radius),
+            self.pose[2] + angle,
+        )
+    }
+
+    /// Standard deviation of the heading, degrees.
+    #[must_use]
+    pub fn sigma_deg(&self) -> f64 {
+        math::sqrt(math::max(self.covariance[2][2], 0.0)).to_degrees()
     }
 }
 
@@ -278,6 +318,28 @@ mod tests {
         let chi2 = innovation_chi2(&measured, &information, &relative, &covariance).unwrap();
         // Against the graph without it: 3² / (1 + 4).
         assert!((chi2 - 1.8).abs() < 1e-12, "{chi2}");
+    }
+
+    #[test]
+    fn an_ellipse_has_the_axes_of_its_covariance() {
+        // Axes 0.3 and 0.1 m, the long one at 30° in the body's frame, which is turned by 90°.
+        let (sin, cos) = 30f64.to_radians().sin_cos();
+        let (long, short) = (0.09, 0.01);
+        let xy = (long - short) * sin * cos;
+        let keyframe = KeyframeQuality {
+            stamp_s: 0.0,
+            pose: [1.0, 2.0, core::f64::consts::FRAC_PI_2],
+            covariance: [
+                [long * cos * cos + short * sin * sin, xy, 0.0],
+                [xy, long * sin * sin + short * cos * cos, 0.0],
+                [0.0, 0.0, 1e-4],
+            ],
+        };
+        let (a, b, heading) = keyframe.ellipse();
+        // 1e-12: a dozen roundings of numbers below 1.
+        assert!((a - 0.3).abs() < 1e-12 && (b - 0.1).abs() < 1e-12);
+        assert!((heading.to_degrees() - 120.0).abs() < 1e-9);
+        assert!((keyframe.sigma_deg() - 0.01f64.to_degrees()).abs() < 1e-12);
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! `slam2d evaluate`: how good a trajectory is.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use robot_io::trajectory::{StampedPose, Trajectory};
 use thiserror::Error;
 
 use crate::grade::{GradeError, ReferenceArgs};
-use crate::log_file::{FileError, open, open_log};
+use crate::log_file::{FileError, TopicArgs, open, open_log};
 use crate::output::print_json;
 
 /// Grade a trajectory against reference relations or against the true trajectory.
@@ -20,6 +20,8 @@ pub struct EvaluateArgs {
     /// The log that it was made from: its odometry carries the poses on to the scans in between.
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
+    #[command(flatten)]
+    topics: TopicArgs,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -52,7 +54,7 @@ pub fn run(args: &EvaluateArgs) -> Result<(), EvaluateError> {
     let mut trajectory =
         Trajectory::read_tum(open(&args.trajectory)?, &name).map_err(GradeError::from)?;
     if let Some(path) = &args.log {
-        let odometry = odometry(path)?;
+        let odometry = odometry(path, &args.topics)?;
         trajectory = trajectory.carried_by(&odometry);
     }
     let grade = reference.grade(&trajectory)?;
@@ -65,8 +67,8 @@ pub fn run(args: &EvaluateArgs) -> Result<(), EvaluateError> {
 }
 
 /// The odometry of a log at its scans, as far as it is in the order of time.
-fn odometry(path: &std::path::Path) -> Result<Trajectory, EvaluateError> {
-    let (mut reader, mut progress) = open_log(path)?;
+fn odometry(path: &Path, topics: &TopicArgs) -> Result<Trajectory, EvaluateError> {
+    let (mut reader, mut progress) = open_log(path, topics)?;
     let mut poses: Vec<StampedPose> = Vec::new();
     while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
         progress.tell(poses.len());

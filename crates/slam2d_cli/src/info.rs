@@ -7,7 +7,7 @@ use clap::Args;
 use robot_io::info::LogInfo;
 use serde::Serialize;
 
-use crate::log_file::{FileError, open_log};
+use crate::log_file::{FileError, TopicArgs, open_log};
 use crate::output::{print_json, say};
 
 /// Print what is in a recorded log: scans, beams, odometry, times, and what cannot be read.
@@ -15,6 +15,8 @@ use crate::output::{print_json, say};
 pub struct InfoArgs {
     /// The log.
     log: PathBuf,
+    #[command(flatten)]
+    topics: TopicArgs,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -24,6 +26,7 @@ pub struct InfoArgs {
 struct InfoJson<'a> {
     records: &'a BTreeMap<String, usize>,
     broken_lines: usize,
+    about: &'a [String],
     #[serde(flatten)]
     info: &'a LogInfo,
 }
@@ -33,7 +36,7 @@ struct InfoJson<'a> {
 /// # Errors
 /// Where it cannot be read.
 pub fn run(args: &InfoArgs) -> Result<(), FileError> {
-    let (mut reader, mut progress) = open_log(&args.log)?;
+    let (mut reader, mut progress) = open_log(&args.log, &args.topics)?;
     let mut info = LogInfo::default();
     while let Some(frame) = reader.next_frame()? {
         info.take(&frame);
@@ -48,12 +51,16 @@ pub fn run(args: &InfoArgs) -> Result<(), FileError> {
         print_json(&InfoJson {
             records: &notes.records,
             broken_lines: notes.broken,
+            about: &notes.about,
             info: &info,
         });
         return Ok(());
     }
     for (name, count) in &notes.records {
         say!("{name:<16} {count}");
+    }
+    for sentence in &notes.about {
+        say!("{sentence}");
     }
     say!("scans            {}", info.scans);
     say!(

@@ -1,8 +1,16 @@
 //! `slam2d lap`: a lap at one seed and noise factor, through the Apartment or another world.
 
-use ch16_lab::lap::{LapRecord, LapRunner, LoopAttempt, TickReport};
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use ch16_lab::lap::{Drive, LapRecord, LapRunner, LoopAttempt, TickReport};
 use clap::Args;
+use pr_geom::SE2;
+use robot_io::json_log::FrameLine;
+use robot_io::log::LogFrame;
 use serde::Serialize;
+use thiserror::Error;
 
 use crate::numbers;
 use crate::output::{print_json, say};
@@ -23,6 +31,9 @@ pub struct LapArgs {
     /// The front end alone: no loop is closed.
     #[arg(long)]
     no_loops: bool,
+    /// Write what the robot recorded into this file, a line of JSON for each scan: a log.
+    #[arg(long, value_name = "FILE")]
+    frames: Option<PathBuf>,
     /// Print one JSON object with every tick, keyframe and loop event.
     #[arg(long)]
     json: bool,
@@ -78,14 +89,37 @@ struct TickJson {
     keyframe: bool,
 }
 
+/// Why a lap was not driven or not written.
+#[derive(Debug, Error)]
+pub enum LapError {
+    /// The world cannot be driven.
+    #[error(transparent)]
+    World(#[from] WorldError),
+    /// The frames cannot be written.
+    #[error("{}: {source}", path.display())]
+    Frames {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+}
+
 /// Runs the lap and prints it.
 ///
 /// # Errors
-/// Where the file of the world cannot be used.
-pub fn run(args: &LapArgs) -> Result<(), WorldError> {
+/// Where the file of the world cannot be used, or that of the frames cannot be written.
+pub fn run(args: &LapArgs) -> Result<(), LapError> {
     let mut config = args.trial.trial()?.lap(args.seed, args.noise);
     if args.no_loops {
         config = config.without_loops();
+    }
+    if let Some(path) = &args.frames {
+        let drive = Drive::simulate(&config.drive);
+        write_frames(path, &drive).map_err(|source| LapError::Frames {
+            path: path.clone(),
+            source,
+        })?;
     }
     let record = LapRunner::new().run(&config);
     if args.json {
@@ -94,6 +128,26 @@ pub fn run(args: &LapArgs) -> Result<(), WorldError> {
         print_text(&record, args);
     }
     Ok(())
+}
+
+/// Writes every frame of a drive, with the true pose beside it.
+fn write_frames(path: &Path, drive: &Drive) -> io::Result<()> {
+    let mut file = BufWriter::new(File::create(path)?);
+    let mut odometry = SE2::identity();
+    for tick in 0..=drive.ticks().len() {
+        let frame = drive.frame(tick);
+        odometry = odometry * frame.odometry.unwrap_or(SE2::identity());
+        let line = FrameLine {
+            truth: Some(drive.truth(tick).to_array()),
+            ..FrameLine::from(&LogFrame {
+                stamp_s: frame.stamp_s,
+                odometry: Some(odometry),
+                scan: frame.scan,
+            })
+        };
+        line.write(&mut file)?;
+    }
+    file.flush()
 }
 
 impl LapJson {

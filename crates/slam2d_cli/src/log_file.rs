@@ -5,9 +5,38 @@ use std::io::{self, BufReader, IsTerminal, Read, stderr};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use robot_io::log::{LogError, LogFormat, LogReader};
+use robot_io::log::{LogError, LogFormat, LogOptions, LogReader};
 use thiserror::Error;
+
+/// Which topics and frames of a recording of ROS are meant, where there are several.
+#[derive(Args, Clone, Debug, Default)]
+pub struct TopicArgs {
+    /// The topic of the scans, such as /scan.
+    #[arg(long, value_name = "TOPIC")]
+    scan_topic: Option<String>,
+    /// The topic of the odometry, such as /odom, or /tf.
+    #[arg(long, value_name = "TOPIC")]
+    odom_topic: Option<String>,
+    /// The frame that /tf gives the odometry in.
+    #[arg(long, value_name = "FRAME")]
+    odom_frame: Option<String>,
+    /// The frame of the robot's body.
+    #[arg(long, value_name = "FRAME")]
+    body_frame: Option<String>,
+}
+
+impl TopicArgs {
+    fn options(&self) -> LogOptions {
+        LogOptions {
+            scan_topic: self.scan_topic.clone(),
+            odometry_topic: self.odom_topic.clone(),
+            odometry_frame: self.odom_frame.clone(),
+            body_frame: self.body_frame.clone(),
+        }
+    }
+}
 
 /// Why a file could not be used.
 #[derive(Debug, Error)]
@@ -45,7 +74,10 @@ pub fn open(path: &Path) -> Result<BufReader<File>, FileError> {
 ///
 /// # Errors
 /// Where it cannot be opened, or is no log.
-pub fn open_log(path: &Path) -> Result<(Box<dyn LogReader>, Progress), FileError> {
+pub fn open_log(
+    path: &Path,
+    topics: &TopicArgs,
+) -> Result<(Box<dyn LogReader>, Progress), FileError> {
     let file = open(path)?;
     let bytes = file.get_ref().metadata().map_or(0, |about| about.len());
     let progress = Progress::new(bytes);
@@ -56,6 +88,7 @@ pub fn open_log(path: &Path) -> Result<(Box<dyn LogReader>, Progress), FileError
     let reader = LogFormat::open(
         BufReader::with_capacity(1 << 16, counted),
         &path.display().to_string(),
+        &topics.options(),
     )?;
     Ok((reader, progress))
 }

@@ -4,17 +4,20 @@
 //! files that cannot be used end in one line on standard error and exit code 2.
 
 mod basin;
+mod convert;
 mod evaluate;
 mod grade;
 mod info;
 mod lap;
 mod log_file;
+mod map;
 mod numbers;
 mod optimize;
 mod output;
 mod places;
 mod register;
 mod run_log;
+mod run_output;
 mod sweep;
 mod table;
 mod terrain;
@@ -49,6 +52,8 @@ enum Command {
     Info(info::InfoArgs),
     Run(run_log::RunArgs),
     Evaluate(evaluate::EvaluateArgs),
+    Convert(convert::ConvertArgs),
+    Map(map::MapArgs),
 }
 
 fn main() -> ExitCode {
@@ -77,6 +82,8 @@ fn main() -> ExitCode {
         Command::Info(args) => info::run(args).map_err(|e| e.to_string()),
         Command::Run(args) => run_log::run(args).map_err(|e| e.to_string()),
         Command::Evaluate(args) => evaluate::run(args).map_err(|e| e.to_string()),
+        Command::Convert(args) => convert::run(args).map_err(|e| e.to_string()),
+        Command::Map(args) => map::run(args).map_err(|e| e.to_string()),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -32,6 +32,11 @@ pub fn tau_m(text: &str) -> Result<f64, String> {
     within(text, 0.01..=10.0, " m")
 }
 
+/// Side of a map's cell in metres.
+pub fn cell_m(text: &str) -> Result<f64, String> {
+    within(text, 0.01..=1.0, " m")
+}
+
 /// An offset in metres.
 pub fn offset_m(text: &str) -> Result<f64, String> {
     within(text, -MAX_OFFSET_M..=MAX_OFFSET_M, " m")

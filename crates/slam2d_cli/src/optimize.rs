@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use pr_optim::g2o::{G2oError, G2oFile};
 use pr_optim::{OptimizeError, RobustKernel};
+use robot_io::graph_file::as_g2o;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -17,7 +18,7 @@ pub use self::args::OptimizeArgs;
 use self::robust::Believed;
 use self::solve::solve_repeatedly;
 use self::tried::{Tried, start_name};
-use self::whole_file::write_whole;
+pub use self::whole_file::write_whole;
 use crate::output::{print_json, say};
 
 /// Why a graph was not solved.
@@ -114,7 +115,7 @@ fn solve_file(args: &OptimizeArgs) -> Result<(G2oFile, Summary), OptimizeFailure
         path: path.clone(),
         source,
     })?;
-    let mut file = G2oFile::parse(&text).map_err(|source| OptimizeFailure::Graph {
+    let mut file = G2oFile::parse(as_g2o(&text)).map_err(|source| OptimizeFailure::Graph {
         path: path.clone(),
         source,
     })?;

@@ -8,19 +8,23 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::Args;
 use measuring::process;
 use robot_io::quality::Quality;
+use robot_io::recorder::RunRecorder;
 use robot_io::run::{LogRun, OdometryUse};
 use serde::Serialize;
 use thiserror::Error;
 
 use crate::grade::{Grade, GradeError, ReferenceArgs};
-use crate::log_file::{FileError, open_log};
+use crate::log_file::{FileError, TopicArgs, open_log};
 use crate::output::{print_json, say};
+use crate::run_output::write_folder;
 
 /// Map a recorded log, and grade the trajectory where a reference is given.
 #[derive(Args, Clone, Debug)]
 pub struct RunArgs {
     /// The log.
     log: PathBuf,
+    #[command(flatten)]
+    topics: TopicArgs,
     /// Write the results into this folder.
     #[arg(short = 'o', long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -87,17 +91,20 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     let flag = Arc::clone(&is_interrupted);
     // Without a handler Ctrl-C ends the process at once, which loses the work and nothing else.
     let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
-    let (mut reader, mut progress) = open_log(&args.log)?;
+    let (mut reader, mut progress) = open_log(&args.log, &args.topics)?;
     let mut run = LogRun::new(if args.no_odometry {
         OdometryUse::None
     } else {
         OdometryUse::Log
     });
+    let mut recorder = RunRecorder::default();
     let mut broken = None;
     while !is_interrupted.load(Ordering::Relaxed) {
         match reader.next_frame() {
             Ok(Some(frame)) => {
-                run.step(frame);
+                if let Some(report) = run.step(frame.clone()) {
+                    recorder.take(&frame, &report);
+                }
                 progress.tell(run.scans());
             }
             Ok(None) => break,
@@ -110,7 +117,10 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     }
     run.finish();
     progress.end();
-    tell_notes(&run, &reader.notes().sentences(&name), &name);
+    let mut remarks = notes(&run, reader.notes().sentences(&name), &name);
+    for remark in &remarks {
+        eprintln!("slam2d: {remark}");
+    }
     if run.scans() == 0 {
         let problem = match run.refused() {
             Some(problem) => problem.to_string(),
@@ -126,6 +136,8 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     let mut quality = run.quality();
     if let Some(folder) = &args.output {
         write_results(folder, &run, &quality)?;
+        remarks.extend(reader.notes().about.iter().cloned());
+        write_folder(folder, &name, &run, &quality, &recorder, &remarks)?;
     }
     // The results are written before anything that may still fail is told.
     let grade = grade?;
@@ -155,19 +167,20 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     Ok(())
 }
 
-fn tell_notes(run: &LogRun, sentences: &[String], name: &str) {
-    for sentence in sentences {
-        eprintln!("slam2d: {sentence}");
-    }
+/// What the owner of the log should know: of its lines, and of scans that were left out.
+fn notes(run: &LogRun, mut sentences: Vec<String>, name: &str) -> Vec<String> {
     if run.late() > 0 {
-        eprintln!(
-            "slam2d: {name}: {} scans are not after the one before them and were left out",
+        sentences.push(format!(
+            "{name}: {} scans are not after the one before them and were left out",
             run.late()
-        );
+        ));
     }
     if let Some(problem) = run.refused() {
-        eprintln!("slam2d: {name}: scans were left out; the first because {problem}");
+        sentences.push(format!(
+            "{name}: scans were left out; the first because {problem}"
+        ));
     }
+    sentences
 }
 
 /// Writes trajectory, graph, quality and doubts into a folder, which is made where it is missing.

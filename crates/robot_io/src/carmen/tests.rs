@@ -154,7 +154,9 @@ fn what_holds_no_scan_is_refused_in_one_sentence() {
         let error = read(text).unwrap_err().to_string();
         assert_eq!(error, said, "{text:?}");
     }
-    let noise: Vec<u8> = (0..100_000_u32).map(|k| (k.wrapping_mul(k) % 251) as u8).collect();
+    let noise: Vec<u8> = (0..100_000_u32)
+        .map(|k| (k.wrapping_mul(k) % 251) as u8)
+        .collect();
     let error = read(noise).unwrap_err().to_string();
     assert!(error.starts_with("x.clf is no CARMEN log"), "{error}");
 }

@@ -1,0 +1,313 @@
+//! Pose graphs as files: g2o, TORO and JSON.
+//!
+//! ```text
+//! VERTEX_SE2 id x y theta                       VERTEX2 id x y theta
+//! EDGE_SE2 from to dx dy dtheta                 EDGE2 from to dx dy dtheta
+//!   I_xx I_xy I_xt I_yy I_yt I_tt                 I_xx I_xy I_yy I_tt I_xt I_yt
+//! ```
+//!
+//! On the left g2o, which [`pr_optim::g2o`] reads; on the right TORO, with another order of the
+//! information. JSON has the same numbers by name.
+//! Source: Grisetti, Stachniss, "TORO: tree-based network optimizer", the description of its files.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use nalgebra::Matrix3;
+use pr_geom::SE2;
+use pr_optim::Between;
+use pr_optim::g2o::{G2oError, G2oFile};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// A pose graph with the ids of its file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct GraphFile {
+    /// Poses.
+    pub nodes: Vec<GraphNode>,
+    /// Measurements between them.
+    pub edges: Vec<GraphEdge>,
+}
+
+/// A pose.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GraphNode {
+    /// Its number in the file.
+    pub id: i64,
+    /// `world_from_body`: m, m, rad.
+    pub pose: [f64; 3],
+    /// Whether a solver leaves it where it is.
+    #[serde(default)]
+    pub fixed: bool,
+}
+
+/// A measured motion.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GraphEdge {
+    /// The node that measured.
+    pub from: i64,
+    /// The node that was measured.
+    pub to: i64,
+    /// The target in the frame of the source: m, m, rad.
+    pub measurement: [f64; 3],
+    /// Upper triangle of the information, row by row, tangent order x, y, θ.
+    pub information: [f64; 6],
+}
+
+/// Why a graph cannot be read.
+#[derive(Debug, Error)]
+pub enum GraphError {
+    /// A line is not what it has to be.
+    #[error("{name}: {source}")]
+    Text {
+        /// The file's name.
+        name: String,
+        /// The line and what is wrong.
+        source: G2oError,
+    },
+    /// It is no graph in JSON.
+    #[error("{name}: a graph with nodes and edges as JSON was expected: {problem}")]
+    Json {
+        /// The file's name.
+        name: String,
+        /// What is wrong, with line and column.
+        problem: String,
+    },
+}
+
+impl GraphFile {
+    /// The graph of a problem whose nodes have these ids.
+    fn of(problem: &pr_optim::Problem, id_of: impl Fn(usize) -> i64) -> Self {
+        let nodes = problem.poses().iter().zip(problem.fixed()).enumerate();
+        let nodes = nodes.map(|(node, (pose, &fixed))| GraphNode {
+            id: id_of(node),
+            pose: pose.to_array(),
+            fixed,
+        });
+        let edges = problem.factors().iter().map(|factor| {
+            let i = &factor.information;
+            GraphEdge {
+                from: id_of(factor.from),
+                to: id_of(factor.to),
+                measurement: factor.measurement.to_array(),
+                information: [
+                    i[(0, 0)],
+                    i[(0, 1)],
+                    i[(0, 2)],
+                    i[(1, 1)],
+                    i[(1, 2)],
+                    i[(2, 2)],
+                ],
+            }
+        });
+        Self {
+            nodes: nodes.collect(),
+            edges: edges.collect(),
+        }
+    }
+
+    /// The graph of an estimator; nodes are numbered from 0.
+    #[must_use]
+    pub fn of_graph(graph: &ch16_slam2d::graph::PoseGraph) -> Self {
+        let mut problem = pr_optim::Problem::new();
+        for (_, node) in graph.nodes() {
+            if node.fixed {
+                problem.add_fixed_pose(node.pose);
+            } else {
+                problem.add_pose(node.pose);
+            }
+        }
+        for view in graph.edges() {
+            problem.add_factor(Between {
+                from: view.from.index(),
+                to: view.to.index(),
+                measurement: view.edge.measurement,
+                information: view.edge.information,
+            });
+        }
+        Self::of(&problem, |node| node as i64)
+    }
+
+    /// Reads a graph of g2o, TORO or JSON, told apart by what stands in it.
+    ///
+    /// # Errors
+    /// The line that is not what it has to be.
+    pub fn read(bytes: &[u8], name: &str) -> Result<Self, GraphError> {
+        let told = |source| GraphError::Text {
+            name: name.to_owned(),
+            source,
+        };
+        if bytes.trim_ascii_start().starts_with(b"{") {
+            let graph: Self = serde_json::from_slice(bytes).map_err(|e| GraphError::Json {
+                name: name.to_owned(),
+                problem: e.to_string(),
+            })?;
+            // The rules of g2o hold for every graph: ids, ends, information, and what is tied.
+            G2oFile::parse(graph.to_g2o()).map_err(|e| GraphError::Json {
+                name: name.to_owned(),
+                problem: format!("{} (as g2o, line {})", e.problem, e.line),
+            })?;
+            return Ok(graph);
+        }
+        let file = G2oFile::parse(as_g2o(bytes)).map_err(told)?;
+        Ok(Self::of(&file.problem, |node| file.id_of(node)))
+    }
+
+    /// The graph in the format of g2o.
+    #[must_use]
+    pub fn to_g2o(&self) -> String {
+        let mut text = String::new();
+        for GraphNode { id, pose, .. } in &self.nodes {
+            let [x, y, theta] = pose;
+            let _ = writeln!(text, "VERTEX_SE2 {id} {x} {y} {theta}");
+        }
+        for node in self.nodes.iter().filter(|node| node.fixed) {
+            let _ = writeln!(text, "FIX {}", node.id);
+        }
+        for edge in &self.edges {
+            let [x, y, theta] = edge.measurement;
+            let [xx, xy, xt, yy, yt, tt] = edge.information;
+            let _ = writeln!(
+                text,
+                "EDGE_SE2 {} {} {x} {y} {theta} {xx} {xy} {xt} {yy} {yt} {tt}",
+                edge.from, edge.to
+            );
+        }
+        text
+    }
+
+    /// The graph in the format of TORO, which has no fixed nodes: its first one holds the gauge.
+    #[must_use]
+    pub fn to_toro(&self) -> String {
+        let mut text = String::new();
+        for GraphNode { id, pose, .. } in &self.nodes {
+            let [x, y, theta] = pose;
+            let _ = writeln!(text, "VERTEX2 {id} {x} {y} {theta}");
+        }
+        for edge in &self.edges {
+            let [x, y, theta] = edge.measurement;
+            let [xx, xy, xt, yy, yt, tt] = edge.information;
+            let _ = writeln!(
+                text,
+                "EDGE2 {} {} {x} {y} {theta} {xx} {xy} {yy} {tt} {xt} {yt}",
+                edge.from, edge.to
+            );
+        }
+        text
+    }
+
+    /// The solver's problem; an id that occurs twice or nowhere is left out.
+    #[must_use]
+    pub fn problem(&self) -> pr_optim::Problem {
+        let mut problem = pr_optim::Problem::new();
+        let mut node_of = BTreeMap::new();
+        for GraphNode { id, pose, fixed } in &self.nodes {
+            let [x, y, theta] = *pose;
+            let node = problem.add_pose(SE2::new(x, y, theta));
+            node_of.insert(*id, node);
+            if *fixed {
+                problem.fix(node);
+            }
+        }
+        for edge in &self.edges {
+            let (Some(&from), Some(&to)) = (node_of.get(&edge.from), node_of.get(&edge.to)) else {
+                continue;
+            };
+            let [x, y, theta] = edge.measurement;
+            let [xx, xy, xt, yy, yt, tt] = edge.information;
+            problem.add_factor(Between {
+                from,
+                to,
+                measurement: SE2::new(x, y, theta),
+                information: Matrix3::new(xx, xy, xt, xy, yy, yt, xt, yt, tt),
+            });
+        }
+        problem
+    }
+}
+
+/// A graph's text with every record of TORO as one of g2o, line by line; other text as it is.
+#[must_use]
+pub fn as_g2o(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let is_toro = |line: &[u8]| {
+        let line = line.trim_ascii_start();
+        [&b"VERTEX2"[..], b"EDGE2"].iter().any(|name| {
+            line.starts_with(name) && line.get(name.len()).is_some_and(u8::is_ascii_whitespace)
+        })
+    };
+    if !bytes.split(|&byte| byte == b'\n').any(is_toro) {
+        return Cow::Borrowed(bytes);
+    }
+    let mut text = Vec::with_capacity(bytes.len() + bytes.len() / 8);
+    for line in bytes.split_inclusive(|&byte| byte == b'\n') {
+        match std::str::from_utf8(line) {
+            Ok(words) if is_toro(line) => {
+                text.extend_from_slice(toro_line(words).as_bytes());
+                text.push(b'\n');
+            }
+            _ => text.extend_from_slice(line),
+        }
+    }
+    Cow::Owned(text)
+}
+
+/// A record of TORO as one of g2o; the wrong number of fields stays wrong.
+fn toro_line(line: &str) -> String {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    match words[..] {
+        ["EDGE2", from, to, x, y, theta, xx, xy, yy, tt, xt, yt] => {
+            format!("EDGE_SE2 {from} {to} {x} {y} {theta} {xx} {xy} {xt} {yy} {yt} {tt}")
+        }
+        ["EDGE2", ref rest @ ..] => format!("EDGE_SE2 {}", rest.join(" ")),
+        [_, ref rest @ ..] => format!("VERTEX_SE2 {}", rest.join(" ")),
+        [] => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const G2O: &str = "VERTEX_SE2 3 0 0 0\nVERTEX_SE2 7 1 0.5 0.25\nFIX 3\n\
+                       EDGE_SE2 3 7 1 0.5 0.25 10 1 2 20 3 30\n";
+
+    #[test]
+    fn a_graph_is_the_same_in_all_three_formats() {
+        let graph = GraphFile::read(G2O.as_bytes(), "x.g2o").unwrap();
+        assert_eq!(graph.to_g2o(), G2O);
+        // The order of TORO's information is xx xy yy tt xt yt.
+        let toro = graph.to_toro();
+        assert!(toro.ends_with("EDGE2 3 7 1 0.5 0.25 10 1 20 30 2 3\n"));
+        let back = GraphFile::read(toro.as_bytes(), "x.graph").unwrap();
+        // Without FIX the first node holds the gauge, as it did here.
+        assert_eq!(back, graph);
+        let json = serde_json::to_vec(&graph).unwrap();
+        assert_eq!(GraphFile::read(&json, "x.json").unwrap(), graph);
+        assert_eq!(graph.problem().chi2(), 0.0);
+    }
+
+    #[test]
+    fn what_is_no_graph_is_named_with_its_line() {
+        for (text, said) in [
+            (
+                "VERTEX2 1 0 0\n",
+                "x: line 1: VERTEX_SE2 needs 4 numbers, found 3",
+            ),
+            (
+                "VERTEX2 1 0 0 0\nEDGE2 1 2 0 0 0 1 0 1 1 0 0\n",
+                "x: line 2: there is no vertex 2",
+            ),
+            (
+                "{\"nodes\": 1}",
+                "x: a graph with nodes and edges as JSON was expected",
+            ),
+            ("", "x: line 1: the file has no VERTEX_SE2"),
+        ] {
+            let error = GraphFile::read(text.as_bytes(), "x")
+                .unwrap_err()
+                .to_string();
+            assert!(error.starts_with(said), "{error}");
+        }
+    }
+}

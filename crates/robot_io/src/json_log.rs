@@ -1,0 +1,262 @@
+//! A log as lines of JSON, one frame each: for scripts, and to carry a log from one format to another.
+//!
+//! ```text
+//! {"stamp_s": 1.0, "odometry": [x, y, theta], "first_angle_rad": -3.14, "angle_step_rad": 0.05,
+//!  "range_min_m": 0, "range_max_m": 6, "beam_interval_s": 0, "body_from_sensor": [x, y, theta],
+//!  "ranges_m": [1.2, null]}
+//! ```
+//!
+//! A range that is no number, and an endless longest range, are `null`. `odometry` may be missing,
+//! and so may `truth`, the true pose of a simulated robot, and `pose`, the one of an estimator: a log
+//! does not read these two.
+
+use std::io::{self, BufRead, Write};
+
+use ch16_slam2d::scan::LaserScan;
+use pr_geom::SE2;
+use serde::{Deserialize, Serialize};
+
+use crate::lines::{LineEnd, next_line};
+use crate::log::{BrokenRecord, LogError, LogFrame, LogNotes, LogReader, Place};
+
+/// One line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameLine {
+    /// Time of the scan, s.
+    pub stamp_s: f64,
+    /// Pose of the body in the odometry's frame: m, m, rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub odometry: Option<[f64; 3]>,
+    /// Where an estimator says that the body was, `world_from_body`: m, m, rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pose: Option<[f64; 3]>,
+    /// True pose of the body, where it is known: m, m, rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub truth: Option<[f64; 3]>,
+    /// Bearing of the first beam in the sensor's frame, rad.
+    pub first_angle_rad: f64,
+    /// Bearing from one beam to the next, rad.
+    pub angle_step_rad: f64,
+    /// Shorter ranges are no points, m.
+    #[serde(default)]
+    pub range_min_m: f64,
+    /// Ranges at or beyond this are no points, m; none where all are.
+    #[serde(default)]
+    pub range_max_m: Option<f64>,
+    /// Time from one beam to the next, s.
+    #[serde(default)]
+    pub beam_interval_s: f64,
+    /// Where the sensor sits on the body: m, m, rad.
+    #[serde(default)]
+    pub body_from_sensor: [f64; 3],
+    /// One range for each beam, m; none where it is no number.
+    pub ranges_m: Vec<Option<f64>>,
+}
+
+impl From<&LogFrame> for FrameLine {
+    fn from(frame: &LogFrame) -> Self {
+        let scan = &frame.scan;
+        let finite = |value: f64| value.is_finite().then_some(value);
+        Self {
+            stamp_s: frame.stamp_s,
+            odometry: frame.odometry.map(|pose| pose.to_array()),
+            pose: None,
+            truth: None,
+            first_angle_rad: scan.first_angle_rad,
+            angle_step_rad: scan.angle_step_rad,
+            range_min_m: scan.range_min_m,
+            range_max_m: finite(scan.range_max_m),
+            beam_interval_s: scan.beam_interval_s,
+            body_from_sensor: scan.body_from_sensor.to_array(),
+            ranges_m: scan
+                .ranges_m
+                .iter()
+                .map(|&range_m| finite(range_m))
+                .collect(),
+        }
+    }
+}
+
+impl From<FrameLine> for LogFrame {
+    fn from(line: FrameLine) -> Self {
+        let pose = |[x, y, theta]: [f64; 3]| SE2::new(x, y, theta);
+        let ranges_m = line.ranges_m.into_iter();
+        Self {
+            stamp_s: line.stamp_s,
+            odometry: line.odometry.map(pose),
+            scan: LaserScan {
+                first_angle_rad: line.first_angle_rad,
+                angle_step_rad: line.angle_step_rad,
+                range_min_m: line.range_min_m,
+                range_max_m: line.range_max_m.unwrap_or(f64::INFINITY),
+                body_from_sensor: pose(line.body_from_sensor),
+                beam_interval_s: line.beam_interval_s,
+                ranges_m: ranges_m
+                    .map(|range_m| range_m.unwrap_or(f64::NAN))
+                    .collect(),
+            },
+        }
+    }
+}
+
+impl FrameLine {
+    /// Reads a line that has to have a pose.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn with_pose(line: &str) -> Result<Self, String> {
+        let line: Self = serde_json::from_str(line).map_err(|problem| in_words(&problem))?;
+        if line.pose.is_none() {
+            return Err("a frame with a pose was expected".to_owned());
+        }
+        Ok(line)
+    }
+
+    /// Writes the line with its end.
+    ///
+    /// # Errors
+    /// Where `target` cannot take it.
+    pub fn write(&self, mut target: impl Write) -> io::Result<()> {
+        serde_json::to_writer(&mut target, self)?;
+        target.write_all(b"\n")
+    }
+}
+
+/// Reads such a log, line by line.
+#[derive(Debug)]
+pub struct JsonLogReader<R> {
+    source: R,
+    name: String,
+    line: Vec<u8>,
+    notes: LogNotes,
+    frames: usize,
+}
+
+impl<R: BufRead> JsonLogReader<R> {
+    /// A reader at the log's start; `name` is what errors call it.
+    #[must_use]
+    pub fn new(source: R, name: &str) -> Self {
+        Self {
+            source,
+            name: name.to_owned(),
+            line: Vec::new(),
+            notes: LogNotes::default(),
+            frames: 0,
+        }
+    }
+
+    fn nothing_found(&self) -> LogError {
+        let broken = self.notes.first_broken.as_ref();
+        let broken = broken.or(self.notes.half_written.as_ref());
+        LogError::NoScans {
+            name: self.name.clone(),
+            detail: match broken {
+                Some(broken) => format!("{}: {}", broken.place, broken.problem),
+                None => "no line is a frame with ranges_m".to_owned(),
+            },
+        }
+    }
+}
+
+/// What serde expects, without its own place in the line.
+fn in_words(problem: &serde_json::Error) -> String {
+    let said = problem.to_string();
+    let end = said.find(" at line ").unwrap_or(said.len());
+    format!(
+        "a frame as JSON was expected, but at column {}: {}",
+        problem.column(),
+        &said[..end]
+    )
+}
+
+impl<R: BufRead> LogReader for JsonLogReader<R> {
+    fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
+        loop {
+            let read =
+                next_line(&mut self.source, &mut self.line).map_err(|source| LogError::Io {
+                    name: self.name.clone(),
+                    place: Place::Line(self.notes.lines + 1),
+                    source,
+                })?;
+            let Some((end, bytes)) = read else {
+                return if self.frames == 0 {
+                    Err(self.nothing_found())
+                } else {
+                    Ok(None)
+                };
+            };
+            self.notes.lines += 1;
+            self.notes.bytes += bytes;
+            let place = Place::Line(self.notes.lines);
+            if self.line.trim_ascii().is_empty() {
+                continue;
+            }
+            if end == LineEnd::TooLong {
+                let problem = "a line has to be shorter than 4 MB".to_owned();
+                self.notes.leave_out(place, problem);
+                continue;
+            }
+            match serde_json::from_slice::<FrameLine>(&self.line) {
+                Ok(line) => {
+                    self.frames += 1;
+                    *self.notes.records.entry("frame".to_owned()).or_default() += 1;
+                    return Ok(Some(line.into()));
+                }
+                Err(problem) if end == LineEnd::CutOff => {
+                    let problem = in_words(&problem);
+                    self.notes.half_written = Some(BrokenRecord { place, problem });
+                }
+                Err(problem) => self.notes.leave_out(place, in_words(&problem)),
+            }
+        }
+    }
+
+    fn notes(&self) -> &LogNotes {
+        &self.notes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame() -> LogFrame {
+        LogFrame {
+            stamp_s: 12.5,
+            odometry: Some(SE2::new(1.0, -2.0, 0.3)),
+            scan: LaserScan {
+                first_angle_rad: -1.5,
+                angle_step_rad: 0.1,
+                ranges_m: vec![1.25, 0.0, 0.1 + 0.2],
+                ..LaserScan::default()
+            },
+        }
+    }
+
+    #[test]
+    fn what_is_written_reads_back_to_the_same_bits() {
+        let mut bytes = Vec::new();
+        FrameLine::from(&frame()).write(&mut bytes).unwrap();
+        let mut reader = JsonLogReader::new(&bytes[..], "x.jsonl");
+        assert_eq!(reader.next_frame().unwrap(), Some(frame()));
+        assert_eq!(reader.next_frame().unwrap(), None);
+    }
+
+    #[test]
+    fn lines_that_are_no_frame_are_named() {
+        let mut bytes = b"{\"stamp_s\": 1}\n".to_vec();
+        let mut reader = JsonLogReader::new(&bytes[..], "x.jsonl");
+        let error = reader.next_frame().unwrap_err().to_string();
+        assert!(
+            error.starts_with("x.jsonl holds no scan that can be used: line 1: a frame as JSON"),
+            "{error}"
+        );
+        FrameLine::from(&frame()).write(&mut bytes).unwrap();
+        bytes.extend_from_slice(b"{\"stamp");
+        let mut reader = JsonLogReader::new(&bytes[..], "x.jsonl");
+        while reader.next_frame().unwrap().is_some() {}
+        let said = reader.notes().sentences("x.jsonl").join(" ");
+        assert!(said.contains("the first is line 1"), "{said}");
+        assert!(said.contains("the last line, 3, is half written"), "{said}");
+    }
+}

@@ -1,0 +1,398 @@
+//! A map as an image with a YAML file beside it, as Nav2's map_server reads them.
+//!
+//! | mode | a cell is | pixel |
+//! |---|---|---|
+//! | trinary | occupied, free, unknown | 0, 254, 205 |
+//! | scale | occupied with probability p; unknown | 254 · (1 − p), opaque; transparent |
+//!
+//! The first row of the image is the one with the highest y, and `origin` is the lower left corner.
+//! Scale needs transparency, so it is written as PNG; PGM has none.
+//! Source: Nav2, `nav2_map_server/src/map_io.cpp`, and "map_server", wiki.ros.org/map_server.
+
+use std::io::{self, Write};
+
+use pr_geom::{Point2, SE2, math};
+use pr_grid::{Beams, GridConfig, GridTooLarge, InverseSensorModel, OccupancyGrid};
+use thiserror::Error;
+
+use ch16_slam2d::scan::LaserScan;
+
+use crate::json_log::FrameLine;
+use crate::log::LogFrame;
+
+/// Above this probability a cell is an obstacle.
+const OCCUPIED: f64 = 0.65;
+/// Below this probability a cell is free: one ray through it is enough.
+const FREE: f64 = 0.4;
+/// Pixels above this are free to a map server: 205 of 255 is 0.1961, so that unknown stays unknown.
+const FREE_PIXEL: f64 = 0.196;
+/// Longer rays clear nothing, m: far readings are rare and graze.
+const FARTHEST_M: f64 = 30.0;
+
+/// What a pixel says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum MapMode {
+    /// Occupied, free or unknown.
+    #[default]
+    Trinary,
+    /// The probability.
+    Scale,
+}
+
+impl MapMode {
+    /// Its name in the YAML file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Trinary => "trinary",
+            Self::Scale => "scale",
+        }
+    }
+}
+
+/// Why there is no map.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum MapError {
+    /// The cells are too small for so large a place.
+    #[error(transparent)]
+    TooLarge(#[from] GridTooLarge),
+    /// No scan has a point.
+    #[error("no scan has a point, so there is nothing to map")]
+    Nothing,
+}
+
+/// The map of scans that were taken at known poses; those without one are left out.
+///
+/// # Errors
+/// Where no scan has a point, or there would be too many cells.
+pub fn map_of(lines: &[FrameLine], cell_m: f64) -> Result<MapImage, MapError> {
+    let mut map = MapBuilder::new(cell_m);
+    for line in lines {
+        if let Some([x, y, theta]) = line.pose {
+            let frame = LogFrame::from(line.clone());
+            map.add(&SE2::new(x, y, theta), &frame.scan)?;
+        }
+    }
+    map.finish()
+}
+
+/// Adds scans to an occupancy grid that grows with them.
+#[derive(Clone, Debug)]
+pub struct MapBuilder {
+    cell_m: f64,
+    grid: Option<OccupancyGrid>,
+    /// Bounds of all points and robots, m: the image ends there.
+    low: Point2<f64>,
+    high: Point2<f64>,
+}
+
+impl MapBuilder {
+    /// An empty map of cells of this side, m.
+    #[must_use]
+    pub fn new(cell_m: f64) -> Self {
+        Self {
+            cell_m,
+            grid: None,
+            low: Point2::new(f64::INFINITY, f64::INFINITY),
+            high: Point2::new(f64::NEG_INFINITY, f64::NEG_INFINITY),
+        }
+    }
+
+    /// Adds the scan that was taken at `world_from_body`; rays that saw nothing say nothing.
+    ///
+    /// # Errors
+    /// Where the map would have too many cells; it stays as it was.
+    pub fn add(&mut self, world_from_body: &SE2, scan: &LaserScan) -> Result<(), GridTooLarge> {
+        let world_from_sensor = *world_from_body * scan.body_from_sensor;
+        let mut beams: Vec<(f64, f64)> = Vec::with_capacity(scan.ranges_m.len());
+        for (beam, &range_m) in scan.ranges_m.iter().enumerate() {
+            if scan.is_return(range_m) && range_m < FARTHEST_M {
+                beams.push((scan.bearing_rad(beam), range_m));
+            }
+        }
+        if scan.angle_step_rad < 0.0 {
+            beams.reverse();
+        }
+        // More than a turn: the grid asks each bearing once.
+        let first = beams.first().map_or(0.0, |beam| beam.0);
+        beams.retain(|beam| beam.0 - first < core::f64::consts::TAU);
+        let reach_m = beams.iter().map(|beam| beam.1).fold(0.0, f64::max);
+        if beams.is_empty() {
+            return Ok(());
+        }
+        let at = world_from_sensor.position();
+        let grid = self
+            .grid
+            .get_or_insert_with(|| OccupancyGrid::new(Self::config(self.cell_m, scan, at)));
+        grid.cover(at, reach_m + 2.0 * self.cell_m)?;
+        for &(bearing, range_m) in &beams {
+            let (sin, cos) = math::sin_cos(bearing + world_from_sensor.theta());
+            for point in [at, Point2::new(at.x + range_m * cos, at.y + range_m * sin)] {
+                self.low = Point2::new(
+                    math::min(self.low.x, point.x),
+                    math::min(self.low.y, point.y),
+                );
+                self.high = Point2::new(
+                    math::max(self.high.x, point.x),
+                    math::max(self.high.y, point.y),
+                );
+            }
+        }
+        let (bearings, ranges_m): (Vec<f64>, Vec<f64>) = beams.into_iter().unzip();
+        grid.integrate(&world_from_sensor, &Beams::new(&bearings), &ranges_m);
+        Ok(())
+    }
+
+    fn config(cell_m: f64, scan: &LaserScan, at: Point2<f64>) -> GridConfig {
+        GridConfig {
+            sensor: InverseSensorModel {
+                // A return marks its own cell and no wall thicker than that.
+                obstacle_thickness_m: 1.5 * cell_m,
+                // Half a step to either side, and what is lost in rounding.
+                beam_width_rad: 1.001 * scan.angle_step_rad.abs(),
+                max_range_m: FARTHEST_M,
+                ..InverseSensorModel::default()
+            },
+            ..GridConfig::growing_from(at, cell_m)
+        }
+    }
+
+    /// The map, cut to what was seen.
+    ///
+    /// # Errors
+    /// Where nothing was.
+    pub fn finish(&self) -> Result<MapImage, MapError> {
+        let grid = self.grid.as_ref().ok_or(MapError::Nothing)?;
+        let margin = 2;
+        let [low, high] = [self.low, self.high].map(|corner| grid.cell_at(corner));
+        let clamp = |cell: i32, count: usize| cell.clamp(0, count as i32 - 1) as usize;
+        let columns = clamp(low.column - margin, grid.columns())
+            ..clamp(high.column + margin, grid.columns()) + 1;
+        let rows = clamp(low.row - margin, grid.rows())..clamp(high.row + margin, grid.rows()) + 1;
+        let min_m = grid.config().min_m;
+        let mut log_odds = Vec::with_capacity(columns.len() * rows.len());
+        for row in rows.clone().rev() {
+            let start = row * grid.columns();
+            log_odds
+                .extend_from_slice(&grid.log_odds()[start + columns.start..start + columns.end]);
+        }
+        Ok(MapImage {
+            width: columns.len(),
+            height: rows.len(),
+            origin_m: [
+                min_m.x + columns.start as f64 * self.cell_m,
+                min_m.y + rows.start as f64 * self.cell_m,
+            ],
+            cell_m: self.cell_m,
+            log_odds,
+        })
+    }
+}
+
+/// A map, cell by cell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MapImage {
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Lower left corner, world frame, m.
+    pub origin_m: [f64; 2],
+    /// Side of a cell, m.
+    pub cell_m: f64,
+    /// Log odds, row by row from the highest y; 0 is unknown.
+    pub log_odds: Vec<f64>,
+}
+
+impl MapImage {
+    /// Probability that a cell is occupied; none where nothing is known.
+    fn probability(log_odds: f64) -> Option<f64> {
+        (log_odds != 0.0).then(|| 1.0 / (1.0 + math::exp(-log_odds)))
+    }
+
+    fn trinary(log_odds: f64) -> u8 {
+        match Self::probability(log_odds) {
+            Some(p) if p > OCCUPIED => 0,
+            Some(p) if p < FREE => 254,
+            _ => 205,
+        }
+    }
+
+    /// Writes the trinary map as PGM.
+    ///
+    /// # Errors
+    /// Where `target` cannot take it.
+    pub fn write_pgm(&self, mut target: impl Write) -> io::Result<()> {
+        write!(target, "P5\n{} {}\n255\n", self.width, self.height)?;
+        let pixels: Vec<u8> = self.log_odds.iter().map(|&l| Self::trinary(l)).collect();
+        target.write_all(&pixels)
+    }
+
+    /// Writes the map as PNG: grey, with transparency where the mode needs it.
+    ///
+    /// # Errors
+    /// Where `target` cannot take it.
+    pub fn write_png(&self, target: impl Write, mode: MapMode) -> io::Result<()> {
+        let mut encoder = png::Encoder::new(target, self.width as u32, self.height as u32);
+        encoder.set_depth(png::BitDepth::Eight);
+        let pixels: Vec<u8> = match mode {
+            MapMode::Trinary => {
+                encoder.set_color(png::ColorType::Grayscale);
+                self.log_odds.iter().map(|&l| Self::trinary(l)).collect()
+            }
+            MapMode::Scale => {
+                encoder.set_color(png::ColorType::GrayscaleAlpha);
+                let cells = self.log_odds.iter();
+                cells
+                    .flat_map(|&l| match Self::probability(l) {
+                        Some(p) => [(254.0 * (1.0 - p)).round() as u8, 255],
+                        None => [205, 0],
+                    })
+                    .collect()
+            }
+        };
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&pixels)?;
+        writer.finish()?;
+        Ok(())
+    }
+
+    /// The YAML file that names `image`.
+    #[must_use]
+    pub fn yaml(&self, image: &str, mode: MapMode) -> String {
+        let [x, y] = self.origin_m;
+        format!(
+            "image: {image}\nmode: {}\nresolution: {}\norigin: [{x}, {y}, 0]\nnegate: 0\n\
+             occupied_thresh: {OCCUPIED}\nfree_thresh: {FREE_PIXEL}\n",
+            mode.name(),
+            self.cell_m
+        )
+    }
+
+    /// Cells that are obstacles, that are free, and that are unknown.
+    #[must_use]
+    pub fn counts(&self) -> [usize; 3] {
+        let mut counts = [0; 3];
+        for &log_odds in &self.log_odds {
+            counts[match Self::trinary(log_odds) {
+                0 => 0,
+                254 => 1,
+                _ => 2,
+            }] += 1;
+        }
+        counts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::TAU;
+
+    use super::*;
+
+    /// A robot in a room of 4 m × 3 m whose lower left corner is at (1, 2), seen five times.
+    fn room() -> MapImage {
+        let mut map = MapBuilder::new(0.1);
+        let step = TAU / 720.0;
+        for x in [2.0, 2.5, 3.0, 3.5, 4.0] {
+            let (left, right, down, up) = (x - 1.0, 5.0 - x, 1.5, 1.5);
+            let ranges_m = (0..720).map(|beam| {
+                let (sin, cos) = (-3.0 + f64::from(beam) * step).sin_cos();
+                let along = if cos > 0.0 { right / cos } else { -left / cos };
+                let across = if sin > 0.0 { up / sin } else { -down / sin };
+                along.min(across)
+            });
+            let scan = LaserScan {
+                first_angle_rad: -3.0,
+                angle_step_rad: step,
+                ranges_m: ranges_m.collect(),
+                ..LaserScan::default()
+            };
+            map.add(&SE2::new(x, 3.5, 0.0), &scan).unwrap();
+        }
+        map.finish().unwrap()
+    }
+
+    /// The pixel that Nav2 takes for a place.
+    fn pixel(map: &MapImage, pgm: &[u8], x: f64, y: f64) -> u8 {
+        let column = ((x - map.origin_m[0]) / map.cell_m).floor() as usize;
+        let row = ((y - map.origin_m[1]) / map.cell_m).floor() as usize;
+        let pixels = &pgm[pgm.len() - map.width * map.height..];
+        pixels[(map.height - 1 - row) * map.width + column]
+    }
+
+    #[test]
+    fn walls_are_black_floors_white_and_what_lies_beyond_is_unknown() {
+        let map = room();
+        let mut pgm = Vec::new();
+        map.write_pgm(&mut pgm).unwrap();
+        assert!(pgm.starts_with(format!("P5\n{} {}\n255\n", map.width, map.height).as_bytes()));
+        for (x, y) in [(1.5, 2.5), (3.0, 3.5), (4.5, 4.5)] {
+            assert_eq!(pixel(&map, &pgm, x, y), 254, "{x} {y}");
+        }
+        // A wall lies on the border of two cells: one of them is black.
+        for (x, y, dx, dy) in [
+            (1.0, 3.45, 0.04, 0.0),
+            (5.0, 3.45, 0.04, 0.0),
+            (2.95, 2.0, 0.0, 0.04),
+        ] {
+            let sides = [-1.0, 1.0].map(|side| pixel(&map, &pgm, x + side * dx, y + side * dy));
+            assert!(sides.contains(&0), "{x} {y}: {sides:?}");
+        }
+        assert_eq!(pixel(&map, &pgm, 0.85, 1.85), 205);
+        let [occupied, free, unknown] = map.counts();
+        // 14 m of wall in cells of 0.1 m, one or two thick; 12 m² of floor.
+        assert!((120..=300).contains(&occupied), "{occupied}");
+        assert!((1000..=1200).contains(&free), "{free}");
+        assert_eq!(occupied + free + unknown, map.width * map.height);
+    }
+
+    #[test]
+    fn unknown_is_transparent_in_scale_and_every_pixel_reads_back() {
+        let map = room();
+        let mut bytes = Vec::new();
+        map.write_png(&mut bytes, MapMode::Scale).unwrap();
+        let mut reader = png::Decoder::new(io::Cursor::new(&bytes))
+            .read_info()
+            .unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        assert_eq!(
+            (info.width as usize, info.height as usize),
+            (map.width, map.height)
+        );
+        for (pixel, &log_odds) in pixels.chunks(2).zip(&map.log_odds) {
+            assert_eq!(pixel[1] == 0, log_odds == 0.0);
+            if log_odds != 0.0 {
+                // What Nav2 makes of it, by lightness: within half a step of 255.
+                let p = 1.0 - f64::from(pixel[0]) / 255.0;
+                let expected = 1.0 / (1.0 + (-log_odds).exp());
+                assert!((p - expected).abs() < 0.007, "{p} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_yaml_names_what_the_map_server_needs() {
+        let map = room();
+        let yaml = map.yaml("map.pgm", MapMode::Trinary);
+        let [x, y] = map.origin_m;
+        assert_eq!(
+            yaml,
+            format!(
+                "image: map.pgm\nmode: trinary\nresolution: 0.1\norigin: [{x}, {y}, 0]\nnegate: 0\n\
+                 occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+            )
+        );
+        // Unknown is 205: neither above the one nor below the other.
+        let unknown = 1.0 - 205.0 / 255.0;
+        assert!(unknown > FREE_PIXEL && unknown < OCCUPIED);
+    }
+
+    #[test]
+    fn a_map_of_nothing_is_refused() {
+        let mut map = MapBuilder::new(0.05);
+        map.add(&SE2::identity(), &LaserScan::default()).unwrap();
+        assert_eq!(map.finish(), Err(MapError::Nothing));
+    }
+}

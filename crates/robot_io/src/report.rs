@@ -1,0 +1,301 @@
+//! The report of a run: one HTML file with pictures, which needs no script and no other file.
+//!
+//! Map, way, loops and uncertainty are one picture; χ² and the uncertainty over time are two more.
+//! Below stand what should be doubted, every loop with its evidence, and the keyframes. Colours follow
+//! the reader's choice of light or dark.
+
+mod chart;
+mod picture;
+
+use std::fmt::{Display, Write as _};
+
+use crate::map_image::MapImage;
+use crate::quality::{LinkQuality, Quality};
+
+/// Longer tables hold the first rows and say so.
+const MOST_ROWS: usize = 2000;
+
+const STYLE: &str = "
+:root { color-scheme: light dark; --ink: #1d1d1f; --paper: #fff; --faint: #8a8a8e; --wall: #333;
+  --way: #0a62c9; --good: #14804a; --bad: #c2410c; --line: #d8d8dc }
+@media (prefers-color-scheme: dark) { :root { --ink: #ececf0; --paper: #17181b; --faint: #8f9098;
+  --wall: #c9cad0; --way: #6db3ff; --good: #4cc38a; --bad: #ff9f66; --line: #3a3b40 } }
+body { font: 16px/1.5 system-ui, sans-serif; color: var(--ink); background: var(--paper);
+  max-width: 60rem; margin: 2rem auto; padding: 0 1rem }
+svg { width: 100%; height: auto; display: block }
+svg.map { max-height: 80vh }
+svg text { fill: var(--ink); font: 12px system-ui, sans-serif }
+.wall { fill: var(--wall) } .way { fill: none; stroke: var(--way) }
+.sure { fill: none; stroke: var(--way); opacity: .5 }
+.good { stroke: var(--good); fill: none } .bad { stroke: var(--bad); fill: none; stroke-dasharray: 4 3 }
+.axis { stroke: var(--line); fill: none }
+.curve { fill: none; stroke: var(--way); stroke-width: 1.5 }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums }
+.scroll { overflow-x: auto }
+th, td { text-align: right; padding: .15rem .6rem; border-bottom: 1px solid var(--line) }
+td.text, th.text { text-align: left }
+.key { color: var(--faint) }
+";
+
+/// What the report is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Report<'a> {
+    /// What was run: the name of the log.
+    pub name: &'a str,
+    /// Scans taken.
+    pub scans: usize,
+    /// Keyframes, loops and doubts.
+    pub quality: &'a Quality,
+    /// Time (s) and χ² of the graph, after each keyframe.
+    pub chi2_over_time: &'a [[f64; 2]],
+    /// The map, where there is one.
+    pub map: Option<&'a MapImage>,
+    /// Sentences about the log and the grade, a paragraph each.
+    pub remarks: &'a [String],
+}
+
+impl Report<'_> {
+    /// The whole file.
+    #[must_use]
+    pub fn html(&self) -> String {
+        let quality = self.quality;
+        let name = escaped(self.name);
+        let closed = quality.tried.iter().filter(|tried| tried.accepted);
+        let mut page = format!(
+            "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width\">\n<title>Map of {name}</title>\n\
+             <style>{STYLE}</style>\n<h1>Map of {name}</h1>\n"
+        );
+        say(
+            &mut page,
+            format_args!(
+                "<p>{} scans became {} keyframes on a way of {:.1} m. On the way {} loops \
+                 were looked at and {} closed; at the end {} are in the graph.</p>",
+                self.scans,
+                quality.keyframes.len(),
+                quality.way_m(),
+                quality.tried.len(),
+                closed.clone().count(),
+                quality.links.len()
+            ),
+        );
+        for remark in self.remarks {
+            say(&mut page, format_args!("<p>{}</p>", escaped(remark)));
+        }
+        say(&mut page, format_args!("<h2>What should be doubted</h2>"));
+        if quality.doubts.is_empty() {
+            say(
+                &mut page,
+                format_args!(
+                    "<p>Nothing that the graph could tell: no measurement disagrees with the rest of it.</p>"
+                ),
+            );
+        } else {
+            say(&mut page, format_args!("<ul>"));
+            for doubt in &quality.doubts {
+                say(&mut page, format_args!("<li>{}</li>", escaped(doubt)));
+            }
+            say(&mut page, format_args!("</ul>"));
+        }
+        say(&mut page, format_args!("<h2>The map</h2>"));
+        page.push_str(&picture::map(quality, self.map));
+        say(
+            &mut page,
+            format_args!(
+                "<p class=\"key\">The line is the way over the keyframes. A full line across it is a loop of \
+                 the graph, a dashed one a loop that was refused. Ellipses show where the robot may have been (3σ).</p>"
+            ),
+        );
+        say(&mut page, format_args!("<h2>Over time</h2>"));
+        let start_s = quality.keyframes.first().map_or(0.0, |k| k.stamp_s);
+        let loops: Vec<f64> = closed
+            .filter_map(|tried| Some(quality.keyframes.get(tried.from)?.stamp_s - start_s))
+            .collect();
+        let chi2 = self.chi2_over_time.iter();
+        let chi2: Vec<[f64; 2]> = chi2.map(|&[at_s, chi2]| [at_s - start_s, chi2]).collect();
+        page.push_str(&chart::over_time("χ² of the graph", &chi2, &loops));
+        let sigma = quality.keyframes.iter();
+        let sigma: Vec<[f64; 2]> = sigma
+            .map(|keyframe| [keyframe.stamp_s - start_s, keyframe.sigma_m()])
+            .collect();
+        page.push_str(&chart::over_time("σ of the position, m", &sigma, &loops));
+        say(
+            &mut page,
+            format_args!(
+                "<p class=\"key\">Seconds since the first scan. Upright lines are the loops that were closed.</p>"
+            ),
+        );
+        say(&mut page, format_args!("<h2>Loops</h2>"));
+        if quality.tried.is_empty() && quality.links.is_empty() {
+            say(&mut page, format_args!("<p>No place was seen twice.</p>"));
+        }
+        loops_table(&mut page, "In the graph at the end", &quality.links);
+        loops_table(&mut page, "Tried on the way", &quality.tried);
+        keyframes_table(&mut page, quality);
+        page.push_str("</html>\n");
+        page
+    }
+}
+
+fn loops_table(page: &mut String, title: &str, loops: &[LinkQuality]) {
+    if loops.is_empty() {
+        return;
+    }
+    say(page, format_args!("<h3>{title}</h3>"));
+    say(
+        page,
+        format_args!(
+            "<div class=\"scroll\"><table><tr><th>from<th>to<th>share<th>fit, m<th>points<th>margin<th>χ²<th>gate\
+             <th class=\"text\">verdict</tr>"
+        ),
+    );
+    for tried in loops.iter().take(MOST_ROWS) {
+        let verdict = match (&tried.reason, tried.accepted) {
+            (_, true) => "closed".to_owned(),
+            (Some(why), false) => format!("refused: {why}"),
+            (None, false) => "refused".to_owned(),
+        };
+        say(
+            page,
+            format_args!(
+                "<tr><td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{:.1}<td class=\"text\">{}</tr>",
+                tried.from,
+                tried.to,
+                number(tried.score, 2),
+                number(tried.rmse_m, 3),
+                tried.inliers,
+                number(tried.margin, 3),
+                number(tried.chi2, 1),
+                tried.gate_chi2,
+                escaped(&verdict)
+            ),
+        );
+    }
+    say(page, format_args!("</table></div>"));
+    more(page, loops.len());
+}
+
+fn keyframes_table(page: &mut String, quality: &Quality) {
+    say(
+        page,
+        format_args!(
+            "<details><summary>All keyframes</summary><div class=\"scroll\"><table>\
+             <tr><th>keyframe<th>time, s<th>x, m<th>y, m<th>heading, °<th>σ position, m<th>σ heading, °</tr>"
+        ),
+    );
+    for (index, keyframe) in quality.keyframes.iter().take(MOST_ROWS).enumerate() {
+        let [x, y, theta] = keyframe.pose;
+        say(
+            page,
+            format_args!(
+                "<tr><td>{index}<td>{:.2}<td>{x:.3}<td>{y:.3}<td>{:.2}<td>{:.3}<td>{:.3}</tr>",
+                keyframe.stamp_s,
+                theta.to_degrees(),
+                keyframe.sigma_m(),
+                keyframe.sigma_deg()
+            ),
+        );
+    }
+    say(page, format_args!("</table></div>"));
+    more(page, quality.keyframes.len());
+    say(page, format_args!("</details>"));
+}
+
+fn more(page: &mut String, rows: usize) {
+    if rows > MOST_ROWS {
+        say(
+            page,
+            format_args!(
+                "<p class=\"key\">{} more stand in quality.json.</p>",
+                rows - MOST_ROWS
+            ),
+        );
+    }
+}
+
+/// A number with so many digits behind the point; a dash where there is none.
+fn number(value: Option<f64>, digits: usize) -> String {
+    value.map_or("–".to_owned(), |value| format!("{value:.digits$}"))
+}
+
+fn say(page: &mut String, text: impl Display) {
+    writeln!(page, "{text}").expect("memory takes text");
+}
+
+/// Text from outside as text.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quality::KeyframeQuality;
+
+    fn quality() -> Quality {
+        let keyframe = |stamp_s: f64, x: f64| KeyframeQuality {
+            stamp_s,
+            pose: [x, 0.0, 0.0],
+            covariance: [[0.01, 0.0, 0.0], [0.0, 0.04, 0.0], [0.0, 0.0, 0.001]],
+        };
+        Quality {
+            keyframes: vec![
+                keyframe(10.0, 0.0),
+                keyframe(11.0, 1.0),
+                keyframe(12.0, 2.0),
+            ],
+            tried: vec![LinkQuality {
+                from: 2,
+                to: 0,
+                score: None,
+                rmse_m: Some(0.25),
+                inliers: 40,
+                margin: None,
+                chi2: None,
+                gate_chi2: 11.34,
+                accepted: false,
+                reason: Some("a < b".to_owned()),
+            }],
+            ..Quality::default()
+        }
+    }
+
+    #[test]
+    fn a_report_stands_alone_and_text_from_outside_stays_text() {
+        let quality = quality();
+        let report = Report {
+            name: "<script>x</script>.mcap",
+            scans: 3,
+            quality: &quality,
+            chi2_over_time: &[[10.0, 0.0], [11.0, 4.0]],
+            map: None,
+            remarks: &["<b>bold</b>".to_owned()],
+        };
+        let page = report.html();
+        assert!(page.contains("3 scans became 3 keyframes on a way of 2.0 m"));
+        assert!(page.contains("&lt;b&gt;bold") && page.contains("refused: a &lt; b"));
+        for word in ["<script", "http:", "https:", "src=", "href=", "NaN", "inf"] {
+            assert!(!page.contains(word), "{word}");
+        }
+        let opened = page.matches("<svg").count();
+        assert_eq!((opened, page.matches("</svg>").count()), (3, 3));
+    }
+
+    #[test]
+    fn a_run_without_anything_has_a_report() {
+        let page = Report {
+            name: "x",
+            scans: 0,
+            quality: &Quality::default(),
+            chi2_over_time: &[],
+            map: None,
+            remarks: &[],
+        }
+        .html();
+        assert!(page.contains("No place was seen twice"));
+        assert!(!page.contains("NaN") && !page.contains("inf"));
+    }
+}

@@ -1,0 +1,51 @@
+//! What a file of recorded messages yields, whatever its format.
+
+use std::io;
+
+use super::wire::Wire;
+
+/// Longer records, and chunks that unpack to more, are no recording of a robot's laser.
+pub const MOST_BYTES: usize = 1 << 28;
+
+/// One message as it was recorded.
+#[derive(Clone, Debug)]
+pub struct Recorded {
+    /// Where it was published.
+    pub topic: String,
+    /// Its type as `package/Name`.
+    pub kind: String,
+    /// How its fields are written.
+    pub wire: Wire,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+    /// When it was recorded, s.
+    pub recorded_s: f64,
+}
+
+/// Why a container ends early.
+#[derive(Debug)]
+pub enum ContainerError {
+    /// The system could not give its bytes.
+    Io(io::Error),
+    /// The file ends in the middle of a record.
+    CutOff(String),
+    /// A record is not what it has to be.
+    Broken(String),
+}
+
+/// Messages in the order of the file.
+pub trait Container {
+    /// The next message; none at the end.
+    ///
+    /// # Errors
+    /// Where the rest cannot be read. Nothing comes after an error.
+    fn next_message(&mut self) -> Result<Option<Recorded>, ContainerError>;
+
+    /// Bytes read so far: where an error is.
+    fn offset(&self) -> u64;
+}
+
+/// `package/Name` of a type: ROS 2 writes `package/msg/Name`.
+pub fn kind_of(name: &str) -> String {
+    name.replace("/msg/", "/")
+}

@@ -1,0 +1,133 @@
+//! The messages that a log is made of, from their bytes.
+
+use ch16_slam2d::scan::LaserScan;
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+
+use super::wire::{Wire, WireError, WireReader};
+
+/// Time and frame of a message.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Header {
+    /// When it was measured, s.
+    pub stamp_s: f64,
+    /// In which frame.
+    pub frame: String,
+}
+
+/// `nav_msgs/Odometry`, as far as a planar robot needs it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OdometryMessage {
+    /// Time, and the frame of the odometry.
+    pub header: Header,
+    /// The body's frame.
+    pub child: String,
+    /// The body in the odometry's frame.
+    pub pose: Isometry3<f64>,
+}
+
+/// One transform of `tf2_msgs/TFMessage`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TransformMessage {
+    /// Time, and the frame above.
+    pub header: Header,
+    /// The frame below.
+    pub child: String,
+    /// The child in its parent.
+    pub transform: Isometry3<f64>,
+}
+
+/// The header of a message.
+pub fn header(fields: &mut WireReader<'_>) -> Result<Header, WireError> {
+    if fields.wire() == Wire::Ros1 {
+        fields.u32("the sequence number")?;
+    }
+    Ok(Header {
+        stamp_s: fields.stamp_s()?,
+        // ROS 1 has names with a slash in front.
+        frame: fields.text("the frame")?.trim_start_matches('/').to_owned(),
+    })
+}
+
+/// `sensor_msgs/LaserScan`; the mounting is not in the message.
+pub fn laser_scan(fields: &mut WireReader<'_>) -> Result<(Header, LaserScan), WireError> {
+    let header = header(fields)?;
+    let first_angle_rad = fields.f32("angle_min")?;
+    fields.f32("angle_max")?;
+    let angle_step_rad = fields.f32("angle_increment")?;
+    let beam_interval_s = fields.f32("time_increment")?;
+    fields.f32("scan_time")?;
+    let range_min_m = fields.f32("range_min")?;
+    let range_max_m = fields.f32("range_max")?;
+    let ranges_m = fields.f32_list("ranges")?;
+    let positive = |value: f64| value.is_finite() && value > 0.0;
+    let scan = LaserScan {
+        first_angle_rad,
+        angle_step_rad,
+        range_min_m: if positive(range_min_m) {
+            range_min_m
+        } else {
+            0.0
+        },
+        range_max_m: if range_max_m > 0.0 {
+            range_max_m
+        } else {
+            f64::INFINITY
+        },
+        beam_interval_s: if positive(beam_interval_s) {
+            beam_interval_s
+        } else {
+            0.0
+        },
+        ranges_m,
+        ..LaserScan::default()
+    };
+    Ok((header, scan))
+}
+
+/// `nav_msgs/Odometry`.
+pub fn odometry(fields: &mut WireReader<'_>) -> Result<OdometryMessage, WireError> {
+    let header = header(fields)?;
+    let child = fields.text("child_frame_id")?;
+    Ok(OdometryMessage {
+        header,
+        child: child.trim_start_matches('/').to_owned(),
+        pose: pose(fields)?,
+    })
+}
+
+/// `tf2_msgs/TFMessage`.
+pub fn transforms(fields: &mut WireReader<'_>) -> Result<Vec<TransformMessage>, WireError> {
+    // Header, name and seven numbers.
+    let count = fields.count("transforms", 72)?;
+    let mut all = Vec::with_capacity(count);
+    for _ in 0..count {
+        let header = header(fields)?;
+        let child = fields.text("child_frame_id")?;
+        all.push(TransformMessage {
+            header,
+            child: child.trim_start_matches('/').to_owned(),
+            transform: pose(fields)?,
+        });
+    }
+    Ok(all)
+}
+
+/// Position and quaternion.
+fn pose(fields: &mut WireReader<'_>) -> Result<Isometry3<f64>, WireError> {
+    let mut numbers = [0.0; 7];
+    for (slot, name) in numbers
+        .iter_mut()
+        .zip(["x", "y", "z", "qx", "qy", "qz", "qw"])
+    {
+        *slot = fields.f64(name)?;
+    }
+    let [x, y, z, qx, qy, qz, qw] = numbers;
+    let quaternion = Quaternion::new(qw, qx, qy, qz);
+    let rotation = if quaternion.norm_squared() > 1e-12 {
+        UnitQuaternion::new_normalize(quaternion)
+    } else {
+        // Zeros: the rotation was never set.
+        UnitQuaternion::identity()
+    };
+    Ok(Isometry3::from_parts(Translation3::new(x, y, z), rotation))
+}

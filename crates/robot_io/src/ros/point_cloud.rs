@@ -1,0 +1,173 @@
+//! A cloud of one ring as a scan.
+//!
+//! The points of a planar laser stand at multiples of one step. The step is the median one between
+//! points next to each other, made exact by the first and the last of them; each point goes to the
+//! beam nearest to it, the nearer one where two do.
+
+use core::f64::consts::TAU;
+
+use ch16_slam2d::scan::LaserScan;
+use pr_geom::math;
+
+use super::messages::{Header, header};
+use super::wire::{WireError, WireReader};
+
+/// More beams than any planar laser has.
+const MOST_BEAMS: f64 = 100_000.0;
+
+/// Where a number stands in each point.
+#[derive(Clone, Copy, Debug)]
+struct Field {
+    offset: usize,
+    kind: u8,
+}
+
+impl Field {
+    /// The number; none for kinds that no coordinate has.
+    fn of(self, point: &[u8], is_big: bool) -> Option<f64> {
+        let bytes = |count: usize| {
+            let mut bytes = point
+                .get(self.offset..self.offset.checked_add(count)?)?
+                .to_vec();
+            if is_big {
+                bytes.reverse();
+            }
+            Some(bytes)
+        };
+        match self.kind {
+            1 | 2 => Some(f64::from(*point.get(self.offset)?)),
+            3 | 4 => Some(f64::from(u16::from_le_bytes(bytes(2)?.try_into().ok()?))),
+            5 | 6 => Some(f64::from(u32::from_le_bytes(bytes(4)?.try_into().ok()?))),
+            7 => Some(f64::from(f32::from_le_bytes(bytes(4)?.try_into().ok()?))),
+            8 => Some(f64::from_le_bytes(bytes(8)?.try_into().ok()?)),
+            _ => None,
+        }
+    }
+}
+
+/// `sensor_msgs/PointCloud2` as a scan; the mounting is not in the message.
+///
+/// # Errors
+/// Where the message ends early, or the cloud is not one ring.
+pub fn point_cloud(fields: &mut WireReader<'_>) -> Result<(Header, LaserScan), String> {
+    let (header, points) = ring(fields)?;
+    let scan = scan_of(points).ok_or("a cloud has to have two points at least")?;
+    Ok((header, scan))
+}
+
+/// Bearing (rad) and range (m) of each point.
+fn ring(fields: &mut WireReader<'_>) -> Result<(Header, Vec<(f64, f64)>), String> {
+    let told = |error: WireError| error.to_string();
+    let header = header(fields).map_err(told)?;
+    let height = fields.u32("height").map_err(told)?;
+    fields.u32("width").map_err(told)?;
+    let count = fields.count("fields", 10).map_err(told)?;
+    let (mut x, mut y, mut ring) = (None, None, None);
+    for _ in 0..count {
+        let name = fields.text("a field's name").map_err(told)?;
+        let field = Field {
+            offset: fields.u32("a field's offset").map_err(told)? as usize,
+            kind: fields.u8("a field's type").map_err(told)?,
+        };
+        fields.u32("a field's count").map_err(told)?;
+        match name.as_str() {
+            "x" => x = Some(field),
+            "y" => y = Some(field),
+            "ring" => ring = Some(field),
+            _ => {}
+        }
+    }
+    let is_big = fields.u8("is_bigendian").map_err(told)? != 0;
+    let step = fields.u32("point_step").map_err(told)? as usize;
+    fields.u32("row_step").map_err(told)?;
+    let data = fields.bytes("the points").map_err(told)?;
+    let (Some(x), Some(y)) = (x, y) else {
+        return Err("a cloud has to have fields x and y".to_owned());
+    };
+    if step == 0 {
+        return Err("a point has to have bytes, and has none".to_owned());
+    }
+    if height > 1 {
+        return Err(format!(
+            "the cloud has {height} rows; only clouds of one ring are read"
+        ));
+    }
+    let mut first_ring = None;
+    let mut points = Vec::with_capacity(data.len() / step);
+    for point in data.chunks_exact(step) {
+        if let Some(this) = ring.and_then(|ring| ring.of(point, is_big))
+            && *first_ring.get_or_insert(this) != this
+        {
+            return Err("the cloud has several rings; only clouds of one ring are read".to_owned());
+        }
+        let number = |field: Field| {
+            let value = field.of(point, is_big);
+            value.ok_or("x and y have to be numbers inside of a point")
+        };
+        let (x, y) = (number(x)?, number(y)?);
+        let range_m = math::norm2(x, y);
+        if range_m.is_finite() && range_m > 0.0 {
+            points.push((math::atan2(y, x), range_m));
+        }
+    }
+    Ok((header, points))
+}
+
+/// The scan whose beams pass through these bearings and ranges.
+fn scan_of(mut points: Vec<(f64, f64)>) -> Option<LaserScan> {
+    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let (first, last) = (points.first()?.0, points.last()?.0);
+    let mut steps: Vec<f64> = points.windows(2).map(|two| two[1].0 - two[0].0).collect();
+    steps.retain(|&step| step > TAU / MOST_BEAMS);
+    steps.sort_by(f64::total_cmp);
+    let median = *steps.get(steps.len() / 2)?;
+    let count = ((last - first) / median).round();
+    let step = (last - first) / count;
+    let mut ranges_m = vec![0.0; count as usize + 1];
+    for (bearing, range_m) in points {
+        let slot = &mut ranges_m[((bearing - first) / step).round() as usize];
+        if *slot == 0.0 {
+            *slot = range_m;
+        } else {
+            *slot = math::min(*slot, range_m);
+        }
+    }
+    Some(LaserScan {
+        first_angle_rad: first,
+        angle_step_rad: step,
+        ranges_m,
+        ..LaserScan::default()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn beams_that_saw_nothing_leave_gaps_and_not_a_wider_step() {
+        let bearing = |beam: usize| -2.0 + 0.01 * beam as f64;
+        let seen = (0..300).filter(|beam| beam % 7 != 3 && !(100..130).contains(beam));
+        // In another order than the beams': clouds come as they come.
+        let points: Vec<(f64, f64)> = seen
+            .rev()
+            .map(|beam| (bearing(beam), 1.0 + beam as f64))
+            .collect();
+        let count = points.len();
+        let scan = scan_of(points).unwrap();
+        assert_eq!(scan.ranges_m.len(), 300);
+        let seen = scan.ranges_m.iter().filter(|&&range_m| range_m > 0.0);
+        assert_eq!(seen.count(), count);
+        for (beam, &range_m) in scan.ranges_m.iter().enumerate() {
+            assert!(range_m == 0.0 || range_m == 1.0 + beam as f64);
+            assert!((scan.bearing_rad(beam) - bearing(beam)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn clouds_without_two_bearings_are_no_scan() {
+        for points in [vec![], vec![(0.1, 1.0)], vec![(0.1, 1.0), (0.1, 2.0)]] {
+            assert_eq!(scan_of(points), None);
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! Recordings that other people's writers made of the simulator's lap, see `recordings/make.py`.
+
+use std::collections::BTreeSet;
+
+use crate::log::{LogError, LogFormat, LogFrame, LogNotes, LogOptions};
+
+const FIXTURES: [(&str, &[u8]); 8] = [
+    ("plain.mcap", include_bytes!("../../recordings/plain.mcap")),
+    ("lz4.mcap", include_bytes!("../../recordings/lz4.mcap")),
+    ("zstd.mcap", include_bytes!("../../recordings/zstd.mcap")),
+    ("tf.mcap", include_bytes!("../../recordings/tf.mcap")),
+    ("cloud.mcap", include_bytes!("../../recordings/cloud.mcap")),
+    ("plain.bag", include_bytes!("../../recordings/plain.bag")),
+    ("lz4.bag", include_bytes!("../../recordings/lz4.bag")),
+    ("bz2.bag", include_bytes!("../../recordings/bz2.bag")),
+];
+
+/// The frames that the recordings were made of.
+const FRAMES: &[u8] = include_bytes!("../../recordings/frames.jsonl");
+
+fn fixture(name: &str) -> &'static [u8] {
+    FIXTURES.iter().find(|(known, _)| *known == name).unwrap().1
+}
+
+fn read_with(
+    bytes: &[u8],
+    name: &str,
+    options: &LogOptions,
+) -> Result<(Vec<LogFrame>, LogNotes), LogError> {
+    let mut reader = LogFormat::open(bytes, name, options)?;
+    let mut frames = Vec::new();
+    while let Some(frame) = reader.next_frame()? {
+        frames.push(frame);
+    }
+    Ok((frames, reader.notes().clone()))
+}
+
+fn read(bytes: &[u8], name: &str) -> Result<(Vec<LogFrame>, LogNotes), LogError> {
+    read_with(bytes, name, &LogOptions::default())
+}
+
+fn simulated() -> Vec<LogFrame> {
+    read(FRAMES, "frames.jsonl").unwrap().0
+}
+
+#[track_caller]
+fn assert_near(value: f64, expected: f64, within: f64, what: &str) {
+    assert!(
+        (value - expected).abs() <= within,
+        "{what}: {value} is not {expected}"
+    );
+}
+
+#[test]
+fn every_recording_holds_the_frames_of_the_simulator() {
+    let simulated = simulated();
+    assert_eq!(simulated.len(), 24);
+    for (name, bytes) in FIXTURES {
+        let (frames, notes) = read(bytes, name).unwrap();
+        assert_eq!((notes.broken, &notes.half_written), (0, &None), "{name}");
+        assert!(notes.warnings.is_empty(), "{name}: {:?}", notes.warnings);
+        assert_eq!(notes.bytes, bytes.len() as u64, "{name}");
+        assert_eq!(frames.len(), simulated.len(), "{name}");
+        for (frame, expected) in frames.iter().zip(&simulated) {
+            // 1e-6 s: a time since 1970 in f64 is exact to 0.2 µs.
+            assert_near(frame.stamp_s, expected.stamp_s, 1e-6, name);
+            let (odometry, wheels) = (frame.odometry.unwrap(), expected.odometry.unwrap());
+            // 1e-4: the wheels move 0.1 m in the 40 ms around a scan, in which 0.2 µs are lost.
+            assert_near(odometry.x(), wheels.x(), 1e-4, name);
+            assert_near(odometry.y(), wheels.y(), 1e-4, name);
+            assert_near(odometry.between(&wheels).theta(), 0.0, 1e-4, name);
+            let mount = frame.scan.body_from_sensor;
+            assert_eq!(mount.to_array(), [0.1, 0.0, 0.0], "{name}");
+            if name != "cloud.mcap" {
+                assert_same_beams(frame, expected, name);
+            }
+        }
+    }
+}
+
+/// Numbers of a scan have four bytes: 1e-6 of angles up to π and of ranges up to 6 m.
+fn assert_same_beams(frame: &LogFrame, expected: &LogFrame, name: &str) {
+    let (scan, other) = (&frame.scan, &expected.scan);
+    assert_near(scan.first_angle_rad, other.first_angle_rad, 1e-6, name);
+    assert_near(scan.angle_step_rad, other.angle_step_rad, 1e-6, name);
+    assert_near(scan.range_max_m, other.range_max_m, 1e-6, name);
+    assert_eq!(scan.ranges_m.len(), other.ranges_m.len());
+    for (&range_m, &other_m) in scan.ranges_m.iter().zip(&other.ranges_m) {
+        assert_near(range_m, other_m, 1e-6, name);
+    }
+}
+
+#[test]
+fn a_cloud_of_one_ring_has_the_points_of_its_scan() {
+    let (clouds, _) = read(fixture("cloud.mcap"), "cloud.mcap").unwrap();
+    for (cloud, expected) in clouds.iter().zip(&simulated()) {
+        let points = |frame: &LogFrame| -> Vec<(f64, f64)> {
+            let scan = &frame.scan;
+            let beams = scan.ranges_m.iter().enumerate();
+            let seen = beams.filter(|&(_, &range_m)| scan.is_return(range_m));
+            seen.map(|(beam, &range_m)| (scan.bearing_rad(beam), range_m))
+                .collect()
+        };
+        let (found, told) = (points(cloud), points(expected));
+        assert_eq!(found.len(), told.len());
+        for (&(bearing, range_m), &(other, other_m)) in found.iter().zip(&told) {
+            // Coordinates have four bytes.
+            assert_near(bearing, other, 1e-5, "bearing");
+            assert_near(range_m, other_m, 1e-5, "range");
+        }
+    }
+}
+
+#[test]
+fn what_was_chosen_and_what_there_is_are_told() {
+    let (_, notes) = read(fixture("tf.mcap"), "tf.mcap").unwrap();
+    assert_eq!(notes.records["/scan sensor_msgs/LaserScan"], 24);
+    let about = notes.about.join("; ");
+    assert_eq!(
+        about,
+        "scans are those of /scan, in frame laser; \
+         odometry is that of /tf, from odom to base_link; \
+         the laser sits at 0.100 m, 0.000 m, 0.00° on base_link; \
+         frame base_link hangs on odom; frame laser hangs on base_link"
+    );
+}
+
+#[test]
+fn topics_and_frames_can_be_chosen() {
+    let bytes = fixture("plain.mcap");
+    let other = LogOptions {
+        scan_topic: Some("/rear".to_owned()),
+        ..LogOptions::default()
+    };
+    let error = read_with(bytes, "x.mcap", &other).unwrap_err().to_string();
+    assert!(
+        error.contains("x.mcap holds no scan that can be used: /rear is not one of /odom"),
+        "{error}"
+    );
+    let elsewhere = LogOptions {
+        body_frame: Some("chassis".to_owned()),
+        ..LogOptions::default()
+    };
+    let (frames, notes) = read_with(bytes, "x.mcap", &elsewhere).unwrap();
+    assert_eq!(frames.len(), 24);
+    assert_eq!(frames[0].scan.body_from_sensor.to_array(), [0.0; 3]);
+    assert!(
+        notes.sentences("x.mcap")[0].contains("no transform leads from chassis to laser"),
+        "{:?}",
+        notes.warnings
+    );
+    let wheels = LogOptions {
+        odometry_topic: Some("/tf".to_owned()),
+        ..LogOptions::default()
+    };
+    let (frames, _) = read_with(bytes, "x.mcap", &wheels).unwrap();
+    assert!(frames.iter().all(|frame| frame.odometry.is_none()));
+}
+
+#[test]
+fn a_recording_that_is_cut_off_gives_what_is_there_and_says_where_it_ends() {
+    for (name, bytes) in FIXTURES {
+        let mut counts = BTreeSet::new();
+        for part in 1..40 {
+            let cut = &bytes[..bytes.len() * part / 40];
+            match read(cut, name) {
+                Ok((frames, notes)) => {
+                    counts.insert(frames.len());
+                    let said = notes.sentences(name).join(" ");
+                    // A bag that ends between two records looks whole.
+                    let is_bag = name.ends_with(".bag");
+                    assert!(said.contains("cut off at byte") || is_bag, "{name}: {said}");
+                }
+                Err(error) => {
+                    counts.insert(0);
+                    let said = error.to_string();
+                    assert!(said.starts_with(name) && !said.contains('\n'), "{said}");
+                    assert!(said.contains("expected"), "{said}");
+                }
+            }
+        }
+        assert!(counts.len() > 1, "{name}: {counts:?}");
+    }
+}
+
+#[test]
+fn a_byte_that_is_wrong_never_ends_in_a_panic() {
+    for (name, bytes) in FIXTURES {
+        let mut refused = 0;
+        for spot in (0..bytes.len()).step_by(bytes.len() / 150) {
+            let mut wrong = bytes.to_vec();
+            wrong[spot] ^= 0x5a;
+            match read(&wrong, name) {
+                Ok((_, notes)) => refused += notes.broken,
+                Err(error) => {
+                    refused += 1;
+                    let said = error.to_string();
+                    assert!(said.starts_with(name) && !said.contains('\n'), "{said}");
+                }
+            }
+        }
+        assert!(refused > 0, "{name}");
+    }
+}

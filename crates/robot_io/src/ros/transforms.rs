@@ -1,0 +1,161 @@
+//! Which frame hangs on which, and where a laser sits on the body.
+
+use std::collections::BTreeMap;
+
+use ch16_slam2d::scan::LaserScan;
+use nalgebra::Isometry3;
+use pr_geom::{SE2, math};
+
+use super::messages::TransformMessage;
+
+/// Longer chains of frames go in a circle.
+const LONGEST_CHAIN: usize = 64;
+/// More frames than any robot has: a recording of garbage has no end of names.
+const MOST_FRAMES: usize = 10_000;
+/// A laser whose axis leans farther than this does not scan the plane, as the cosine of 30°.
+const LEAST_UPRIGHT: f64 = 0.866;
+
+/// Where a planar laser sits, and whether its axis points up or down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mount {
+    /// The sensor on the body, in the plane.
+    pub body_from_sensor: SE2,
+    /// Whether its beams turn clockwise, seen from above.
+    pub is_upside_down: bool,
+}
+
+impl Mount {
+    /// The mounting in the plane.
+    ///
+    /// # Errors
+    /// Where the laser leans too far to scan the plane.
+    pub fn of(body_from_sensor: &Isometry3<f64>) -> Result<Self, String> {
+        let turn = body_from_sensor.rotation.to_rotation_matrix();
+        let turn = turn.matrix();
+        let upright = turn[(2, 2)];
+        if upright.abs() < LEAST_UPRIGHT {
+            return Err("the laser leans by more than 30° and does not scan the plane".to_owned());
+        }
+        let offset = &body_from_sensor.translation;
+        Ok(Self {
+            body_from_sensor: SE2::new(offset.x, offset.y, math::atan2(turn[(1, 0)], turn[(0, 0)])),
+            is_upside_down: upright < 0.0,
+        })
+    }
+
+    /// Puts a scan where the laser sits.
+    pub fn place(&self, scan: &mut LaserScan) {
+        scan.body_from_sensor = self.body_from_sensor;
+        if self.is_upside_down {
+            scan.first_angle_rad = -scan.first_angle_rad;
+            scan.angle_step_rad = -scan.angle_step_rad;
+        }
+    }
+}
+
+/// The newest transform of each frame in the frame above it.
+#[derive(Clone, Debug, Default)]
+pub struct Transforms {
+    above: BTreeMap<String, (String, Isometry3<f64>)>,
+}
+
+impl Transforms {
+    /// Takes a transform.
+    pub fn take(&mut self, message: &TransformMessage) {
+        if self.above.len() < MOST_FRAMES || self.above.contains_key(&message.child) {
+            let edge = (message.header.frame.clone(), message.transform);
+            self.above.insert(message.child.clone(), edge);
+        }
+    }
+
+    /// Where `sensor` is on `body`; none where no chain of transforms leads from one to the other.
+    pub fn body_from_sensor(&self, body: &str, sensor: &str) -> Option<Isometry3<f64>> {
+        let mut chain = Isometry3::identity();
+        let mut frame = sensor;
+        for _ in 0..LONGEST_CHAIN {
+            if frame == body {
+                return Some(chain);
+            }
+            let (parent, transform) = self.above.get(frame)?;
+            chain = transform * chain;
+            frame = parent;
+        }
+        None
+    }
+
+    /// Every frame with the frame above it, in the order of names.
+    pub fn edges(&self) -> impl Iterator<Item = (&str, &str)> {
+        let edges = self.above.iter();
+        edges.map(|(child, (parent, _))| (parent.as_str(), child.as_str()))
+    }
+}
+
+/// A transform in the plane: position and yaw.
+pub fn planar(transform: &Isometry3<f64>) -> SE2 {
+    let turn = transform.rotation.to_rotation_matrix();
+    let turn = turn.matrix();
+    let offset = &transform.translation;
+    SE2::new(offset.x, offset.y, math::atan2(turn[(1, 0)], turn[(0, 0)]))
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::{FRAC_PI_2, PI};
+
+    use nalgebra::{Quaternion, Translation3, UnitQuaternion};
+
+    use super::*;
+    use crate::ros::messages::Header;
+
+    fn message(parent: &str, child: &str, x: f64, q: [f64; 4]) -> TransformMessage {
+        let [qx, qy, qz, qw] = q;
+        TransformMessage {
+            header: Header {
+                stamp_s: 0.0,
+                frame: parent.to_owned(),
+            },
+            child: child.to_owned(),
+            transform: Isometry3::from_parts(
+                Translation3::new(x, 0.0, 0.3),
+                UnitQuaternion::new_normalize(Quaternion::new(qw, qx, qy, qz)),
+            ),
+        }
+    }
+
+    #[test]
+    fn a_laser_hangs_on_the_body_by_a_chain_and_may_hang_upside_down() {
+        let mut frames = Transforms::default();
+        let quarter = [0.0, 0.0, FRAC_PI_2.sqrt(), FRAC_PI_2.sqrt()];
+        frames.take(&message("base", "mast", 1.0, quarter));
+        frames.take(&message("mast", "laser", 0.5, [1.0, 0.0, 0.0, 0.0]));
+        let chain = frames.body_from_sensor("base", "laser").unwrap();
+        let mount = Mount::of(&chain).unwrap();
+        let [x, y, theta] = mount.body_from_sensor.to_array();
+        // 1e-12: a dozen roundings of numbers about 1.
+        assert!((x - 1.0).abs() < 1e-12 && (y - 0.5).abs() < 1e-12);
+        assert!((theta - FRAC_PI_2).abs() < 1e-12 && mount.is_upside_down);
+        let mut scan = LaserScan {
+            first_angle_rad: -1.0,
+            angle_step_rad: 0.5,
+            ..LaserScan::default()
+        };
+        mount.place(&mut scan);
+        assert_eq!((scan.first_angle_rad, scan.angle_step_rad), (1.0, -0.5));
+        assert_eq!(frames.body_from_sensor("laser", "base"), None);
+    }
+
+    #[test]
+    fn a_circle_of_frames_ends() {
+        let mut frames = Transforms::default();
+        frames.take(&message("a", "b", 1.0, [0.0, 0.0, 0.0, 1.0]));
+        frames.take(&message("b", "a", 1.0, [0.0, 0.0, 0.0, 1.0]));
+        assert_eq!(frames.body_from_sensor("base", "a"), None);
+    }
+
+    #[test]
+    fn a_laser_that_looks_at_the_floor_is_refused() {
+        let forward = UnitQuaternion::from_euler_angles(0.0, PI / 4.0, 0.0);
+        let leaning = Isometry3::from_parts(Translation3::identity(), forward);
+        assert!(Mount::of(&leaning).unwrap_err().contains("leans"));
+    }
+}

@@ -1,0 +1,215 @@
+//! `slam2d convert`: one format into another, by the names of the files.
+
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use robot_io::carmen::write_carmen;
+use robot_io::graph_file::{GraphError, GraphFile};
+use robot_io::json_log::FrameLine;
+use robot_io::trajectory::{StampedPose, TextError, Trajectory};
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::log_file::{FileError, TopicArgs, open, open_log};
+use crate::optimize::write_whole;
+
+/// Write a log, a pose graph or a trajectory in another format; the ends of the names say which.
+///
+/// Logs (.clf .log .mcap .bag .jsonl) become .clf, .jsonl, or .tum with the odometry. Pose graphs
+/// (.g2o .graph .toro .json) become .g2o, .graph, .toro or .json. Trajectories (.tum) become .json.
+#[derive(Args, Clone, Debug)]
+pub struct ConvertArgs {
+    /// What is read.
+    input: PathBuf,
+    /// What is written.
+    output: PathBuf,
+    #[command(flatten)]
+    topics: TopicArgs,
+}
+
+/// Why nothing was converted.
+#[derive(Debug, Error)]
+pub enum ConvertError {
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The graph cannot be read.
+    #[error(transparent)]
+    Graph(#[from] GraphError),
+    /// The trajectory cannot be read.
+    #[error(transparent)]
+    Text(#[from] TextError),
+    /// One does not become the other.
+    #[error("{input} cannot become {output}; {advice}")]
+    NoSense {
+        /// What is read.
+        input: String,
+        /// What was to be written.
+        output: String,
+        /// What it can become.
+        advice: &'static str,
+    },
+    /// The log has no odometry.
+    #[error("{0} has no odometry, so there is no trajectory to write")]
+    NoOdometry(String),
+}
+
+/// What stands in a file, by the end of its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Log,
+    Graph,
+    Trajectory,
+    Other,
+}
+
+impl Kind {
+    fn of(extension: &str) -> Self {
+        match extension {
+            "clf" | "log" | "mcap" | "bag" | "jsonl" => Self::Log,
+            "g2o" | "graph" | "toro" | "json" => Self::Graph,
+            "tum" => Self::Trajectory,
+            _ => Self::Other,
+        }
+    }
+
+    fn advice(self) -> &'static str {
+        match self {
+            Self::Log => "a log becomes .clf, .jsonl, or .tum with its odometry",
+            Self::Graph => "a pose graph becomes .g2o, .graph, .toro or .json",
+            Self::Trajectory => "a trajectory becomes .json",
+            Self::Other => {
+                "name a log (.clf .log .mcap .bag .jsonl), a pose graph (.g2o .graph .toro .json) or a trajectory (.tum)"
+            }
+        }
+    }
+}
+
+/// A pose of a trajectory in JSON.
+#[derive(Serialize)]
+struct PoseJson {
+    stamp_s: f64,
+    pose: [f64; 3],
+}
+
+/// Converts.
+///
+/// # Errors
+/// Where a file cannot be used, or one does not become the other.
+pub fn run(args: &ConvertArgs) -> Result<(), ConvertError> {
+    let [from, to] = [&args.input, &args.output].map(|path| extension(path));
+    let kind = Kind::of(&from);
+    match (kind, to.as_str()) {
+        (Kind::Log, "clf" | "log" | "jsonl" | "tum") => convert_log(args, &to),
+        (Kind::Graph, "g2o" | "graph" | "toro" | "json") => convert_graph(args, &to),
+        (Kind::Trajectory, "json") => convert_trajectory(args),
+        _ => Err(ConvertError::NoSense {
+            input: args.input.display().to_string(),
+            output: args.output.display().to_string(),
+            advice: kind.advice(),
+        }),
+    }
+}
+
+fn extension(path: &Path) -> String {
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    extension.to_ascii_lowercase()
+}
+
+fn told(path: &Path) -> impl Fn(io::Error) -> FileError {
+    let path = path.to_owned();
+    move |source| FileError::Io {
+        path: path.clone(),
+        source,
+    }
+}
+
+fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
+    let (mut reader, mut progress) = open_log(&args.input, &args.topics)?;
+    let told = told(&args.output);
+    // A log that cannot be read leaves the output as it was.
+    let mut next = reader.next_frame().map_err(FileError::from)?;
+    let mut file: Option<BufWriter<fs::File>> = None;
+    let mut odometry: Vec<StampedPose> = Vec::new();
+    let mut count = 0;
+    while let Some(frame) = next {
+        count += 1;
+        progress.tell(count);
+        if to == "tum" {
+            let is_later = odometry
+                .last()
+                .is_none_or(|last| frame.stamp_s > last.stamp_s);
+            if let (Some(pose), true) = (frame.odometry, is_later) {
+                odometry.push(StampedPose {
+                    stamp_s: frame.stamp_s,
+                    pose,
+                });
+            }
+        } else {
+            let file = match &mut file {
+                Some(file) => file,
+                none => none.insert(BufWriter::new(
+                    fs::File::create(&args.output).map_err(&told)?,
+                )),
+            };
+            match to {
+                "jsonl" => FrameLine::from(&frame).write(file).map_err(&told)?,
+                _ => write_carmen(&frame, file).map_err(&told)?,
+            }
+        }
+        next = reader.next_frame().map_err(FileError::from)?;
+    }
+    progress.end();
+    for sentence in reader.notes().sentences(&args.input.display().to_string()) {
+        eprintln!("slam2d: {sentence}");
+    }
+    if let Some(mut file) = file {
+        file.flush().map_err(&told)?;
+    }
+    if to == "tum" {
+        if odometry.is_empty() {
+            return Err(ConvertError::NoOdometry(args.input.display().to_string()));
+        }
+        let mut text = Vec::new();
+        let written = Trajectory::new(odometry).write_tum(&mut text);
+        written
+            .and_then(|()| write_whole(&args.output, &text))
+            .map_err(&told)?;
+    }
+    Ok(())
+}
+
+fn convert_graph(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
+    let bytes = fs::read(&args.input).map_err(told(&args.input))?;
+    let graph = GraphFile::read(&bytes, &args.input.display().to_string())?;
+    let text = match to {
+        "g2o" => graph.to_g2o(),
+        "json" => json(&graph),
+        _ => graph.to_toro(),
+    };
+    write_whole(&args.output, text.as_bytes()).map_err(told(&args.output))?;
+    Ok(())
+}
+
+fn convert_trajectory(args: &ConvertArgs) -> Result<(), ConvertError> {
+    let name = args.input.display().to_string();
+    let trajectory = Trajectory::read_tum(open(&args.input)?, &name)?;
+    let poses: Vec<PoseJson> = trajectory
+        .poses()
+        .iter()
+        .map(|stamped| PoseJson {
+            stamp_s: stamped.stamp_s,
+            pose: stamped.pose.to_array(),
+        })
+        .collect();
+    write_whole(&args.output, json(&poses).as_bytes()).map_err(told(&args.output))?;
+    Ok(())
+}
+
+fn json(value: &impl Serialize) -> String {
+    let mut text = serde_json::to_string(value).expect("plain numbers and lists");
+    text.push('\n');
+    text
+}

@@ -1,0 +1,154 @@
+//! `slam2d map`: the map of a run, for Nav2's map_server.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use robot_io::json_log::FrameLine;
+use robot_io::log::LogError;
+use robot_io::map_image::{MapError, MapMode, map_of};
+use thiserror::Error;
+
+use crate::log_file::{FileError, open};
+use crate::numbers;
+use crate::optimize::write_whole;
+use crate::output::say;
+use crate::run_output::KEYFRAMES;
+
+/// Write the map of a run as an image with a YAML file beside it, for Nav2's map_server.
+#[derive(Args, Clone, Debug)]
+pub struct MapArgs {
+    /// The folder that slam2d run -o DIR wrote.
+    run: PathBuf,
+    /// The YAML file; the image stands beside it.
+    #[arg(short = 'o', long, value_name = "MAP.yaml")]
+    output: PathBuf,
+    /// Side of a cell, m.
+    #[arg(long, default_value = "0.05", value_parser = numbers::cell_m, allow_hyphen_values = true)]
+    resolution: f64,
+    /// What a pixel says: occupied, free or unknown, or the probability.
+    #[arg(long, value_enum, default_value = "trinary")]
+    mode: ModeArg,
+    /// The format of the image; scale needs png.
+    #[arg(long, value_enum)]
+    image: Option<ImageArg>,
+}
+
+/// [`MapMode`] by its names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ModeArg {
+    /// Black, white and grey.
+    Trinary,
+    /// Shades; unknown is transparent.
+    Scale,
+}
+
+/// Formats of the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ImageArg {
+    /// Portable grey map.
+    Pgm,
+    /// Portable network graphics.
+    Png,
+}
+
+/// Why there is no map.
+#[derive(Debug, Error)]
+pub enum MapFailure {
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The folder is not one of a run.
+    #[error("{} has no {KEYFRAMES}; give a folder that slam2d run -o DIR wrote", .0.display())]
+    NoRun(PathBuf),
+    /// The name of the output.
+    #[error("{} has to end in .yaml", .0.display())]
+    NotYaml(PathBuf),
+    /// PGM cannot be transparent.
+    #[error(
+        "--mode scale marks unknown cells by transparency, which PGM does not have; take --image png"
+    )]
+    ScaleNeedsPng,
+    /// The scans make no map.
+    #[error("{}: {source}", path.display())]
+    Map {
+        /// The folder.
+        path: PathBuf,
+        /// Why not.
+        source: MapError,
+    },
+}
+
+/// Writes the map and says what is in it.
+///
+/// # Errors
+/// Where a file cannot be used, or the map is too large.
+pub fn run(args: &MapArgs) -> Result<(), MapFailure> {
+    let extension = args.output.extension().unwrap_or_default();
+    if extension != "yaml" && extension != "yml" {
+        return Err(MapFailure::NotYaml(args.output.clone()));
+    }
+    let (mode, image) = match (args.mode, args.image) {
+        (ModeArg::Scale, Some(ImageArg::Pgm)) => return Err(MapFailure::ScaleNeedsPng),
+        (ModeArg::Scale, _) => (MapMode::Scale, ImageArg::Png),
+        (ModeArg::Trinary, image) => (MapMode::Trinary, image.unwrap_or(ImageArg::Pgm)),
+    };
+    let lines = keyframes(&args.run)?;
+    let map = map_of(&lines, args.resolution).map_err(|source| MapFailure::Map {
+        path: args.run.clone(),
+        source,
+    })?;
+    let picture = args.output.with_extension(match image {
+        ImageArg::Pgm => "pgm",
+        ImageArg::Png => "png",
+    });
+    let mut bytes = Vec::new();
+    let written = match image {
+        ImageArg::Pgm => map.write_pgm(&mut bytes),
+        ImageArg::Png => map.write_png(&mut bytes, mode),
+    };
+    let save = |path: &Path, bytes: &[u8]| {
+        write_whole(path, bytes).map_err(|source| FileError::Io {
+            path: path.to_owned(),
+            source,
+        })
+    };
+    written.map_err(|source| FileError::Io {
+        path: picture.clone(),
+        source,
+    })?;
+    save(&picture, &bytes)?;
+    let name = picture.file_name().unwrap_or_default().to_string_lossy();
+    save(&args.output, map.yaml(&name, mode).as_bytes())?;
+    let [occupied, free, unknown] = map.counts();
+    say!(
+        "{} × {} cells of {} m: {occupied} occupied, {free} free, {unknown} unknown",
+        map.width,
+        map.height,
+        map.cell_m
+    );
+    Ok(())
+}
+
+/// The keyframes of a run with their poses.
+fn keyframes(folder: &Path) -> Result<Vec<FrameLine>, MapFailure> {
+    let path = folder.join(KEYFRAMES);
+    if !fs::metadata(&path).is_ok_and(|about| about.is_file()) {
+        return Err(MapFailure::NoRun(folder.to_owned()));
+    }
+    let mut lines = Vec::new();
+    let name = path.display().to_string();
+    for (number, line) in io::BufRead::lines(open(&path)?).enumerate() {
+        let line = line.map_err(|source| FileError::Io {
+            path: path.clone(),
+            source,
+        })?;
+        let line = FrameLine::with_pose(&line).map_err(|problem| LogError::NoScans {
+            name: name.clone(),
+            detail: format!("line {}: {problem}", number + 1),
+        });
+        lines.push(line.map_err(FileError::from)?);
+    }
+    Ok(lines)
+}

@@ -1,0 +1,68 @@
+//! What `slam2d run -o DIR` writes for other tools and for the eye.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `graph.g2o` | the pose graph |
+//! | `keyframes.jsonl` | the keyframes' scans with their poses: what `slam2d map` takes |
+//! | `report.html` | keyframes, loops and doubts with pictures |
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use robot_io::graph_file::GraphFile;
+use robot_io::map_image::map_of;
+use robot_io::quality::Quality;
+use robot_io::recorder::RunRecorder;
+use robot_io::report::Report;
+use robot_io::run::LogRun;
+
+use crate::log_file::FileError;
+use crate::optimize::write_whole;
+
+/// The file of keyframes.
+pub const KEYFRAMES: &str = "keyframes.jsonl";
+
+/// Side of the report's cells, m: finer walls than its picture shows cost space.
+const REPORT_CELL_M: f64 = 0.1;
+
+/// Writes all of them into a folder that is there.
+///
+/// # Errors
+/// What the system says, with the name.
+pub fn write_folder(
+    folder: &Path,
+    log: &str,
+    run: &LogRun,
+    quality: &Quality,
+    recorder: &RunRecorder,
+    remarks: &[String],
+) -> Result<(), FileError> {
+    let save = |name: &str, write: &dyn Fn(&mut Vec<u8>) -> io::Result<()>| {
+        let path = folder.join(name);
+        let mut bytes = Vec::new();
+        let written = write(&mut bytes).and_then(|()| write_whole(&path, &bytes));
+        written.map_err(|source| FileError::Io { path, source })
+    };
+    if let Some(slam) = run.slam() {
+        save("graph.g2o", &|out| {
+            out.write_all(GraphFile::of_graph(slam.graph()).to_g2o().as_bytes())
+        })?;
+    }
+    let lines = recorder.map_lines(run);
+    save(KEYFRAMES, &|out| {
+        lines.iter().try_for_each(|line| line.write(&mut *out))
+    })?;
+    // A place too large for cells so small has a report without walls.
+    let map = map_of(&lines, REPORT_CELL_M).ok();
+    let report = Report {
+        name: log,
+        scans: run.scans(),
+        quality,
+        chi2_over_time: recorder.chi2_over_time(),
+        map: map.as_ref(),
+        remarks,
+    };
+    save("report.html", &|out| {
+        out.write_all(report.html().as_bytes())
+    })
+}
