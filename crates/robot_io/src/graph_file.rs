@@ -11,11 +11,8 @@
 //! Source: Grisetti, Stachniss, "TORO: tree-based network optimizer", the description of its files.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use nalgebra::Matrix3;
-use pr_geom::SE2;
 use pr_optim::Between;
 use pr_optim::g2o::{G2oError, G2oFile};
 use serde::{Deserialize, Serialize};
@@ -157,75 +154,62 @@ impl GraphFile {
     /// The graph in the format of g2o.
     #[must_use]
     pub fn to_g2o(&self) -> String {
-        let mut text = String::new();
-        for GraphNode { id, pose, .. } in &self.nodes {
-            let [x, y, theta] = pose;
-            let _ = writeln!(text, "VERTEX_SE2 {id} {x} {y} {theta}");
-        }
-        for node in self.nodes.iter().filter(|node| node.fixed) {
-            let _ = writeln!(text, "FIX {}", node.id);
-        }
-        for edge in &self.edges {
-            let [x, y, theta] = edge.measurement;
-            let [xx, xy, xt, yy, yt, tt] = edge.information;
-            let _ = writeln!(
-                text,
-                "EDGE_SE2 {} {} {x} {y} {theta} {xx} {xy} {xt} {yy} {yt} {tt}",
-                edge.from, edge.to
-            );
-        }
-        text
+        self.written(&AS_G2O)
     }
 
     /// The graph in the format of TORO, which has no fixed nodes: its first one holds the gauge.
     #[must_use]
     pub fn to_toro(&self) -> String {
+        self.written(&AS_TORO)
+    }
+
+    fn written(&self, records: &Records) -> String {
         let mut text = String::new();
         for GraphNode { id, pose, .. } in &self.nodes {
             let [x, y, theta] = pose;
-            let _ = writeln!(text, "VERTEX2 {id} {x} {y} {theta}");
+            let _ = writeln!(text, "{} {id} {x} {y} {theta}", records.vertex);
+        }
+        if let Some(fix) = records.fix {
+            for node in self.nodes.iter().filter(|node| node.fixed) {
+                let _ = writeln!(text, "{fix} {}", node.id);
+            }
         }
         for edge in &self.edges {
             let [x, y, theta] = edge.measurement;
-            let [xx, xy, xt, yy, yt, tt] = edge.information;
+            let [a, b, c, d, e, f] = records.order.map(|at| edge.information[at]);
             let _ = writeln!(
                 text,
-                "EDGE2 {} {} {x} {y} {theta} {xx} {xy} {yy} {tt} {xt} {yt}",
-                edge.from, edge.to
+                "{} {} {} {x} {y} {theta} {a} {b} {c} {d} {e} {f}",
+                records.edge, edge.from, edge.to
             );
         }
         text
     }
-
-    /// The solver's problem; an id that occurs twice or nowhere is left out.
-    #[must_use]
-    pub fn problem(&self) -> pr_optim::Problem {
-        let mut problem = pr_optim::Problem::new();
-        let mut node_of = BTreeMap::new();
-        for GraphNode { id, pose, fixed } in &self.nodes {
-            let [x, y, theta] = *pose;
-            let node = problem.add_pose(SE2::new(x, y, theta));
-            node_of.insert(*id, node);
-            if *fixed {
-                problem.fix(node);
-            }
-        }
-        for edge in &self.edges {
-            let (Some(&from), Some(&to)) = (node_of.get(&edge.from), node_of.get(&edge.to)) else {
-                continue;
-            };
-            let [x, y, theta] = edge.measurement;
-            let [xx, xy, xt, yy, yt, tt] = edge.information;
-            problem.add_factor(Between {
-                from,
-                to,
-                measurement: SE2::new(x, y, theta),
-                information: Matrix3::new(xx, xy, xt, xy, yy, yt, xt, yt, tt),
-            });
-        }
-        problem
-    }
 }
+
+/// What a format calls its records.
+struct Records {
+    vertex: &'static str,
+    edge: &'static str,
+    /// `None` where the format fixes no node.
+    fix: Option<&'static str>,
+    /// In which order it writes the upper triangle of the information.
+    order: [usize; 6],
+}
+
+const AS_G2O: Records = Records {
+    vertex: "VERTEX_SE2",
+    edge: "EDGE_SE2",
+    fix: Some("FIX"),
+    order: [0, 1, 2, 3, 4, 5],
+};
+
+const AS_TORO: Records = Records {
+    vertex: "VERTEX2",
+    edge: "EDGE2",
+    fix: None,
+    order: [0, 1, 3, 5, 2, 4],
+};
 
 /// A graph's text with every record of TORO as one of g2o, line by line; other text as it is.
 #[must_use]
@@ -284,7 +268,8 @@ mod tests {
         assert_eq!(back, graph);
         let json = serde_json::to_vec(&graph).unwrap();
         assert_eq!(GraphFile::read(&json, "x.json").unwrap(), graph);
-        assert_eq!(graph.problem().chi2(), 0.0);
+        let file = G2oFile::parse(graph.to_g2o()).unwrap();
+        assert_eq!(file.problem.chi2(), 0.0);
     }
 
     #[test]
