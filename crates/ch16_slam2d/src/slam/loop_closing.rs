@@ -38,13 +38,7 @@ impl Slam {
         candidates.retain(|candidate| candidate.node < node);
         for candidate in candidates.into_iter().take(loops.candidates_tried) {
             let verification = self.verify(node, candidate);
-            let is_last = verification.accepted();
-            pending.loop_attempts.push(LoopAttempt {
-                frame: self.frames - 1,
-                verification,
-                effect: None,
-            });
-            if is_last {
+            if self.report_attempt(verification, pending) {
                 return;
             }
         }
@@ -110,16 +104,21 @@ impl Slam {
                     ..self.verify(node, proposed)
                 };
             }
-            let is_last = verification.accepted();
-            pending.loop_attempts.push(LoopAttempt {
-                frame: self.frames - 1,
-                verification,
-                effect: None,
-            });
-            if is_last {
+            if self.report_attempt(verification, pending) {
                 return;
             }
         }
+    }
+
+    /// Adds an attempt to the frame's report; whether it was accepted.
+    fn report_attempt(&self, verification: LoopVerification, pending: &mut PendingFrame) -> bool {
+        let is_accepted = verification.accepted();
+        pending.loop_attempts.push(LoopAttempt {
+            frame: self.frames - 1,
+            verification,
+            effect: None,
+        });
+        is_accepted
     }
 
     /// Length of the way of the keyframes since the last loop, m.
