@@ -2,8 +2,8 @@
 //! which sensor.
 
 use ch16_slam2d::cloud::PointCloud;
-use pr_geom::SE2;
-use pr_sim::{Lidar, LidarConfig, Rng, World};
+use pr_geom::{Point2, SE2};
+use pr_sim::{Bounds, Lidar, LidarConfig, Rng, Wall, World};
 
 /// In the middle of room A, which has walls on all four sides, `world_from_sensor`.
 pub fn room_a() -> SE2 {
@@ -13,6 +13,24 @@ pub fn room_a() -> SE2 {
 /// In the middle of the corridor: two long walls and nothing across, `world_from_sensor`.
 pub fn corridor() -> SE2 {
     SE2::new(6.0, 4.42, 0.0)
+}
+
+/// The walls of the corridor without its doors, and so long that no sweep from [`corridor`] sees an
+/// end.
+pub fn long_corridor() -> World {
+    const HALF_LENGTH_M: f64 = 12.0;
+    let (south_m, north_m) = (3.8, 5.0);
+    let middle_m = corridor().x();
+    let [west, east] = [middle_m - HALF_LENGTH_M, middle_m + HALF_LENGTH_M];
+    let wall = |y_m| Wall {
+        start: Point2::new(west, y_m),
+        end: Point2::new(east, y_m),
+    };
+    let bounds = Bounds {
+        min: Point2::new(west, south_m),
+        max: Point2::new(east, north_m),
+    };
+    World::new(bounds, vec![wall(south_m), wall(north_m)])
 }
 
 /// Radius within which the points of a scene give each other normals, m.
@@ -38,7 +56,18 @@ pub fn sweep(
     rng: &mut Rng,
     voxel_m: f64,
 ) -> PointCloud {
-    let ranges_m = lidar.sense(&World::apartment(), world_from_sensor, rng);
+    sweep_of(&World::apartment(), lidar, world_from_sensor, rng, voxel_m)
+}
+
+/// The same in any world.
+pub fn sweep_of(
+    world: &World,
+    lidar: &mut Lidar,
+    world_from_sensor: &SE2,
+    rng: &mut Rng,
+    voxel_m: f64,
+) -> PointCloud {
+    let ranges_m = lidar.sense(world, world_from_sensor, rng);
     let cloud: PointCloud = lidar.project(&ranges_m).collect();
     cloud.downsample(voxel_m)
 }

@@ -7,6 +7,7 @@
 mod alignment;
 mod ball;
 pub mod basin;
+mod drops;
 mod graph;
 mod lap;
 mod loops;
@@ -47,6 +48,7 @@ impl Figures {
             ["basin", what @ ..] => basin::value(self.basin.get_or_init(BasinScene::new), what),
             ["ndt", start, what] => ndt::value(start, what),
             ["terrain", what @ ..] => terrain::value(what),
+            ["drops", what @ ..] => drops::value(what),
             ["ball", place, objective, reach_cm, dx_cm, dy_cm, "rest_m"] => {
                 ball::rest_m(place, objective, [reach_cm, dx_cm, dy_cm])
             }

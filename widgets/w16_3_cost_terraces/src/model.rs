@@ -2,10 +2,12 @@
 //!
 //! A sweep is shifted over the map that it was taken for, heading fixed. Every shift gets ICP's
 //! truncated cost and NDT's score. Two balls descend from the cross hair, one on each landscape.
-//! What a parameter does not touch is not computed again: see [`terrains`].
+//! What a parameter does not touch is not computed again: see [`terrains`]. A hundred sweeps with
+//! noise of their own show how far answers scatter: see [`rests`].
 
 mod landscape;
 mod picture;
+mod rests;
 mod settings;
 mod tables;
 mod terrains;
@@ -19,8 +21,9 @@ use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 
-use crate::spec::{HALF_SPAN_M, MAX_BALL_STEPS, PARAMS, SPEC};
-use picture::Moment;
+use crate::spec::{HALF_SPAN_M, MAX_BALL_STEPS, MOST_DROPS, PARAMS, SPEC};
+use picture::{Looked, Moment};
+use rests::Rests;
 use settings::Settings;
 use terrains::Terrains;
 
@@ -28,10 +31,10 @@ use terrains::Terrains;
 const STEPS_PER_S: f64 = 24.0;
 
 /// The widget without its picture.
-#[derive(Debug)]
 pub struct CostTerraces {
     values: Values,
     terrains: Terrains,
+    rests: Rests,
     playback: Playback,
     hover_m: Option<[f64; 2]>,
 }
@@ -47,8 +50,10 @@ impl CostTerraces {
     #[must_use]
     pub fn new() -> Self {
         let values = Values::defaults(PARAMS);
+        let terrains = Terrains::new(Settings::read(&values));
         Self {
-            terrains: Terrains::new(Settings::read(&values)),
+            rests: Rests::new(&terrains),
+            terrains,
             values,
             playback: Playback::default(),
             hover_m: None,
@@ -92,11 +97,31 @@ impl CostTerraces {
         self.go_to(start);
     }
 
+    /// Drops as many sweeps as there may be, and lets them fly.
+    fn drop_sweeps(&mut self) {
+        self.put("drops", MOST_DROPS);
+        self.rests.fly(MOST_DROPS as usize, self.playback.motion());
+    }
+
+    /// Computes again what the values touch.
+    fn follow(&mut self) {
+        self.terrains.update(self.settings());
+        let drops = self.values.get("drops") as usize;
+        self.rests.follow(&self.terrains, drops);
+    }
+
     fn moment(&self) -> Moment {
+        let (ball, step) = (&self.terrains.icp.ball, self.step());
+        let rolls = 0 < step && step < ball.steps();
         Moment {
             probe_m: self.settings().probe_m,
-            hover_m: self.hover_m,
-            step: self.step(),
+            looked: match self.hover_m {
+                Some(at) => Looked::Pointer(at),
+                None if rolls => Looked::Ball,
+                None => Looked::CrossHair,
+            },
+            ball_m: ball.at_step(step),
+            step,
             colors: self.settings().colors,
         }
     }
@@ -113,7 +138,7 @@ impl Model for CostTerraces {
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         if self.values.set(SPEC.id, id, value)? == Changed::Yes {
-            self.terrains.update(self.settings());
+            self.follow();
         }
         Ok(())
     }
@@ -126,10 +151,11 @@ impl Model for CostTerraces {
         }
         match id {
             "drop" => self.drop_balls(),
+            "drop-100" => self.drop_sweeps(),
             "defaults" => {
                 self.playback.pause();
                 self.values.reset();
-                self.terrains.update(self.settings());
+                self.follow();
             }
             _ => return press_preset(self, id),
         }
@@ -137,8 +163,9 @@ impl Model for CostTerraces {
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
+        let flying = self.rests.advance(elapsed_s);
         if !self.playback.is_playing() {
-            return Activity::Idle;
+            return flying;
         }
         let rate = STEPS_PER_S * speed_factor(self.values.get("speed"));
         let last = self.last_step() as f64;
@@ -149,16 +176,27 @@ impl Model for CostTerraces {
         Activity::Busy
     }
 
+    /// One more sweep, of those that are dropped.
+    fn work(&mut self) -> Activity {
+        self.rests.work(&self.terrains)
+    }
+
+    fn settle(&mut self) -> Activity {
+        let first = self.work();
+        while self.work() == Activity::Busy {}
+        first
+    }
+
     fn scene(&self) -> Scene {
-        picture::scene(&self.terrains, self.moment())
+        picture::scene(&self.terrains, &self.rests, self.moment())
     }
 
     fn outcome(&self) -> Outcome {
-        words::outcome(&self.terrains, &self.settings())
+        words::outcome(&self.terrains, &self.rests, &self.settings())
     }
 
     fn summary(&self) -> String {
-        words::summary(&self.terrains, &self.settings())
+        words::summary(&self.terrains, &self.rests, &self.settings())
     }
 
     fn timeline(&self) -> Option<Timeline> {
@@ -179,7 +217,7 @@ impl Model for CostTerraces {
     }
 
     fn tables(&self) -> Vec<Table> {
-        tables::all(&self.terrains, &self.settings())
+        tables::all(&self.terrains, &self.rests, &self.settings())
     }
 
     fn shown_tables(&self) -> Vec<Table> {
@@ -203,7 +241,7 @@ impl Model for CostTerraces {
         if probe.iter().all(|value| value.is_finite()) {
             self.put("probe-x", probe[0]);
             self.put("probe-y", probe[1]);
-            self.terrains.update(self.settings());
+            self.follow();
         }
     }
 
@@ -214,6 +252,9 @@ impl Model for CostTerraces {
     fn set_motion(&mut self, motion: Motion) {
         if let Some(end) = self.playback.set_motion(motion, self.last_step() as f64) {
             self.go_to(end);
+        }
+        if motion == Motion::Reduced {
+            self.rests.land();
         }
     }
 }

@@ -15,6 +15,9 @@ const CELLS: (f64, f64) = (49.0, 161.0);
 /// Most steps that a ball may take; the timeline never gets longer.
 pub const MAX_BALL_STEPS: usize = 400;
 
+/// Most sweeps that are dropped at once.
+pub const MOST_DROPS: f64 = 100.0;
+
 /// What the reader can change.
 pub const PARAMS: &[ParamSpec] = &[
     ParamSpec {
@@ -31,10 +34,14 @@ pub const PARAMS: &[ParamSpec] = &[
                     id: "corridor",
                     label: "corridor",
                 },
+                Choice {
+                    id: "own-corridor",
+                    label: "corridor on itself",
+                },
             ],
         },
         default: 0.0,
-        help: "Where the sweep was taken: in room A, or in the corridor.",
+        help: "Room A on its own points; a corridor without doors on a map that was measured apart; the Apartment's corridor, doors and all, on its own points.",
     },
     ParamSpec {
         id: "tau",
@@ -45,7 +52,7 @@ pub const PARAMS: &[ParamSpec] = &[
             max: 1.6,
             step: 0.05,
         },
-        default: 0.6,
+        default: 0.15,
         help: "ICP pairs a point with the nearest map point within τ; a point without a pair costs τ².",
     },
     ParamSpec {
@@ -100,7 +107,7 @@ pub const PARAMS: &[ParamSpec] = &[
                 },
             ],
         },
-        default: 0.0,
+        default: 1.0,
         help: "By rank, every colour covers as many cells: low steps show on high ground.",
     },
     ParamSpec {
@@ -136,6 +143,18 @@ pub const PARAMS: &[ParamSpec] = &[
         help: "Where the cross hair stands and the balls start, north of the truth.",
     },
     ParamSpec {
+        id: "drops",
+        label: "sweeps dropped",
+        unit: "",
+        kind: ParamKind::Slider {
+            min: 0.0,
+            max: MOST_DROPS,
+            step: 1.0,
+        },
+        default: 0.0,
+        help: "So many sweeps, each with noise of its own, are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m.",
+    },
+    ParamSpec {
         id: "t",
         label: "step of the balls",
         unit: "",
@@ -157,6 +176,13 @@ const DROP: ButtonSpec = ButtonSpec {
     help: "Start both balls at the cross hair and let them descend.",
 };
 
+/// Drops many sweeps, each with noise of its own.
+const DROP_100: ButtonSpec = ButtonSpec {
+    id: "drop-100",
+    label: "Drop 100",
+    help: "Drop 100 sweeps, each with noise of its own, and watch them fly to rest.",
+};
+
 /// "What to try".
 const PRESETS: &[Preset] = &[
     Preset {
@@ -172,38 +198,100 @@ const PRESETS: &[Preset] = &[
         then: &["drop"],
     },
     Preset {
+        id: "bowl",
+        label: "Widen τ to 0.6 m",
+        help: "The steps melt into one bowl, and both balls come home. Beyond 0.6 m the plain goes on.",
+        set: &[("tau", 0.6), ("colours", 0.0)],
+        then: &["drop"],
+    },
+    Preset {
         id: "wide-hill",
         label: "Widen the NDT cell to 0.8 m",
-        help: "NDT's ball comes home from where ICP's rolls farther away.",
-        set: &[("ndt-cell", 0.8), ("probe-x", -0.7), ("probe-y", 0.7)],
+        help: "The bells grow longer and fewer, and NDT's ball comes home from where ICP's rolls farther away.",
+        set: &[
+            ("tau", 0.6),
+            ("colours", 0.0),
+            ("ndt-cell", 0.8),
+            ("probe-x", -0.7),
+            ("probe-y", 0.7),
+        ],
         then: &["drop"],
     },
     Preset {
         id: "wide-tau",
         label: "Widen τ to 1.6 m",
         help: "No point is without a pair now. ICP's ball comes home from here, NDT's does not.",
-        set: &[("tau", 1.6), ("probe-x", 0.7), ("probe-y", 0.7)],
+        set: &[
+            ("tau", 1.6),
+            ("colours", 0.0),
+            ("probe-x", 0.7),
+            ("probe-y", 0.7),
+        ],
         then: &["drop"],
     },
     Preset {
         id: "corridor",
         label: "Stand in the corridor",
-        help: "Both valleys run along the walls. The ellipse is a needle along x: there the walls say almost nothing.",
-        set: &[("scene", 1.0), ("probe-x", 0.6), ("probe-y", 0.0)],
+        help: "Both valleys run along the walls without end. The balls find the middle of the valley and stay where they were dropped along it.",
+        set: &[
+            ("scene", 1.0),
+            ("tau", 0.6),
+            ("colours", 0.0),
+            ("probe-x", 0.6),
+            ("probe-y", 0.05),
+        ],
         then: &["drop"],
     },
     Preset {
         id: "wrong-wall",
         label: "Drop it across the corridor",
         help: "From here the south wall looks like the north wall. Both balls settle on the wrong one.",
-        set: &[("scene", 1.0), ("probe-x", 0.2), ("probe-y", 1.1)],
+        set: &[
+            ("scene", 1.0),
+            ("tau", 0.6),
+            ("colours", 0.0),
+            ("probe-x", 0.2),
+            ("probe-y", 1.1),
+        ],
         then: &["drop"],
+    },
+    Preset {
+        id: "own-corridor",
+        label: "Match the corridor with itself",
+        help: "The sweep knows its own noise and its doors again, and the cost is lowest at the truth. No second sweep would be so sure.",
+        set: &[
+            ("scene", 2.0),
+            ("tau", 0.6),
+            ("colours", 0.0),
+            ("probe-x", 0.6),
+            ("probe-y", 0.0),
+        ],
+        then: &["drop"],
+    },
+    Preset {
+        id: "drop-room",
+        label: "Drop 100 sweeps in the room",
+        help: "They rest in a round heap a few millimetres wide, about as wide as the information says.",
+        set: &[("tau", 0.6), ("colours", 0.0), ("more", 1.0)],
+        then: &["drop-100"],
+    },
+    Preset {
+        id: "drop-corridor",
+        label: "Drop 100 sweeps in the corridor",
+        help: "They rest in a streak along the walls, much longer than the needle of the information.",
+        set: &[
+            ("scene", 1.0),
+            ("tau", 0.6),
+            ("colours", 0.0),
+            ("more", 1.0),
+        ],
+        then: &["drop-100"],
     },
     Preset {
         id: "turned",
         label: "Turn the sweep by 20°",
         help: "No shift undoes a turn. The lowest cost rises, and NDT's lowest cell leaves the truth.",
-        set: &[("heading", 20.0)],
+        set: &[("tau", 0.6), ("colours", 0.0), ("heading", 20.0)],
         then: &["drop"],
     },
 ];
@@ -216,16 +304,17 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "Both maps hold the same sweep against the same points; only the measure differs. Dark is low, and the balls seek the dark.",
         "A small τ breaks ICP's bowl into terraces and hollows; colours by rank show them. A ball rests in the next one, however good the solver.",
+        "Each step of the cost is a point that gets another partner, or none. Those that are about to change light up in orange.",
         "NDT has almost no steps: each point feels the whole bell of its cell. But thin walls make thin bells. Its valley is narrow, and the plain around it has dents of its own; wider cells help.",
         "A wide τ lets ICP reach farther than NDT. Neither measure wins everywhere.",
-        "In the corridor both valleys run along x. The ellipse shows why: it is a needle along x, where the walls say almost nothing.",
+        "In the corridor both valleys run along x without an end. A hundred sweeps rest in a streak there and in a round heap in the room; the ellipse is what the information promises.",
     ],
     opening: Opening {
-        panels: &["icp", "ndt"],
+        panels: &["icp", "sweep", "ndt", "bells"],
         params: &["tau"],
         buttons: &["play"],
     },
     params: PARAMS,
-    buttons: &[DROP, PLAY, STEP, RESET, DEFAULTS],
+    buttons: &[DROP, DROP_100, PLAY, STEP, RESET, DEFAULTS],
     presets: PRESETS,
 };

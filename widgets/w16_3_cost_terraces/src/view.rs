@@ -2,25 +2,55 @@
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
-use kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot, View};
+use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
 
-/// Both maps side by side, with their slices below.
+/// The map takes this share of its row, and what is matched there the rest.
+const MAP_SHARE: f32 = 3.0;
+const MATCHED_SHARE: f32 = 2.0;
+
+/// Each map beside what the sweep is matched with, the slices below.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TerracesView;
 
 impl View for TerracesView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
-        let maps = ["icp", "ndt"].map(|id| slot(id, PlotHeight::Natural { most: 480.0 }));
-        let slices =
-            ["icp-x", "ndt-x", "icp-y", "ndt-y"].map(|id| slot(id, PlotHeight::Fixed(130.0)));
-        let places =
-            ["sweep", "information"].map(|id| slot(id, PlotHeight::Natural { most: 240.0 }));
-        // Side by side, every slice stands below its map.
-        let beside = if width < SIDE_BY_SIDE { 1 } else { 2 };
-        let rows = |slots: &[Slot]| slots.chunks(beside).map(Row::of).collect::<Vec<_>>();
+        let narrow = width < SIDE_BY_SIDE;
+        let most = if narrow { 250.0 } else { 300.0 };
+        let map = |id| slot(id, PlotHeight::Natural { most });
+        // Room and corridor have other shapes; what stands below does not move for it.
+        let matched = |id| slot(id, PlotHeight::Fixed(if narrow { 160.0 } else { 230.0 }));
+        let cut = |id| slot(id, PlotHeight::Fixed(130.0));
+        let stage = [
+            [map("icp"), matched("sweep")],
+            [map("ndt"), matched("bells")],
+        ];
+        let slices = [["icp-x", "icp-y"], ["ndt-x", "ndt-y"]].map(|pair| pair.map(cut));
+        let rests = slot("information", PlotHeight::Fixed(300.0));
+        let side_by_side = |slots: [Slot; 2], shares: [f32; 2]| Row {
+            columns: (slots.into_iter().zip(shares))
+                .map(|(slot, share)| Column {
+                    share,
+                    slots: vec![slot],
+                })
+                .collect(),
+        };
+        let rows = |pairs: [[Slot; 2]; 2], shares: [f32; 2]| -> Vec<Row> {
+            if narrow {
+                pairs
+                    .iter()
+                    .flatten()
+                    .map(|slot| Row::of(&[*slot]))
+                    .collect()
+            } else {
+                let pairs = pairs.into_iter();
+                pairs.map(|pair| side_by_side(pair, shares)).collect()
+            }
+        };
+        let mut below = vec![Row::of(&[rests])];
+        below.extend(rows(slices, [1.0, 1.0]));
         Arrangement {
-            stage: rows(&maps),
-            below: [rows(&slices), rows(&places)].concat(),
+            stage: rows(stage, [MAP_SHARE, MATCHED_SHARE]),
+            below,
         }
     }
 }

@@ -1,4 +1,5 @@
 //! The widget from outside: its model and its shell. One binary, one module for each.
 
 mod model;
+mod places;
 mod shell;

@@ -1,7 +1,7 @@
 //! What the widget claims, asked of its model without a picture.
 
 use kit::model::{Activity, Model, Motion, Standing, apply_preset};
-use kit::scene::{Layer, Raster, Tone};
+use kit::scene::{Layer, Panel, Raster, Tone};
 use w16_3_cost_terraces::model::CostTerraces;
 
 fn fact(model: &dyn Model, id: &str) -> f64 {
@@ -27,10 +27,29 @@ fn preset(id: &str) -> CostTerraces {
     model
 }
 
-fn raster(model: &dyn Model, panel: &str) -> Raster {
-    let scene = model.scene();
-    let panel = scene.panels.iter().find(|candidate| candidate.id == panel);
-    let raster = panel.unwrap().layers.iter().find_map(|layer| match layer {
+fn panel(model: &dyn Model, id: &str) -> Panel {
+    let panels = model.scene().panels;
+    panels.into_iter().find(|panel| panel.id == id).unwrap()
+}
+
+/// Separate segments of a panel in that tone and width.
+fn segments(model: &dyn Model, id: &str, tone: Tone, width_px: f32) -> usize {
+    let layers = panel(model, id).layers;
+    let found = layers.iter().filter_map(|layer| match layer {
+        Layer::Segments {
+            segments,
+            tone: drawn,
+            width_px: width,
+            ..
+        } if *drawn == tone && *width == width_px => Some(segments.len()),
+        _ => None,
+    });
+    found.sum()
+}
+
+fn raster(model: &dyn Model, id: &str) -> Raster {
+    let panel = panel(model, id);
+    let raster = panel.layers.iter().find_map(|layer| match layer {
         Layer::Raster(raster) => Some(raster.clone()),
         _ => None,
     });
@@ -43,10 +62,15 @@ fn the_cross_hair_reads_the_chapters_costs() {
     for (scene, x, y, cost_m2) in [
         (0.0, 0.6, 0.0, 0.189),
         (0.0, 0.0, 0.6, 0.160),
-        (1.0, 0.6, 0.0, 0.053),
-        (1.0, 0.0, 0.6, 0.347),
+        (2.0, 0.6, 0.0, 0.053),
+        (2.0, 0.0, 0.6, 0.347),
     ] {
-        let model = with(&[("scene", scene), ("probe-x", x), ("probe-y", y)]);
+        let model = with(&[
+            ("scene", scene),
+            ("tau", 0.6),
+            ("probe-x", x),
+            ("probe-y", y),
+        ]);
         let read = fact(&model, "icp_cost_m2");
         assert!(
             (read - cost_m2).abs() < 5e-4,
@@ -58,7 +82,7 @@ fn the_cross_hair_reads_the_chapters_costs() {
 /// SPEC §10: 74 % of the peak along the corridor, nothing across it.
 #[test]
 fn the_corridors_ndt_score_fades_across_the_walls_alone() {
-    let mut model = with(&[("scene", 1.0), ("probe-x", 0.6), ("probe-y", 0.0)]);
+    let mut model = with(&[("scene", 2.0), ("probe-x", 0.6), ("probe-y", 0.0)]);
     let along = fact(&model, "ndt_score");
     model.set("probe-x", 0.0).unwrap();
     let peak = fact(&model, "ndt_score");
@@ -115,18 +139,17 @@ fn a_wider_ndt_cell_brings_home_a_ball_that_the_usual_cell_loses() {
 #[test]
 fn with_the_widest_tau_no_point_is_without_a_pair() {
     let model = preset("wide-tau");
-    let panels = model.scene().panels;
-    let sweep = panels.iter().find(|panel| panel.id == "sweep").unwrap();
-    let count = |of: fn(&Layer) -> Option<usize>| sweep.layers.iter().find_map(of).unwrap();
-    let pairs = count(|layer| match layer {
-        Layer::Segments { segments, .. } => Some(segments.len()),
-        _ => None,
-    });
-    let points = count(|layer| match layer {
-        Layer::Points { points, tone, .. } if *tone == Tone::Prior => Some(points.len()),
-        _ => None,
-    });
-    assert_eq!(pairs, points);
+    let points = panel(&model, "sweep")
+        .layers
+        .iter()
+        .find_map(|layer| match layer {
+            Layer::Points { points, tone, .. } if *tone == Tone::Prior => Some(points.len()),
+            _ => None,
+        });
+    // Those that stay, and those that are about to change.
+    let pairs =
+        segments(&model, "sweep", Tone::Ink, 0.75) + segments(&model, "sweep", Tone::Ink, 2.5);
+    assert_eq!(pairs, points.unwrap());
 }
 
 #[test]
@@ -158,7 +181,7 @@ fn a_slices_title_names_the_row_that_it_shows() {
 fn a_wide_tau_brings_home_what_ndt_loses() {
     let mut model = preset("wide-tau");
     assert_eq!(model.outcome().verdict, "NDT sticks");
-    // With the usual τ the same drop sticks on ICP as well.
+    // With the chapter's τ the same drop sticks on ICP as well.
     model.set("tau", 0.6).unwrap();
     assert_eq!(model.outcome().verdict, "both stick");
 }
@@ -188,7 +211,8 @@ fn a_parameter_recomputes_what_depends_on_it_and_nothing_else() {
         ("probe-y", 0.9, [false, false]),
         ("t", 1.0, [false, false]),
         ("speed", 4.0, [false, false]),
-        ("colours", 1.0, [true, true]),
+        ("drops", 2.0, [false, false]),
+        ("colours", 0.0, [true, true]),
         ("tau", 0.3, [true, false]),
         ("ndt-cell", 0.8, [false, true]),
         ("heading", 7.0, [true, true]),
@@ -311,6 +335,7 @@ fn the_extremes_of_every_parameter_have_a_finite_picture() {
         for value in [min, max] {
             let mut model = CostTerraces::new();
             model.set(spec.id, value).unwrap();
+            model.settle();
             let outcome = model.outcome();
             for fact in &outcome.facts {
                 assert!(fact.value.is_finite(), "{} at {value}: {fact:?}", spec.id);

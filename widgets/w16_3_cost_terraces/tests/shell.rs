@@ -50,7 +50,7 @@ fn every_slider_takes_arrow_keys_by_its_own_step() {
     for width in [1100.0, 700.0, 390.0] {
         let mut harness = harness(width);
         for (label, id, stepped) in [
-            ("pair limit τ", "tau", 0.65),
+            ("pair limit τ", "tau", 0.2),
             ("NDT cell", "ndt-cell", 0.6),
             ("heading offset", "heading", 1.0),
             ("cells a side", "cells", 57.0),

@@ -1,7 +1,7 @@
 //! The two places, their maps, and what can be changed.
 
 use pr_geom::{Rotation, SE2};
-use pr_sim::Rng;
+use pr_sim::{Lidar, Rng, World};
 
 use super::information::{PoseInformation, pose_information};
 use crate::scenes::{self, MAP_POINTS_PER_CELL, NORMAL_RADIUS_M};
@@ -14,6 +14,9 @@ const RANGE_SIGMA_M: f64 = 0.01;
 const VOXEL_M: f64 = 0.08;
 const MAP_CELL_M: f64 = 0.3;
 const NDT_MIN_POINTS: usize = 4;
+/// The map of the long corridor reaches this much farther than a sweep to either side, m: the largest
+/// shift of the landscapes, so that no end of the map tells where the sweep belongs.
+const MAP_STEP_M: f64 = 1.3;
 
 /// Where the sweep was taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -21,8 +24,30 @@ pub enum SceneKind {
     /// Room A: walls on all four sides.
     #[default]
     Room,
-    /// The corridor: two long walls and nothing across.
+    /// The corridor: two long walls, with doors, and nothing across. As in the room, the sweep is
+    /// its own map.
     Corridor,
+    /// A corridor without doors or ends in sight. Map and sweep were measured apart, each with noise
+    /// of its own, and the map reaches beyond what the sweep sees: nothing tells where along it the
+    /// sweep belongs.
+    LongCorridor,
+}
+
+impl SceneKind {
+    /// Where the sensor stands, `world_from_sensor`.
+    fn world_from_sensor(self) -> SE2 {
+        match self {
+            Self::Room => scenes::room_a(),
+            Self::Corridor | Self::LongCorridor => scenes::corridor(),
+        }
+    }
+
+    fn world(self) -> World {
+        match self {
+            Self::Room | Self::Corridor => World::apartment(),
+            Self::LongCorridor => scenes::long_corridor(),
+        }
+    }
 }
 
 /// What the landscapes depend on, apart from the place.
@@ -67,12 +92,16 @@ impl TerrainSettings {
     }
 }
 
-/// One sweep in the world's frame, as points for ICP and as Gaussians for NDT.
+/// One sweep in the world's frame, and the map that it is shifted over, as points for ICP and as
+/// Gaussians for NDT.
 #[derive(Clone, Debug)]
 pub struct TerrainScene {
     kind: SceneKind,
+    seed: u32,
     world_from_sensor: SE2,
     cloud: PointCloud,
+    /// What the maps are built from.
+    target: PointCloud,
     map: DenseMap,
     ndt: NdtMap,
 }
@@ -98,21 +127,37 @@ impl TerrainScene {
     /// If the cell size is not positive and finite.
     #[must_use]
     pub fn with_seed(kind: SceneKind, ndt_cell_m: f64, seed: u32) -> Self {
-        let world_from_sensor = match kind {
-            SceneKind::Room => scenes::room_a(),
-            SceneKind::Corridor => scenes::corridor(),
-        };
-        let mut lidar = scenes::lidar(RANGE_SIGMA_M, MAX_RANGE_M);
+        let mut sweeper = Sweeper::new(kind);
         let mut rng = Rng::new(seed);
-        let sweep = scenes::sweep(&mut lidar, &world_from_sensor, &mut rng, VOXEL_M);
-        let mut cloud = sweep.transformed(&world_from_sensor);
-        cloud.estimate_normals(NORMAL_RADIUS_M);
+        let world_from_sensor = kind.world_from_sensor();
+        let (target, cloud) = match kind {
+            SceneKind::Room | SceneKind::Corridor => {
+                let mut cloud = sweeper.sweep(&world_from_sensor, &mut rng);
+                cloud.estimate_normals(NORMAL_RADIUS_M);
+                (cloud.clone(), cloud)
+            }
+            SceneKind::LongCorridor => {
+                let mut target = PointCloud::default();
+                for step_m in [-MAP_STEP_M, 0.0, MAP_STEP_M] {
+                    let beside = SE2::translation(step_m, 0.0) * world_from_sensor;
+                    let sweep = sweeper.fresh_sweep(&beside, &mut rng);
+                    target.extend_transformed(&sweep, &SE2::identity());
+                }
+                let mut target = target.downsample(VOXEL_M);
+                target.estimate_normals(NORMAL_RADIUS_M);
+                let mut cloud = sweeper.fresh_sweep(&world_from_sensor, &mut rng);
+                cloud.estimate_normals(NORMAL_RADIUS_M);
+                (target, cloud)
+            }
+        };
         Self {
             kind,
+            seed,
             world_from_sensor,
-            map: DenseMap::from_cloud(&cloud, MAP_CELL_M, MAP_POINTS_PER_CELL),
-            ndt: NdtMap::build(&cloud, ndt_cell_m, NDT_MIN_POINTS),
+            map: DenseMap::from_cloud(&target, MAP_CELL_M, MAP_POINTS_PER_CELL),
+            ndt: NdtMap::build(&target, ndt_cell_m, NDT_MIN_POINTS),
             cloud,
+            target,
         }
     }
 
@@ -121,13 +166,19 @@ impl TerrainScene {
     /// # Panics
     /// If the cell size is not positive and finite.
     pub fn set_ndt_cell(&mut self, ndt_cell_m: f64) {
-        self.ndt = NdtMap::build(&self.cloud, ndt_cell_m, NDT_MIN_POINTS);
+        self.ndt = NdtMap::build(&self.target, ndt_cell_m, NDT_MIN_POINTS);
     }
 
     /// The place.
     #[must_use]
     pub fn kind(&self) -> SceneKind {
         self.kind
+    }
+
+    /// Where the noise of its sweeps started.
+    #[must_use]
+    pub fn seed(&self) -> u32 {
+        self.seed
     }
 
     /// Where the sensor stood.
@@ -185,5 +236,38 @@ impl TerrainScene {
             xs.push(x + sx);
             ys.push(y + sy);
         }
+    }
+}
+
+/// Takes sweeps of a place, in the world's frame and thinned.
+pub(super) struct Sweeper {
+    world: World,
+    lidar: Lidar,
+}
+
+impl Sweeper {
+    pub(super) fn new(kind: SceneKind) -> Self {
+        Self {
+            world: kind.world(),
+            lidar: scenes::lidar(RANGE_SIGMA_M, MAX_RANGE_M),
+        }
+    }
+
+    fn sweep(&mut self, world_from_sensor: &SE2, rng: &mut Rng) -> PointCloud {
+        let sweep = scenes::sweep_of(
+            &self.world,
+            &mut self.lidar,
+            world_from_sensor,
+            rng,
+            VOXEL_M,
+        );
+        sweep.transformed(world_from_sensor)
+    }
+
+    /// A sweep whose beams point between those of any other: two of them share walls, not points.
+    pub(super) fn fresh_sweep(&mut self, world_from_sensor: &SE2, rng: &mut Rng) -> PointCloud {
+        let between_beams_rad = rng.uniform(0.0, self.lidar.config().angle_step_rad());
+        let turned = *world_from_sensor * SE2::new(0.0, 0.0, between_beams_rad);
+        self.sweep(&turned, rng)
     }
 }

@@ -11,7 +11,7 @@ pub fn value(path: &[&str]) -> Option<f64> {
     let settings = TerrainSettings::default();
     let (place, objective, what) = match *path {
         ["probe_m"] => return Some(PROBE_M),
-        ["room", "next_stretch_m"] => return Some(settings.span_m - PROBE_M),
+        ["tau_m"] => return Some(settings.tau_m),
         [place, objective, what] => (place, objective, what),
         _ => return None,
     };
@@ -34,6 +34,11 @@ pub fn value(path: &[&str]) -> Option<f64> {
         "x06_percent" => {
             100.0 * at(PROBE_M, 0.0) / Terrain::compute(&scene, &settings).ndt_maximum()?.value
         }
+        "lowest_m" => {
+            let lowest = Terrain::compute(&scene, &settings).icp_minimum()?;
+            let [x, y] = [lowest.column, lowest.row].map(|index| settings.offset_m(index));
+            x.hypot(y)
+        }
         "local_minima" => dents(Terrain::compute(&scene, &settings).icp_cost_m2(), n, 1.0),
         "local_maxima" => dents(Terrain::compute(&scene, &settings).ndt_score(), n, -1.0),
         _ => return None,
@@ -45,6 +50,7 @@ pub fn scene_kind(place: &str) -> Option<SceneKind> {
     match place {
         "room" => Some(SceneKind::Room),
         "corridor" => Some(SceneKind::Corridor),
+        "long" => Some(SceneKind::LongCorridor),
         _ => None,
     }
 }

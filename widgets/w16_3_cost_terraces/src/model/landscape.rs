@@ -65,6 +65,11 @@ impl Ball {
         self.path_m[self.steps()]
     }
 
+    /// Shift after so many steps, at most where it ends, m.
+    pub fn at_step(&self, step: usize) -> [f64; 2] {
+        self.path_m[step.min(self.steps())]
+    }
+
     /// Distance of its end from the truth, m.
     pub fn rest_distance_m(&self) -> f64 {
         let [x, y] = self.end_m();

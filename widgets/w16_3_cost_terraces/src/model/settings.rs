@@ -2,13 +2,15 @@
 
 use kit::param::Values;
 
-/// Which of the two sweeps of the Apartment.
+/// Where the sweep was taken, and what it is matched with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// Room A: walls in both directions.
+    /// Room A: walls in both directions. The sweep is its own map.
     Room,
-    /// The corridor: walls along x alone.
+    /// A corridor without doors: walls along x alone. Map and sweep were measured apart.
     Corridor,
+    /// The Apartment's corridor, doors and all. The sweep is its own map.
+    OwnCorridor,
 }
 
 /// What decides a cell's colour.
@@ -45,10 +47,10 @@ impl Settings {
     /// Reads the list.
     pub fn read(values: &Values) -> Self {
         Self {
-            place: if values.get("scene") == 0.0 {
-                Place::Room
-            } else {
-                Place::Corridor
+            place: match values.get("scene") as u32 {
+                0 => Place::Room,
+                1 => Place::Corridor,
+                _ => Place::OwnCorridor,
             },
             tau_m: values.get("tau"),
             seed: values.get("seed") as u32,

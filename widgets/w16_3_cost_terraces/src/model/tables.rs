@@ -4,6 +4,7 @@ use kit::model::{Table, TablePlace};
 use kit::ticks::signed;
 
 use super::landscape::{Ball, Landscape, shift_m};
+use super::rests::Rests;
 use super::settings::Settings;
 use super::terrains::Terrains;
 
@@ -13,10 +14,13 @@ pub fn shown(terrains: &Terrains) -> Vec<Table> {
 }
 
 /// All tables, the shown ones first.
-pub fn all(terrains: &Terrains, settings: &Settings) -> Vec<Table> {
+pub fn all(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Vec<Table> {
     let mut tables = shown(terrains);
     tables.extend([
         information(terrains),
+        dropped(rests),
+        partners(terrains, settings),
+        bells(terrains),
         slice(
             "slice-x",
             "Slice along x",
@@ -103,6 +107,81 @@ fn information(terrains: &Terrains) -> Table {
         &["direction", "angle from x (°)", "eigenvalue (1/cm²)"],
         TablePlace::ExportOnly,
         vec![row("firmest", 0), row("loosest", 1)],
+    )
+}
+
+/// Where each sweep was dropped, and where it rests.
+fn dropped(rests: &Rests) -> Table {
+    let rows = rests.ends_m().enumerate().map(|(number, [start, rest])| {
+        let numbers = [start, rest].concat();
+        let shown = numbers.iter().map(|m| format!("{m:.4}"));
+        core::iter::once(number.to_string()).chain(shown).collect()
+    });
+    table(
+        "rests",
+        "Rests of the dropped sweeps",
+        &[
+            "sweep",
+            "dropped Δx (m)",
+            "dropped Δy (m)",
+            "rests Δx (m)",
+            "rests Δy (m)",
+        ],
+        TablePlace::ExportOnly,
+        rows.collect(),
+    )
+}
+
+/// What is paired at the cross hair, and what is about to change there.
+fn partners(terrains: &Terrains, settings: &Settings) -> Table {
+    let pairing = terrains.pairing_at(settings.probe_m);
+    let groups = [
+        ("stays", pairing.pairs),
+        ("about to change", pairing.changing),
+        ("next", pairing.next),
+    ];
+    let rows = groups.into_iter().flat_map(|(what, pairs)| {
+        pairs.into_iter().map(move |[from, to]| {
+            let numbers = [from, to].concat();
+            let shown = numbers.iter().map(|m| format!("{m:.4}"));
+            core::iter::once(what.to_owned()).chain(shown).collect()
+        })
+    });
+    table(
+        "partners",
+        "Partners at the cross hair",
+        &[
+            "pair",
+            "point x (m)",
+            "point y (m)",
+            "map x (m)",
+            "map y (m)",
+        ],
+        TablePlace::ExportOnly,
+        rows.collect(),
+    )
+}
+
+/// Middle and axes of every bell.
+fn bells(terrains: &Terrains) -> Table {
+    let rows = terrains.bells().into_iter().map(|bell| {
+        let [long, short] = bell.half_axes_m;
+        let numbers = [bell.mean_m, long, short].concat();
+        numbers.iter().map(|m| format!("{m:.4}")).collect()
+    });
+    table(
+        "bells",
+        "Bells of NDT's map",
+        &[
+            "middle x (m)",
+            "middle y (m)",
+            "long axis x (m)",
+            "long axis y (m)",
+            "short axis x (m)",
+            "short axis y (m)",
+        ],
+        TablePlace::ExportOnly,
+        rows.collect(),
     )
 }
 

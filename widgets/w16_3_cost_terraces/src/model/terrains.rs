@@ -1,10 +1,12 @@
 //! Both landscapes of a place, and what has to be computed again when a setting changes.
 
 use ch16_lab::terrain::{
-    Ball as Roller, BallConfig, BallStop, Objective, SceneKind, Terrain, TerrainProbe,
-    TerrainScene, TerrainSettings,
+    Ball as Roller, BallConfig, BallStop, Objective, PartnerChange, SceneKind, Terrain,
+    TerrainProbe, TerrainScene, TerrainSettings,
 };
 use ch16_slam2d::cloud::{NearestMap, PointCloud};
+use ch16_slam2d::ndt::NdtCell;
+use kit::scene::Bounds;
 use pr_geom::{SE2, Vector2, math};
 
 use super::landscape::{Ball, End, Landscape};
@@ -14,6 +16,9 @@ use crate::spec::{HALF_SPAN_M, MAX_BALL_STEPS};
 /// The ellipse is drawn as if at least this were known of every direction, 1/m²: no axis is longer
 /// than a metre.
 const LEAST_INFORMATION_PER_M2: f64 = 1.0;
+
+/// A pair is about to change where a shift this small changes it, m.
+const ABOUT_M: f64 = 0.004;
 
 /// All that follows from the settings.
 #[derive(Debug)]
@@ -42,6 +47,30 @@ pub struct Hold {
     pub half_axes_cm: [[f64; 2]; 2],
     /// Directions of the whole pose, heading included, of which anything is known: up to 3.
     pub rank: usize,
+}
+
+/// What a shift pairs, m.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pairing {
+    /// From each point to its partner, but for those that are about to change.
+    pub pairs: Vec<[[f64; 2]; 2]>,
+    /// From each point that is about to change its partner to the one that it has.
+    pub changing: Vec<[[f64; 2]; 2]>,
+    /// From each of those, and from each that is about to find one, to the partner that comes next.
+    pub next: Vec<[[f64; 2]; 2]>,
+    /// The points of both.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// One Gaussian of NDT's map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bell {
+    /// Its middle, m.
+    pub mean_m: [f64; 2],
+    /// One standard deviation along its principal axes, the longer first, m.
+    pub half_axes_m: [[f64; 2]; 2],
+    /// The cell whose points it stands for, m.
+    pub cell_m: Bounds,
 }
 
 /// Which parts a change of settings concerns.
@@ -122,12 +151,7 @@ impl Terrains {
 
     fn renew(&mut self, stale: Stale) {
         let Settings { cells, probe_m, .. } = self.settings;
-        let grid = TerrainSettings {
-            n: cells,
-            span_m: HALF_SPAN_M,
-            tau_m: self.settings.tau_m,
-            heading_deg: self.settings.heading_deg,
-        };
+        let grid = self.grid();
         if stale.place {
             let map = self.scene.map();
             self.map_points_m = (0..map.len()).map(|k| map.point(k).into()).collect();
@@ -177,17 +201,59 @@ impl Terrains {
         points.map(|point| [point.x + dx, point.y + dy]).collect()
     }
 
-    /// The pairs that ICP finds at a shift, from the sweep to the map, m.
-    pub fn pairs_at(&self, shift_m: [f64; 2]) -> Vec<[[f64; 2]; 2]> {
-        let map = self.scene.map();
-        let pair = |from: [f64; 2]| {
-            let nearest = map.neighbor(from.into(), self.settings.tau_m)?;
-            Some([from, map.point(nearest.index).into()])
-        };
-        self.sweep_at(shift_m)
-            .into_iter()
-            .filter_map(pair)
+    /// The partners that ICP finds at a shift, and those that change close by.
+    pub fn pairing_at(&self, [dx, dy]: [f64; 2]) -> Pairing {
+        let settings = self.grid();
+        let partners = self
+            .scene
+            .partners(&settings, Vector2::new(dx, dy), ABOUT_M);
+        let mut pairing = Pairing::default();
+        for partner in partners {
+            let from: [f64; 2] = partner.point.into();
+            let now = partner.partner.map(|to| [from, to.into()]);
+            if partner.change.is_none() {
+                pairing.pairs.extend(now);
+                continue;
+            }
+            pairing.points.push(from);
+            pairing.changing.extend(now);
+            match partner.change {
+                Some(PartnerChange::Other(to) | PartnerChange::Found(to)) => {
+                    pairing.next.push([from, to.into()]);
+                }
+                Some(PartnerChange::Lost) | None => {}
+            }
+        }
+        pairing
+    }
+
+    /// The bells of NDT's map.
+    pub fn bells(&self) -> Vec<Bell> {
+        let ndt = self.scene.ndt();
+        let width_m = ndt.cell_m();
+        ndt.cells()
+            .iter()
+            .map(|cell| Bell::of(cell, width_m))
             .collect()
+    }
+
+    /// Width of NDT's cells, m.
+    pub fn ndt_cell_m(&self) -> f64 {
+        self.scene.ndt().cell_m()
+    }
+
+    /// The core's scene.
+    pub fn scene(&self) -> &TerrainScene {
+        &self.scene
+    }
+
+    fn grid(&self) -> TerrainSettings {
+        TerrainSettings {
+            n: self.settings.cells,
+            span_m: HALF_SPAN_M,
+            tau_m: self.settings.tau_m,
+            heading_deg: self.settings.heading_deg,
+        }
     }
 
     /// Turns the sweep about the sensor.
@@ -205,7 +271,8 @@ fn scene_of(settings: &Settings) -> TerrainScene {
 fn kind(settings: &Settings) -> SceneKind {
     match settings.place {
         Place::Room => SceneKind::Room,
-        Place::Corridor => SceneKind::Corridor,
+        Place::Corridor => SceneKind::LongCorridor,
+        Place::OwnCorridor => SceneKind::Corridor,
     }
 }
 
@@ -237,8 +304,29 @@ fn roll(probe: &TerrainProbe<'_>, objective: Objective, [x, y]: [f64; 2]) -> Bal
     }
 }
 
+impl Bell {
+    fn of(cell: &NdtCell, width_m: f64) -> Self {
+        let [(xx, xy), (_, yy)] =
+            [0, 1].map(|k| (cell.covariance[(k, 0)], cell.covariance[(k, 1)]));
+        let center = 0.5 * (xx + yy);
+        let half_gap = math::norm2(0.5 * (xx - yy), xy);
+        let (sin, cos) = math::sin_cos(0.5 * math::atan2(2.0 * xy, xx - yy));
+        let [long, short] =
+            [center + half_gap, center - half_gap].map(|m2| math::sqrt(math::max(m2, 0.0)));
+        let corner = [cell.cell.0, cell.cell.1].map(|index| f64::from(index) * width_m);
+        Self {
+            mean_m: cell.mean.into(),
+            half_axes_m: [[long * cos, long * sin], [-short * sin, short * cos]],
+            cell_m: Bounds {
+                min: corner,
+                max: corner.map(|at| at + width_m),
+            },
+        }
+    }
+}
+
 impl Hold {
-    /// Of a shift at the truth, where every point is paired with itself: τ plays no part.
+    /// Of a shift at the truth, with pairs up to the chapter's τ, whatever that of the map is.
     fn of(scene: &TerrainScene) -> Self {
         let pose = scene.information(TerrainSettings::default().tau_m);
         let shift = pose.of_shift();

@@ -4,11 +4,12 @@ use kit::model::{Fact, Outcome, Standing};
 use kit::ticks::signed;
 
 use super::landscape::{Ball, End};
+use super::rests::{Rests, Scatter};
 use super::settings::{Place, Settings};
 use super::terrains::Terrains;
 
 /// What became of the balls, with the numbers.
-pub fn outcome(terrains: &Terrains, settings: &Settings) -> Outcome {
+pub fn outcome(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Outcome {
     let (icp, ndt) = (&terrains.icp.ball, &terrains.ndt.ball);
     let (standing, verdict) = match (icp.is_home(), ndt.is_home()) {
         (true, true) => (Standing::Good, "both arrive"),
@@ -16,17 +17,25 @@ pub fn outcome(terrains: &Terrains, settings: &Settings) -> Outcome {
         (true, false) => (Standing::Bad, "NDT sticks"),
         (false, false) => (Standing::Bad, "both stick"),
     };
-    let sentence = format!(
+    let mut sentence = format!(
         "Dropped at {}, ICP's ball {}. NDT's ball {}.",
         shift(settings.probe_m),
         rest(icp),
         rest(ndt),
     );
+    let scatter = rests.scatter();
+    if scatter.count > 1 {
+        let [x, y] = scatter.deviation_m.map(|m| 100.0 * m);
+        sentence += &format!(
+            " {} dropped sweeps rest {x:.1} cm apart along x and {y:.1} cm along y (standard deviations).",
+            scatter.count
+        );
+    }
     Outcome {
         standing,
         verdict: verdict.to_owned(),
         sentence,
-        facts: facts(terrains),
+        facts: facts(terrains, &scatter, settings),
     }
 }
 
@@ -46,14 +55,14 @@ fn rest(ball: &Ball) -> String {
     }
 }
 
-fn facts(terrains: &Terrains) -> Vec<Fact> {
+fn facts(terrains: &Terrains, scatter: &Scatter, settings: &Settings) -> Vec<Fact> {
     let off = |label: &'static str, id, [x, y]: [f64; 2]| {
         Fact::new(id, label, pr_geom::math::norm2(x, y), "m", 3)
     };
     let (icp, ndt, hold) = (&terrains.icp, &terrains.ndt, &terrains.information);
     let [firm, loose] = hold.eigenvalues_per_cm2;
     let known = |label, id, value| Fact::new(id, label, value, "1/cm²", 2);
-    vec![
+    let mut facts = vec![
         Fact::new(
             "icp_cost_m2",
             "ICP cost at the cross hair",
@@ -96,14 +105,30 @@ fn facts(terrains: &Terrains) -> Vec<Fact> {
             "",
             0,
         ),
-    ]
+        Fact::count(
+            "partners_changing",
+            "partners about to change",
+            terrains.pairing_at(settings.probe_m).points.len() as f64,
+        ),
+        Fact::count("bells", "NDT's bells", terrains.bells().len() as f64),
+        Fact::count("rests", "sweeps dropped", scatter.count as f64),
+    ];
+    if scatter.count > 1 {
+        let [x, y] = scatter.deviation_m.map(|m| 100.0 * m);
+        facts.extend([
+            Fact::new("rests_std_x_cm", "their rests scatter along x", x, "cm", 2),
+            Fact::new("rests_std_y_cm", "their rests scatter along y", y, "cm", 2),
+        ]);
+    }
+    facts
 }
 
 /// A text that stands for the picture.
-pub fn summary(terrains: &Terrains, settings: &Settings) -> String {
+pub fn summary(terrains: &Terrains, rests: &Rests, settings: &Settings) -> String {
     let place = match settings.place {
-        Place::Room => "a room",
-        Place::Corridor => "a corridor",
+        Place::Room => "a room, over its own points",
+        Place::Corridor => "a corridor without doors, over a map that was measured apart",
+        Place::OwnCorridor => "the Apartment's corridor, over its own points",
     };
     let (icp, ndt) = (&terrains.icp, &terrains.ndt);
     let [firm, loose] = terrains.information.eigenvalues_per_cm2;
@@ -113,6 +138,7 @@ pub fn summary(terrains: &Terrains, settings: &Settings) -> String {
          NDT's score goes up to {ndt_high:.3} and is highest at {ndt_low}. \
          At the cross hair the cost is {cost:.4} square metres and the score {score:.3}. \
          {balls} \
+         At the cross hair {changing} points are about to change their partner, and {bells} bells make up NDT's map. \
          The information of a shift at the truth is {firm:.2} per square centimetre in its firmest \
          direction and {loose:.2} in its loosest, which lies at {angle}° from x.",
         cells = settings.cells,
@@ -122,7 +148,9 @@ pub fn summary(terrains: &Terrains, settings: &Settings) -> String {
         ndt_low = shift(ndt.lowest_m),
         cost = icp.at_probe(),
         score = -ndt.at_probe(),
-        balls = outcome(terrains, settings).sentence,
+        balls = outcome(terrains, rests, settings).sentence,
+        changing = terrains.pairing_at(settings.probe_m).points.len(),
+        bells = terrains.bells().len(),
         angle = signed(terrains.information.directions_deg[1], 0),
     )
 }

@@ -2,15 +2,26 @@
 
 use kit::scene::{Aspect, ColorBar, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
-use super::{Moment, shift_axis};
+use super::{Looked, Moment, shift_axis};
 use crate::model::landscape::Landscape;
 use crate::model::settings::Colors;
 use crate::spec::HALF_SPAN_M;
 
-/// ICP's cost; dark is low.
-pub fn icp(landscape: &Landscape, moment: Moment) -> Panel {
+/// ICP's cost; dark is low. The dropped sweeps fly over it.
+pub fn icp(landscape: &Landscape, moment: Moment, rests_m: &[[f64; 2]]) -> Panel {
     let title = |height: f64| format!("ICP cost {height:.4} m²");
-    map("icp", &title, "m²", landscape, moment)
+    let mut panel = map("icp", &title, "m²", landscape, moment);
+    if !rests_m.is_empty() {
+        let halo_and_dot = [(Tone::Paper, 3.0), (Tone::Posterior, 1.75)];
+        panel.layers.extend(
+            halo_and_dot.map(|(tone, radius_px)| {
+                Layer::points(rests_m.to_vec(), Mark::Dot, tone, radius_px)
+            }),
+        );
+        let entry = LegendEntry::mark("dropped sweeps", Tone::Posterior, Mark::Dot);
+        panel.legend.push(entry);
+    }
+    panel
 }
 
 /// NDT's score upside down, so that both balls descend; dark is low.
@@ -29,12 +40,14 @@ fn map(
 ) -> Panel {
     let mut layers = vec![Layer::Raster(landscape.raster.clone())];
     layers.extend(cross_hair(moment.probe_m, Stroke::Solid));
-    let title = match moment.hover_m {
-        Some(at) => {
+    let title = match moment.looked {
+        Looked::Pointer(at) => {
             layers.extend(cross_hair(at, Stroke::Dotted));
             format!("{} under the pointer", title(landscape.value_near(at)))
         }
-        None => format!("{} at the cross hair", title(landscape.at_probe())),
+        Looked::CrossHair | Looked::Ball => {
+            format!("{} at the cross hair", title(landscape.at_probe()))
+        }
     };
     layers.extend(haloed_line(&landscape.ball.path_m, Stroke::Dotted));
     let step = moment.step.min(landscape.ball.path_m.len() - 1);

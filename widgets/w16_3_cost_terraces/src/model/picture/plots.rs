@@ -1,15 +1,21 @@
-//! The slices through the cross hair, and the information at the truth.
+//! The slices through the cross hair, and the information at the truth over the rests of many sweeps.
 
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
-use kit::ticks::signed;
-use pr_geom::math;
-
 use super::{Moment, shift_axis};
+use crate::model::rests::Rests;
 use crate::model::terrains::Terrains;
+use kit::ticks::signed;
 
 /// A vertical axis never spans less than this, in m² or in score: flat ground looks flat.
 const LEAST_SPAN: f64 = 1e-3;
+
+/// The picture of the rests reaches this far from the truth in every place, cm: what is a dot in the
+/// room is not drawn larger than the needle of the corridor.
+const RESTS_SPAN_CM: f64 = 4.0;
+
+/// Beside the ellipse of one standard deviation stands that of so many.
+const MANY_DEVIATIONS: f64 = 3.0;
 
 /// Which landscape is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,12 +56,12 @@ pub fn slice(terrains: &Terrains, moment: Moment, measure: Measure, along: Along
         .iter()
         .map(|[at, height]| [*at, sign * height])
         .collect();
-    let low = curve
-        .iter()
-        .map(|[_, value]| *value)
-        .fold(f64::INFINITY, f64::min);
-    let high = curve.iter().map(|[_, value]| *value).fold(low, f64::max);
-    let high = high.max(low + LEAST_SPAN);
+    // Both slices of a landscape share the axis of the whole, so that a flat one looks flat.
+    let [low, high] = match measure {
+        Measure::Icp => landscape.range,
+        Measure::Ndt => landscape.range.map(|height| -height),
+    };
+    let (low, high) = (low.min(high), low.max(high).max(LEAST_SPAN));
     let margin = 0.05 * (high - low);
     let (min, max) = (low - margin, high + margin);
     let upright = |at: f64, stroke, tone| Layer::Segments {
@@ -94,43 +100,44 @@ pub fn slice(terrains: &Terrains, moment: Moment, measure: Measure, along: Along
     }
 }
 
-/// What is known of a shift at the truth: the ellipse of the shifts that lie one standard deviation
-/// off, long where the walls say little.
-pub fn information(terrains: &Terrains) -> Panel {
+/// What is known of a shift at the truth, and where many sweeps rest: the ellipse of the shifts that
+/// lie one standard deviation off, long where the walls say little, over the rests. The scale is the
+/// same in every place.
+pub fn information(terrains: &Terrains, rests: &Rests) -> Panel {
     let half_axes = terrains.information.half_axes_cm;
-    let longest = half_axes
-        .map(|[x, y]| math::norm2(x, y))
-        .into_iter()
-        .fold(0.0, f64::max);
-    let axis = |label| Axis::new(label, -1.15 * longest, 1.15 * longest);
+    let axis = |label| Axis::new(label, -RESTS_SPAN_CM, RESTS_SPAN_CM);
+    let ellipse = |deviations: f64, stroke| Layer::Ellipse {
+        center: [0.0, 0.0],
+        half_axes: half_axes.map(|axis| axis.map(|v| deviations * v)),
+        stroke,
+        tone: Tone::Ink,
+    };
+    let rests_cm: Vec<_> = rests
+        .now_m()
+        .iter()
+        .map(|at| at.map(|m| 100.0 * m))
+        .collect();
+    let title = match rests_cm.len() {
+        0 => "Information at the truth".to_owned(),
+        count => format!("Where {count} sweeps rest"),
+    };
     Panel {
         id: "information",
-        title: "Information at the truth".to_owned(),
+        title,
         weight: Weight::Side,
         aspect: Aspect::Equal,
         x: axis("Δx (cm)"),
         y: axis("Δy (cm)"),
         layers: vec![
-            Layer::Segments {
-                segments: half_axes.map(|[x, y]| [[-x, -y], [x, y]]).to_vec(),
-                stroke: Stroke::Dotted,
-                tone: Tone::Posterior,
-                width_px: 1.5,
-            },
-            Layer::Ellipse {
-                center: [0.0, 0.0],
-                half_axes,
-                stroke: Stroke::Solid,
-                tone: Tone::Posterior,
-            },
+            Layer::points(rests_cm, Mark::Dot, Tone::Posterior, 2.0),
+            ellipse(MANY_DEVIATIONS, Stroke::Dotted),
+            ellipse(1.0, Stroke::Solid),
             Layer::points(vec![[0.0, 0.0]], Mark::Plus, Tone::Truth, 6.0),
         ],
         legend: vec![
-            LegendEntry::line(
-                "one σ, if pairs were independent",
-                Tone::Posterior,
-                Stroke::Solid,
-            ),
+            LegendEntry::mark("rests", Tone::Posterior, Mark::Dot),
+            LegendEntry::line("information, 1 σ", Tone::Ink, Stroke::Solid),
+            LegendEntry::line("3 σ", Tone::Ink, Stroke::Dotted),
             LegendEntry::mark("truth", Tone::Truth, Mark::Plus),
         ],
         color_bar: None,

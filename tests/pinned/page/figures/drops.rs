@@ -1,0 +1,27 @@
+//! Sweeps dropped in w16.3: how far their rests scatter.
+
+use ch16_lab::terrain::{Drops, TerrainScene};
+
+use super::terrain::scene_kind;
+
+/// How many the text drops.
+const COUNT: usize = 100;
+
+/// `count`, `room.std_x_cm`, `long.std_y_cm`.
+pub fn value(path: &[&str]) -> Option<f64> {
+    let (place, axis) = match *path {
+        ["count"] => return Some(COUNT as f64),
+        [place, "std_x_cm"] => (place, 0),
+        [place, "std_y_cm"] => (place, 1),
+        _ => return None,
+    };
+    let kind = scene_kind(place)?;
+    let scene = TerrainScene::new(kind, TerrainScene::DEFAULT_NDT_CELL_M);
+    let mut drops = Drops::new(kind);
+    let rests_cm: Vec<f64> = (0..COUNT)
+        .filter_map(|number| Some(100.0 * drops.path_m(&scene, number).last()?[axis]))
+        .collect();
+    let mean = rests_cm.iter().sum::<f64>() / COUNT as f64;
+    let squares = rests_cm.iter().map(|at| (at - mean).powi(2));
+    Some((squares.sum::<f64>() / (COUNT - 1) as f64).sqrt())
+}

@@ -1,0 +1,292 @@
+//! What stands beside the maps: partners at a ridge, bells, slices, and the rests of many sweeps.
+
+use kit::model::{Activity, Model, Motion, apply_preset};
+use kit::scene::{Layer, Panel, Tone};
+use w16_3_cost_terraces::model::CostTerraces;
+
+fn fact(model: &dyn Model, id: &str) -> f64 {
+    let facts = model.outcome().facts;
+    facts.iter().find(|fact| fact.id == id).expect(id).value
+}
+
+fn with(settings: &[(&str, f64)]) -> CostTerraces {
+    let mut model = CostTerraces::new();
+    for (id, value) in settings {
+        model.set(id, *value).unwrap();
+    }
+    model
+}
+
+fn preset(id: &str) -> CostTerraces {
+    let mut model = CostTerraces::new();
+    let preset = model.spec().presets.iter().find(|preset| preset.id == id);
+    apply_preset(&mut model, preset.expect(id)).unwrap();
+    model
+}
+
+fn panel(model: &dyn Model, id: &str) -> Panel {
+    let panels = model.scene().panels;
+    panels.into_iter().find(|panel| panel.id == id).expect(id)
+}
+
+/// Cells of the ICP map that lie below all of their neighbours along the row and the column.
+fn hollows(model: &dyn Model) -> usize {
+    let tables = model.tables();
+    let maps = tables.iter().find(|table| table.id == "maps").unwrap();
+    let heights: Vec<f64> = maps
+        .rows
+        .iter()
+        .map(|row| row[2].parse().unwrap())
+        .collect();
+    let n = 49;
+    assert_eq!(heights.len(), n * n);
+    let lower = |here: usize, there: usize| heights[here] < heights[there];
+    let inner = (1..n - 1).flat_map(|row| (1..n - 1).map(move |column| row * n + column));
+    let is_hollow = |&at: &usize| {
+        [at - 1, at + 1, at - n, at + n]
+            .iter()
+            .all(|&k| lower(at, k))
+    };
+    inner.filter(is_hollow).count()
+}
+
+#[test]
+fn it_opens_on_terraces_where_icps_ball_sticks() {
+    let model = CostTerraces::new();
+    assert_eq!(model.outcome().verdict, "ICP sticks");
+    assert_eq!(model.values().get("colours"), 1.0, "by rank");
+    let (opening, bowl) = (hollows(&model), hollows(&preset("bowl")));
+    assert!(
+        opening > 20 && bowl < 5,
+        "{opening} hollows, the bowl {bowl}"
+    );
+    let panels = model.spec().opening.panels;
+    assert!(panels.contains(&"sweep") && panels.contains(&"bells"));
+}
+
+/// Lines from a point to its next partner, and the points that light up.
+fn lit(model: &dyn Model) -> (usize, usize) {
+    let layers = panel(model, "sweep").layers;
+    let lines = layers.iter().filter_map(|layer| match layer {
+        Layer::Segments {
+            segments,
+            tone: Tone::Prediction,
+            ..
+        } => Some(segments.len()),
+        _ => None,
+    });
+    let points = layers.iter().filter_map(|layer| match layer {
+        Layer::Points {
+            points,
+            tone: Tone::Prediction,
+            ..
+        } => Some(points.len()),
+        _ => None,
+    });
+    (lines.sum(), points.sum())
+}
+
+#[test]
+fn at_a_ridge_the_partner_that_changes_lights_up() {
+    let mut model = with(&[("tau", 0.6), ("probe-x", 0.0), ("probe-y", 0.0)]);
+    assert_eq!(lit(&model), (0, 0), "at the truth every point has itself");
+    // Halfway between two points of the map, many points are about to change.
+    let mut seen = 0;
+    for step in 1..=13 {
+        model.set("probe-x", 0.1 * f64::from(step)).unwrap();
+        let (lines, points) = lit(&model);
+        assert_eq!(points as f64, fact(&model, "partners_changing"));
+        assert!(lines <= points, "one that loses its partner has no line");
+        seen += lines;
+    }
+    assert!(seen > 10, "{seen} on 1.3 m");
+}
+
+#[test]
+fn the_pointer_over_a_map_moves_the_sweep_that_is_paired() {
+    let mut model = with(&[("tau", 0.6)]);
+    assert_eq!(panel(&model, "sweep").title, "Partners at the cross hair");
+    assert_ne!(lit(&model), (0, 0));
+    model.hover("icp", Some([0.0, 0.0]));
+    assert_eq!(panel(&model, "sweep").title, "Partners under the pointer");
+    assert_eq!(lit(&model), (0, 0));
+    model.hover("icp", None);
+    // While the ball rolls, its partners are shown.
+    model.press("drop").unwrap();
+    model.press("step").unwrap();
+    assert_eq!(panel(&model, "sweep").title, "Partners at ICP's ball");
+}
+
+/// Longer half axes of the ellipses of one standard deviation, m.
+fn bells_m(model: &dyn Model) -> Vec<f64> {
+    let layers = panel(model, "bells").layers;
+    let ellipses = layers.iter().filter_map(|layer| match layer {
+        Layer::Ellipse { half_axes, .. } => Some(half_axes[0]),
+        _ => None,
+    });
+    // Each bell has the ellipse of two deviations below that of one.
+    ellipses
+        .skip(1)
+        .step_by(2)
+        .map(|[x, y]| x.hypot(y))
+        .collect()
+}
+
+#[test]
+fn the_bells_follow_the_cell_slider() {
+    let mut model = CostTerraces::new();
+    let median = |mut lengths: Vec<f64>| {
+        lengths.sort_by(f64::total_cmp);
+        lengths[lengths.len() / 2]
+    };
+    let mut last: Option<(usize, f64)> = None;
+    for cell_m in [0.3, 0.55, 1.0] {
+        model.set("ndt-cell", cell_m).unwrap();
+        let bells = bells_m(&model);
+        assert_eq!(bells.len() as f64, fact(&model, "bells"));
+        assert!(
+            panel(&model, "bells")
+                .title
+                .contains(&format!("{cell_m:.2} m"))
+        );
+        // Points spread evenly over a cell deviate by its width over the root of 12; few of them by more.
+        let length_m = median(bells.clone());
+        assert!(
+            length_m < cell_m / 2.0,
+            "{length_m} m in cells of {cell_m} m"
+        );
+        if let Some((count, shorter_m)) = last {
+            assert!(bells.len() < count && length_m > shorter_m);
+        }
+        last = Some((bells.len(), length_m));
+    }
+}
+
+#[test]
+fn along_the_corridor_the_answer_is_unknown() {
+    let cost = |x: f64, y: f64| {
+        let at = [("scene", 1.0), ("tau", 0.6), ("probe-x", x), ("probe-y", y)];
+        fact(&with(&at), "icp_cost_m2")
+    };
+    let (truth, along, across) = (cost(0.0, 0.0), cost(0.6, 0.0), cost(0.0, 0.6));
+    // The noise of 1 cm and points 8 cm apart cost a few tenths of a square decimetre anywhere.
+    assert!(
+        (along - truth).abs() < 0.002,
+        "{along} along, {truth} at the truth"
+    );
+    assert!(across > 50.0 * truth, "{across} across");
+    let corridor = preset("corridor");
+    assert!(
+        fact(&corridor, "icp_lowest_m") > 0.3,
+        "the lowest cell is anywhere"
+    );
+    // Dropped 0.6 m along, both balls stay about there.
+    for rest in ["icp_rest_m", "ndt_rest_m"] {
+        assert!(fact(&corridor, rest) > 0.4, "{rest}");
+    }
+    // On its own points the sweep knows its place.
+    assert_eq!(fact(&preset("own-corridor"), "icp_lowest_m"), 0.0);
+}
+
+#[test]
+fn a_hundred_sweeps_rest_round_in_the_room_and_in_a_streak_in_the_corridor() {
+    let spread = |id| {
+        let mut model = preset(id);
+        model.settle();
+        assert_eq!(fact(&model, "rests"), 100.0);
+        ["rests_std_x_cm", "rests_std_y_cm"].map(|axis| fact(&model, axis))
+    };
+    let [x, y] = spread("drop-room");
+    // As wide as the information says, 0.11 cm, within a factor of two.
+    for deviation in [x, y] {
+        assert!((0.05..0.22).contains(&deviation), "room {x} {y}");
+    }
+    let [x, y] = spread("drop-corridor");
+    assert!(x > 10.0 && y < 0.6, "corridor {x} {y}");
+}
+
+/// Where the dropped sweeps are on the map.
+fn flying(model: &dyn Model) -> Vec<[f64; 2]> {
+    let layers = panel(model, "icp").layers;
+    let dots = layers.iter().rev().find_map(|layer| match layer {
+        Layer::Points {
+            points,
+            tone: Tone::Posterior,
+            ..
+        } if points.len() > 1 => Some(points.clone()),
+        _ => None,
+    });
+    dots.unwrap_or_default()
+}
+
+#[test]
+fn drop_100_works_in_pieces_and_its_points_fly_to_rest() {
+    let mut model = with(&[("scene", 1.0)]);
+    model.press("drop-100").unwrap();
+    assert_eq!(model.values().get("drops"), 100.0);
+    for number in 1..=100 {
+        assert_eq!(model.work(), Activity::Busy);
+        assert_eq!(fact(&model, "rests"), f64::from(number));
+    }
+    assert_eq!(model.work(), Activity::Idle);
+    let start = flying(&model);
+    assert!(
+        start.iter().any(|at| at[1].abs() > 0.15),
+        "they start all round"
+    );
+    let mut frames = 0;
+    while model.advance(1.0 / 60.0) == Activity::Busy {
+        frames += 1;
+        assert!(frames < 60 * 10, "ten seconds and no rest");
+    }
+    assert!(frames > 60, "{frames} frames");
+    let rests = flying(&model);
+    assert!(
+        rests.iter().all(|at| at[1].abs() < 0.03),
+        "they rest between the walls"
+    );
+    // With reduced motion they are there at once.
+    let mut still = with(&[("scene", 1.0)]);
+    still.set_motion(Motion::Reduced);
+    still.press("drop-100").unwrap();
+    still.settle();
+    assert_eq!(flying(&still), rests);
+    assert_eq!(still.advance(1.0), Activity::Idle);
+}
+
+#[test]
+fn the_newest_scene_is_the_one_whose_sweeps_are_dropped() {
+    let mut model = CostTerraces::new();
+    model.set("drops", 100.0).unwrap();
+    for _ in 0..40 {
+        model.work();
+    }
+    model.set("scene", 1.0).unwrap();
+    assert_eq!(fact(&model, "rests"), 0.0, "those of the room are gone");
+    model.settle();
+    let at_once = with(&[("scene", 1.0), ("drops", 100.0)]);
+    let mut at_once = at_once;
+    at_once.settle();
+    assert_eq!(model.outcome(), at_once.outcome());
+    // Fewer are the first ones, and a slider of another matter drops none anew.
+    model.set("drops", 7.0).unwrap();
+    model.set("tau", 0.4).unwrap();
+    assert_eq!(fact(&model, "rests"), 7.0);
+    assert_eq!(model.work(), Activity::Idle);
+}
+
+#[test]
+fn slices_of_a_landscape_share_an_axis_and_the_ellipse_keeps_its_scale() {
+    let ellipse = |model: &dyn Model| {
+        let panel = panel(model, "information");
+        (panel.x, panel.y)
+    };
+    let usual = ellipse(&CostTerraces::new());
+    for spec in CostTerraces::new().spec().presets {
+        let model = preset(spec.id);
+        for [x, y] in [["icp-x", "icp-y"], ["ndt-x", "ndt-y"]] {
+            assert_eq!(panel(&model, x).y, panel(&model, y).y, "{}", spec.id);
+        }
+        assert_eq!(ellipse(&model), usual, "{}", spec.id);
+    }
+}
