@@ -272,19 +272,14 @@ const PRESETS: &[Preset] = &[
         id: "drop-room",
         label: "Drop 100 sweeps in the room",
         help: "They rest in a round heap a few millimetres wide, about as wide as the information says.",
-        set: &[("tau", 0.6), ("colours", 0.0), ("more", 1.0)],
+        set: &[("tau", 0.6), ("colours", 0.0)],
         then: &["drop-100"],
     },
     Preset {
         id: "drop-corridor",
         label: "Drop 100 sweeps in the corridor",
         help: "They rest in a streak along the walls, much longer than the needle of the information.",
-        set: &[
-            ("scene", 1.0),
-            ("tau", 0.6),
-            ("colours", 0.0),
-            ("more", 1.0),
-        ],
+        set: &[("scene", 1.0), ("tau", 0.6), ("colours", 0.0)],
         then: &["drop-100"],
     },
     Preset {

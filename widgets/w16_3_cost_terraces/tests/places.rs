@@ -139,27 +139,26 @@ fn the_bells_follow_the_cell_slider() {
         lengths.sort_by(f64::total_cmp);
         lengths[lengths.len() / 2]
     };
-    let mut last: Option<(usize, f64)> = None;
-    for cell_m in [0.3, 0.55, 1.0] {
+    let mut shorter_m = 0.0;
+    let mut counts = Vec::new();
+    for cell_m in [0.55, 0.8, 1.2] {
         model.set("ndt-cell", cell_m).unwrap();
         let bells = bells_m(&model);
+        counts.push(bells.len());
         assert_eq!(bells.len() as f64, fact(&model, "bells"));
+        let title = panel(&model, "bells").title;
+        assert!(title.contains(&format!("{cell_m:.2} m")), "{title}");
+        // Points spread evenly over a cell deviate by its width over the root of 12; few of them by
+        // more.
+        let length_m = median(bells);
+        let longest_m = cell_m / 2.0;
         assert!(
-            panel(&model, "bells")
-                .title
-                .contains(&format!("{cell_m:.2} m"))
+            (shorter_m..longest_m).contains(&length_m),
+            "{length_m} m in {cell_m} m"
         );
-        // Points spread evenly over a cell deviate by its width over the root of 12; few of them by more.
-        let length_m = median(bells.clone());
-        assert!(
-            length_m < cell_m / 2.0,
-            "{length_m} m in cells of {cell_m} m"
-        );
-        if let Some((count, shorter_m)) = last {
-            assert!(bells.len() < count && length_m > shorter_m);
-        }
-        last = Some((bells.len(), length_m));
+        shorter_m = length_m;
     }
+    assert!(counts[2] < counts[0], "{counts:?}");
 }
 
 #[test]
