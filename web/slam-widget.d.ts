@@ -61,8 +61,8 @@ export interface TheFullLapState {
 
 /** Cost terraces: every parameter. */
 export interface CostTerracesState {
-  /** Where the sweep was taken: in room A, or in the corridor. */
-  scene: 'room' | 'corridor';
+  /** Room A on its own points; a corridor without doors on a map that was measured apart; the Apartment's corridor, doors and all, on its own points. */
+  scene: 'room' | 'corridor' | 'own-corridor';
   /** ICP pairs a point with the nearest map point within τ; a point without a pair costs τ². 0.1 to 1.6 m. */
   tau: number;
   /** NDT fits one Gaussian to the map points of each cell of this width. 0.3 to 1.2 m. */
@@ -79,6 +79,8 @@ export interface CostTerracesState {
   'probe-x': number;
   /** Where the cross hair stands and the balls start, north of the truth. -1.3 to 1.3 m. */
   'probe-y': number;
+  /** So many sweeps, each with noise of its own, are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m. 0 to 100. */
+  drops: number;
   /** How many gradient steps both balls have taken. 0 to 400. */
   t: number;
   /** How fast the run plays. */
@@ -172,7 +174,7 @@ export interface WidgetStates {
 export interface WidgetButtons {
   'w16.1': 'play' | 'step' | 'reset' | 'defaults' | 'near' | 'quarter-turn' | 'between' | 'between-plane' | 'half-turn' | 'short-sighted';
   'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'bells' | 'sliding';
-  'w16.3': 'drop' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'turned';
+  'w16.3': 'drop' | 'drop-100' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'bowl' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'own-corridor' | 'drop-room' | 'drop-corridor' | 'turned';
   'w16.4': 'play' | 'step' | 'reset' | 'next-event' | 'defaults' | 'watch' | 'blurred' | 'rebuilt' | 'noisy' | 'wrong-loop' | 'open';
   'w16.5': 'play' | 'step' | 'reset' | 'defaults' | 'three-poses' | 'stiff' | 'unpinned' | 'square' | 'tangled';
 }
@@ -251,7 +253,7 @@ export interface SlamWidgetProperties {
   information: 'chapter' | 'exact' | undefined;
   t: number | undefined;
   future: boolean | undefined;
-  scene: 'room' | 'corridor' | undefined;
+  scene: 'room' | 'corridor' | 'own-corridor' | undefined;
   'ndt-cell': number | undefined;
   ndtCell: number | undefined;
   cells: number | undefined;
@@ -260,6 +262,7 @@ export interface SlamWidgetProperties {
   probeX: number | undefined;
   'probe-y': number | undefined;
   probeY: number | undefined;
+  drops: number | undefined;
   stiffness: number | undefined;
   graph: 'line' | 'square' | 'ring' | undefined;
   gap: number | undefined;
