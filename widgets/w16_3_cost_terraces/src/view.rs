@@ -15,10 +15,10 @@ pub struct TerracesView;
 impl View for TerracesView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let narrow = width < SIDE_BY_SIDE;
-        let most = if narrow { 250.0 } else { 300.0 };
+        let most = if narrow { 220.0 } else { 300.0 };
         let map = |id| slot(id, PlotHeight::Natural { most });
         // Room and corridor have other shapes; what stands below does not move for it.
-        let matched = |id| slot(id, PlotHeight::Fixed(if narrow { 160.0 } else { 230.0 }));
+        let matched = |id| slot(id, PlotHeight::Fixed(if narrow { 135.0 } else { 230.0 }));
         let cut = |id| slot(id, PlotHeight::Fixed(130.0));
         let stage = [
             [map("icp"), matched("sweep")],

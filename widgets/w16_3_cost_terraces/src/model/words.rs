@@ -27,7 +27,7 @@ pub fn outcome(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Outco
     if scatter.count > 1 {
         let [x, y] = scatter.deviation_m.map(|m| 100.0 * m);
         sentence += &format!(
-            " {} dropped sweeps rest {x:.1} cm apart along x and {y:.1} cm along y (standard deviations).",
+            " {} sweeps scatter by {x:.1} cm along x, {y:.1} cm along y.",
             scatter.count
         );
     }

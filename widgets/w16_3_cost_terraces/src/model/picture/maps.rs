@@ -27,7 +27,10 @@ pub fn icp(landscape: &Landscape, moment: Moment, rests_m: &[[f64; 2]]) -> Panel
 /// NDT's score upside down, so that both balls descend; dark is low.
 pub fn ndt(landscape: &Landscape, moment: Moment) -> Panel {
     let title = |height: f64| format!("NDT score {:.4}", -height);
-    map("ndt", &title, "−score", landscape, moment)
+    let mut panel = map("ndt", &title, "−score", landscape, moment);
+    // One legend for both maps, below the first.
+    panel.legend.clear();
+    panel
 }
 
 /// `title` puts the height that is pointed at into words.
