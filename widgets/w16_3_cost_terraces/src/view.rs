@@ -2,11 +2,14 @@
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
-use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
+use kit::view::{Arrangement, Column, Row, Slot, View};
+
+/// From this width on, a map has room beside it; with the controls beside the stage, too.
+const BESIDE: f32 = 440.0;
 
 /// The map takes this share of its row, and what is matched there the rest.
-const MAP_SHARE: f32 = 3.0;
-const MATCHED_SHARE: f32 = 2.0;
+const MAP_SHARE: f32 = 5.0;
+const MATCHED_SHARE: f32 = 4.0;
 
 /// Each map beside what the sweep is matched with, the slices below.
 #[derive(Clone, Copy, Debug, Default)]
@@ -14,11 +17,11 @@ pub struct TerracesView;
 
 impl View for TerracesView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
-        let narrow = width < SIDE_BY_SIDE;
-        let most = if narrow { 220.0 } else { 300.0 };
+        let narrow = width < BESIDE;
+        let most = if narrow { 220.0 } else { 235.0 };
         let map = |id| slot(id, PlotHeight::Natural { most });
         // Room and corridor have other shapes; what stands below does not move for it.
-        let matched = |id| slot(id, PlotHeight::Fixed(if narrow { 135.0 } else { 230.0 }));
+        let matched = |id| slot(id, PlotHeight::Fixed(if narrow { 135.0 } else { 190.0 }));
         let cut = |id| slot(id, PlotHeight::Fixed(130.0));
         let stage = [
             [map("icp"), matched("sweep")],
