@@ -11,6 +11,8 @@ export interface BasinExplorerState {
   dx: number;
   /** How far the first guess is moved away from the truth. -1.5 to 1.5 m. */
   dy: number;
+  /** What the two sweeps see: room A, almost a square, or a row of equal posts 0.5 m apart. */
+  scene: 'room' | 'fence';
   /** Distance between paired points, or distance along the wall's normal. */
   variant: 'point-to-point' | 'point-to-plane';
   /** A point farther than this from the target has no pair. 0.1 to 1.6 m. */
@@ -172,7 +174,7 @@ export interface WidgetStates {
 
 /** The buttons and presets of each widget, for `press`. */
 export interface WidgetButtons {
-  'w16.1': 'play' | 'step' | 'reset' | 'defaults' | 'near' | 'quarter-turn' | 'between' | 'between-plane' | 'half-turn' | 'short-sighted';
+  'w16.1': 'play' | 'step' | 'reset' | 'defaults' | 'near' | 'quarter-turn' | 'between' | 'between-plane' | 'half-turn' | 'fence' | 'short-sighted';
   'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'bells' | 'sliding';
   'w16.3': 'drop' | 'drop-100' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'bowl' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'own-corridor' | 'drop-room' | 'drop-corridor' | 'turned';
   'w16.4': 'play' | 'step' | 'reset' | 'next-event' | 'defaults' | 'watch' | 'blurred' | 'rebuilt' | 'noisy' | 'wrong-loop' | 'open';
@@ -234,6 +236,7 @@ export interface SlamWidgetProperties {
   heading: number | undefined;
   dx: number | undefined;
   dy: number | undefined;
+  scene: 'room' | 'fence' | 'room' | 'corridor' | 'own-corridor' | undefined;
   variant: 'point-to-point' | 'point-to-plane' | undefined;
   tau: number | undefined;
   trim: number | undefined;
@@ -253,7 +256,6 @@ export interface SlamWidgetProperties {
   information: 'chapter' | 'exact' | undefined;
   t: number | undefined;
   future: boolean | undefined;
-  scene: 'room' | 'corridor' | 'own-corridor' | undefined;
   'ndt-cell': number | undefined;
   ndtCell: number | undefined;
   cells: number | undefined;

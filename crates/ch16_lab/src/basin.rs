@@ -2,12 +2,15 @@
 //!
 //! Room A is 4.0 m × 3.8 m, almost a square. A sweep of it turned by a quarter fits nearly as well
 //! as the right way round, and ICP has no way to know: it goes down the slope on which it starts.
+//! A row of equal posts is the other place with false minima by its shape: one at each spacing.
 //! [`BasinScene::register_from`] runs one start, [`BasinMap`] a picture of many, filled bit by bit.
 
+mod fence;
 mod map;
 mod outcome;
 mod scene;
 
+pub use fence::FENCE_SPACING_M;
 pub use map::{BasinMap, BasinMapAxes, OffsetAxis};
 pub use outcome::{BasinOutcome, HOME_HEADING_DEG, Minimum};
-pub use scene::{BasinScene, BasinStart, SUCCESS_RADIUS_M};
+pub use scene::{BasinPlace, BasinScene, BasinStart, SUCCESS_RADIUS_M};

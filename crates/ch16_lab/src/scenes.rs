@@ -49,18 +49,8 @@ pub fn lidar(range_sigma_m: f64, max_range_m: f64) -> Lidar {
     })
 }
 
-/// A sweep in the Apartment, thinned to one point in each cell of `voxel_m`, in the sensor's frame.
+/// A sweep of a world, thinned to one point in each cell of `voxel_m`, in the sensor's frame.
 pub fn sweep(
-    lidar: &mut Lidar,
-    world_from_sensor: &SE2,
-    rng: &mut Rng,
-    voxel_m: f64,
-) -> PointCloud {
-    sweep_of(&World::apartment(), lidar, world_from_sensor, rng, voxel_m)
-}
-
-/// The same in any world.
-pub fn sweep_of(
     world: &World,
     lidar: &mut Lidar,
     world_from_sensor: &SE2,

@@ -84,7 +84,7 @@ impl BasinExplorer {
     #[must_use]
     pub fn new() -> Self {
         let values = Values::defaults(PARAMS);
-        let scene = BasinScene::with_seed(values.get("seed") as u32);
+        let scene = settings::scene(&values);
         let mut workspace = IcpWorkspace::new();
         let config = config(&values, variant(&values));
         let outcome = scene.register_from(&start(&values), &config, &mut workspace);
@@ -202,8 +202,8 @@ impl Model for BasinExplorer {
         }
         match id {
             "iteration" | "speed" | "more" => {}
-            "seed" => {
-                self.scene = BasinScene::with_seed(self.values.get("seed") as u32);
+            "seed" | "scene" => {
+                self.scene = settings::scene(&self.values);
                 self.basins.restart(&self.values);
                 self.paths.restart(&self.values);
                 self.register();

@@ -32,6 +32,25 @@ pub const PARAMS: &[ParamSpec] = &[
     offset("dx", "Δx of the guess", 0.55),
     offset("dy", "Δy of the guess", 0.45),
     ParamSpec {
+        id: "scene",
+        label: "scene",
+        unit: "",
+        kind: ParamKind::Choice {
+            options: &[
+                Choice {
+                    id: "room",
+                    label: "room",
+                },
+                Choice {
+                    id: "fence",
+                    label: "picket fence",
+                },
+            ],
+        },
+        default: 0.0,
+        help: "What the two sweeps see: room A, almost a square, or a row of equal posts 0.5 m apart.",
+    },
+    ParamSpec {
         id: "variant",
         label: "error that ICP reduces",
         unit: "",
@@ -157,6 +176,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     notice: &[
         "The room is almost square, so a quarter turn fits too: rmse 0.13 m there, 0.03 m at the truth.",
         "Between the right basin and the quarter turn, point to point settles on a third answer.",
+        "A row of equal posts has a minimum at each spacing: bands on the map, and no residual tells them apart.",
         "Point to plane needs fewer iterations, and its right basin is wider with no offset.",
         "The verdict uses the truth. A robot has only rmse and pairs, and both look fine when it is wrong.",
     ],
@@ -219,6 +239,19 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             set: &[
                 ("heading", 180.0),
                 ("dx", 0.0),
+                ("dy", 0.0),
+                ("iteration", 0.0),
+            ],
+            then: &["play"],
+        },
+        Preset {
+            id: "fence",
+            label: "Stand before a picket fence",
+            help: "Equal posts fit again after each spacing: it settles one post off, and fits as well as at home. The map has a band for each.",
+            set: &[
+                ("scene", 1.0),
+                ("heading", 0.0),
+                ("dx", 0.4),
                 ("dy", 0.0),
                 ("iteration", 0.0),
             ],

@@ -78,6 +78,7 @@ fn every_preset_does_what_its_button_says() {
         ("between", "another false minimum", Standing::Bad),
         ("between-plane", "right minimum", Standing::Good),
         ("half-turn", "half turn", Standing::Bad),
+        ("fence", "one post off", Standing::Bad),
         ("short-sighted", "another false minimum", Standing::Bad),
     ] {
         let mut model = BasinExplorer::new();
@@ -101,7 +102,7 @@ fn every_preset_does_what_its_button_says() {
             "{id} plays to the end"
         );
     }
-    assert_eq!(SPEC.presets.len(), 6, "a preset without a test");
+    assert_eq!(SPEC.presets.len(), 7, "a preset without a test");
 }
 
 #[test]

@@ -127,7 +127,7 @@ pub const PARAMS: &[ParamSpec] = &[
             max: HALF_SPAN_M,
             step: 0.05,
         },
-        default: 0.3,
+        default: 0.4,
         help: "Where the cross hair stands and the balls start, east of the truth.",
     },
     ParamSpec {
@@ -139,7 +139,7 @@ pub const PARAMS: &[ParamSpec] = &[
             max: HALF_SPAN_M,
             step: 0.05,
         },
-        default: 0.3,
+        default: 0.1,
         help: "Where the cross hair stands and the balls start, north of the truth.",
     },
     ParamSpec {

@@ -54,8 +54,8 @@ fn every_slider_takes_arrow_keys_by_its_own_step() {
             ("NDT cell", "ndt-cell", 0.6),
             ("heading offset", "heading", 1.0),
             ("cells a side", "cells", 57.0),
-            ("drop at Δx", "probe-x", 0.35),
-            ("drop at Δy", "probe-y", 0.35),
+            ("drop at Δx", "probe-x", 0.45),
+            ("drop at Δy", "probe-y", 0.15),
         ] {
             press_key(&mut harness, label, Key::ArrowRight);
             let now = value(&harness, id);
@@ -116,5 +116,5 @@ fn defaults_put_the_cross_hair_back() {
         .get_by_role_and_label(Role::Button, "Defaults")
         .click();
     harness.run_steps(2);
-    assert_eq!(value(&harness, "probe-x"), 0.3);
+    assert_eq!(value(&harness, "probe-x"), 0.4);
 }

@@ -2,7 +2,7 @@
 
 use pr_geom::{SE2, math};
 
-use super::SUCCESS_RADIUS_M;
+use super::{BasinPlace, FENCE_SPACING_M, SUCCESS_RADIUS_M};
 use ch16_slam2d::icp::{IcpSummary, StopReason};
 
 /// At the right place, a registration is home where its heading is this close to the truth, degrees.
@@ -20,6 +20,10 @@ pub enum Minimum {
     QuarterTurn,
     /// The room turned by a half.
     HalfTurn,
+    /// At the fence, one post beside the right place, to either side.
+    OnePost,
+    /// At the fence, two posts or more beside the right place.
+    MorePosts,
     /// Another false minimum, or on the way to one when the iterations ran out.
     Other,
 }
@@ -32,6 +36,8 @@ impl Minimum {
             Self::Right => 'R',
             Self::QuarterTurn => 'Q',
             Self::HalfTurn => 'H',
+            Self::OnePost => '1',
+            Self::MorePosts => '2',
             Self::Other => 'F',
         }
     }
@@ -43,14 +49,19 @@ impl Minimum {
             Self::Right => "right minimum",
             Self::QuarterTurn => "quarter turn",
             Self::HalfTurn => "half turn",
+            Self::OnePost => "one post off",
+            Self::MorePosts => "two posts off or more",
             Self::Other => "another false minimum",
         }
     }
 
-    /// All of them, for legends.
+    /// Those that a place has, for legends.
     #[must_use]
-    pub fn all() -> [Self; 4] {
-        [Self::Right, Self::QuarterTurn, Self::HalfTurn, Self::Other]
+    pub fn of(place: BasinPlace) -> [Self; 4] {
+        match place {
+            BasinPlace::Room => [Self::Right, Self::QuarterTurn, Self::HalfTurn, Self::Other],
+            BasinPlace::Fence => [Self::Right, Self::OnePost, Self::MorePosts, Self::Other],
+        }
     }
 }
 
@@ -94,6 +105,31 @@ impl BasinOutcome {
             inliers: found.inliers,
             iterations: found.iterations,
             stop: found.stop,
+        }
+    }
+
+    /// The same before the fence, which runs along x of the target: there the minima are told apart
+    /// by the posts between the end and the truth.
+    #[must_use]
+    pub fn judge_at_fence(truth: &SE2, found: &IcpSummary) -> Self {
+        let outcome = Self::judge(truth, found);
+        let off_m = found.pose.position() - truth.position();
+        let posts = (off_m.x / FENCE_SPACING_M).round();
+        let beside_m = math::norm2(off_m.x - posts * FENCE_SPACING_M, off_m.y);
+        let minimum = |home_deg: f64| {
+            if beside_m >= SUCCESS_RADIUS_M || outcome.error_deg.abs() > home_deg {
+                return Minimum::Other;
+            }
+            match posts.abs() {
+                0.0 => Minimum::Right,
+                1.0 => Minimum::OnePost,
+                _ => Minimum::MorePosts,
+            }
+        };
+        Self {
+            minimum: minimum(f64::INFINITY),
+            ending: minimum(HOME_HEADING_DEG),
+            ..outcome
         }
     }
 }

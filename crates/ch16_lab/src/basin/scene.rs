@@ -1,9 +1,9 @@
-//! The two sweeps and the registration from one start.
+//! The two sweeps of a place and the registration from one start.
 
 use pr_geom::SE2;
-use pr_sim::{LidarConfig, Rng};
+use pr_sim::{Lidar, LidarConfig, Rng, World};
 
-use super::BasinOutcome;
+use super::{BasinOutcome, fence};
 use crate::scenes::{self, MAP_POINTS_PER_CELL, NORMAL_RADIUS_M};
 use ch16_slam2d::cloud::{DenseMap, NearestTable, PointCloud};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace};
@@ -40,9 +40,52 @@ impl Default for BasinStart {
     }
 }
 
-/// Two sweeps of room A: the target with its map, and the source to be registered on it.
+/// Where the two sweeps are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum BasinPlace {
+    /// Room A, almost a square: false minima after a turn.
+    #[default]
+    Room,
+    /// In front of a row of equal posts: false minima after a shift.
+    Fence,
+}
+
+impl BasinPlace {
+    fn world(self) -> World {
+        match self {
+            Self::Room => World::apartment(),
+            Self::Fence => fence::world(),
+        }
+    }
+
+    fn lidar(self) -> Lidar {
+        match self {
+            Self::Room => scenes::lidar(RANGE_SIGMA_M, LidarConfig::default().max_range_m),
+            Self::Fence => fence::lidar(RANGE_SIGMA_M),
+        }
+    }
+
+    /// Farthest points that are kept of the target and of the source, m.
+    fn kept_m(self) -> [f64; 2] {
+        match self {
+            Self::Room => [f64::INFINITY; 2],
+            Self::Fence => fence::KEPT_M,
+        }
+    }
+
+    /// Where the target's sensor stands, and the source's, `world_from_sensor`.
+    fn sensors(self) -> [SE2; 2] {
+        match self {
+            Self::Room => [scenes::room_a(), SE2::new(2.5, 1.55, 0.35)],
+            Self::Fence => fence::sensors(),
+        }
+    }
+}
+
+/// Two sweeps of one place: the target with its map, and the source to be registered on it.
 #[derive(Clone, Debug)]
 pub struct BasinScene {
+    place: BasinPlace,
     world_from_target: SE2,
     target: PointCloud,
     map: NearestTable,
@@ -71,18 +114,28 @@ impl BasinScene {
     /// The chapter's scene with other range noise.
     #[must_use]
     pub fn with_seed(seed: u32) -> Self {
-        let world_from_target = scenes::room_a();
-        let world_from_source = SE2::new(2.5, 1.55, 0.35);
-        let mut lidar = scenes::lidar(RANGE_SIGMA_M, LidarConfig::default().max_range_m);
+        Self::at(BasinPlace::Room, seed)
+    }
+
+    /// The same in another place.
+    #[must_use]
+    pub fn at(place: BasinPlace, seed: u32) -> Self {
+        let [world_from_target, world_from_source] = place.sensors();
+        let world = place.world();
+        let [target_kept_m, source_kept_m] = place.kept_m();
+        let mut lidar = place.lidar();
         let mut rng = Rng::new(seed);
-        let mut sweep = |world_from_sensor: &SE2, voxel_m: f64| {
-            scenes::sweep(&mut lidar, world_from_sensor, &mut rng, voxel_m)
+        let mut sweep = |world_from_sensor: &SE2, voxel_m: f64, kept_m: f64| -> PointCloud {
+            let cloud = scenes::sweep(&world, &mut lidar, world_from_sensor, &mut rng, voxel_m);
+            let near = cloud.iter();
+            near.filter(|point| point.coords.norm() < kept_m).collect()
         };
-        let mut target = sweep(&world_from_target, TARGET_VOXEL_M);
-        let source = sweep(&world_from_source, SOURCE_VOXEL_M);
+        let mut target = sweep(&world_from_target, TARGET_VOXEL_M, target_kept_m);
+        let source = sweep(&world_from_source, SOURCE_VOXEL_M, source_kept_m);
         target.estimate_normals(NORMAL_RADIUS_M);
         let map = DenseMap::from_cloud(&target, MAP_CELL_M, MAP_POINTS_PER_CELL);
         Self {
+            place,
             world_from_target,
             map: Self::table(map),
             target,
@@ -106,6 +159,12 @@ impl BasinScene {
             max_iters: Self::MAX_ITERS,
             ..IcpConfig::default()
         }
+    }
+
+    /// Where the sweeps were taken.
+    #[must_use]
+    pub fn place(&self) -> BasinPlace {
+        self.place
     }
 
     /// Points of the target in its sensor's frame, with normals.
@@ -132,7 +191,7 @@ impl BasinScene {
         self.truth
     }
 
-    /// Where the target's sensor stood in the Apartment, `world_from_target`.
+    /// Where the target's sensor stood in its world, `world_from_target`.
     #[must_use]
     pub fn world_from_target(&self) -> SE2 {
         self.world_from_target
@@ -168,7 +227,10 @@ impl BasinScene {
     ) -> BasinOutcome {
         let guess = self.guess(start);
         let found = Icp::new(&self.source, &self.map, guess, config, workspace).run();
-        BasinOutcome::judge(&self.truth, &found)
+        match self.place {
+            BasinPlace::Room => BasinOutcome::judge(&self.truth, &found),
+            BasinPlace::Fence => BasinOutcome::judge_at_fence(&self.truth, &found),
+        }
     }
 
     /// The outcomes of a sweep over headings with the offsets of `start`, one after the other.
@@ -186,5 +248,37 @@ impl BasinScene {
             };
             self.register_from(&start, config, workspace)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::basin::{FENCE_SPACING_M, Minimum};
+
+    #[test]
+    fn before_the_fence_there_is_a_minimum_at_each_spacing() {
+        let scene = BasinScene::at(BasinPlace::Fence, BasinScene::SEED);
+        let config = BasinScene::config(IcpVariant::PointToPoint, 0.7);
+        let mut workspace = IcpWorkspace::new();
+        for posts in -2_i32..=2 {
+            let start = BasinStart {
+                heading_deg: 0.0,
+                // Beside the minimum, by less than half a spacing.
+                dx_m: f64::from(posts) * FENCE_SPACING_M + 0.15,
+                dy_m: 0.1,
+            };
+            let end = scene.register_from(&start, &config, &mut workspace);
+            let expected = [Minimum::Right, Minimum::OnePost, Minimum::MorePosts];
+            assert_eq!(
+                end.ending,
+                expected[posts.unsigned_abs() as usize],
+                "{end:?}"
+            );
+            let off_m = f64::from(posts.abs()) * FENCE_SPACING_M;
+            // 3 cm: noise of 1.2 cm a point, and posts that only one of the sweeps sees.
+            assert!((end.error_m - off_m).abs() < 0.03, "{posts}: {end:?}");
+            assert!(end.rmse < 0.06, "it fits as well as at home: {end:?}");
+        }
     }
 }

@@ -254,7 +254,7 @@ impl Sweeper {
     }
 
     fn sweep(&mut self, world_from_sensor: &SE2, rng: &mut Rng) -> PointCloud {
-        let sweep = scenes::sweep_of(
+        let sweep = scenes::sweep(
             &self.world,
             &mut self.lidar,
             world_from_sensor,

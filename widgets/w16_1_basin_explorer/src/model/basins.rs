@@ -164,8 +164,8 @@ pub fn spot_of(values: &Values) -> [f64; 2] {
 pub fn class(minimum: Minimum) -> u8 {
     match minimum {
         Minimum::Right => 0,
-        Minimum::QuarterTurn => 1,
-        Minimum::HalfTurn => 2,
+        Minimum::QuarterTurn | Minimum::OnePost => 1,
+        Minimum::HalfTurn | Minimum::MorePosts => 2,
         Minimum::Other => 3,
     }
 }

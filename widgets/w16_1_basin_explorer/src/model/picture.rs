@@ -1,6 +1,6 @@
 //! The panels: the two sweeps, the two basin maps, the curve over the iterations.
 
-use ch16_lab::basin::{Minimum, OffsetAxis};
+use ch16_lab::basin::{BasinPlace, Minimum, OffsetAxis};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{IcpVariant, Pair};
 use kit::chart::{Series, TimeChart};
@@ -21,8 +21,13 @@ const POINTS_PER_TRAIL: usize = 11;
 /// Room around a basin map: a mark at its edge is shown whole, ° and m.
 const BASIN_ROOM: [f64; 2] = [12.0, 0.15];
 
-/// Neighbouring points of a sweep farther apart than this lie on different walls, m.
-const WALL_GAP_M: f64 = 0.6;
+/// Neighbouring points of a sweep farther apart than this lie on different walls, or posts, m.
+const fn wall_gap_m(place: BasinPlace) -> f64 {
+    match place {
+        BasinPlace::Room => 0.6,
+        BasinPlace::Fence => 0.2,
+    }
+}
 
 pub fn scene(explorer: &BasinExplorer) -> Scene {
     Scene {
@@ -46,7 +51,10 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
 
     let mut layers = vec![
         Layer::Line {
-            points: outline(&scene.source().transformed(&scene.truth())),
+            points: outline(
+                &scene.source().transformed(&scene.truth()),
+                wall_gap_m(scene.place()),
+            ),
             stroke: Stroke::Dashed,
             tone: Tone::Truth,
             width_px: 1.5,
@@ -218,11 +226,11 @@ fn sensor(pose: SE2, mark: Mark, tone: Tone) -> Layer {
 }
 
 /// A sweep as lines along its walls, broken where neighbouring beams hit different ones.
-fn outline(cloud: &PointCloud) -> Vec<[f64; 2]> {
+fn outline(cloud: &PointCloud, gap_m: f64) -> Vec<[f64; 2]> {
     let mut line: Vec<[f64; 2]> = Vec::with_capacity(cloud.len() + 8);
     for p in cloud.iter() {
         if let Some([x, y]) = line.last()
-            && (p.x - x).abs().max((p.y - y).abs()) > WALL_GAP_M
+            && (p.x - x).abs().max((p.y - y).abs()) > gap_m
         {
             line.push([f64::NAN; 2]);
         }
@@ -277,7 +285,7 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
             radius_px: 7.0,
         });
     }
-    let legend = Minimum::all().map(|minimum| LegendEntry {
+    let legend = Minimum::of(explorer.scene.place()).map(|minimum| LegendEntry {
         label: format!("{} {}", minimum.letter(), minimum.name()),
         tone: Tone::Class(class(minimum)),
         mark: None,

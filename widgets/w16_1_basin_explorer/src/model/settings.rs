@@ -1,10 +1,20 @@
 //! What the values of the parameter list mean to the core.
 
-use ch16_lab::basin::{BasinScene, BasinStart, OffsetAxis};
+use ch16_lab::basin::{BasinPlace, BasinScene, BasinStart, OffsetAxis};
 use ch16_slam2d::icp::{IcpConfig, IcpVariant};
 use kit::param::Values;
 
 use crate::spec::HUBER_OFF_M;
+
+/// The two sweeps that the reader chose.
+pub fn scene(values: &Values) -> BasinScene {
+    let place = if values.get("scene") == 0.0 {
+        BasinPlace::Room
+    } else {
+        BasinPlace::Fence
+    };
+    BasinScene::at(place, values.get("seed") as u32)
+}
 
 /// The first guess that the reader chose.
 pub fn start(values: &Values) -> BasinStart {

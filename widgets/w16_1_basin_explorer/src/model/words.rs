@@ -1,6 +1,6 @@
 //! The result in words and numbers.
 
-use ch16_lab::basin::{BasinOutcome, Minimum, SUCCESS_RADIUS_M};
+use ch16_lab::basin::{BasinOutcome, BasinPlace, Minimum, SUCCESS_RADIUS_M};
 use ch16_slam2d::icp::StopReason;
 use kit::model::{Fact, Outcome, Standing};
 use pr_geom::{SE2, math};
@@ -57,8 +57,12 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
 pub fn summary(explorer: &BasinExplorer) -> String {
     let shown = explorer.shown();
     let truth = explorer.scene.truth();
+    let place = match explorer.scene.place() {
+        BasinPlace::Room => "one room",
+        BasinPlace::Fence => "one row of equal posts",
+    };
     format!(
-        "Two laser sweeps of one room, {} and {} points. At iteration {} of {} the source lies \
+        "Two laser sweeps of {place}, {} and {} points. At iteration {} of {} the source lies \
          {:.2} m from where it belongs, with {} pairs and rmse {:.3} m. {} Two basin maps show the \
          minimum reached from every heading and offset.",
         explorer.scene.target().len(),
