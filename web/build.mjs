@@ -25,8 +25,11 @@ import { brotli, withoutNames } from './wasm-file.mjs';
 const WEB = dirname(fileURLToPath(import.meta.url));
 const PKG = join(WEB, 'pkg');
 const PICTURE_WIDTH_PX = 900;
-/** All widgets together, wasm and glue, brotli −11. */
-const BUDGET_BYTES = 1_000_000;
+/**
+ * All widgets together, wasm and glue, brotli −11. The first five fit into 1.0 MB; those on what robots really run (the
+ * search, recognized places, sessions) came on top.
+ */
+const BUDGET_BYTES = 1_150_000;
 
 const [dist, profile] = process.argv.slice(2);
 if (dist === undefined || profile === undefined) {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::page::document::source;
 
 /// Every package with its layer; a package may use only packages of lower layers.
-const LAYERS: [(&str, u8); 18] = [
+const LAYERS: [(&str, u8); 19] = [
     ("crates/pr_geom", 0),
     ("crates/pr_sim", 1),
     ("crates/pr_grid", 1),
@@ -24,6 +24,7 @@ const LAYERS: [(&str, u8); 18] = [
     ("widgets/w16_3_cost_terraces", 4),
     ("widgets/w16_4_control_room", 4),
     ("widgets/w16_5_pose_graph_toy", 4),
+    ("widgets/w16_6_whole_window", 4),
     ("web", 5),
 ];
 

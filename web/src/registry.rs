@@ -7,12 +7,13 @@ use kit::spec::WidgetSpec;
 pub type Maker = fn() -> Shell;
 
 /// The widgets with their names.
-pub const WIDGETS: [(&str, Maker); 5] = [
+pub const WIDGETS: [(&str, Maker); 6] = [
     ("w16.1", w16_1_basin_explorer::widget),
     ("w16.2", w16_2_full_lap::widget),
     ("w16.3", w16_3_cost_terraces::widget),
     ("w16.4", w16_4_control_room::widget),
     ("w16.5", w16_5_pose_graph_toy::widget),
+    ("w16.6", w16_6_whole_window::widget),
 ];
 
 /// What never changes about them, in the same order.
@@ -22,6 +23,7 @@ const SPECS: [&WidgetSpec; WIDGETS.len()] = [
     &w16_3_cost_terraces::spec::SPEC,
     &w16_4_control_room::spec::SPEC,
     &w16_5_pose_graph_toy::spec::SPEC,
+    &w16_6_whole_window::spec::SPEC,
 ];
 
 /// What never changes about the widget of that name; nothing is computed for it.

@@ -9,3 +9,4 @@ pub mod results;
 pub mod samples;
 mod scenes;
 pub mod terrain;
+pub mod whole_window;

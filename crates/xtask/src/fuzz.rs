@@ -62,6 +62,7 @@ pub const TARGETS: [Target; 7] = [
             "widgets/w16_3_cost_terraces/src/model",
             "widgets/w16_4_control_room/src/model",
             "widgets/w16_5_pose_graph_toy/src/model",
+            "widgets/w16_6_whole_window/src/model",
         ],
     },
 ];

@@ -12,6 +12,7 @@ mod graph;
 mod lap;
 mod loops;
 mod ndt;
+mod search;
 mod setup;
 mod sweep;
 mod terrain;
@@ -47,6 +48,9 @@ impl Figures {
             ["example", "poses", what] => graph::value(what),
             ["basin", what @ ..] => basin::value(self.basin.get_or_init(BasinScene::new), what),
             ["ndt", start, what] => ndt::value(start, what),
+            ["search", case, what] => {
+                search::value(self.basin.get_or_init(BasinScene::new), case, what)
+            }
             ["terrain", what @ ..] => terrain::value(what),
             ["drops", what @ ..] => drops::value(what),
             ["ball", place, objective, reach_cm, dx_cm, dy_cm, "rest_m"] => {

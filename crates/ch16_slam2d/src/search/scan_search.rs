@@ -187,6 +187,37 @@ impl ScanSearch {
         scores.extend(poses.map(|pose| self.share(pose.bound)));
     }
 
+    /// Rows and columns of places at every heading.
+    #[must_use]
+    pub fn places(&self) -> [usize; 2] {
+        [self.lattice.rows as usize, self.lattice.columns as usize]
+    }
+
+    /// What the places cover, half a cell all round included: lowest x and y, highest x and y, m.
+    #[must_use]
+    pub fn extent_m(&self) -> [[f64; 2]; 2] {
+        let corner = |column: f64, row: f64| [self.lattice.x_m(column), self.lattice.y_m(row)];
+        let last = self.lattice.last();
+        [
+            corner(-0.5, -0.5),
+            corner(f64::from(last.column) + 0.5, f64::from(last.row) + 0.5),
+        ]
+    }
+
+    /// The scores of one row of [`ScanSearch::scores_at`], from the lowest x.
+    pub fn row_scores(&self, heading: usize, row: usize) -> impl Iterator<Item = f64> + '_ {
+        let at = LatticePose {
+            heading: heading as i32,
+            row: row as i32,
+            column: 0,
+        };
+        let finest = self.shapes.len() - 1;
+        (0..self.lattice.columns).map(move |column| {
+            let pose = self.bounded(LatticePose { column, ..at }, finest);
+            self.share(pose.bound)
+        })
+    }
+
     /// The same answer by scoring every pose of the window, for whoever does not believe it.
     #[must_use]
     pub fn exhaustive(&self) -> SearchResult {

@@ -94,6 +94,21 @@ fn is_tied(search: &ScanSearch, best: &ScoredPose) -> bool {
 }
 
 #[test]
+fn the_rows_of_a_heading_are_its_slice_and_lie_within_the_extent() {
+    let search = case(&mut Numbers(5));
+    let [rows, columns] = search.places();
+    let mut scores = Vec::new();
+    search.scores_at(0, &mut scores);
+    let by_row: Vec<f64> = (0..rows)
+        .flat_map(|row| search.row_scores(0, row))
+        .collect();
+    assert_eq!((by_row.len(), by_row), (rows * columns, scores));
+    let [low, high] = search.extent_m();
+    let best = search.exhaustive().best.pose;
+    assert!((low[0]..high[0]).contains(&best.x()) && (low[1]..high[1]).contains(&best.y()));
+}
+
+#[test]
 fn the_best_pose_and_the_runner_up_are_those_of_the_exhaustive_search_in_1000_cases() {
     let mut numbers = Numbers(16);
     let (mut ties, mut lonely) = (0, 0);

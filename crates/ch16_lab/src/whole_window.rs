@@ -1,0 +1,367 @@
+//! The scene of the basins searched whole: every heading and offset of a window, box by box.
+//!
+//! [`WindowSearch`] takes one step of [`ScanSearch`] at a time and remembers which boxes waited when,
+//! so that a picture can stand at any of them. What it finds is refined by the ICP that fails from the
+//! start. How far the other turns of the room are behind, searches of their own tell.
+
+mod surface;
+
+use std::sync::Arc;
+
+pub use surface::ScoreSurface;
+
+use ch16_slam2d::icp::{Icp, IcpVariant, IcpWorkspace};
+use ch16_slam2d::search::{
+    BoxFate, LikelihoodConfig, PoseBox, ScanSearch, ScoredPose, SearchCounts, SearchError,
+    SearchGoal, SearchMap, SearchNeighborhood, SearchResult, SearchWindow,
+};
+use pr_geom::SE2;
+
+use crate::basin::{BasinOutcome, BasinScene, BasinStart};
+
+/// The blur of the map in cells: that of [`LikelihoodConfig::default`].
+const BLUR_CELLS: f64 = 1.6;
+
+/// A turn of the room is looked for within so much of a quarter or half turn, degrees.
+const TURN_REACH_DEG: f64 = 15.0;
+
+/// What is searched, and from where ICP would start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WindowConfig {
+    /// The middle of the window, and ICP's start.
+    pub start: BasinStart,
+    /// Half the window's width along x and y, m.
+    pub half_width_m: f64,
+    /// Half its range of headings, degrees; 180 is the whole turn.
+    pub half_turn_deg: f64,
+    /// Side of a cell, m: the search is as fine.
+    pub cell_m: f64,
+}
+
+impl Default for WindowConfig {
+    fn default() -> Self {
+        Self {
+            start: BasinStart {
+                heading_deg: 75.0,
+                dx_m: 0.0,
+                dy_m: 0.0,
+            },
+            half_width_m: 1.5,
+            half_turn_deg: 180.0,
+            cell_m: LikelihoodConfig::default().cell_m,
+        }
+    }
+}
+
+impl WindowConfig {
+    /// τ of ICP from the start and from what the search finds, the one of the basins, m.
+    pub const TAU_M: f64 = 0.7;
+    /// A best pose that scores less is no match, as in the matcher for loops.
+    pub const MIN_SCORE: f64 = 0.5;
+
+    /// The map's cells and their blur.
+    #[must_use]
+    pub fn likelihood(&self) -> LikelihoodConfig {
+        LikelihoodConfig {
+            cell_m: self.cell_m,
+            sigma_m: BLUR_CELLS * self.cell_m,
+        }
+    }
+
+    fn window(&self, scene: &BasinScene) -> SearchWindow {
+        SearchWindow::around(
+            scene.guess(&self.start),
+            self.half_width_m,
+            self.half_turn_deg.to_radians(),
+        )
+    }
+}
+
+/// A box of poses, and between which steps it waited.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenBox {
+    /// Its poses and their bound.
+    pub poses: PoseBox,
+    /// It waits from this step on.
+    pub since: usize,
+    /// It was taken up by this step; none while it waits.
+    pub until: Option<usize>,
+    /// What became of it then.
+    pub fate: Option<BoxFate>,
+}
+
+impl SeenBox {
+    /// Whether it waits after that many steps.
+    #[must_use]
+    pub fn waits_after(&self, steps: usize) -> bool {
+        self.since <= steps && self.until.is_none_or(|until| until > steps)
+    }
+}
+
+/// The search after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WindowMoment {
+    /// The box that the step took up, by its number; none before the first step.
+    pub taken: Option<usize>,
+    /// What is looked for.
+    pub goal: SearchGoal,
+    /// The largest bound among what waits; nothing left scores more.
+    pub bound: Option<f64>,
+    /// The best pose so far.
+    pub best: Option<ScoredPose>,
+    /// The best one so far that is another place.
+    pub runner_up: Option<ScoredPose>,
+    /// The work so far.
+    pub counts: SearchCounts,
+}
+
+/// A search of the window under way.
+#[derive(Clone, Debug)]
+pub struct WindowSearch {
+    config: WindowConfig,
+    map: Arc<SearchMap>,
+    search: ScanSearch,
+    boxes: Vec<SeenBox>,
+    /// Numbers of the boxes that wait, in the order of the search.
+    waiting: Vec<usize>,
+    moments: Vec<WindowMoment>,
+}
+
+impl WindowSearch {
+    /// A search that has not begun.
+    ///
+    /// # Errors
+    /// Where the window or the cells cannot be searched.
+    pub fn new(scene: &BasinScene, config: WindowConfig) -> Result<Self, SearchError> {
+        let map = Arc::new(SearchMap::build(scene.target(), config.likelihood())?);
+        let search = ScanSearch::new(
+            Arc::clone(&map),
+            scene.source(),
+            &config.window(scene),
+            &SearchNeighborhood::default(),
+        )?
+        .with_min_score(WindowConfig::MIN_SCORE);
+        let mut window = Self {
+            config,
+            map,
+            search,
+            boxes: Vec::new(),
+            waiting: Vec::new(),
+            moments: Vec::new(),
+        };
+        window.wait_for_all(0);
+        let moment = window.moment(None, SearchGoal::Best);
+        window.moments.push(moment);
+        Ok(window)
+    }
+
+    /// Takes up one box; false once the search is finished.
+    pub fn step(&mut self) -> bool {
+        let Some(report) = self.search.step() else {
+            return false;
+        };
+        let step = self.moments.len();
+        let goal_before = self.moments[step - 1].goal;
+        let taken = if report.goal == goal_before {
+            self.waiting.pop().expect("what was taken up has waited")
+        } else {
+            // What was set aside waits once more.
+            self.waiting.clear();
+            self.boxes.push(SeenBox {
+                poses: report.taken,
+                since: step,
+                until: None,
+                fate: None,
+            });
+            self.boxes.len() - 1
+        };
+        let seen = &mut self.boxes[taken];
+        debug_assert_eq!(seen.poses, report.taken);
+        (seen.until, seen.fate) = (Some(step), Some(report.fate));
+        self.wait_for_all(step);
+        let moment = self.moment(Some(taken), report.goal);
+        self.moments.push(moment);
+        true
+    }
+
+    /// Searches to the end.
+    #[must_use]
+    pub fn run(mut self) -> Self {
+        while self.step() {}
+        self
+    }
+
+    /// What is searched.
+    #[must_use]
+    pub fn config(&self) -> &WindowConfig {
+        &self.config
+    }
+
+    /// The search itself.
+    #[must_use]
+    pub fn search(&self) -> &ScanSearch {
+        &self.search
+    }
+
+    /// Every box that has waited, in the order in which they came.
+    #[must_use]
+    pub fn boxes(&self) -> &[SeenBox] {
+        &self.boxes
+    }
+
+    /// The search before its first step and after each one.
+    #[must_use]
+    pub fn moments(&self) -> &[WindowMoment] {
+        &self.moments
+    }
+
+    /// The answer so far; none before a pose was found.
+    #[must_use]
+    pub fn result(&self) -> Option<SearchResult> {
+        self.search.result()
+    }
+
+    /// A search for the best pose of the window that is turned by about so much against `best`,
+    /// degrees; none where the window holds no such heading.
+    #[must_use]
+    pub fn rival(&self, scene: &BasinScene, best: &SE2, turn_deg: f64) -> Option<ScanSearch> {
+        let window = self.config.window(scene);
+        let heading = best.theta() + turn_deg.to_radians();
+        let off_center = SE2::new(0.0, 0.0, heading - window.center.theta()).theta();
+        if off_center.abs() > window.half_turn_rad {
+            return None;
+        }
+        let around = SearchWindow {
+            center: SE2::new(window.center.x(), window.center.y(), heading),
+            half_turn_rad: TURN_REACH_DEG.to_radians(),
+            ..window
+        };
+        let neighborhood = SearchNeighborhood::default();
+        ScanSearch::new(
+            Arc::clone(&self.map),
+            scene.source(),
+            &around,
+            &neighborhood,
+        )
+        .ok()
+    }
+
+    /// Boxes that are new to the search wait since `step`.
+    fn wait_for_all(&mut self, step: usize) {
+        let new = self.search.open_boxes().skip(self.waiting.len());
+        for poses in new {
+            self.waiting.push(self.boxes.len());
+            self.boxes.push(SeenBox {
+                poses,
+                since: step,
+                until: None,
+                fate: None,
+            });
+        }
+    }
+
+    fn moment(&self, taken: Option<usize>, goal: SearchGoal) -> WindowMoment {
+        let bounds = self.waiting.iter().map(|&k| self.boxes[k].poses.bound);
+        let result = self.search.result();
+        WindowMoment {
+            taken,
+            goal,
+            bound: bounds.max_by(f64::total_cmp),
+            best: result.map(|result| result.best),
+            runner_up: result.and_then(|result| result.runner_up),
+            counts: self.search.counts(),
+        }
+    }
+}
+
+/// ICP from a pose, point to point; its way is left in the workspace.
+#[must_use]
+pub fn refine(scene: &BasinScene, from: SE2, workspace: &mut IcpWorkspace) -> BasinOutcome {
+    let config = BasinScene::config(IcpVariant::PointToPoint, WindowConfig::TAU_M);
+    let found = Icp::new(scene.source(), scene.map(), from, &config, workspace).run();
+    BasinOutcome::judge(&scene.truth(), &found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::basin::Minimum;
+
+    fn searched(config: WindowConfig) -> WindowSearch {
+        WindowSearch::new(&BasinScene::new(), config).unwrap().run()
+    }
+
+    #[test]
+    fn from_where_icp_ends_in_the_quarter_turn_the_search_finds_home() {
+        let scene = BasinScene::new();
+        let window = searched(WindowConfig::default());
+        let best = window.result().unwrap().best.pose;
+        let mut workspace = IcpWorkspace::new();
+        let start = scene.guess(&window.config().start);
+        let alone = refine(&scene, start, &mut workspace);
+        assert_eq!(alone.ending, Minimum::QuarterTurn);
+        assert_eq!(refine(&scene, best, &mut workspace).ending, Minimum::Right);
+    }
+
+    #[test]
+    fn a_box_waits_until_it_is_taken_up_and_all_that_waits_is_remembered() {
+        let window = searched(WindowConfig {
+            cell_m: 0.15,
+            ..WindowConfig::default()
+        });
+        let (boxes, moments) = (window.boxes(), window.moments());
+        assert!(boxes.iter().all(|seen| seen.until.is_some()));
+        let mut again = WindowSearch::new(&BasinScene::new(), *window.config()).unwrap();
+        for (step, moment) in moments.iter().enumerate() {
+            let waiting = boxes.iter().filter(|seen| seen.waits_after(step)).count();
+            assert_eq!(waiting, again.search().open_boxes().len(), "step {step}");
+            assert_eq!(moment.taken.is_some(), step > 0);
+            again.step();
+        }
+        let end = moments.last().unwrap();
+        assert_eq!(
+            (end.bound, end.counts),
+            (None, window.result().unwrap().counts)
+        );
+    }
+
+    #[test]
+    fn nothing_that_was_dropped_could_have_beaten_the_best_pose() {
+        let window = searched(WindowConfig::default());
+        let best = window.result().unwrap().best.score;
+        for seen in window.boxes() {
+            if seen.fate == Some(BoxFate::Pruned) {
+                assert!(seen.poses.bound <= best);
+            }
+        }
+    }
+
+    #[test]
+    fn a_rival_is_the_best_pose_at_its_turn_and_no_better_than_the_best() {
+        let scene = BasinScene::new();
+        let window = searched(WindowConfig::default());
+        let best = window.result().unwrap().best;
+        for turn_deg in [90.0, -90.0, 180.0] {
+            let rival = window.rival(&scene, &best.pose, turn_deg).unwrap();
+            let rival = rival.run().unwrap().best;
+            let turned = best.pose.between(&rival.pose).theta().to_degrees();
+            let off = SE2::new(0.0, 0.0, (turned - turn_deg).to_radians()).theta();
+            assert!(off.to_degrees().abs() <= TURN_REACH_DEG + 1.0);
+            assert!(rival.score < best.score);
+        }
+        let narrow = searched(WindowConfig {
+            half_turn_deg: 90.0,
+            ..WindowConfig::default()
+        });
+        assert!(narrow.rival(&scene, &best.pose, -90.0).is_none());
+    }
+
+    #[test]
+    fn a_window_without_home_holds_no_place_that_fits() {
+        let narrow = searched(WindowConfig {
+            half_turn_deg: 60.0,
+            ..WindowConfig::default()
+        });
+        assert_eq!(narrow.result(), None);
+    }
+}

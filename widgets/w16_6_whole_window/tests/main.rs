@@ -1,0 +1,4 @@
+//! The search's rules and its view.
+
+mod model;
+mod view;
