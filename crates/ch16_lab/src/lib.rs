@@ -1,6 +1,7 @@
 //! The chapter's experiments, on the simulator and the estimator: whole laps of the Apartment with
 //! their judge, basins of attraction, cost landscapes, and samples to time and to try things on.
 
+pub mod ancestor;
 pub mod basin;
 pub mod lap;
 pub mod nudge;

@@ -3,6 +3,7 @@
 //! One seed is an anecdote. Everything here is about laps that have been run; who runs them, and on
 //! how many threads, is up to the caller.
 
+use crate::ancestor::{Ancestor, AncestorOutcome, AncestorTrace};
 use crate::lap::{LapRecord, LapSummary, WAY_SHARES, WayErrors};
 
 /// A column of the results table: whose errors.
@@ -14,6 +15,10 @@ pub enum Column {
     FrontEnd,
     /// The lap as configured.
     WithLoops,
+    /// Incremental maximum likelihood mapping, where it was run.
+    MaximumLikelihood,
+    /// The same with the variant for cycles, where it was run.
+    MaximumLikelihoodCycles,
 }
 
 /// A row of the results table: which error, m.
@@ -39,7 +44,22 @@ pub enum Row {
 
 impl Column {
     /// All columns, from left to right.
-    pub const ALL: [Self; 3] = [Self::Odometry, Self::FrontEnd, Self::WithLoops];
+    pub const ALL: [Self; 5] = [
+        Self::Odometry,
+        Self::FrontEnd,
+        Self::WithLoops,
+        Self::MaximumLikelihood,
+        Self::MaximumLikelihoodCycles,
+    ];
+
+    /// The column of an ancestor.
+    #[must_use]
+    pub fn of_ancestor(ancestor: Ancestor) -> Self {
+        match ancestor {
+            Ancestor::MaximumLikelihood => Self::MaximumLikelihood,
+            Ancestor::WithCycles => Self::MaximumLikelihoodCycles,
+        }
+    }
 }
 
 impl Row {
@@ -71,6 +91,8 @@ pub struct LapOutcome {
     pub false_acceptances: usize,
     /// Digest of all poses; see [`LapRecord::digest`].
     pub digest: u64,
+    /// The ancestors on the same drive, those that were run.
+    pub ancestors: [Option<AncestorOutcome>; Ancestor::ALL.len()],
 }
 
 impl LapOutcome {
@@ -84,7 +106,16 @@ impl LapOutcome {
             front_end_way: record.front_end_way_errors(),
             false_acceptances: record.lap.false_acceptances().count(),
             digest: record.digest(),
+            ancestors: [None; Ancestor::ALL.len()],
         }
+    }
+
+    /// The same with an ancestor run on the drive of `record`.
+    #[must_use]
+    pub fn with_ancestor(mut self, ancestor: Ancestor, record: &LapRecord) -> Self {
+        let trace = AncestorTrace::run(ancestor, &record.config, &record.drive);
+        self.ancestors[ancestor as usize] = Some(trace.outcome);
+        self
     }
 
     /// An entry of the results table, m; none where the table has a gap.
@@ -94,7 +125,28 @@ impl LapOutcome {
             Column::Odometry => return self.odometry_entry(row),
             Column::FrontEnd => (&self.front_end, &self.front_end_way),
             Column::WithLoops => (&self.lap, &self.lap_way),
+            Column::MaximumLikelihood => {
+                return self.ancestor_entry(Ancestor::MaximumLikelihood, row);
+            }
+            Column::MaximumLikelihoodCycles => {
+                return self.ancestor_entry(Ancestor::WithCycles, row);
+            }
         };
+        match row {
+            Row::EndError => Some(summary.keyframe_end_error_m),
+            Row::Rms => Some(summary.keyframe_rms_m),
+            Row::LastKeyframesMin => Some(summary.last_keyframes_m.0),
+            Row::LastKeyframesMax => Some(summary.last_keyframes_m.1),
+            Row::KeyframeMax => Some(summary.keyframe_max_m),
+            Row::HalfWay => Some(way.half_way_m()),
+            Row::HalfWaySigma => way.half_way_sigma_m,
+            Row::MapDisagreement => summary.map_disagreement_m,
+        }
+    }
+
+    /// An ancestor has no graph that knows its deviation.
+    fn ancestor_entry(&self, ancestor: Ancestor, row: Row) -> Option<f64> {
+        let AncestorOutcome { summary, way } = self.ancestors[ancestor as usize].as_ref()?;
         match row {
             Row::EndError => Some(summary.keyframe_end_error_m),
             Row::Rms => Some(summary.keyframe_rms_m),
@@ -140,6 +192,8 @@ impl LapStatistics {
             Column::Odometry => None,
             Column::FrontEnd => Some(outcome.front_end_way),
             Column::WithLoops => Some(outcome.lap_way),
+            Column::MaximumLikelihood => outcome.ancestors[0].map(|outcome| outcome.way),
+            Column::MaximumLikelihoodCycles => outcome.ancestors[1].map(|outcome| outcome.way),
         };
         let ways: Vec<WayErrors> = self.outcomes.iter().filter_map(way).collect();
         let mut medians = [0.0; WAY_SHARES + 1];
@@ -252,13 +306,18 @@ mod tests {
     }
 
     #[test]
-    fn odometry_has_the_two_entries_that_need_no_keyframes() {
+    fn odometry_has_the_two_entries_that_need_no_keyframes_and_an_ancestor_all_but_the_graphs() {
         let record = LapRunner::new().run(&LapConfig::default());
         let outcome = LapOutcome::of(&record);
         let entries_of = |column| {
             let rows = Row::ALL.into_iter();
             rows.filter_map(|row| outcome.entry(column, row)).count()
         };
-        assert_eq!(Column::ALL.map(entries_of), [2, 8, 8]);
+        assert_eq!(Column::ALL.map(entries_of), [2, 8, 8, 0, 0]);
+        let outcome = outcome.with_ancestor(Ancestor::WithCycles, &record);
+        let entries = Row::ALL.map(|row| outcome.entry(Column::MaximumLikelihoodCycles, row));
+        // All but the deviation, which only a graph knows.
+        assert_eq!(entries.iter().flatten().count(), 7);
+        assert_eq!(outcome.entry(Column::MaximumLikelihood, Row::Rms), None);
     }
 }

@@ -1,5 +1,6 @@
 //! The experiments together with what they judge: one binary, one module for each.
 
+mod ancestor;
 mod any_sensor;
 mod edge_information;
 mod exact_gate;

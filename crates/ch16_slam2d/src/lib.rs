@@ -1,8 +1,10 @@
 //! Scan matching and pose-graph SLAM: the system of the chapter.
 
+pub mod ancestor;
 pub mod chi_squared;
 pub mod cloud;
 pub mod digest;
+pub mod field;
 pub mod graph;
 pub mod icp;
 pub mod loops;

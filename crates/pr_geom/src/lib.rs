@@ -1,4 +1,5 @@
-//! Rigid motions of the plane (Chapter 3): the group SE(2), its tangent space, and angles.
+//! Rigid motions of the plane (Chapter 3): the group SE(2), its tangent space, and angles; and the seeded
+//! random numbers that all noise comes from.
 //!
 //! A pose is `(x, y, θ)`, in metres and radians, with θ in (−π, π]. A tangent vector is
 //! `(v_x, v_y, ω)`: **translation first**, everywhere in this workspace. Perturbations act on the
@@ -8,8 +9,10 @@
 
 pub mod angle;
 pub mod math;
+pub mod rng;
 pub mod se2;
 
 pub use angle::wrap_angle;
 pub use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
+pub use rng::Rng;
 pub use se2::{Rotation, SE2, Translation};

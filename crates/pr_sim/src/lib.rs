@@ -8,12 +8,11 @@ pub mod course;
 pub mod driver;
 pub mod lidar;
 pub mod motion;
-pub mod rng;
 pub mod world;
 
 pub use course::{Course, CourseError};
 pub use driver::{DriveStep, DriverConfig, WaypointDriver};
 pub use lidar::{Lidar, LidarConfig};
 pub use motion::{OdometryNoise, VelocityCommand};
-pub use rng::Rng;
+pub use pr_geom::Rng;
 pub use world::{Bounds, Room, Wall, World};

@@ -3,9 +3,8 @@
 
 use core::f64::consts::{PI, TAU};
 
-use pr_geom::{Point2, Rotation, SE2};
+use pr_geom::{Point2, Rng, Rotation, SE2};
 
-use crate::rng::Rng;
 use crate::world::{Viewpoint, World};
 
 /// A return at or beyond this share of the maximum range is taken for "nothing hit".

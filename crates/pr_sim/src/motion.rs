@@ -1,8 +1,6 @@
 //! Motion at a constant velocity command: the exact arc, and what wheel odometry makes of it.
 
-use pr_geom::{SE2, math};
-
-use crate::rng::Rng;
+use pr_geom::{Rng, SE2, math};
 
 /// Turn rates below this (rad/s) drive straight.
 const STRAIGHT_TRUTH: f64 = 1e-9;

@@ -1,10 +1,12 @@
 //! `slam2d lap`: a lap at one seed and noise factor, through the Apartment or another world.
 
+mod ancestor;
+
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use ch16_lab::lap::{Drive, LapRecord, LapRunner, LoopAttempt, TickReport};
+use ch16_lab::lap::{Choice, Drive, LapEstimator, LapRecord, LapRunner, LoopAttempt, TickReport};
 use clap::Args;
 use pr_geom::SE2;
 use robot_io::json_log::FrameLine;
@@ -14,7 +16,7 @@ use thiserror::Error;
 
 use crate::numbers;
 use crate::output::{print_json, say};
-use crate::trial::TrialArgs;
+use crate::trial::{TrialArgs, choice};
 use crate::world::WorldError;
 
 /// Drive the lap through the Apartment, or through another world, and estimate it.
@@ -28,8 +30,11 @@ pub struct LapArgs {
     noise: f64,
     #[command(flatten)]
     trial: TrialArgs,
-    /// The front end alone: no loop is closed.
-    #[arg(long)]
+    /// What estimates the lap.
+    #[arg(long, default_value = "graph", value_parser = choice::<LapEstimator>())]
+    estimator: LapEstimator,
+    /// The front end alone: no loop is closed; the same as --estimator front-end.
+    #[arg(long, conflicts_with = "estimator")]
     no_loops: bool,
     /// Write what the robot recorded into this file, a line of JSON for each scan: a log.
     #[arg(long, value_name = "FILE")]
@@ -37,6 +42,12 @@ pub struct LapArgs {
     /// Print one JSON object with every tick, keyframe and loop event.
     #[arg(long)]
     json: bool,
+}
+
+impl LapArgs {
+    fn is_without_loops(&self) -> bool {
+        self.no_loops || self.estimator == LapEstimator::FrontEnd
+    }
 }
 
 /// What `--json` prints; `max_shift`, `ate_before` and `ate_after` are null for a rejected loop.
@@ -95,6 +106,16 @@ pub enum LapError {
     /// The world cannot be driven.
     #[error(transparent)]
     World(#[from] WorldError),
+    /// The estimator has no use for an argument.
+    #[error(
+        "{argument} says nothing to the estimator {estimator}: leave it out, or take --estimator graph"
+    )]
+    OfTheGraph {
+        /// The argument.
+        argument: &'static str,
+        /// The estimator.
+        estimator: &'static str,
+    },
     /// The frames cannot be written.
     #[error("{}: {source}", path.display())]
     Frames {
@@ -111,7 +132,7 @@ pub enum LapError {
 /// Where the file of the world cannot be used, or that of the frames cannot be written.
 pub fn run(args: &LapArgs) -> Result<(), LapError> {
     let mut config = args.trial.trial()?.lap(args.seed, args.noise);
-    if args.no_loops {
+    if args.is_without_loops() {
         config = config.without_loops();
     }
     if let Some(path) = &args.frames {
@@ -120,6 +141,16 @@ pub fn run(args: &LapArgs) -> Result<(), LapError> {
             path: path.clone(),
             source,
         })?;
+    }
+    if let LapEstimator::Ancestor(ancestor) = args.estimator {
+        if let Some(argument) = args.trial.of_the_graph() {
+            return Err(LapError::OfTheGraph {
+                argument,
+                estimator: args.estimator.name(),
+            });
+        }
+        ancestor::print(ancestor, &config, args);
+        return Ok(());
     }
     let record = LapRunner::new().run(&config);
     if args.json {
@@ -158,7 +189,7 @@ impl LapJson {
         Self {
             seed: args.seed,
             noise: args.noise,
-            loops: !args.no_loops,
+            loops: !args.is_without_loops(),
             ticks: summary.ticks,
             keyframes: summary.keyframes,
             turn_node: lap.turn_node,

@@ -5,7 +5,8 @@ mod random;
 
 use std::num::NonZeroUsize;
 
-use ch16_lab::lap::LapRunner;
+use ch16_lab::ancestor::Ancestor;
+use ch16_lab::lap::{Choice, LapEstimator, LapRunner};
 use ch16_lab::results::{Column, LapOutcome, LapStatistics, Row};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -15,7 +16,7 @@ use thiserror::Error;
 
 use crate::numbers::{self, Seeds};
 use crate::output::{print_json, say};
-use crate::trial::{Trial, TrialArgs};
+use crate::trial::{Trial, TrialArgs, choice};
 use crate::world::WorldError;
 
 /// Most laps of one sweep.
@@ -42,17 +43,25 @@ pub struct SweepArgs {
         allow_hyphen_values = true
     )]
     noise: Vec<f64>,
+    /// What estimates the laps, separated by commas; each has its columns.
+    #[arg(
+        long,
+        default_value = "graph",
+        value_delimiter = ',',
+        value_parser = choice::<LapEstimator>()
+    )]
+    estimator: Vec<LapEstimator>,
     #[command(flatten)]
     trial: TrialArgs,
     /// Number of threads, at most one for each seed; all cores without it.
     #[arg(long, value_parser = numbers::threads, allow_hyphen_values = true)]
     threads: Option<NonZeroUsize>,
     /// Drive each lap once more with its start moved by 4e-16 of itself, and count other laps.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "estimator")]
     nudge: bool,
     /// Draw the configuration of each lap from the documented ranges, noise included, and check
     /// that every figure is finite.
-    #[arg(long, conflicts_with_all = ["nudge", "noise", "world", "matcher", "information"])]
+    #[arg(long, conflicts_with_all = ["nudge", "noise", "world", "matcher", "information", "estimator"])]
     random: bool,
     /// Print one JSON list, an object for each noise factor.
     #[arg(long)]
@@ -67,6 +76,14 @@ pub enum SweepFailure {
     TooMany {
         /// Seeds times noise factors.
         laps: u64,
+    },
+    /// The estimators have no use for an argument.
+    #[error("{argument} says nothing to {estimators}: leave it out, or add graph to --estimator")]
+    OfTheGraph {
+        /// The argument.
+        argument: &'static str,
+        /// The estimators.
+        estimators: String,
     },
     /// There is no such world.
     #[error(transparent)]
@@ -96,6 +113,9 @@ struct Level {
     false_acceptances: usize,
     /// Share of the runs with a false acceptance.
     false_run_share: f64,
+    /// Whether loops were looked for.
+    #[serde(skip)]
+    has_loops: bool,
     entries: Vec<Entry>,
     /// Medians of the errors at equal shares of the way, from its start to its end.
     along_the_way: AlongTheWay,
@@ -108,6 +128,10 @@ struct Level {
 struct AlongTheWay {
     front_end: Vec<f64>,
     with_loops: Vec<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    ml: Vec<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    ml_cycles: Vec<f64>,
 }
 
 /// A lap by its bits.
@@ -144,6 +168,15 @@ pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
     if laps > MAX_LAPS {
         return Err(SweepFailure::TooMany { laps });
     }
+    if !args.has_a_graph()
+        && let Some(argument) = args.trial.of_the_graph()
+    {
+        let estimators: Vec<&str> = args.estimator.iter().map(|e| e.name()).collect();
+        return Err(SweepFailure::OfTheGraph {
+            argument,
+            estimators: estimators.join(", "),
+        });
+    }
     let trial = args.trial.trial()?;
     let mut pool = rayon::ThreadPoolBuilder::new();
     if let Some(threads) = args.threads {
@@ -165,7 +198,7 @@ pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
         .enumerate()
         .map(|(k, &noise)| {
             let outcomes = by_seed.iter().map(|runs| runs[k]).collect();
-            Level::new(noise, args.seeds.first, &LapStatistics { outcomes })
+            Level::new(noise, args, &LapStatistics { outcomes })
         })
         .collect();
     if args.json {
@@ -182,7 +215,7 @@ fn all_runs(args: &SweepArgs, trial: &Trial) -> Vec<Vec<LapOutcome>> {
     let runs = (args.seeds.first..=args.seeds.last)
         .into_par_iter()
         .map_init(LapRunner::new, |runner, seed| {
-            let at = |&noise: &f64| LapOutcome::of(&runner.run(&trial.lap(seed, noise)));
+            let at = |&noise: &f64| args.outcome(runner, trial, seed, noise);
             let runs = args.noise.iter().map(at).collect();
             bar.inc(1);
             runs
@@ -199,8 +232,48 @@ fn progress_bar(seeds: u64) -> ProgressBar {
     ProgressBar::new(seeds).with_style(style)
 }
 
+impl SweepArgs {
+    fn has(&self, estimator: LapEstimator) -> bool {
+        self.estimator.contains(&estimator)
+    }
+
+    /// Whether anything of a pose graph is asked for: its front end will do.
+    fn has_a_graph(&self) -> bool {
+        self.has(LapEstimator::Graph) || self.has(LapEstimator::FrontEnd)
+    }
+
+    /// Whether a column is asked for; wheels always are.
+    fn shows(&self, column: Column) -> bool {
+        match column {
+            Column::Odometry => true,
+            Column::FrontEnd => self.has_a_graph(),
+            Column::WithLoops => self.has(LapEstimator::Graph),
+            Column::MaximumLikelihood | Column::MaximumLikelihoodCycles => self
+                .ancestors()
+                .any(|ancestor| Column::of_ancestor(ancestor) == column),
+        }
+    }
+
+    fn ancestors(&self) -> impl Iterator<Item = Ancestor> + '_ {
+        let all = Ancestor::ALL.into_iter();
+        all.filter(|&ancestor| self.has(LapEstimator::Ancestor(ancestor)))
+    }
+
+    fn outcome(&self, runner: &mut LapRunner, trial: &Trial, seed: u32, noise: f64) -> LapOutcome {
+        let mut config = trial.lap(seed, noise);
+        if !self.has(LapEstimator::Graph) {
+            config = config.without_loops();
+        }
+        let record = runner.run(&config);
+        let outcome = LapOutcome::of(&record);
+        self.ancestors().fold(outcome, |outcome, ancestor| {
+            outcome.with_ancestor(ancestor, &record)
+        })
+    }
+}
+
 impl Level {
-    fn new(noise: f64, first_seed: u32, statistics: &LapStatistics) -> Self {
+    fn new(noise: f64, args: &SweepArgs, statistics: &LapStatistics) -> Self {
         Self {
             noise,
             runs: statistics.outcomes.len(),
@@ -208,9 +281,10 @@ impl Level {
             accepted_loops: statistics.accepted_loops(),
             false_acceptances: statistics.false_acceptances(),
             false_run_share: statistics.false_run_share(),
-            entries: entries(statistics),
+            has_loops: args.has(LapEstimator::Graph),
+            entries: entries(args, statistics),
             along_the_way: AlongTheWay::of(statistics),
-            samples: samples(first_seed, statistics),
+            samples: samples(args.seeds.first, statistics),
         }
     }
 }
@@ -224,6 +298,8 @@ impl AlongTheWay {
         Self {
             front_end: medians(Column::FrontEnd),
             with_loops: medians(Column::WithLoops),
+            ml: medians(Column::MaximumLikelihood),
+            ml_cycles: medians(Column::MaximumLikelihoodCycles),
         }
     }
 }
@@ -240,9 +316,10 @@ fn samples(first_seed: u32, statistics: &LapStatistics) -> Vec<Sample> {
         .collect()
 }
 
-fn entries(statistics: &LapStatistics) -> Vec<Entry> {
+fn entries(args: &SweepArgs, statistics: &LapStatistics) -> Vec<Entry> {
     let cells = Column::ALL
         .into_iter()
+        .filter(|&column| args.shows(column))
         .flat_map(|column| Row::ALL.into_iter().map(move |row| (column, row)));
     cells
         .filter_map(|(column, row)| {
@@ -263,6 +340,8 @@ fn column_id<S: Serializer>(column: &Column, serializer: S) -> Result<S::Ok, S::
         Column::Odometry => "odometry",
         Column::FrontEnd => "front_end",
         Column::WithLoops => "with_loops",
+        Column::MaximumLikelihood => "ml",
+        Column::MaximumLikelihoodCycles => "ml_cycles",
     })
 }
 
@@ -285,6 +364,8 @@ fn column_title(column: Column) -> &'static str {
         Column::Odometry => "odometry",
         Column::FrontEnd => "front end",
         Column::WithLoops => "with loops",
+        Column::MaximumLikelihood => "ml",
+        Column::MaximumLikelihoodCycles => "ml, cycles",
     }
 }
 
@@ -301,8 +382,7 @@ fn row_title(row: Row) -> &'static str {
     }
 }
 
-fn print_level(level: &Level) {
-    say!("noise ×{}, {} runs", level.noise, level.runs);
+fn print_loops(level: &Level) {
     let [none, one, two, more] = level.loop_shares.map(|share| 100.0 * share);
     say!(
         "  loops closed: 0 in {none:.1} %, 1 in {one:.1} %, 2 in {two:.1} %, 3 or more in {more:.1} %"
@@ -313,6 +393,13 @@ fn print_level(level: &Level) {
         level.accepted_loops,
         100.0 * level.false_run_share
     );
+}
+
+fn print_level(level: &Level) {
+    say!("noise ×{}, {} runs", level.noise, level.runs);
+    if level.has_loops {
+        print_loops(level);
+    }
     say!(
         "  {:<12} {:<38} {:>8} {:>8} {:>8}",
         "",

@@ -13,15 +13,15 @@ use crate::world::{WorldArg, WorldError};
 /// The arguments that a lap and a sweep of laps have in common.
 #[derive(Args, Clone, Debug)]
 pub struct TrialArgs {
-    /// What registers scans, for the front end and for loops.
-    #[arg(long, default_value = "p2p", value_parser = choice::<LapMatcher>())]
-    matcher: LapMatcher,
+    /// What registers scans, for the front end and for loops; p2p without it.
+    #[arg(long, value_parser = choice::<LapMatcher>())]
+    matcher: Option<LapMatcher>,
     /// What registers scans for loops alone; that of the front end without it.
     #[arg(long, value_parser = choice::<LoopMatcher>())]
     loop_matcher: Option<LoopMatcher>,
-    /// What proposes loops.
-    #[arg(long, default_value = "nearby", value_parser = choice::<LapDetector>())]
-    detector: LapDetector,
+    /// What proposes loops; what is near in the graph without it.
+    #[arg(long, value_parser = choice::<LapDetector>())]
+    detector: Option<LapDetector>,
     /// What is driven: apartment, ring, or a file that ends in .json.
     #[arg(long, default_value = "apartment")]
     world: WorldArg,
@@ -42,6 +42,17 @@ pub struct Trial {
 }
 
 impl TrialArgs {
+    /// The first argument that says something only to a pose graph and its front end.
+    pub fn of_the_graph(&self) -> Option<&'static str> {
+        let said = [
+            (self.matcher.is_some(), "--matcher"),
+            (self.loop_matcher.is_some(), "--loop-matcher"),
+            (self.detector.is_some(), "--detector"),
+            (self.information.is_some(), "--information"),
+        ];
+        said.into_iter().find(|(is, _)| *is).map(|(_, name)| name)
+    }
+
     /// The laps, with the world read.
     ///
     /// # Errors
@@ -51,9 +62,9 @@ impl TrialArgs {
         let course = (!is_the_chapters).then(|| self.world.course());
         Ok(Trial {
             course: course.transpose()?,
-            matcher: self.matcher,
+            matcher: self.matcher.unwrap_or_default(),
             loop_matcher: self.loop_matcher,
-            detector: self.detector,
+            detector: self.detector.unwrap_or_default(),
             information: self.information,
         })
     }
@@ -81,7 +92,7 @@ impl Trial {
 }
 
 /// Takes the short names of a list, and shows its labels in the help.
-fn choice<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = C> {
+pub fn choice<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = C> {
     let values = C::ALL
         .iter()
         .map(|choice| PossibleValue::new(choice.name()).help(choice.label()));

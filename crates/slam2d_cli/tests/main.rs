@@ -1,6 +1,7 @@
 //! The command as a reader calls it: one binary, one module for each kind of call.
 
 mod commands;
+mod estimators;
 mod files;
 mod logs;
 mod optimize;

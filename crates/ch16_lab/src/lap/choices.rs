@@ -9,6 +9,7 @@ use ch16_slam2d::slam::SlamConfig;
 use pr_sim::Course;
 
 use super::config::LapConfig;
+use crate::ancestor::Ancestor;
 
 /// One of a short list of things with names.
 pub trait Choice: Copy + PartialEq + Sized + 'static {
@@ -189,6 +190,47 @@ impl Choice for LapDetector {
     }
 }
 
+/// What estimates the lap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LapEstimator {
+    /// Scan matching with a pose graph and its loops, the chapter's.
+    #[default]
+    Graph,
+    /// Scan matching alone.
+    FrontEnd,
+    /// Incremental maximum likelihood mapping or its variant for cycles.
+    Ancestor(Ancestor),
+}
+
+impl Choice for LapEstimator {
+    const ALL: &'static [Self] = &[
+        Self::Graph,
+        Self::FrontEnd,
+        Self::Ancestor(Ancestor::MaximumLikelihood),
+        Self::Ancestor(Ancestor::WithCycles),
+    ];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Graph => "graph",
+            Self::FrontEnd => "front-end",
+            Self::Ancestor(Ancestor::MaximumLikelihood) => "ml",
+            Self::Ancestor(Ancestor::WithCycles) => "ml-cycles",
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Graph => "pose graph with loops",
+            Self::FrontEnd => "scan matching alone",
+            Self::Ancestor(Ancestor::MaximumLikelihood) => "incremental maximum likelihood",
+            Self::Ancestor(Ancestor::WithCycles) => {
+                "incremental maximum likelihood with particles for cycles"
+            }
+        }
+    }
+}
+
 impl Choice for InformationFrame {
     const ALL: &'static [Self] = &[Self::Chapter, Self::Exact];
 
@@ -290,6 +332,7 @@ mod tests {
         check::<LapMatcher>();
         check::<LapDetector>();
         check::<LoopMatcher>();
+        check::<LapEstimator>();
         check::<InformationFrame>();
     }
 

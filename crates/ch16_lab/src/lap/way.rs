@@ -5,6 +5,7 @@
 
 use pr_geom::math;
 
+use super::Drive;
 use super::record::{LapRecord, LapTrace};
 
 /// Equal shares into which the way is cut.
@@ -43,37 +44,46 @@ impl LapRecord {
 
     fn way_errors_of(&self, trace: &LapTrace) -> WayErrors {
         let end = self.ticks();
-        let shares = self.shares_of_the_way(trace);
+        let ticks: Vec<usize> = trace.keyframes.iter().map(|k| k.tick).collect();
         let errors_m: Vec<f64> = trace.keyframe_errors_m(end).collect();
         let sigmas_m = trace.graph(end).pose_covariances().map(|covariances| {
             let positions = covariances.iter().map(|c| math::sqrt(c.m11 + c.m22));
             positions.collect::<Vec<f64>>()
         });
-        WayErrors {
-            errors_m: core::array::from_fn(|k| {
-                interpolated(&shares, &errors_m, k as f64 / WAY_SHARES as f64)
-            }),
-            half_way_sigma_m: sigmas_m
-                .ok()
-                .map(|sigmas| interpolated(&shares, &sigmas, 0.5)),
-        }
+        WayErrors::of(&self.drive, &ticks, &errors_m, sigmas_m.ok().as_deref())
     }
+}
 
-    /// Share of the way at which each keyframe was taken, ascending from 0.
-    fn shares_of_the_way(&self, trace: &LapTrace) -> Vec<f64> {
-        let place = |tick: usize| self.drive.truth(tick).position();
-        let mut way_m = vec![0.0];
-        for tick in 1..=self.ticks() {
-            let step = place(tick) - place(tick - 1);
-            way_m.push(way_m[tick - 1] + math::norm2(step.x, step.y));
+impl WayErrors {
+    /// Errors of keyframes along a drive: the tick and the error (m) of each, in order, and what the
+    /// estimator takes for its deviation (m) where it says.
+    pub(crate) fn of(
+        drive: &Drive,
+        ticks: &[usize],
+        errors_m: &[f64],
+        sigmas_m: Option<&[f64]>,
+    ) -> Self {
+        let shares = shares_of_the_way(drive, ticks);
+        Self {
+            errors_m: core::array::from_fn(|k| {
+                interpolated(&shares, errors_m, k as f64 / WAY_SHARES as f64)
+            }),
+            half_way_sigma_m: sigmas_m.map(|sigmas| interpolated(&shares, sigmas, 0.5)),
         }
-        let whole_m = way_m[self.ticks()];
-        let share = |way_m: f64| if whole_m > 0.0 { way_m / whole_m } else { 0.0 };
-        let keyframes = trace.keyframes.iter();
-        keyframes
-            .map(|keyframe| share(way_m[keyframe.tick]))
-            .collect()
     }
+}
+
+/// Share of the way at which each keyframe was taken, ascending from 0.
+fn shares_of_the_way(drive: &Drive, ticks: &[usize]) -> Vec<f64> {
+    let place = |tick: usize| drive.truth(tick).position();
+    let mut way_m = vec![0.0];
+    for tick in 1..=drive.ticks().len() {
+        let step = place(tick) - place(tick - 1);
+        way_m.push(way_m[tick - 1] + math::norm2(step.x, step.y));
+    }
+    let whole_m = way_m[drive.ticks().len()];
+    let share = |way_m: f64| if whole_m > 0.0 { way_m / whole_m } else { 0.0 };
+    ticks.iter().map(|&tick| share(way_m[tick])).collect()
 }
 
 /// The value at `share`, linear between keyframes; beyond the last one it is that one's.

@@ -5,7 +5,7 @@
 
 use core::f64::consts::TAU;
 
-use pr_geom::math;
+use crate::math;
 
 /// The state that stands for seed 0.
 const STATE_OF_SEED_ZERO: u32 = 0x9E37_79B9;

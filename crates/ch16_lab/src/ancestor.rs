@@ -1,0 +1,194 @@
+//! The ancestor on the drives of laps: the same frames, judged by the same truth.
+//!
+//! Its map, keyframes and noise follow from the lap's estimator, so that what differs is the method.
+
+use ch16_slam2d::ancestor::{AncestorConfig, CycleTest, CycleVerdict, IncrementalMapper};
+use ch16_slam2d::metrics::{DisagreementConfig, MapDisagreement, position_error_m, rms};
+use ch16_slam2d::slam::SlamConfig;
+use pr_geom::{SE2, math};
+
+use crate::lap::{Drive, Keyframe, LAST_KEYFRAMES, LapConfig, WayErrors};
+
+/// The two ancestors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Ancestor {
+    /// Incremental maximum likelihood mapping.
+    MaximumLikelihood,
+    /// The same with the variant for cycles.
+    WithCycles,
+}
+
+impl Ancestor {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::MaximumLikelihood, Self::WithCycles];
+
+    /// The mapper with the lengths and the noise of a lap's estimator; the particles' seed is the
+    /// drive's.
+    #[must_use]
+    pub fn config(self, lap: &LapConfig) -> AncestorConfig {
+        let slam = SlamConfig {
+            start: lap.drive.start,
+            scan: lap.drive.scan,
+            ..lap.slam.clone()
+        };
+        let alone = AncestorConfig::of(&slam);
+        match self {
+            Self::MaximumLikelihood => alone,
+            Self::WithCycles => alone.with_cycles(&slam, lap.drive.seed),
+        }
+    }
+}
+
+/// The rows of the results table for an ancestor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AncestorSummary {
+    /// Ticks of the lap.
+    pub ticks: usize,
+    /// Keyframes.
+    pub keyframes: usize,
+    /// Cycles that were closed.
+    pub cycles: usize,
+    /// Position error of dead reckoning at the end, m.
+    pub odometry_end_error_m: f64,
+    /// Root mean square position error of dead reckoning over the ticks, m.
+    pub odometry_rms_m: f64,
+    /// Position error of the last keyframe, m.
+    pub keyframe_end_error_m: f64,
+    /// Root mean square position error of the keyframes, m.
+    pub keyframe_rms_m: f64,
+    /// Largest position error of a keyframe, m.
+    pub keyframe_max_m: f64,
+    /// Smallest and largest position error of the last nine keyframes, m.
+    pub last_keyframes_m: (f64, f64),
+    /// Map self-disagreement at the end, m.
+    pub map_disagreement_m: Option<f64>,
+}
+
+/// What statistics need of an ancestor's lap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AncestorOutcome {
+    /// The rows of the results table.
+    pub summary: AncestorSummary,
+    /// Errors along the way; it has no deviations.
+    pub way: WayErrors,
+}
+
+/// The history of an ancestor on a drive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AncestorTrace {
+    /// Keyframes in order, with their truth.
+    pub keyframes: Vec<Keyframe>,
+    /// Their poses at the end, `world_from_body`.
+    pub poses: Vec<SE2>,
+    /// The estimate after every tick, `world_from_body`.
+    pub estimates: Vec<SE2>,
+    /// What the particles said, at every keyframe but the first.
+    pub tests: Vec<CycleTest>,
+    /// Rows of the results table.
+    pub outcome: AncestorOutcome,
+}
+
+impl AncestorTrace {
+    /// Runs an ancestor over a drive; `lap.drive` must describe it.
+    #[must_use]
+    pub fn run(ancestor: Ancestor, lap: &LapConfig, drive: &Drive) -> Self {
+        Self::of(IncrementalMapper::new(ancestor.config(lap)), drive)
+    }
+
+    /// Runs a mapper that has seen nothing over a drive.
+    #[must_use]
+    pub fn of(mut mapper: IncrementalMapper, drive: &Drive) -> Self {
+        let ticks = drive.ticks().len();
+        let mut estimates = Vec::with_capacity(ticks);
+        let mut tests = Vec::new();
+        for tick in 0..=ticks {
+            let report = mapper
+                .step_prepared(&drive.prepared(tick))
+                .expect("frames of a drive are usable");
+            tests.extend(report.cycle);
+            if tick > 0 {
+                estimates.push(report.estimate);
+            }
+        }
+        let keyframes: Vec<Keyframe> = mapper
+            .keyframes()
+            .iter()
+            .map(|keyframe| Keyframe {
+                node: keyframe.node,
+                tick: keyframe.frame,
+                truth: drive.truth(keyframe.frame),
+            })
+            .collect();
+        Self {
+            outcome: outcome(&mapper, &keyframes, &tests, drive),
+            poses: mapper.poses().to_vec(),
+            keyframes,
+            estimates,
+            tests,
+        }
+    }
+
+    /// Position errors of the keyframes, m.
+    pub fn keyframe_errors_m(&self) -> impl Iterator<Item = f64> + '_ {
+        let keyframes = self.poses.iter().zip(&self.keyframes);
+        keyframes.map(|(pose, keyframe)| position_error_m(pose, &keyframe.truth))
+    }
+}
+
+fn outcome(
+    mapper: &IncrementalMapper,
+    keyframes: &[Keyframe],
+    tests: &[CycleTest],
+    drive: &Drive,
+) -> AncestorOutcome {
+    let poses = mapper.poses().iter().zip(keyframes);
+    let errors: Vec<f64> = poses
+        .map(|(pose, keyframe)| position_error_m(pose, &keyframe.truth))
+        .collect();
+    let last = &errors[errors.len().saturating_sub(LAST_KEYFRAMES)..];
+    let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, math::max);
+    let wheels = drive.ticks().iter();
+    let wheels: Vec<f64> = wheels
+        .map(|tick| position_error_m(&tick.dead_reckoning, &tick.truth))
+        .collect();
+    let ticks: Vec<usize> = keyframes.iter().map(|keyframe| keyframe.tick).collect();
+    let is_closed = |test: &&CycleTest| matches!(test.verdict, CycleVerdict::Closed(_));
+    AncestorOutcome {
+        summary: AncestorSummary {
+            ticks: drive.ticks().len(),
+            keyframes: keyframes.len(),
+            cycles: tests.iter().filter(is_closed).count(),
+            odometry_end_error_m: wheels.last().copied().unwrap_or(0.0),
+            odometry_rms_m: rms(wheels.iter().copied()),
+            keyframe_end_error_m: errors.last().copied().unwrap_or(0.0),
+            keyframe_rms_m: rms(errors.iter().copied()),
+            keyframe_max_m: largest(&errors),
+            last_keyframes_m: (
+                last.iter().copied().fold(f64::INFINITY, math::min),
+                largest(last),
+            ),
+            map_disagreement_m: disagreement_m(mapper, keyframes, drive),
+        },
+        way: WayErrors::of(drive, &ticks, &errors, None),
+    }
+}
+
+/// How far what the way out mapped lies from what the way back saw, at the final poses.
+fn disagreement_m(
+    mapper: &IncrementalMapper,
+    keyframes: &[Keyframe],
+    drive: &Drive,
+) -> Option<f64> {
+    let turn = drive.config().turn?;
+    let reached = drive.ticks().iter().position(|t| t.reached == Some(turn))?;
+    // Ticks are counted from 1; the keyframe of the turn's own tick belongs to the way back.
+    let out = keyframes.partition_point(|keyframe| keyframe.tick < reached + 1);
+    let scans = mapper.keyframes().iter().map(|keyframe| &*keyframe.scan);
+    let mut maps = mapper.poses().iter().zip(scans);
+    let mut disagreement = MapDisagreement::new(DisagreementConfig::default());
+    disagreement.start(maps.by_ref().take(out));
+    for (pose, scan) in maps {
+        disagreement.compare(pose, scan);
+    }
+    disagreement.value_m()
+}

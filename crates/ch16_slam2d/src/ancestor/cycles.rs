@@ -1,0 +1,166 @@
+//! The watch for cycles: particles on the old part of the map.
+
+use pr_geom::{Point2, SE2};
+
+use super::{
+    AncestorConfig, CycleClosure, CycleConfig, CycleTest, CycleVerdict, LikelihoodMap, PoseBelief,
+    push_backwards,
+};
+use crate::cloud::PointCloud;
+use crate::field::ScanClimb;
+use crate::metrics::position_error_m;
+use crate::slam::Keyframe;
+
+/// A posterior over the pose beside the incremental mapper, weighed on what is old.
+///
+/// The old map holds keyframes so many nodes back: what was mapped just now agrees with the pose by its
+/// making, and would hold all particles where the error is.
+#[derive(Clone, Debug)]
+pub struct CycleWatch {
+    config: CycleConfig,
+    belief: PoseBelief,
+    old_map: LikelihoodMap,
+    /// Keyframes in the old map.
+    old_nodes: usize,
+    /// The newest node at which a cycle was closed or confirmed: what lies before stays.
+    settled_node: usize,
+}
+
+impl CycleWatch {
+    /// A watch from the first keyframe on.
+    #[must_use]
+    pub fn new(config: CycleConfig, start: SE2) -> Self {
+        Self {
+            config,
+            belief: PoseBelief::new(start, config.particles, config.seed),
+            old_map: LikelihoodMap::new(config.field),
+            old_nodes: 0,
+            settled_node: 0,
+        }
+    }
+
+    /// The posterior.
+    #[must_use]
+    pub fn belief(&self) -> &PoseBelief {
+        &self.belief
+    }
+
+    /// The map that it is weighed on.
+    #[must_use]
+    pub fn old_map(&self) -> &LikelihoodMap {
+        &self.old_map
+    }
+
+    /// Follows the mapper to its newest keyframe, and corrects `poses` where the particles know better.
+    pub(super) fn test(
+        &mut self,
+        poses: &mut [SE2],
+        keyframes: &[Keyframe],
+        mapper: &AncestorConfig,
+    ) -> CycleTest {
+        let node = poses.len() - 1;
+        let config = self.config;
+        self.add_old(poses, keyframes);
+        let motion = poses[node - 1].between(&poses[node]);
+        self.belief
+            .predict(&motion, config.drift_sigma_m, config.drift_sigma_rad);
+        let scan = &keyframes[node].scan;
+        self.belief.weigh(&self.old_map, scan, config.weight);
+
+        let mean = self.belief.mean();
+        let spread = self.belief.spread();
+        let known = self.share(scan, &mean, |point| Some(self.old_map.is_known(point)));
+        let mut test = CycleTest {
+            node,
+            spread,
+            known,
+            fit: None,
+            verdict: CycleVerdict::NewPlace,
+        };
+        if known < config.min_known {
+            return test;
+        }
+        if spread.position_m > config.max_spread_m || spread.heading_rad > config.max_spread_rad {
+            test.verdict = CycleVerdict::Undecided;
+            return test;
+        }
+        // From far to near: the particles see a wide field, the map is as sharp as the mapper's.
+        let mut pose = mean;
+        for sigma_m in [config.field.sigma_m, mapper.map.sigma_m] {
+            let field = self.old_map.field(sigma_m);
+            pose = ScanClimb::new(&field, scan, pose, None, mapper.climb)
+                .run()
+                .pose;
+        }
+        let fit = self.share(scan, &pose, |point| {
+            let is_known = self.old_map.is_known(point);
+            is_known.then(|| self.old_map.is_at_a_wall(point))
+        });
+        test.fit = Some(fit);
+        let is_far = position_error_m(&pose, &mean) > 2.0 * config.field.sigma_m;
+        test.verdict = if fit < config.min_fit || is_far {
+            CycleVerdict::PoorFit
+        } else {
+            self.settle(poses, pose)
+        };
+        test
+    }
+
+    /// The place is known: the pose is right, or the path is corrected.
+    fn settle(&mut self, poses: &mut [SE2], pose: SE2) -> CycleVerdict {
+        let node = poses.len() - 1;
+        let before = poses[node];
+        let off = before.between(&pose);
+        let is_off = position_error_m(&before, &pose) >= self.config.min_shift_m
+            || off.theta().abs() >= self.config.min_turn_rad;
+        let first = self.settled_node.max(self.nearest_old(poses, &pose));
+        self.settled_node = node;
+        if !is_off {
+            return CycleVerdict::Confirmed;
+        }
+        let max_shift_m = push_backwards(&mut poses[first..], &pose);
+        self.old_map.clear();
+        self.old_nodes = 0;
+        CycleVerdict::Closed(CycleClosure {
+            from_node: first,
+            to_node: node,
+            before,
+            after: pose,
+            max_shift_m,
+        })
+    }
+
+    /// The old keyframe that stands nearest to `pose`: there the cycle began.
+    fn nearest_old(&self, poses: &[SE2], pose: &SE2) -> usize {
+        let old = poses[..self.old_nodes].iter().enumerate();
+        old.min_by(|(_, a), (_, b)| position_error_m(a, pose).total_cmp(&position_error_m(b, pose)))
+            .map_or(0, |(node, _)| node)
+    }
+
+    /// Adds the keyframes that have become old; all of them after a correction.
+    fn add_old(&mut self, poses: &[SE2], keyframes: &[Keyframe]) {
+        let old = poses.len().saturating_sub(self.config.min_gap_nodes);
+        for node in self.old_nodes..old {
+            self.old_map.insert(&keyframes[node].scan, &poses[node]);
+        }
+        self.old_nodes = self.old_nodes.max(old);
+    }
+
+    /// Share of the points for which `test` is true, among those for which it is anything.
+    fn share(
+        &self,
+        scan: &PointCloud,
+        pose: &SE2,
+        test: impl Fn(Point2<f64>) -> Option<bool>,
+    ) -> f64 {
+        let (mut asked, mut passed) = (0_usize, 0_usize);
+        for answer in scan.iter().filter_map(|point| test(pose.transform(point))) {
+            asked += 1;
+            passed += usize::from(answer);
+        }
+        if asked == 0 {
+            return 0.0;
+        }
+        passed as f64 / asked as f64
+    }
+}

@@ -1,0 +1,222 @@
+//! The incremental mapper, one frame at a time.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use pr_geom::SE2;
+
+use super::{AncestorConfig, AncestorReport, CycleTest, CycleVerdict, CycleWatch, LikelihoodMap};
+use crate::field::{Climb, PosePrior, ScanClimb};
+use crate::metrics::position_error_m;
+use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer, is_finite};
+use crate::slam::Keyframe;
+
+/// Incremental maximum likelihood mapping over the frames of [`Slam`](crate::slam::Slam).
+#[derive(Clone)]
+pub struct IncrementalMapper {
+    config: AncestorConfig,
+    preparer: ScanPreparer,
+    frames: usize,
+    last_stamp_s: f64,
+    last_dt_s: f64,
+    estimate: SE2,
+    velocity: Vector3<f64>,
+    map: LikelihoodMap,
+    keyframes: Vec<Keyframe>,
+    poses: Vec<SE2>,
+    cycles: Option<CycleWatch>,
+}
+
+impl IncrementalMapper {
+    /// A mapper that has seen nothing.
+    #[must_use]
+    pub fn new(config: AncestorConfig) -> Self {
+        Self {
+            preparer: ScanPreparer::new(),
+            frames: 0,
+            last_stamp_s: f64::NEG_INFINITY,
+            last_dt_s: f64::INFINITY,
+            estimate: config.start,
+            velocity: Vector3::zeros(),
+            map: LikelihoodMap::new(config.map),
+            keyframes: Vec::new(),
+            poses: Vec::new(),
+            cycles: config
+                .cycles
+                .map(|cycles| CycleWatch::new(cycles, config.start)),
+            config,
+        }
+    }
+
+    /// Takes one frame: cleans its scan, climbs, and adds it to the map where a keyframe is due.
+    ///
+    /// # Errors
+    /// Where the frame cannot be used; the mapper stays as it was.
+    pub fn step(&mut self, frame: &Frame) -> Result<AncestorReport, FrameError> {
+        frame.validate()?;
+        let dt_s = frame.stamp_s - self.last_stamp_s;
+        let velocity = match frame.odometry {
+            Some(odometry) if dt_s > 0.0 && dt_s.is_finite() => odometry.log() / dt_s,
+            Some(_) => Vector3::zeros(),
+            None => self.velocity,
+        };
+        let cloud = self
+            .preparer
+            .prepare(&frame.scan, &velocity, &self.config.scan);
+        self.step_prepared(&PreparedFrame {
+            stamp_s: frame.stamp_s,
+            odometry: frame.odometry,
+            cloud: Arc::new(cloud),
+        })
+    }
+
+    /// [`IncrementalMapper::step`] with a scan that is already a cloud.
+    ///
+    /// # Errors
+    /// Where the frame cannot be used; the mapper stays as it was.
+    pub fn step_prepared(&mut self, frame: &PreparedFrame) -> Result<AncestorReport, FrameError> {
+        frame.validate()?;
+        let dt_s = frame.stamp_s - self.last_stamp_s;
+        if dt_s <= 0.0 {
+            return Err(FrameError::Stamp {
+                stamp_s: frame.stamp_s,
+                last_s: self.last_stamp_s,
+            });
+        }
+        if frame
+            .odometry
+            .is_some_and(|motion| !is_finite(&(self.estimate * motion)))
+        {
+            return Err(FrameError::Odometry {
+                stamp_s: frame.stamp_s,
+            });
+        }
+        self.last_stamp_s = frame.stamp_s;
+        self.frames += 1;
+        let mut report = AncestorReport {
+            frame: self.frames - 1,
+            stamp_s: frame.stamp_s,
+            prediction: self.estimate,
+            climb: None,
+            estimate: self.estimate,
+            new_keyframe: None,
+            cycle: None,
+        };
+        if self.poses.is_empty() {
+            self.take_keyframe(frame);
+            report.new_keyframe = Some(0);
+            return Ok(report);
+        }
+        let (prediction, climb) = self.climb(frame, dt_s);
+        report.prediction = prediction;
+        report.climb = Some(climb);
+        if self.is_keyframe_due() {
+            self.take_keyframe(frame);
+            report.new_keyframe = Some(self.poses.len() - 1);
+            report.cycle = self.watch_cycles();
+        }
+        report.estimate = self.estimate;
+        Ok(report)
+    }
+
+    /// The parameters.
+    #[must_use]
+    pub fn config(&self) -> &AncestorConfig {
+        &self.config
+    }
+
+    /// The estimated pose, `world_from_body`.
+    #[must_use]
+    pub fn estimate(&self) -> SE2 {
+        self.estimate
+    }
+
+    /// The keyframes in order.
+    #[must_use]
+    pub fn keyframes(&self) -> &[Keyframe] {
+        &self.keyframes
+    }
+
+    /// Their poses as they are now, `world_from_body`.
+    #[must_use]
+    pub fn poses(&self) -> &[SE2] {
+        &self.poses
+    }
+
+    /// The map.
+    #[must_use]
+    pub fn map(&self) -> &LikelihoodMap {
+        &self.map
+    }
+
+    /// The particles; none without the variant for cycles.
+    #[must_use]
+    pub fn cycles(&self) -> Option<&CycleWatch> {
+        self.cycles.as_ref()
+    }
+
+    /// Climbs from where the motion leads; returns that and what the climb found.
+    fn climb(&mut self, frame: &PreparedFrame, dt_s: f64) -> (SE2, Climb) {
+        let config = &self.config;
+        let before = self.estimate;
+        let stays_s = dt_s.min(config.extrapolation * self.last_dt_s);
+        let motion = frame
+            .odometry
+            .unwrap_or_else(|| SE2::exp(&(self.velocity * stays_s)));
+        // A velocity from two stamps that all but coincide may lead anywhere: then it is none.
+        let motion = if is_finite(&(before * motion)) {
+            motion
+        } else {
+            SE2::identity()
+        };
+        let noise = match frame.odometry {
+            Some(_) => &config.odometry_noise,
+            None => &config.prediction_noise,
+        };
+        let prediction = before * motion;
+        // Every motion noise has a floor, so only an overflow has no inverse.
+        let information = noise.covariance(&motion).try_inverse().unwrap_or_default();
+        let prior = PosePrior {
+            pose: prediction,
+            information,
+        };
+        let field = self.map.field(config.map.sigma_m);
+        let climb =
+            ScanClimb::new(&field, &frame.cloud, prediction, Some(prior), config.climb).run();
+        self.estimate = climb.pose;
+        self.velocity = before.between(&self.estimate).log() / dt_s;
+        self.last_dt_s = dt_s;
+        (prediction, climb)
+    }
+
+    fn is_keyframe_due(&self) -> bool {
+        let last = self.poses[self.poses.len() - 1];
+        position_error_m(&last, &self.estimate) >= self.config.keyframe_distance_m
+            || last.between(&self.estimate).theta().abs() >= self.config.keyframe_turn_rad
+    }
+
+    fn take_keyframe(&mut self, frame: &PreparedFrame) {
+        self.keyframes.push(Keyframe {
+            node: self.poses.len(),
+            frame: self.frames - 1,
+            stamp_s: frame.stamp_s,
+            scan: Arc::clone(&frame.cloud),
+        });
+        self.poses.push(self.estimate);
+        self.map.insert(&frame.cloud, &self.estimate);
+    }
+
+    /// Asks the particles, and draws the map anew where they corrected the path.
+    fn watch_cycles(&mut self) -> Option<CycleTest> {
+        let watch = self.cycles.as_mut()?;
+        let test = watch.test(&mut self.poses, &self.keyframes, &self.config);
+        if let CycleVerdict::Closed(_) = test.verdict {
+            self.estimate = self.poses[self.poses.len() - 1];
+            self.map.clear();
+            for (keyframe, pose) in self.keyframes.iter().zip(&self.poses) {
+                self.map.insert(&keyframe.scan, pose);
+            }
+        }
+        Some(test)
+    }
+}

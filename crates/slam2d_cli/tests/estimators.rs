@@ -1,0 +1,77 @@
+//! Other estimators on the command line.
+
+use crate::support::{assert_refused, json};
+
+#[test]
+fn every_estimator_drives_the_lap_and_each_is_another_one() {
+    let laps: Vec<_> = ["graph", "front-end", "ml", "ml-cycles"]
+        .iter()
+        .map(|name| json(&["lap", "--estimator", name, "--json"]))
+        .collect();
+    for (k, lap) in laps.iter().enumerate() {
+        let end = lap["keyframe_end_error"].as_f64().unwrap();
+        assert!(end < 0.7 * lap["odometry_end_error"].as_f64().unwrap());
+        assert_eq!(lap["odometry_rms"], laps[0]["odometry_rms"]);
+        assert!(
+            laps[..k]
+                .iter()
+                .all(|other| other["digest"] != lap["digest"])
+        );
+    }
+    assert_eq!(laps[0]["digest"], json(&["lap", "--json"])["digest"]);
+    assert_eq!(
+        laps[1]["digest"],
+        json(&["lap", "--no-loops", "--json"])["digest"]
+    );
+    assert_eq!(laps[2]["tests"].as_array().unwrap().len(), 0);
+    let tests = laps[3]["tests"].as_array().unwrap();
+    assert!(
+        tests
+            .iter()
+            .any(|test| test["verdict"] == "confirmed" || test["verdict"] == "closed")
+    );
+}
+
+#[test]
+fn a_sweep_has_the_columns_that_were_asked_for() {
+    let columns = |estimators: &[&str]| {
+        let mut args = vec!["sweep", "--seeds", "1..=2", "--noise", "1", "--json"];
+        args.extend(estimators);
+        let levels = json(&args);
+        let entries = levels[0]["entries"].as_array().unwrap().clone();
+        let mut columns: Vec<String> = entries
+            .iter()
+            .map(|entry| entry["column"].as_str().unwrap().to_owned())
+            .collect();
+        columns.dedup();
+        columns
+    };
+    let three = ["odometry", "front_end", "with_loops"];
+    assert_eq!(columns(&[]), three);
+    assert_eq!(columns(&["--estimator", "ml"]), ["odometry", "ml"]);
+    assert_eq!(
+        columns(&["--estimator", "front-end"]),
+        ["odometry", "front_end"]
+    );
+    let five = [&three[..], &["ml", "ml_cycles"]].concat();
+    assert_eq!(columns(&["--estimator", "graph,ml,ml-cycles"]), five);
+}
+
+#[test]
+fn what_says_nothing_to_an_estimator_is_refused() {
+    assert_refused(
+        &["lap", "--estimator", "ml", "--matcher", "ndt"],
+        "--matcher says nothing to the estimator ml",
+    );
+    assert_refused(
+        &[
+            "sweep",
+            "--estimator",
+            "ml,ml-cycles",
+            "--detector",
+            "context",
+        ],
+        "--detector says nothing to ml, ml-cycles",
+    );
+    assert_refused(&["lap", "--estimator", "kalman"], "kalman");
+}
