@@ -99,6 +99,8 @@ export interface ControlRoomState {
   loops: boolean;
   /** Another seed is another lap with the same robot; the default is the chapter's. 0 to 4294967295. */
   seed: number;
+  /** The thing whose data of this tick are said; a press on a mark of the lanes chooses it. */
+  lane: 'predict' | 'register' | 'keyframe' | 'candidate' | 'fit' | 'gate' | 'optimize' | 'repaint';
   /** The moment shown; a tick is a quarter of a second, and the marks are loops. 0 to 129. */
   t: number;
   /** How fast the run plays. */
@@ -291,6 +293,7 @@ export interface SlamWidgetProperties {
   'probe-y': number | undefined;
   probeY: number | undefined;
   drops: number | undefined;
+  lane: 'predict' | 'register' | 'keyframe' | 'candidate' | 'fit' | 'gate' | 'optimize' | 'repaint' | undefined;
   stiffness: number | undefined;
   graph: 'line' | 'square' | 'ring' | undefined;
   gap: number | undefined;

@@ -88,7 +88,9 @@ describe('a link in the text', () => {
         a.click();
         const query = new URLSearchParams(a.search);
         const element = document.querySelector(`slam-widget[name="w${query.get('w')}"]`);
-        const wrong = [...query].filter(([id, text]) => id !== 'w' && String(element.get(id)) !== text);
+        // A switch is true or false to a script, and on or off in a link.
+        const said = (value) => ({ true: 'on', false: 'off' })[value] ?? String(value);
+        const wrong = [...query].filter(([id, text]) => id !== 'w' && said(element.get(id)) !== text);
         const back = new URLSearchParams(location.search);
         return { href: a.search, wrong, kept: [...query].every(([id, text]) => id === 'w' || back.get(id) === text
           || !element.query.includes(`${id}=`)) };

@@ -37,6 +37,11 @@ pub fn tone(theme: Theme, tone: Tone) -> Rgb {
         (Theme::Dark, Tone::Faint) => hex(0x374151),
         (Theme::Light, Tone::Paper) => hex(0xffffff),
         (Theme::Dark, Tone::Paper) => hex(0x14181f),
+        (theme, Tone::Unseen) => mix(
+            self::tone(theme, Tone::Paper),
+            self::tone(theme, Tone::Faint),
+            0.5,
+        ),
         (theme, Tone::Class(class)) => class_color(theme, class),
     }
 }
@@ -57,7 +62,7 @@ fn class_color(theme: Theme, class: u8) -> Rgb {
 #[must_use]
 pub fn cell(theme: Theme, cell: Cell) -> Rgb {
     match cell {
-        Cell::Unknown => mix(tone(theme, Tone::Paper), tone(theme, Tone::Faint), 0.5),
+        Cell::Unknown => tone(theme, Tone::Unseen),
         Cell::Level(level) => level_color(level),
         Cell::Class(class) => class_color(theme, class),
         Cell::Occupancy(share) => mix(tone(theme, Tone::Paper), tone(theme, Tone::Ink), share),

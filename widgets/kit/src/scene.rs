@@ -27,6 +27,8 @@ pub enum Tone {
     Faint,
     /// Paper.
     Paper,
+    /// Cells of which nothing was seen.
+    Unseen,
     /// A thing of class n in a picture of classes: minima, cells. Each class also has a letter.
     Class(u8),
 }

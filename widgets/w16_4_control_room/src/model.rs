@@ -85,6 +85,17 @@ impl ControlRoom {
         self.values.get("t") as usize
     }
 
+    /// The lane whose data are said.
+    fn lane(&self) -> usize {
+        self.values.get("lane") as usize
+    }
+
+    fn choose_lane(&mut self, lane: usize) {
+        self.values
+            .set(SPEC.id, "lane", lane as f64)
+            .expect("a lane of the list");
+    }
+
     fn last(&self) -> f64 {
         self.record.ticks() as f64
     }
@@ -143,7 +154,9 @@ impl ControlRoom {
         let now = self.tick();
         let next = self.events.iter().find(|event| event.tick > now);
         if let Some(event) = next.or(self.events.first()) {
-            self.go_to(event.tick as f64);
+            let (tick, lane) = (event.tick, event.lane);
+            self.choose_lane(lane);
+            self.go_to(tick as f64);
         }
     }
 
@@ -170,7 +183,7 @@ impl Model for ControlRoom {
         }
         match id {
             "t" => self.go_to(value),
-            "speed" | "more" => {}
+            "speed" | "more" | "lane" => {}
             _ => self.run_again(),
         }
         Ok(())
@@ -253,12 +266,12 @@ impl Model for ControlRoom {
     /// The line at the moment shown, in every plot over time, and each mark of the lanes.
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
         if panel == lanes::ID
-            && let Some(tick) = lanes::event_at(&self.record, self.tick(), at, reach)
+            && let Some((tick, lane)) = lanes::event_at(&self.record, self.tick(), at, reach)
         {
             // The press goes to the tick of the mark, however far beside it the pointer is.
             return Some(Handle {
                 panel: lanes::ID,
-                id: "event",
+                id: lanes::name(lane),
                 offset: [at[0] - tick, 0.0],
             });
         }
@@ -267,6 +280,9 @@ impl Model for ControlRoom {
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        if let Some(lane) = lanes::of_name(handle.id) {
+            self.choose_lane(lane);
+        }
         let tick = dragged_to(handle, at);
         if tick != self.values.get("t") {
             self.go_to(tick);

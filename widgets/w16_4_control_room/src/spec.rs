@@ -2,7 +2,7 @@
 
 use ch16_lab::lap;
 use kit::layers::{MORE, Opening};
-use kit::param::{ParamKind, ParamSpec};
+use kit::param::{Choice, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::run::{LOOPS, NOISE, seed};
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
@@ -16,6 +16,25 @@ pub const PARAMS: &[ParamSpec] = &[
     LOOPS,
     seed(lap::CANONICAL_SEED),
     ParamSpec {
+        id: "lane",
+        label: "lane",
+        unit: "",
+        kind: ParamKind::Choice {
+            options: &[
+                lane("predict"),
+                lane("register"),
+                lane("keyframe"),
+                lane("candidate"),
+                lane("fit"),
+                lane("gate"),
+                lane("optimize"),
+                lane("repaint"),
+            ],
+        },
+        default: 1.0,
+        help: "The thing whose data of this tick are said; a press on a mark of the lanes chooses it.",
+    },
+    ParamSpec {
         id: "t",
         label: "tick",
         unit: "",
@@ -26,6 +45,13 @@ pub const PARAMS: &[ParamSpec] = &[
     SPEED,
     MORE,
 ];
+
+const fn lane(name: &'static str) -> Choice {
+    Choice {
+        id: name,
+        label: name,
+    }
+}
 
 /// On to the next event of the log.
 const NEXT_EVENT: ButtonSpec = ButtonSpec {
@@ -43,8 +69,8 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         "The front end works at every tick: it predicts by odometry and corrects by one registration. The threshold τ follows how wrong the predictions were.",
         "The back end works only at keyframes, and its big moment is a loop: then old poses move.",
         "The grid stores no poses. After an accepted loop it is thrown away and drawn again from every keyframe's sweep.",
-        "A cell takes the ink of these words where it is likely occupied, and the colour of the paper where it is likely free. Of the tinted rest nothing was seen.",
-        "Each lane is one thing that the system does. The upper two run at every tick, the rest waits for a keyframe; a press on a mark goes there.",
+        "A cell takes the ink of these words where it is likely occupied, and the colour of the paper where it is likely free, on light paper as on dark. Of the tinted rest nothing was seen.",
+        "Each lane is one thing that the system does. The upper two run at every tick, the rest waits for a keyframe. A press on a mark goes there and says its data.",
         "Walls blur where two passes disagree. At the first loop they sharpen: the cells that are more than 90 % likely to be occupied go from 110 to 156.",
     ],
     opening: Opening {

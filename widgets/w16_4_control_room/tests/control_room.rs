@@ -1,7 +1,7 @@
 //! The control room driven headless; figures from `tests/reference/lap.json`.
 
 use kit::model::{Activity, Model as _, Motion, Standing};
-use kit::scene::{Layer, Tone};
+use kit::scene::{Layer, Panel, Tone};
 use w16_4_control_room::model::ControlRoom;
 use w16_4_control_room::spec::SPEC;
 
@@ -325,4 +325,149 @@ fn a_press_on_a_mark_of_a_lane_shows_its_data() {
     assert_eq!(room.values().get("t"), 92.0);
     let sentence = room.outcome().sentence;
     assert!(sentence.starts_with("loop 29 to 7 accepted"), "{sentence}");
+}
+
+fn lanes(room: &ControlRoom) -> Panel {
+    let panels = room.scene().panels;
+    panels
+        .into_iter()
+        .find(|panel| panel.id == "lanes")
+        .expect("the lanes")
+}
+
+/// The marks of every lane, and a piece of what each says in the tick of the first loop.
+const SAID: [(&str, &str); 8] = [
+    ("predict", "Predict: robot at ("),
+    ("register", " pairs within τ = "),
+    ("keyframe", "Keyframe: node 29 and an edge to node 28."),
+    ("candidate", "Candidate: node 29 to node 7, "),
+    ("fit", "Fit: "),
+    ("gate", "Gate: chi-squared 4.24 below 7.815."),
+    ("optimize", "nodes moved by up to 0.24 m."),
+    (
+        "repaint",
+        "Repaint: the grid from the sweeps of 30 keyframes.",
+    ),
+];
+
+#[test]
+fn every_mark_of_every_lane_says_its_data_when_it_is_pressed_or_chosen() {
+    let mut pressed = ControlRoom::new();
+    set(&mut pressed, "t", 129.0);
+    for (lane, (name, said)) in SAID.into_iter().enumerate() {
+        set(&mut pressed, "t", 129.0);
+        let spot = [92.3, 8.0 - lane as f64];
+        let handle = pressed.grab("lanes", spot, [2.0, 0.4]).expect(name);
+        pressed.drag(handle, spot);
+        assert_eq!(pressed.values().get("t"), 92.0, "{name}");
+        assert_eq!(pressed.values().get("lane"), lane as f64, "{name}");
+        let sentence = pressed.outcome().sentence;
+        assert!(sentence.contains(said), "{name}: {sentence}");
+        // By key: the lane and the tick are controls.
+        let mut chosen = ControlRoom::new();
+        set(&mut chosen, "lane", lane as f64);
+        set(&mut chosen, "t", 92.0);
+        assert_eq!(chosen.outcome(), pressed.outcome());
+        assert!(
+            lanes(&chosen) == lanes(&pressed),
+            "{name}: with the same ring"
+        );
+        let tables = chosen.shown_tables();
+        let tick = tables.iter().find(|table| table.id == "control-room-tick");
+        let row = &tick.expect("the tick's table").rows[lane];
+        assert_eq!(row[0], name);
+        assert!(sentence.contains(&row[1]), "{row:?}");
+    }
+    // Where a lane had nothing to do it says so, and no ring stands there.
+    let rings = |room: &ControlRoom| {
+        let scene = room.scene();
+        let lanes = scene.panels.iter().find(|panel| panel.id == "lanes");
+        let layers = &lanes.expect("the lanes").layers;
+        let ring = |layer: &&Layer| {
+            matches!(
+                layer,
+                Layer::Points {
+                    tone: Tone::Ink,
+                    ..
+                }
+            )
+        };
+        layers.iter().filter(ring).count()
+    };
+    assert_eq!(rings(&pressed), 1);
+    set(&mut pressed, "t", 91.0);
+    let sentence = pressed.outcome().sentence;
+    assert!(sentence.ends_with("Repaint: nothing to do."), "{sentence}");
+    assert_eq!(rings(&pressed), 0);
+}
+
+#[test]
+fn the_next_event_chooses_its_lane() {
+    let mut room = ControlRoom::new();
+    set(&mut room, "t", 91.0);
+    press(&mut room, "next-event");
+    assert_eq!(room.values().get("t"), 92.0);
+    let sentence = room.outcome().sentence;
+    assert!(sentence.contains("Keyframe: node 29"), "{sentence}");
+}
+
+#[test]
+fn plots_show_nothing_of_what_is_still_to_come() {
+    let mut room = ControlRoom::new();
+    let lines = |room: &ControlRoom| {
+        let panels = room.scene().panels.into_iter();
+        let plots = panels.filter(|panel| ["tau", "errors", "lanes"].contains(&panel.id));
+        let layers = plots.flat_map(|panel| panel.layers);
+        let points = layers.filter_map(|layer| match layer {
+            Layer::Line { points, .. } | Layer::Points { points, .. } => Some(points),
+            _ => None,
+        });
+        points.collect::<Vec<_>>()
+    };
+    let axes = |room: &ControlRoom| {
+        let panels = room.scene().panels.into_iter();
+        let plots = panels.filter(|panel| panel.x.label == "tick");
+        plots.map(|panel| (panel.x, panel.y)).collect::<Vec<_>>()
+    };
+    let whole = axes(&room);
+    for tick in [0.0, 40.0, 92.0, 129.0] {
+        set(&mut room, "t", tick);
+        let shown = lines(&room);
+        assert!(shown.iter().flatten().all(|[x, _]| *x <= tick), "at {tick}");
+        let reached = shown.iter().filter(|line| line.len() as f64 == tick + 1.0);
+        assert!(
+            tick == 0.0 || reached.count() >= 3,
+            "τ and both errors up to {tick}"
+        );
+        assert_eq!(axes(&room), whole, "nothing jumps while it plays");
+    }
+}
+
+#[test]
+fn the_grid_has_a_legend_whose_areas_are_the_colours_of_its_cells() {
+    use kit::palette::{Theme, cell, contrast, tone};
+    use kit::scene::Cell;
+    let room = ControlRoom::new();
+    let scene = room.scene();
+    let legend = &scene.panels[0].legend;
+    for (label, of) in [
+        ("occupied", Cell::Occupancy(1.0)),
+        ("free", Cell::Occupancy(0.0)),
+        ("not seen", Cell::Unknown),
+    ] {
+        let entry = legend
+            .iter()
+            .find(|entry| entry.label == label)
+            .expect(label);
+        assert_eq!((entry.mark, entry.stroke), (None, None), "an area");
+        for theme in [Theme::Light, Theme::Dark] {
+            assert_eq!(tone(theme, entry.tone), cell(theme, of), "{label}");
+        }
+    }
+    // Occupied is ink and free is paper, on light and on dark.
+    for theme in [Theme::Light, Theme::Dark] {
+        let [full, free] = [1.0, 0.0].map(|share| cell(theme, Cell::Occupancy(share)));
+        assert!(contrast(full, free) > 10.0);
+        assert_eq!(full, tone(theme, Tone::Ink));
+    }
 }

@@ -188,7 +188,12 @@ fn legend_entry(surface: &mut dyn Surface, entry: &LegendEntry, at: Px, theme: T
         Some(shape) => mark(surface, middle, shape, MARK_RADIUS, color),
         // Neither mark nor line: an area, such as the class of a raster's cells.
         None if entry.stroke.is_none() => {
-            surface.rect(PxRect::new(x + 3.0, y - 6.0, 15.0, 12.0), color);
+            let area = PxRect::new(x + 3.0, y - 6.0, 15.0, 12.0);
+            surface.rect(area, color);
+            // An area of the paper's colour would not be seen.
+            if matches!(entry.tone, Tone::Paper | Tone::Unseen) {
+                border(surface, area, Pen::solid(tone(theme, Tone::Truth), 1.0));
+            }
         }
         None => {}
     }

@@ -16,6 +16,17 @@ pub struct Event {
     pub standing: Standing,
     /// Loops get a mark on the timeline, the rest does not.
     pub marked: bool,
+    /// The lane that it lies in.
+    pub lane: usize,
+}
+
+/// The lanes of the log's events, see [`super::picture::lanes`].
+mod lane {
+    pub const PREDICT: usize = 0;
+    pub const REGISTER: usize = 1;
+    pub const KEYFRAME: usize = 2;
+    pub const GATE: usize = 5;
+    pub const REPAINT: usize = 7;
 }
 
 /// The events of a lap in order.
@@ -23,21 +34,27 @@ pub fn events(record: &LapRecord) -> Vec<Event> {
     let mut events = Vec::new();
     for report in &record.lap.reports {
         let tick = report.tick;
-        let mut say = |part, text| {
+        let mut say = |part, lane, text| {
             events.push(Event {
                 tick,
                 part,
                 text,
                 standing: Standing::Neutral,
                 marked: false,
+                lane,
             });
         };
         if let Some(way_point) = record.drive.ticks()[tick - 1].reached {
-            say("driver", format!("way point {} reached", way_point + 1));
+            say(
+                "driver",
+                lane::PREDICT,
+                format!("way point {} reached", way_point + 1),
+            );
         }
         if !report.registration.accepted {
             say(
                 "front end",
+                lane::REGISTER,
                 format!(
                     "only {} pairs: the prediction stands",
                     report.registration.matched.inliers
@@ -45,7 +62,7 @@ pub fn events(record: &LapRecord) -> Vec<Event> {
             );
         }
         if let Some(node) = report.new_keyframe {
-            say("back end", format!("keyframe {node}"));
+            say("back end", lane::KEYFRAME, format!("keyframe {node}"));
         }
         if let Some(attempt) = &report.loop_attempt {
             events.extend(loop_events(&record.lap, attempt));
@@ -74,6 +91,7 @@ fn loop_events(lap: &LapTrace, attempt: &LoopAttempt) -> Vec<Event> {
         text,
         standing,
         marked,
+        lane: if marked { lane::GATE } else { lane::REPAINT },
     };
     let standing = standing(lap.judge(attempt));
     let tested = event("back end", lap.loop_sentence(attempt), standing, true);

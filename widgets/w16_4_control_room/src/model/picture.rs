@@ -26,7 +26,7 @@ pub fn scene(room: &ControlRoom) -> Scene {
         panels: vec![
             map(record, now, room.grid.raster(), &room.world),
             registration(record, now, room.registration.as_ref()),
-            lanes::lanes(record, now),
+            lanes::lanes(record, now, room.lane()),
             plots::threshold(&room.history, now),
             plots::errors(&room.history, now),
         ],
@@ -66,14 +66,22 @@ fn map(record: &LapRecord, tick: usize, raster: &Raster, world: &World) -> Panel
         layers,
         legend: vec![
             LegendEntry::marked_line("truth", Tone::Truth, Mark::Plus, Stroke::Dashed),
-            LegendEntry::marked_line(
-                "pose graph: nodes and factors",
-                Tone::Posterior,
-                Mark::Square,
-                Stroke::Solid,
-            ),
+            LegendEntry::marked_line("pose graph", Tone::Posterior, Mark::Square, Stroke::Solid),
+            area("occupied", Tone::Ink),
+            area("free", Tone::Paper),
+            area("not seen", Tone::Unseen),
         ],
         color_bar: None,
+    }
+}
+
+/// A legend entry for the cells of one colour.
+fn area(label: &str, tone: Tone) -> LegendEntry {
+    LegendEntry {
+        label: label.to_owned(),
+        tone,
+        mark: None,
+        stroke: None,
     }
 }
 

@@ -4,13 +4,14 @@ use kit::model::{Table, TablePlace};
 
 use super::ControlRoom;
 use super::log::Event;
+use super::picture::lanes;
 
 /// Events that the table beside the picture shows.
 const SHOWN_EVENTS: usize = 8;
 
 /// The tables beside the picture.
 pub fn shown(room: &ControlRoom) -> Vec<Table> {
-    vec![newest_events(&room.events, room.tick())]
+    vec![this_tick(room), newest_events(&room.events, room.tick())]
 }
 
 /// All tables, the shown ones first.
@@ -18,6 +19,20 @@ pub fn all(room: &ControlRoom) -> Vec<Table> {
     let mut tables = shown(room);
     tables.extend([full_log(&room.events), over_time(room)]);
     tables
+}
+
+/// What every lane did in the tick shown.
+fn this_tick(room: &ControlRoom) -> Table {
+    let done = room.now().into_iter().flat_map(lanes::data);
+    Table {
+        id: "control-room-tick",
+        title: format!("Tick {}, lane by lane", room.tick()),
+        columns: ["lane", "what it did"].map(str::to_owned).to_vec(),
+        rows: done
+            .map(|(name, data)| vec![name.to_owned(), data])
+            .collect(),
+        place: TablePlace::Shown,
+    }
 }
 
 /// The newest events up to a tick, newest first.

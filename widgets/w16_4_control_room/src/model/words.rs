@@ -5,6 +5,7 @@ use ch16_slam2d::matching::MatchSummary;
 use kit::model::{Fact, Outcome, Standing};
 
 use super::ControlRoom;
+use super::picture::lanes;
 
 /// The result at a tick: of the loop where one is tried in it, of the estimates where none is.
 pub fn outcome(room: &ControlRoom) -> Outcome {
@@ -15,7 +16,11 @@ pub fn outcome(room: &ControlRoom) -> Outcome {
         None if room.tick() == room.record.ticks() => "run finished".to_owned(),
         None => "on the way".to_owned(),
     };
-    let sentence = event.map_or_else(|| tick_sentence(room), |event| event.text.clone());
+    let mut sentence = event.map_or_else(|| tick_sentence(room), |event| event.text.clone());
+    if let Some(data) = lane_sentence(room) {
+        let end = if sentence.ends_with('.') { " " } else { ". " };
+        sentence = sentence + end + &data;
+    }
     Outcome {
         standing: event.map_or(Standing::Neutral, |event| event.standing),
         verdict,
@@ -32,6 +37,13 @@ pub fn summary(room: &ControlRoom) -> String {
         tick_sentence(room),
         room.now().map_or(0, |r| r.registration.matched.inliers),
     )
+}
+
+/// What the chosen lane did in the tick shown.
+fn lane_sentence(room: &ControlRoom) -> Option<String> {
+    let (name, data) = lanes::data(room.now()?).nth(room.lane())?;
+    let (first, rest) = name.split_at(1);
+    Some(format!("{}{rest}: {data}.", first.to_uppercase()))
 }
 
 fn tick_sentence(room: &ControlRoom) -> String {

@@ -1,7 +1,7 @@
 //! The plots over time: the correspondence threshold and the errors.
 
 use kit::chart::{Series, TimeChart};
-use kit::scene::{Mark, Panel, Tone};
+use kit::scene::{Layer, Mark, Panel, Tone};
 
 use super::lanes;
 use crate::model::history::History;
@@ -17,7 +17,8 @@ pub fn threshold(history: &History, now: usize) -> Panel {
         tone: Tone::Ink,
         mark: Mark::Dot,
     };
-    chart(history, "tau", "Correspondence threshold τ", "τ (m)", now).panel(&[series])
+    let chart = chart(history, "tau", "Correspondence threshold τ", "τ (m)", now);
+    played(chart.panel(&[series]), now)
 }
 
 /// The errors over time.
@@ -36,7 +37,18 @@ pub fn errors(history: &History, now: usize) -> Panel {
             mark: Mark::Square,
         },
     ];
-    chart(history, "errors", "Position error", "error (m)", now).panel(&series)
+    let chart = chart(history, "errors", "Position error", "error (m)", now);
+    played(chart.panel(&series), now)
+}
+
+/// Without what is still to come; the axes stay those of the whole run, so that nothing jumps.
+fn played(mut panel: Panel, now: usize) -> Panel {
+    for layer in &mut panel.layers {
+        if let Layer::Line { points, .. } = layer {
+            points.retain(|[tick, _]| *tick <= now as f64);
+        }
+    }
+    panel
 }
 
 fn chart<'a>(
