@@ -29,7 +29,7 @@ const background = (tab) => tab.evaluate(() => getComputedStyle(document.body).b
 describe('the chapter', () => {
   it('holds its widgets, starts each when it comes near, and paints it', async () => {
     await reading(async (tab) => {
-      const order = ['w16.1', 'w16.3', 'w16.5', 'w16.2', 'w16.4', 'w16.6'];
+      const order = ['w16.1', 'w16.3', 'w16.5', 'w16.2', 'w16.4', 'w16.6', 'w16.7', 'w16.8'];
       const states = () => tab.evaluate(
         (ids) => ids.map((id) => document.querySelector(`slam-widget[name="${id}"]`).state), order);
       for (const [place, id] of order.entries()) {
@@ -131,7 +131,7 @@ describe('the chapter', () => {
 
   it('asks first and answers afterwards', async () => {
     await reading(async (tab) => {
-      const question = tab.locator('#exercise-5 slam-predict');
+      const question = tab.locator('#further-variants slam-predict');
       const why = question.locator('[data-why]');
       await question.scrollIntoViewIfNeeded();
       await tab.waitForFunction(() => customElements.get('slam-predict') !== undefined);
@@ -141,7 +141,7 @@ describe('the chapter', () => {
       await why.waitFor({ state: 'visible' });
       const said = await question.evaluate((element) => element.shadowRoot.querySelector('.answer').textContent);
       assert.match(said, /^Not right\. It is 0\.015 m\. You said 0\.2 m and are off by 0\.18 m\./);
-      assert.ok(await tab.evaluate(isSeen, '#exercise-5 slam-predict'), 'the page stays at the answer');
+      assert.ok(await tab.evaluate(isSeen, '#further-variants slam-predict'), 'the page stays at the answer');
       await question.getByRole('button', { name: 'Show it in the widget' }).click();
       await tab.waitForFunction(isSeen, widget('w16.1'));
     });
@@ -172,7 +172,7 @@ describe('the chapter', () => {
 
   it('fits a phone: nothing is wider than the screen', async () => {
     await reading(async (tab) => {
-      for (const id of ['w16.1', 'w16.3', 'w16.5', 'w16.2', 'w16.4', 'w16.6']) {
+      for (const id of ['w16.1', 'w16.3', 'w16.5', 'w16.2', 'w16.4', 'w16.6', 'w16.7', 'w16.8']) {
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
         await h.ready(tab, widget(id));
       }
@@ -187,7 +187,7 @@ describe('the chapter', () => {
   for (const colorScheme of ['light', 'dark']) {
     it(`breaks no rule of accessibility that axe knows, ${colorScheme}`, async () => {
       await reading(async (tab) => {
-        await tab.locator('#exercise-5 slam-predict').scrollIntoViewIfNeeded();
+        await tab.locator('#further-variants slam-predict').scrollIntoViewIfNeeded();
         assert.deepEqual(await violations(tab), []);
       }, { colorScheme }, { quiet: false });
     });
@@ -195,7 +195,7 @@ describe('the chapter', () => {
 
   it('shows pictures and says why where scripts do not run', async () => {
     await reading(async (tab, server) => {
-      for (const id of ['w16.1', 'w16.2', 'w16.3', 'w16.4', 'w16.5', 'w16.6']) {
+      for (const id of ['w16.1', 'w16.2', 'w16.3', 'w16.4', 'w16.5', 'w16.6', 'w16.7', 'w16.8']) {
         const picture = tab.locator(`${widget(id)} img`);
         await picture.scrollIntoViewIfNeeded();
         assert.ok(await picture.evaluate((image) => image.decode().then(() => image.naturalWidth > 100)), id);
@@ -211,7 +211,7 @@ describe('the chapter', () => {
 
   it('says right or wrong in words, and of the number that was asked for', async () => {
     await reading(async (tab) => {
-      const question = tab.locator('#exercise-7 slam-predict');
+      const question = tab.locator('#exercise-5 slam-predict');
       await question.scrollIntoViewIfNeeded();
       await tab.waitForFunction(() => customElements.get('slam-predict') !== undefined);
       await question.locator('input').fill('0.05');

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::page::document::source;
 
 /// Every package with its layer; a package may use only packages of lower layers.
-const LAYERS: [(&str, u8); 19] = [
+const LAYERS: [(&str, u8); 21] = [
     ("crates/pr_geom", 0),
     ("crates/pr_sim", 1),
     ("crates/pr_grid", 1),
@@ -25,6 +25,8 @@ const LAYERS: [(&str, u8); 19] = [
     ("widgets/w16_4_control_room", 4),
     ("widgets/w16_5_pose_graph_toy", 4),
     ("widgets/w16_6_whole_window", 4),
+    ("widgets/w16_7_been_here", 4),
+    ("widgets/w16_8_moving_box", 4),
     ("web", 5),
 ];
 

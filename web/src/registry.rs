@@ -7,13 +7,15 @@ use kit::spec::WidgetSpec;
 pub type Maker = fn() -> Shell;
 
 /// The widgets with their names.
-pub const WIDGETS: [(&str, Maker); 6] = [
+pub const WIDGETS: [(&str, Maker); 8] = [
     ("w16.1", w16_1_basin_explorer::widget),
     ("w16.2", w16_2_full_lap::widget),
     ("w16.3", w16_3_cost_terraces::widget),
     ("w16.4", w16_4_control_room::widget),
     ("w16.5", w16_5_pose_graph_toy::widget),
     ("w16.6", w16_6_whole_window::widget),
+    ("w16.7", w16_7_been_here::widget),
+    ("w16.8", w16_8_moving_box::widget),
 ];
 
 /// What never changes about them, in the same order.
@@ -24,6 +26,8 @@ const SPECS: [&WidgetSpec; WIDGETS.len()] = [
     &w16_4_control_room::spec::SPEC,
     &w16_5_pose_graph_toy::spec::SPEC,
     &w16_6_whole_window::spec::SPEC,
+    &w16_7_been_here::spec::SPEC,
+    &w16_8_moving_box::spec::SPEC,
 ];
 
 /// What never changes about the widget of that name; nothing is computed for it.

@@ -4,6 +4,7 @@
 pub mod ancestor;
 pub mod basin;
 pub mod lap;
+pub mod moving_box;
 pub mod nudge;
 pub mod places;
 pub mod results;

@@ -4,10 +4,9 @@
 //! distance; at a threshold it calls the pairs below it the same. Precision is the share of those
 //! that are, recall the share of the same that it finds.
 
-use ch16_slam2d::cloud::PointCloud;
-use ch16_slam2d::loops::path_information;
-use ch16_slam2d::places::{ContextConfig, HistogramConfig, PlaceDescriptor, PlaceDetector};
-use pr_geom::{SE2, math};
+mod study;
+
+pub use study::{Place, PlaceStudy};
 
 use crate::lap::{Choice, Lap, LapConfig, LapDetector};
 
@@ -60,38 +59,9 @@ pub struct PlaceCurve {
 /// gate assumes: all that is known before a loop is closed.
 #[must_use]
 pub fn place_pairs(config: &LapConfig) -> Vec<PlacePair> {
-    let config = config.clone().without_loops();
-    let mut lap = Lap::new(config.clone());
+    let mut lap = Lap::new(config.clone().without_loops());
     lap.run();
-    let truths: Vec<SE2> = lap.keyframes().map(|keyframe| keyframe.truth).collect();
-    let keyframes = lap.slam().keyframes();
-    let poses = lap.graph().poses();
-    let max_range_m = config.drive.lidar.max_range_m;
-    let histogram = PlaceDescriptor::Histogram(HistogramConfig::default());
-    let context = PlaceDescriptor::Context(ContextConfig::default());
-    let looks = [histogram, context].map(|descriptor| descriptor.with_max_range_m(max_range_m));
-    let scan = |node: usize| -> &PointCloud { &keyframes[node].scan };
-    let mut pairs = Vec::new();
-    for new in 0..keyframes.len() {
-        for old in 0..(new + 1).saturating_sub(config.slam.loops.min_gap_nodes) {
-            let between = truths[old].between(&truths[new]);
-            let drift = path_information(new - old, &config.slam.loops);
-            let apart = poses[old].between(&poses[new]);
-            let distance_m = math::norm2(apart.x(), apart.y());
-            let by_look = looks.map(|look| PlaceDetector::distance(&look, scan(old), scan(new)));
-            pairs.push(PlacePair {
-                seed: config.drive.seed,
-                nodes: [old, new],
-                is_same: math::norm2(between.x(), between.y()) <= SAME_PLACE_M,
-                distances: [
-                    distance_m * math::sqrt(drift[(0, 0)]),
-                    by_look[0],
-                    by_look[1],
-                ],
-            });
-        }
-    }
-    pairs
+    PlaceStudy::new(&lap).run().graded().copied().collect()
 }
 
 /// The curve of every detector over these pairs.

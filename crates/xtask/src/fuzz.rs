@@ -63,6 +63,8 @@ pub const TARGETS: [Target; 7] = [
             "widgets/w16_4_control_room/src/model",
             "widgets/w16_5_pose_graph_toy/src/model",
             "widgets/w16_6_whole_window/src/model",
+            "widgets/w16_7_been_here/src/model",
+            "widgets/w16_8_moving_box/src/model",
         ],
     },
 ];

@@ -11,7 +11,9 @@ mod drops;
 mod graph;
 mod lap;
 mod loops;
+mod moving_box;
 mod ndt;
+mod places;
 mod search;
 mod setup;
 mod sweep;
@@ -31,6 +33,7 @@ pub struct Figures {
     laps: HashMap<String, LapRecord>,
     basin: OnceCell<BasinScene>,
     sweep: OnceCell<Sweep>,
+    places: HashMap<String, places::World>,
 }
 
 impl Figures {
@@ -48,6 +51,9 @@ impl Figures {
             ["example", "poses", what] => graph::value(what),
             ["basin", what @ ..] => basin::value(self.basin.get_or_init(BasinScene::new), what),
             ["ndt", start, what] => ndt::value(start, what),
+            ["box", what @ ..] => moving_box::value(what),
+            ["places", "setup", what] => places::setup(what),
+            ["places", world, what @ ..] => self.places(world)?.value(what),
             ["search", case, what] => {
                 search::value(self.basin.get_or_init(BasinScene::new), case, what)
             }
@@ -62,6 +68,14 @@ impl Figures {
             ["sweep", what @ ..] => self.sweep.get_or_init(Sweep::run).value(what),
             _ => None,
         }
+    }
+
+    fn places(&mut self, world: &str) -> Option<&places::World> {
+        if !self.places.contains_key(world) {
+            let graded = places::World::graded(world)?;
+            self.places.insert(world.to_owned(), graded);
+        }
+        self.places.get(world)
     }
 
     fn lap(&mut self, name: &str) -> Option<&LapRecord> {

@@ -1,0 +1,54 @@
+//! Places by their looks, over the laps that `slam2d places` drives: precision and recall.
+
+use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapDetector, LapMatcher};
+use ch16_lab::places::{PlaceCurve, PlacePair, SAME_PLACE_M, place_curves, place_pairs};
+use ch16_slam2d::places::HistogramConfig;
+
+/// Laps of each world, from seed 1 on.
+const SEEDS: u32 = 20;
+
+/// The grades of all detectors in one world.
+pub struct World {
+    pairs: Vec<PlacePair>,
+    curves: Vec<PlaceCurve>,
+}
+
+impl World {
+    /// Drives the laps of the world of that name.
+    pub fn graded(name: &str) -> Option<Self> {
+        let world = BuiltInWorld::named(name)?;
+        let lap = |seed| LapConfig::in_world(world, seed, 1.0).with_matcher(LapMatcher::Ndt);
+        let pairs: Vec<_> = (1..=SEEDS)
+            .flat_map(|seed| place_pairs(&lap(seed)))
+            .collect();
+        Some(Self {
+            curves: place_curves(&pairs),
+            pairs,
+        })
+    }
+
+    /// `pairs`, `same`, `context.area`, `nearby.clean_recall`.
+    pub fn value(&self, path: &[&str]) -> Option<f64> {
+        let detector = |name: &str| {
+            let detector = LapDetector::named(name)?;
+            self.curves.iter().find(|curve| curve.detector == detector)
+        };
+        match *path {
+            ["pairs"] => Some(self.pairs.len() as f64),
+            ["same"] => Some(self.pairs.iter().filter(|pair| pair.is_same).count() as f64),
+            [name, "area"] => Some(detector(name)?.average_precision),
+            [name, "clean_recall"] => Some(detector(name)?.recall_without_errors),
+            _ => None,
+        }
+    }
+}
+
+/// What the comparison is made of.
+pub fn setup(what: &str) -> Option<f64> {
+    match what {
+        "seeds" => Some(f64::from(SEEDS)),
+        "same_m" => Some(SAME_PLACE_M),
+        "bins" => Some(HistogramConfig::default().bins as f64),
+        _ => None,
+    }
+}

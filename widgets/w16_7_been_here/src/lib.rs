@@ -1,0 +1,18 @@
+//! Widget w16.7: the places of a lap, compared pair by pair.
+//!
+//! [`model`] holds every rule and no pixel, [`view`] every pixel and no rule.
+
+pub mod model;
+pub mod spec;
+#[cfg(feature = "view")]
+pub mod view;
+
+#[cfg(feature = "view")]
+use kit::shell::Shell;
+
+/// The widget, ready to be drawn.
+#[cfg(feature = "view")]
+#[must_use]
+pub fn widget() -> Shell {
+    Shell::new(Box::new(model::BeenHere::new()), Box::new(view::PlacesView))
+}

@@ -1,0 +1,139 @@
+//! The lap and its pairs, driven and compared in pieces between frames.
+
+use std::sync::Arc;
+
+use ch16_lab::lap::{DriveSimulation, Lap, LapConfig};
+use ch16_lab::places::{OperatingPoint, PlaceCurve, PlaceStudy, place_curves};
+
+/// Pairs in one piece of work: some tenths of a millisecond.
+const PAIRS_PER_PIECE: usize = 5;
+
+/// A lap on its way to its grades.
+pub enum Work {
+    /// The world is driven through.
+    Driving(Box<DriveSimulation>),
+    /// The front end runs.
+    Running(Box<Lap>),
+    /// The pairs are compared.
+    Comparing(Box<PlaceStudy>),
+}
+
+/// A lap with all that is known of its pairs.
+pub struct Places {
+    /// The keyframes and their pairs.
+    pub study: PlaceStudy,
+    /// The curve of each detector.
+    pub curves: Vec<PlaceCurve>,
+    /// Distances of the graded pairs by each detector, in ascending order.
+    ranked: [Vec<f64>; 3],
+    /// Graded pairs that are the same place.
+    pub same: usize,
+}
+
+impl Work {
+    /// A lap that has not begun.
+    pub fn new(config: &LapConfig) -> Self {
+        Self::Driving(Box::new(DriveSimulation::new(config.drive.clone())))
+    }
+
+    /// One piece; the places once all is done.
+    pub fn step(self, config: &LapConfig) -> Result<Places, Self> {
+        Err(match self {
+            Self::Driving(mut simulation) => match simulation.step() {
+                None => Self::Driving(simulation),
+                Some(drive) => {
+                    let lap = Lap::on_drive(config.clone(), Arc::new(drive));
+                    Self::Running(Box::new(lap))
+                }
+            },
+            Self::Running(mut lap) => match lap.step() {
+                Some(_) => Self::Running(lap),
+                None => Self::Comparing(Box::new(PlaceStudy::new(&lap))),
+            },
+            Self::Comparing(mut study) => {
+                let goes_on = (0..PAIRS_PER_PIECE).all(|_| study.step());
+                if !goes_on {
+                    return Ok(Places::new(*study));
+                }
+                Self::Comparing(study)
+            }
+        })
+    }
+}
+
+impl Places {
+    fn new(study: PlaceStudy) -> Self {
+        let graded: Vec<_> = study.graded().copied().collect();
+        let ranked = core::array::from_fn(|detector| {
+            let distances = graded.iter().map(|pair| pair.distances[detector]);
+            let mut distances: Vec<f64> = distances.collect();
+            distances.sort_by(f64::total_cmp);
+            distances
+        });
+        Self {
+            curves: place_curves(&graded),
+            same: graded.iter().filter(|pair| pair.is_same).count(),
+            ranked,
+            study,
+        }
+    }
+
+    /// Last keyframe.
+    pub fn last(&self) -> usize {
+        self.study.places().len() - 1
+    }
+
+    /// The threshold at which a detector calls so many pairs the same, %.
+    pub fn threshold(&self, detector: usize, called_percent: f64) -> f64 {
+        let ranked = &self.ranked[detector];
+        let called = (ranked.len() as f64 * called_percent / 100.0).round() as usize;
+        match called.checked_sub(1) {
+            Some(last) => ranked.get(last).copied().unwrap_or(f64::INFINITY),
+            None => -1.0,
+        }
+    }
+
+    /// How a detector does there; equal distances stand or fall together.
+    pub fn graded_at(&self, detector: usize, threshold: f64) -> Grade {
+        let mut grade = Grade::default();
+        for pair in self.study.graded() {
+            if pair.distances[detector] <= threshold {
+                grade.called += 1;
+                grade.right += usize::from(pair.is_same);
+            }
+        }
+        grade.same = self.same;
+        grade
+    }
+
+    /// The older keyframe that looks most alike to `new`, among those that may be a loop with it.
+    pub fn most_alike(&self, detector: usize, new: usize) -> Option<usize> {
+        let pairs = (0..new).filter_map(|old| self.study.pair(old, new));
+        let loops = pairs.filter(|pair| self.study.is_loop(pair.nodes));
+        loops
+            .min_by(|a, b| a.distances[detector].total_cmp(&b.distances[detector]))
+            .map(|pair| pair.nodes[0])
+    }
+}
+
+/// What a detector calls the same, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Grade {
+    /// Pairs called the same.
+    pub called: usize,
+    /// Those that are.
+    pub right: usize,
+    /// All that are.
+    pub same: usize,
+}
+
+impl Grade {
+    /// Precision and recall, where a pair is called.
+    pub fn point(&self, threshold: f64) -> Option<OperatingPoint> {
+        (self.called > 0 && self.same > 0).then(|| OperatingPoint {
+            threshold,
+            precision: self.right as f64 / self.called as f64,
+            recall: self.right as f64 / self.same as f64,
+        })
+    }
+}

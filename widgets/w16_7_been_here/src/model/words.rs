@@ -1,0 +1,187 @@
+//! The result in words and numbers.
+
+use ch16_lab::lap::{Choice, LapDetector};
+use kit::model::{Fact, Outcome, Standing};
+
+use super::BeenHere;
+use super::lap::{Grade, Places};
+use super::settings::distance_label;
+
+/// How the detector that is chosen does.
+fn grade(been: &BeenHere) -> Option<(&Places, Grade)> {
+    let places = been.places.as_ref().filter(|_| been.work.is_none())?;
+    let detector = been.detector();
+    Some((places, places.graded_at(detector, been.threshold(detector))))
+}
+
+/// Good is a threshold without a false pair.
+pub fn standing(been: &BeenHere) -> Standing {
+    match grade(been) {
+        None => Standing::Neutral,
+        Some((_, grade)) if grade.called == 0 => Standing::Neutral,
+        Some((_, grade)) if grade.right == grade.called => Standing::Good,
+        Some(_) => Standing::Bad,
+    }
+}
+
+/// The grade in a few words.
+pub fn verdict(been: &BeenHere) -> &'static str {
+    match grade(been) {
+        None => "driving",
+        Some((_, Grade { called: 0, .. })) => "no pair is called the same",
+        Some((_, grade)) if grade.right == grade.called => "no false pair",
+        Some((_, grade)) if 2 * grade.right >= grade.called => "some pairs are false",
+        Some(_) => "most pairs are false",
+    }
+}
+
+pub fn outcome(been: &BeenHere) -> Outcome {
+    let sentence = match grade(been) {
+        None => "The lap is driven, and its places are compared.".to_owned(),
+        Some((_, grade)) => {
+            let called = format!(
+                "By {}, {} pairs are called the same place, and {} of them are; {} are not found.",
+                LapDetector::ALL[been.detector()].label(),
+                grade.called,
+                grade.right,
+                grade.same - grade.right
+            );
+            format!("{called} {}", pair_words(been))
+        }
+    };
+    Outcome {
+        standing: standing(been),
+        verdict: verdict(been).to_owned(),
+        sentence,
+        facts: facts(been),
+    }
+}
+
+/// The pair that is looked at, in a sentence.
+fn pair_words(been: &BeenHere) -> String {
+    let told = been.places.as_ref().zip(been.pair());
+    let Some((places, [old, new])) = told else {
+        return String::new();
+    };
+    let Some(pair) = places.study.pair(old, new) else {
+        return String::new();
+    };
+    let detector = been.detector();
+    let distance = pair.distances[detector];
+    let (is_called, is_same) = (distance <= been.threshold(detector), pair.is_same);
+    let said = if !places.study.is_loop([old, new]) {
+        "are neighbours in time, and no loop"
+    } else {
+        match (is_called, is_same) {
+            (true, true) => "are called the same place, and they are",
+            (true, false) => "are called the same place, and they are not",
+            (false, true) => "are the same place, and it is not seen",
+            (false, false) => "are told apart",
+        }
+    };
+    format!("Keyframes {old} and {new} {said}: distance {distance:.2}.")
+}
+
+fn facts(been: &BeenHere) -> Vec<Fact> {
+    let graded = grade(been);
+    let point = |detector: usize| {
+        let (places, _) = graded?;
+        let threshold = been.threshold(detector);
+        places.graded_at(detector, threshold).point(threshold)
+    };
+    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let pair = been.places.as_ref().zip(been.pair());
+    let distances = pair.and_then(|(places, [old, new])| places.study.pair(old, new));
+    let turn = pair.map(|(places, [old, new])| places.study.turned(old, new).turn_rad);
+    let curve = |detector: usize| graded.map(|(places, _)| &places.curves[detector]);
+    let ids = [
+        ("nearby_precision", "nearby_recall", "nearby_area"),
+        ("histogram_precision", "histogram_recall", "histogram_area"),
+        ("context_precision", "context_recall", "context_area"),
+    ];
+    let labels = [
+        (
+            "nearness: precision",
+            "nearness: recall",
+            "nearness: area below the curve",
+        ),
+        (
+            "ranges: precision",
+            "ranges: recall",
+            "ranges: area below the curve",
+        ),
+        (
+            "Scan Context: precision",
+            "Scan Context: recall",
+            "Scan Context: area below the curve",
+        ),
+    ];
+    let mut facts = Vec::new();
+    for (detector, (id, label)) in ids.into_iter().zip(labels).enumerate() {
+        let at = point(detector);
+        let area = curve(detector).map(|curve| curve.average_precision);
+        facts.extend([
+            Fact::new(id.0, label.0, number(at.map(|at| at.precision)), "", 2),
+            Fact::new(id.1, label.1, number(at.map(|at| at.recall)), "", 2),
+            Fact::new(id.2, label.2, number(area), "", 2),
+        ]);
+    }
+    let threshold = graded.map(|_| been.threshold(been.detector()));
+    facts.extend([
+        Fact::new(
+            "threshold",
+            distance_label(been.detector()),
+            number(threshold.filter(|threshold| *threshold >= 0.0)),
+            "",
+            3,
+        ),
+        Fact::new(
+            "pair_histogram",
+            "the pair by ranges",
+            number(distances.map(|pair| pair.distances[1])),
+            "",
+            3,
+        ),
+        Fact::new(
+            "pair_context",
+            "the pair by Scan Context",
+            number(distances.map(|pair| pair.distances[2])),
+            "",
+            3,
+        ),
+        Fact::new(
+            "pair_turn_deg",
+            "the pair's turn by Scan Context",
+            number(turn.map(f64::to_degrees)),
+            "°",
+            0,
+        ),
+        Fact::count("graded", "pairs graded", {
+            number(graded.map(|(places, _)| places.study.graded().count() as f64))
+        }),
+        Fact::count(
+            "same",
+            "pairs that are the same place",
+            number(graded.map(|(places, _)| places.same as f64)),
+        ),
+    ]);
+    facts
+}
+
+pub fn summary(been: &BeenHere) -> String {
+    let Some(places) = &been.places else {
+        return "A lap is driven; its keyframes will be compared pair by pair.".to_owned();
+    };
+    let curves = places
+        .curves
+        .iter()
+        .map(|curve| format!("{} {:.2}", curve.detector.label(), curve.average_precision));
+    let curves: Vec<_> = curves.collect();
+    format!(
+        "A lap of {} keyframes, compared pair by pair; keyframe {} is the newest. {} Areas below the curves of precision over recall: {}.",
+        places.study.places().len(),
+        been.newest(),
+        outcome(been).sentence,
+        curves.join(", ")
+    )
+}

@@ -1,0 +1,166 @@
+//! The widget's words and its one list of parameters.
+
+use ch16_lab::lap::CANONICAL_SEED;
+use kit::layers::{MORE, Opening};
+use kit::param::{Choice, ParamKind, ParamSpec};
+use kit::playback::SPEED;
+use kit::run;
+use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+
+/// More keyframes than any lap has.
+pub const MOST_KEYFRAMES: f64 = 400.0;
+
+/// The last keyframe that can be chosen to compare with: a lap of the ring has about a hundred.
+pub const LAST_OLD: f64 = 120.0;
+
+/// The value of `old` that asks for the keyframe that looks most alike.
+pub const MOST_ALIKE: f64 = -1.0;
+
+/// What the reader can change.
+pub const PARAMS: &[ParamSpec] = &[
+    ParamSpec {
+        id: "called",
+        label: "pairs called the same place",
+        unit: "%",
+        kind: ParamKind::Slider {
+            min: 0.0,
+            max: 60.0,
+            step: 1.0,
+        },
+        default: 15.0,
+        help: "So many pairs, those most alike, are called the same: a threshold for every detector at once.",
+    },
+    ParamSpec {
+        id: "detector",
+        label: "alike by",
+        unit: "",
+        kind: ParamKind::Choice {
+            options: &[
+                Choice {
+                    id: "nearby",
+                    label: "nearness",
+                },
+                Choice {
+                    id: "histogram",
+                    label: "ranges",
+                },
+                Choice {
+                    id: "context",
+                    label: "Scan Context",
+                },
+            ],
+        },
+        default: 2.0,
+        help: "By the estimated poses, by the histogram of ranges, or by rings and sectors.",
+    },
+    ParamSpec {
+        id: "world",
+        label: "world",
+        unit: "",
+        kind: ParamKind::Choice {
+            options: &[
+                Choice {
+                    id: "apartment",
+                    label: "the Apartment",
+                },
+                Choice {
+                    id: "ring",
+                    label: "a ring of corridors",
+                },
+            ],
+        },
+        default: 0.0,
+        help: "Where the lap is driven.",
+    },
+    ParamSpec {
+        id: "old",
+        label: "older keyframe of the pair",
+        unit: "",
+        kind: ParamKind::Slider {
+            min: MOST_ALIKE,
+            max: LAST_OLD,
+            step: 1.0,
+        },
+        default: MOST_ALIKE,
+        help: "Which older keyframe the newest one is compared with; −1 is the one that looks most alike.",
+    },
+    run::seed(CANONICAL_SEED),
+    run::NOISE,
+    ParamSpec {
+        id: "new",
+        label: "keyframe",
+        unit: "",
+        kind: ParamKind::Timeline {
+            max: MOST_KEYFRAMES,
+        },
+        default: MOST_KEYFRAMES,
+        help: "The newest keyframe that is known; past the last one it is the whole lap.",
+    },
+    SPEED,
+    MORE,
+];
+
+/// One keyframe, under the name that it has here.
+const ONE_KEYFRAME: ButtonSpec = ButtonSpec {
+    label: "Next keyframe",
+    help: "Drive to the next keyframe and compare it with all older ones.",
+    ..STEP
+};
+
+/// What never changes.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.7",
+    title: "Have I been here?",
+    misconception: "To look alike is not to be the same: a descriptor proposes, and how often it is \
+                    right depends on the threshold and on the building.",
+    notice: &[
+        "Ink is alike. The stripe that runs down to the right is the way back: places in the order in which they were left.",
+        "In the corridor all histograms look alike: a beam says how far, and not in which direction.",
+        "Scan Context knows directions. Turn the robot, and its columns shift: the best shift is the heading.",
+        "A looser threshold finds more of the true pairs, and calls more false ones. No point of the curve is free.",
+    ],
+    opening: Opening {
+        panels: &["matrix", "scans", "looks", "curves"],
+        params: &["called"],
+        buttons: &["play", "step", "reset"],
+    },
+    params: PARAMS,
+    buttons: &[PLAY, ONE_KEYFRAME, RESET, DEFAULTS],
+    presets: &[
+        Preset {
+            id: "lap",
+            label: "Drive the lap",
+            help: "Each new keyframe is compared with all older ones, and a column is added.",
+            set: &[("new", 0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "ranges",
+            label: "By ranges alone",
+            help: "The corridor is one square of ink: the histogram cannot tell its places apart.",
+            set: &[("detector", 1.0)],
+            then: &[],
+        },
+        Preset {
+            id: "nearby",
+            label: "By the estimated pose",
+            help: "On a short lap the pose says most; it is wrong where drift is large.",
+            set: &[("detector", 0.0)],
+            then: &[],
+        },
+        Preset {
+            id: "drifted",
+            label: "Four times the noise",
+            help: "The wheels drift, and what is near in the graph is less often the same place. Looks do not drift.",
+            set: &[("noise", 4.0)],
+            then: &[],
+        },
+        Preset {
+            id: "ring",
+            label: "A ring of corridors",
+            help: "Four corridors that look alike: every look-alike is a trap here.",
+            set: &[("world", 1.0)],
+            then: &[],
+        },
+    ],
+};

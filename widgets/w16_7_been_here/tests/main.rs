@@ -1,0 +1,4 @@
+//! The comparison's rules and its view.
+
+mod model;
+mod view;

@@ -1,0 +1,4 @@
+//! The box's rules and its view.
+
+mod model;
+mod view;
