@@ -81,6 +81,29 @@ describe('a link in the text', () => {
     });
   });
 
+  it('is not alone: an answer that is shown in its widget offers the way back to the question', async () => {
+    await reading(async (tab) => {
+      const question = tab.locator('#exercise-7 slam-predict');
+      await question.scrollIntoViewIfNeeded();
+      await tab.waitForFunction(() => customElements.get('slam-predict') !== undefined);
+      await question.locator('input').fill('0.05');
+      await question.locator('button').first().click();
+      const show = question.getByRole('button', { name: 'Show it in the widget' });
+      await show.click();
+      await tab.waitForFunction((css) => {
+        const { top, bottom } = document.querySelector(css).getBoundingClientRect();
+        return top < innerHeight && bottom > 0;
+      }, widget('w16.2'));
+      assert.equal(await wayBack(tab).textContent(), 'Back to the question');
+      await wayBack(tab).click();
+      assert.equal(await wayBack(tab).count(), 0);
+      assert.ok(await show.evaluate((element) => {
+        const { top, bottom } = element.getBoundingClientRect();
+        return element.getRootNode().activeElement === element && top > 0 && bottom < innerHeight;
+      }));
+    });
+  });
+
   it('sets its widget to exactly what it names, each of them', async () => {
     await reading(async (tab) => {
       const asked = await tab.evaluate(() => [...document.querySelectorAll('a.slam-link')].map((a) => {

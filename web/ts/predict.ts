@@ -13,6 +13,7 @@
 // @ts-expect-error: stays a file of its own beside this one.
 import './slam-widget.js';
 import { keepKeys, marked } from './dom';
+import { offerWayBack } from './way-back';
 import type { SlamWidget } from './element';
 import type { Outcome } from './instance';
 import type { Prediction } from '../slam-predict';
@@ -133,7 +134,10 @@ export class SlamPredict extends HTMLElement {
       this.#say([`${judged} ${said} You said ${prediction}${unit} and are off by ${Math.abs(gap).toPrecision(2)}${unit}.`]);
     }
     // The widget may stand pages away: the reader decides when to leave the answer.
-    const show = button('Show it in the widget', () => widget.scrollIntoView({ block: 'start' }));
+    const show = button('Show it in the widget', () => {
+      widget.scrollIntoView({ block: 'start' });
+      offerWayBack(show, 'the question');
+    });
     const again = button('Predict again', () => this.#reset());
     this.#answer?.append(show, ' ', again);
   }

@@ -1,4 +1,4 @@
-// A link whose widget stands elsewhere on the page offers the way back to its sentence.
+// What leads to a widget that stands elsewhere on the page offers the way back to its sentence.
 
 import { create } from './dom';
 
@@ -12,14 +12,14 @@ button:focus-visible { outline: 3px solid #1d4ed8; outline-offset: 2px; }
 
 let end: (() => void) | undefined;
 
-/** Shows the way back until it was gone, or the sentence is seen again. */
-export function offerWayBack(link: HTMLElement): void {
+/** Shows the way back to a link, or to what has a name, until it was gone, or the place is seen again. */
+export function offerWayBack(link: HTMLElement, name = `“${link.textContent?.trim() ?? ''}”`): void {
   endWayBack();
   const host = create('div', { class: 'slam-way-back' });
   const style = create('style');
   style.textContent = STYLE;
   const button = create('button', { type: 'button' });
-  button.textContent = `Back to “${link.textContent?.trim() ?? ''}”`;
+  button.textContent = `Back to ${name}`;
   host.attachShadow({ mode: 'open' }).append(style, button);
   let hasLeft = false;
   const seen = new IntersectionObserver((entries) => {

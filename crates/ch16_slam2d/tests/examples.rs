@@ -2,6 +2,8 @@
 
 #[path = "../examples/align_two_clouds.rs"]
 mod align_two_clouds;
+#[path = "../examples/find_the_nearest.rs"]
+mod find_the_nearest;
 #[path = "../examples/optimize_a_graph.rs"]
 mod optimize_a_graph;
 #[path = "../examples/register_a_scan.rs"]
@@ -22,6 +24,31 @@ fn the_robot_of_the_aligned_clouds_moved_straight() {
     let motion = align_two_clouds::motion();
     assert!(expected.between(&motion).step_size() < 1e-12);
     align_two_clouds::main();
+}
+
+#[test]
+fn nine_cells_hold_the_nearest_point_that_the_map_finds() {
+    let tau_m = 0.3;
+    // Points and queries all over 2 m × 2 m, on both sides of the origin, by two steps of no common
+    // measure.
+    let spread = |k: i32, step: f64| (f64::from(k) * step).fract() * 2.0 - 1.0;
+    let at = |k: i32, steps: [f64; 2]| Point2::new(spread(k, steps[0]), spread(k, steps[1]));
+    let points: Vec<_> = (1..80).map(|k| at(k, [0.618_034, 0.414_214])).collect();
+    let cells = find_the_nearest::cells(&points, tau_m);
+    let mut map = VoxelMap::new(tau_m, usize::MAX);
+    map.insert(&points, &vec![None; points.len()]);
+    let mut alone = 0;
+    for k in 1..400 {
+        let query = at(k, [0.732_051, 0.236_068]);
+        let found = find_the_nearest::nearest(&cells, query, tau_m);
+        let by_map = map.neighbor(query, tau_m);
+        assert_eq!(found, by_map.map(|near| map.point(near.index)), "{query}");
+        alone += usize::from(found.is_none());
+    }
+    assert!(alone < 200, "{alone} queries have no partner");
+    let far = Point2::new(5.0, 5.0);
+    assert_eq!(find_the_nearest::nearest(&cells, far, tau_m), None);
+    find_the_nearest::main();
 }
 
 #[test]
