@@ -28,9 +28,11 @@ fn methods(moving: &MovingBox) -> Table {
     Table {
         id: "methods",
         title: "The three registrations".to_owned(),
-        columns: ["", "off (m)", "in x", "in y", "rmse (m)", "pairs", "steps"]
-            .map(str::to_owned)
-            .to_vec(),
+        columns: [
+            "method", "off (m)", "in x", "in y", "rmse (m)", "pairs", "steps",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
         rows: rows.collect(),
         place: TablePlace::Shown,
     }
