@@ -3,6 +3,7 @@
 
 pub mod ancestor;
 pub mod basin;
+pub mod buildings;
 pub mod lap;
 pub mod moving_box;
 pub mod nudge;

@@ -13,8 +13,10 @@
 mod config;
 mod front_end;
 mod fusion;
+mod guarding;
 mod loop_closing;
 mod motion;
+pub mod parameters;
 mod parts;
 mod pending;
 mod refinement;
@@ -29,7 +31,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use pr_geom::SE2;
 
-pub use config::{LoopClosure, PredictionUse, SlamConfig, ThresholdConfig};
+pub use config::{ContradictionConfig, LoopClosure, PredictionUse, SlamConfig, ThresholdConfig};
 pub use front_end::{FrontEnd, Registration, WindowSweep};
 pub use motion::MotionNoise;
 pub use parts::SlamParts;
@@ -38,7 +40,7 @@ pub use refinement::{Refinement, RefinementConfig};
 pub use report::{Change, Keyframe, LoopAttempt, LoopEffect, SlamReport};
 
 use crate::graph::{EdgeKind, PoseGraph};
-use crate::loops::{LoopDetector, LoopWorkspace};
+use crate::loops::{HeldLoop, LoopDetector, LoopWorkspace};
 use crate::metrics::position_error_m;
 use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer, is_finite};
 
@@ -55,6 +57,8 @@ pub struct Slam {
     last_attempt_node: Option<usize>,
     /// The newest node at which a loop was closed; the first before any was.
     last_loop_node: usize,
+    /// Loops that wait for others, in order.
+    held: Vec<HeldLoop>,
     detector: Box<dyn LoopDetector>,
     loop_workspace: LoopWorkspace,
     chi2: f64,
@@ -82,6 +86,7 @@ impl Slam {
             last_stamp_s: f64::NEG_INFINITY,
             last_attempt_node: None,
             last_loop_node: 0,
+            held: Vec::new(),
             chi2: 0.0,
             config,
         }
@@ -261,6 +266,7 @@ impl Slam {
             return None;
         }
         let information = self.front_end.information(last_pose.theta(), &self.config);
+        let information = information * self.config.confidence;
         let node = self.graph.add_node(estimate);
         self.graph
             .add_edge(last_node, node, relative, information, EdgeKind::Odometry);

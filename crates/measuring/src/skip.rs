@@ -13,6 +13,10 @@ use std::path::Path;
 pub const NO_RECORDED_GRAPHS: &str = "the graph is not in ../shared/data/graphs, beside the repository; \
      docs/testing.md says where recorded graphs come from";
 
+/// The reason of a test that wants a recorded log.
+pub const NO_RECORDED_LOGS: &str = "the log is not in ../shared/data/logs, beside the repository; \
+     docs/testing.md says where recorded logs come from";
+
 /// The reason of what counts instructions.
 pub const NO_VALGRIND: &str =
     "valgrind is not installed; `sudo apt-get install valgrind` installs it on Debian";

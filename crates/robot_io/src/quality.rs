@@ -238,6 +238,9 @@ fn reason(rejection: &LoopRejection) -> String {
         LoopRejection::Ambiguous { margin, min_margin } => {
             format!("another place is behind by {margin:.2} only, {min_margin:.2} is asked")
         }
+        LoopRejection::Waiting { agreeing, needed } => {
+            format!("it waits for others: {agreeing} agree, {needed} are asked")
+        }
         LoopRejection::OutsideGate(gate) => {
             format!(
                 "chi-squared {:.1} is above {:.1}",

@@ -2,6 +2,7 @@
 
 use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::scan::{Frame, FrameError};
+use ch16_slam2d::slam::parameters::Parameter;
 use ch16_slam2d::slam::{Slam, SlamConfig, SlamReport};
 use pr_geom::SE2;
 
@@ -47,6 +48,7 @@ const POOR_SCORE: f64 = 0.5;
 pub struct LogRun {
     odometry_use: OdometryUse,
     config: Option<SlamConfig>,
+    settings: Vec<(&'static Parameter, f64)>,
     slam: Option<Slam>,
     last_odometry: Option<SE2>,
     last_stamp_s: f64,
@@ -73,6 +75,7 @@ impl LogRun {
         Self {
             odometry_use,
             config: None,
+            settings: Vec::new(),
             slam: None,
             last_odometry: None,
             last_stamp_s: f64::NEG_INFINITY,
@@ -89,6 +92,13 @@ impl LogRun {
     #[must_use]
     pub fn with_config(mut self, config: SlamConfig) -> Self {
         self.config = Some(config);
+        self
+    }
+
+    /// The same run with another value of a parameter; what the configuration has no use for has no effect.
+    #[must_use]
+    pub fn with_parameter(mut self, parameter: &'static Parameter, value: f64) -> Self {
+        self.settings.push((parameter, value));
         self
     }
 
@@ -110,7 +120,12 @@ impl LogRun {
         };
         let slam = self.slam.get_or_insert_with(|| {
             let by_scan = || SlamConfig::for_robot(&frame.scan);
-            Slam::new(self.config.take().unwrap_or_else(by_scan))
+            let mut config = self.config.take().unwrap_or_else(by_scan);
+            for (parameter, value) in &self.settings {
+                // Only what the configuration lacks is refused here: nothing to set.
+                let _ = parameter.set(&mut config, *value);
+            }
+            Slam::new(config)
         });
         let report = match slam.step(&frame) {
             Ok(report) => report,
@@ -145,7 +160,18 @@ impl LogRun {
     /// Says that no scan follows.
     pub fn finish(&mut self) {
         if let Some(slam) = &mut self.slam {
-            self.links = slam.refine().links().to_vec();
+            let refinement = slam.refine();
+            self.links = refinement.links().to_vec();
+            if let Some(found) = refinement.concluded() {
+                let is_it = |tried: &&mut TriedLoop| {
+                    let waited = &tried.verification;
+                    (waited.from_node, waited.registered) == (found.from_node, found.registered)
+                };
+                if let Some(tried) = self.loops.iter_mut().find(is_it) {
+                    tried.verification.rejection = None;
+                    tried.accepted = true;
+                }
+            }
         }
     }
 

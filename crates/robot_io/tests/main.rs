@@ -1,3 +1,4 @@
 //! What the readers and the grades say of files.
 
 mod evo;
+mod recorded;

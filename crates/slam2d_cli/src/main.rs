@@ -4,6 +4,7 @@
 //! files that cannot be used end in one line on standard error and exit code 2.
 
 mod basin;
+mod buildings;
 mod convert;
 mod evaluate;
 mod grade;
@@ -47,6 +48,7 @@ enum Command {
     Table(table::TableArgs),
     Register(register::RegisterArgs),
     Places(places::PlacesArgs),
+    Buildings(buildings::BuildingsArgs),
     Sweep(sweep::SweepArgs),
     Optimize(optimize::OptimizeArgs),
     Info(info::InfoArgs),
@@ -76,6 +78,7 @@ fn main() -> ExitCode {
             Ok(())
         }
         Command::Register(args) => register::run(args).map_err(|e| e.to_string()),
+        Command::Buildings(args) => buildings::run(args).map_err(|e| e.to_string()),
         Command::Places(args) => places::run(args).map_err(|e| e.to_string()),
         Command::Sweep(args) => sweep::run(args).map_err(|e| e.to_string()),
         Command::Optimize(args) => optimize::run(args).map_err(|e| e.to_string()),

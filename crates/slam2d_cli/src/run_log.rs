@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use ch16_slam2d::slam::parameters::{Parameter, ParameterError};
 use clap::Args;
 use measuring::process;
 use robot_io::quality::Quality;
@@ -13,6 +14,7 @@ use robot_io::run::{LogRun, OdometryUse};
 use serde::Serialize;
 use thiserror::Error;
 
+use crate::buildings::setting;
 use crate::grade::{Grade, GradeError, ReferenceArgs};
 use crate::log_file::{FileError, TopicArgs, open_log};
 use crate::output::{print_json, say};
@@ -31,6 +33,9 @@ pub struct RunArgs {
     /// Leave the wheels out: scans alone.
     #[arg(long)]
     no_odometry: bool,
+    /// Another value of a parameter of the estimator, as docs/robots.md lists them.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
+    settings: Vec<(String, f64)>,
     #[command(flatten)]
     reference: ReferenceArgs,
     /// Print one JSON object.
@@ -47,6 +52,9 @@ pub enum RunError {
     /// The comparison failed.
     #[error(transparent)]
     Grade(#[from] GradeError),
+    /// A parameter cannot be set.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
     /// Every scan was refused.
     #[error("{name}: no scan could be used: {problem}")]
     NoScan {
@@ -97,6 +105,11 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     } else {
         OdometryUse::Log
     });
+    for (name, value) in &args.settings {
+        let parameter = Parameter::named(name)?;
+        parameter.check(*value)?;
+        run = run.with_parameter(parameter, *value);
+    }
     let mut recorder = RunRecorder::default();
     let mut broken = None;
     while !is_interrupted.load(Ordering::Relaxed) {

@@ -68,6 +68,9 @@ impl LapTrace {
             Some(LoopRejection::Ambiguous { margin, min_margin }) => format!(
                 "{head}: {gate}, but another place is behind by {margin:.2} only, {min_margin:.2} is asked"
             ),
+            Some(LoopRejection::Waiting { agreeing, needed }) => {
+                format!("{head}: {gate}, but {agreeing} loops agree so far, {needed} are asked")
+            }
             Some(LoopRejection::NoCovariance(error)) => {
                 format!("{head}: the graph has no covariance to test against, {error}")
             }

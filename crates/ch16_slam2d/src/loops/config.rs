@@ -1,5 +1,6 @@
 //! The constants of loop closure; the defaults are the chapter's.
 
+use super::LoopGuard;
 use crate::chi_squared::CHAPTER_GATE;
 use crate::matching::{MapConfig, MatcherKind, SearchMatcherConfig, TrustConfig};
 use crate::places::PlaceDetectorConfig;
@@ -95,6 +96,8 @@ pub struct LoopConfig {
     pub max_radius_m: f64,
     /// What is done where every candidate was turned away.
     pub search: Option<WideSearch>,
+    /// Who is believed at once, and who waits; without it every loop that passes is closed at once.
+    pub guard: Option<LoopGuard>,
     /// What the gate takes for the drift; the two fields below belong to the path approximation.
     pub gate_model: GateModel,
     /// Drift of x and of y over one node, a standard deviation in metres; grows with √gap.
@@ -133,6 +136,7 @@ impl Default for LoopConfig {
             drift_share: 0.0,
             max_radius_m: f64::INFINITY,
             search: None,
+            guard: None,
             gate_model: GateModel::PathApproximation,
             drift_sigma_m: 0.045,
             drift_sigma_rad: 0.012,

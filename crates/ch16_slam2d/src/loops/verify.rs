@@ -44,6 +44,13 @@ pub enum LoopRejection {
         /// The smallest that is accepted.
         min_margin: f64,
     },
+    /// It waits for others that say the same.
+    Waiting {
+        /// Loops that agree, itself among them.
+        agreeing: usize,
+        /// How many have to.
+        needed: usize,
+    },
     /// The innovation is larger than the drift explains.
     OutsideGate(GateTest),
     /// The graph has no covariance to test against.

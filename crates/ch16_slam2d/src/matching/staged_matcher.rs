@@ -28,6 +28,13 @@ pub struct StagedMatcherConfig {
     pub turns: usize,
     /// Heading from one of them to the next, rad.
     pub turn_rad: f64,
+    /// Another start is taken where its score is better by so much.
+    pub lead: f64,
+    /// With this score the last stage alone is believed, and above 1 it never is; all stages are made
+    /// besides. Infinite leaves the last stage out that begins at the guess.
+    pub near_score: f64,
+    /// From farther off is better where its score is ahead of the last stage's by so much.
+    pub near_lead: f64,
 }
 
 impl Default for StagedMatcherConfig {
@@ -42,6 +49,9 @@ impl Default for StagedMatcherConfig {
             ndt_iterations: 15,
             turns: 3,
             turn_rad: 0.2,
+            lead: 0.0,
+            near_score: f64::INFINITY,
+            near_lead: 0.0,
         }
     }
 }
@@ -78,16 +88,42 @@ impl StagedMatcher {
         }
     }
 
-    /// ICP from `start`, from far to near.
+    /// ICP from `start`, first from near and then from far to near; the last stage alone where that fits.
+    ///
+    /// Pairs from far off pull a scan along a bare wall, and where the guess is good none are needed.
     fn refine(&mut self, source: &PointCloud, start: SE2, iterations: usize) -> MatchSummary {
+        let stages = self.config.taus_m;
+        if self.config.near_score.is_infinite() {
+            return self.staged(source, start, iterations, &stages);
+        }
+        let last = stages.iter().rev().find(|tau_m| **tau_m > 0.0);
+        let near = self.staged(
+            source,
+            start,
+            iterations,
+            last.map_or(&[], core::slice::from_ref),
+        );
+        if near.score >= Some(self.config.near_score) {
+            return near;
+        }
+        let far = self.staged(source, start, iterations, &stages);
+        if far.score > near.score.map(|score| score + self.config.near_lead) {
+            return far;
+        }
+        self.fit(source, near.pose, near.iterations)
+    }
+
+    /// ICP from `start` in these stages.
+    fn staged(
+        &mut self,
+        source: &PointCloud,
+        start: SE2,
+        iterations: usize,
+        taus_m: &[f64],
+    ) -> MatchSummary {
         let mut pose = start;
         let mut made = 0;
-        for tau_m in self
-            .config
-            .taus_m
-            .into_iter()
-            .take_while(|tau_m| *tau_m > 0.0)
-        {
+        for tau_m in taus_m.iter().copied().take_while(|tau_m| *tau_m > 0.0) {
             let stage = self.points.register(
                 source,
                 &MatchRequest {
@@ -169,7 +205,7 @@ impl Matcher for StagedMatcher {
                 let start = request.guess * SE2::new(0.0, 0.0, turn_rad);
                 let start = self.climb(source, start);
                 let found = self.refine(source, start, request.max_iterations);
-                is_last = found.score > best.score;
+                is_last = found.score > best.score.map(|score| score + self.config.lead);
                 if is_last {
                     best = found;
                 }

@@ -28,6 +28,28 @@ pub enum PredictionUse {
     Measurement,
 }
 
+/// What is believed where a scan and the prediction contradict each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContradictionConfig {
+    /// Disagreement that both allow, a squared norm in three dimensions.
+    pub chi2: f64,
+    /// A scan of which less fits is not believed against the prediction, 0 to 1.
+    pub min_score: f64,
+    /// One that is believed fits better than at the prediction by so much.
+    pub lead: f64,
+}
+
+impl Default for ContradictionConfig {
+    /// 99 of 100 disagreements lie within; half of the scan has to fit, and a tenth of it better.
+    fn default() -> Self {
+        Self {
+            chi2: 11.345,
+            min_score: 0.5,
+            lead: 0.1,
+        }
+    }
+}
+
 /// The adaptive correspondence threshold (Vizzo et al., "KISS-ICP", 2023, §III-B).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThresholdConfig {
@@ -71,6 +93,8 @@ pub struct SlamConfig {
     pub extrapolation: f64,
     /// Whether a registration is weighed against the prediction.
     pub prediction_use: PredictionUse,
+    /// What is believed where both contradict each other.
+    pub contradiction: ContradictionConfig,
     /// Share of what a registration knows across a wall that it claims along it by noise alone; see
     /// [`without_aperture`](crate::matching::without_aperture).
     pub aperture: f64,
@@ -82,6 +106,10 @@ pub struct SlamConfig {
     pub keyframe_turn_rad: f64,
     /// In which frame the information of edges is expressed.
     pub information_frame: InformationFrame,
+    /// Factor of the information of every edge, of the way and of loops.
+    ///
+    /// It moves no pose where the robust widths grow by its root; it makes covariances honest.
+    pub confidence: f64,
     /// Trust in the edge between two keyframes.
     pub odometry_trust: TrustConfig,
     /// Trust in measured odometry, where the registration was refused.
@@ -141,6 +169,7 @@ impl SlamConfig {
             min_inliers: 8,
             extrapolation: f64::INFINITY,
             prediction_use: PredictionUse::Start,
+            contradiction: ContradictionConfig::default(),
             aperture: 0.0,
             threshold: ThresholdConfig {
                 initial_m: 0.5,
@@ -150,6 +179,7 @@ impl SlamConfig {
             keyframe_distance_m: 0.4,
             keyframe_turn_rad: 0.35,
             information_frame: InformationFrame::Chapter,
+            confidence: 1.0,
             odometry_trust: TrustConfig {
                 sigma_m: 0.05,
                 inflate: 12.0,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
 
-use super::config::{PredictionUse, SlamConfig};
+use super::config::{ContradictionConfig, PredictionUse, SlamConfig};
 use super::fusion::fuse;
 use crate::cloud::PointCloud;
 use crate::icp::{AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
@@ -14,12 +14,6 @@ use crate::matching::{
 };
 use crate::metrics::position_error_m;
 use crate::scan::{PreparedFrame, is_finite};
-
-/// Disagreement of scan and wheels that both allow, a squared norm in three dimensions: 99 of 100 lie
-/// below.
-const BELIEVED_CHI2: f64 = 11.34;
-/// A scan that fits by so much better is believed against the wheels; scores are from 0 to 1.
-const CLEARLY_BETTER: f64 = 0.1;
 
 /// A sweep of the local map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +60,8 @@ pub struct FrontEnd {
     pairs: Vec<Pair>,
     /// Covariance of the predicted motions since the last keyframe, where they are measurements.
     driven: Matrix3<f64>,
+    /// Share of what the last registration claims that the wheels leave it.
+    believed: f64,
     /// Covariance of the motions since the last registration that was believed, none after one.
     unregistered: Option<Matrix3<f64>>,
 }
@@ -89,6 +85,7 @@ impl FrontEnd {
             matcher,
             pairs: Vec::new(),
             driven: Matrix3::zeros(),
+            believed: 1.0,
             unregistered: None,
         }
     }
@@ -163,6 +160,7 @@ impl FrontEnd {
         );
         let accepted = matched.inliers >= config.min_inliers && is_finite(&matched.pose);
         self.estimate = if accepted { matched.pose } else { prediction };
+        self.believed = 1.0;
         if config.prediction_use == PredictionUse::Measurement {
             let noise = config.motion_noise(frame.odometry.is_some());
             self.driven = noise.then(&self.driven, &motion);
@@ -194,7 +192,7 @@ impl FrontEnd {
                 return covariance.try_inverse().unwrap_or_else(Matrix3::identity);
             }
             (InformationFrame::Exact, None) => {
-                let known = self.matcher.information(&self.estimate, trust);
+                let known = self.matcher.information(&self.estimate, trust) * self.believed;
                 let driven = std::mem::take(&mut self.driven);
                 let wheels = driven.try_inverse().unwrap_or_default();
                 without_aperture(&known, config.aperture) + wheels
@@ -223,7 +221,8 @@ impl FrontEnd {
     /// Moves the estimate from the registration towards the prediction, by what both know.
     ///
     /// Where they disagree by more than both allow, wheels have slipped or the scan has: the scan is
-    /// believed where it fits clearly better than at the pose in between.
+    /// believed where it fits well, and clearly better than at the prediction. Elsewhere its information is
+    /// taken to be less, by as much as the disagreement is too large.
     fn weigh(
         &mut self,
         matched: &MatchSummary,
@@ -240,19 +239,34 @@ impl FrontEnd {
         let known = known * (share * share * share * share);
         let known = without_aperture(&known, config.aperture);
         let noise = config.motion_noise(frame.odometry.is_some());
-        let Some(fusion) = fuse(&matched.pose, &known, prediction, &noise.covariance(motion))
-        else {
+        let driven = noise.covariance(motion);
+        let Some(mut fusion) = fuse(&matched.pose, &known, prediction, &driven) else {
             return;
         };
-        if fusion.chi2 > BELIEVED_CHI2 {
-            let request = MatchRequest::new(fusion.pose, config.threshold.initial_m, 0);
-            let there = self.matcher.register(&frame.cloud, &request);
+        let ContradictionConfig {
+            chi2,
+            min_score,
+            lead,
+        } = config.contradiction;
+        if fusion.chi2 > chi2 {
+            let mut fit_at = |pose: SE2| {
+                let request = MatchRequest::new(pose, config.threshold.initial_m, 0);
+                self.matcher.register(&frame.cloud, &request).score
+            };
+            let predicted = fit_at(*prediction).unwrap_or(0.0);
             // The pairs are asked for later: those of the pose that is taken.
-            if there.score.unwrap_or(0.0) < matched.score.unwrap_or(1.0) - CLEARLY_BETTER {
-                let request = MatchRequest::new(matched.pose, config.threshold.initial_m, 0);
-                self.matcher.register(&frame.cloud, &request);
+            if share >= min_score && predicted < share - lead {
+                fit_at(matched.pose);
                 return;
             }
+            let believed = chi2 / fusion.chi2;
+            let Some(doubted) = fuse(&matched.pose, &(known * believed), prediction, &driven)
+            else {
+                return;
+            };
+            fusion = doubted;
+            fit_at(fusion.pose);
+            self.believed = believed;
         }
         self.estimate = fusion.pose;
     }

@@ -29,6 +29,7 @@ impl Slam {
         let loops = self.config.loops;
         if let Some(last) = self.last_attempt_node
             && node - last < loops.attempt_every_nodes
+            && !self.is_waiting(node)
         {
             return;
         }
@@ -38,7 +39,13 @@ impl Slam {
         candidates.retain(|candidate| candidate.node < node);
         for candidate in candidates.into_iter().take(loops.candidates_tried) {
             let verification = self.verify(node, candidate);
+            let verification = self.guarded(verification);
+            let is_searched = verification.margin.is_some();
             if self.report_attempt(verification, pending) {
+                return;
+            }
+            if is_searched {
+                // The whole window is searched once at a node.
                 return;
             }
         }
@@ -99,10 +106,11 @@ impl Slam {
                     proposal,
                     ..candidate
                 };
-                verification = LoopVerification {
+                let decided = LoopVerification {
                     margin: verification.margin,
                     ..self.verify(node, proposed)
                 };
+                verification = self.guarded(decided);
             }
             if self.report_attempt(verification, pending) {
                 return;
@@ -122,10 +130,8 @@ impl Slam {
     }
 
     /// Length of the way of the keyframes since the last loop, m.
-    fn way_since_loop_m(&self, node: usize) -> f64 {
-        let way = &self.graph.poses()[self.last_loop_node..=node];
-        let steps = way.windows(2);
-        steps.map(|pair| position_error_m(&pair[0], &pair[1])).sum()
+    pub(super) fn way_since_loop_m(&self, node: usize) -> f64 {
+        self.way_between_m(self.last_loop_node, node)
     }
 
     /// The S⁻¹ of the gate between two nodes.
@@ -183,7 +189,7 @@ impl Slam {
         )
     }
 
-    fn optimize_with(
+    pub(super) fn optimize_with(
         &mut self,
         verification: &LoopVerification,
     ) -> Result<LoopEffect, LoopRejection> {
@@ -192,7 +198,7 @@ impl Slam {
             verification.candidate.node,
             verification.from_node,
             verification.registered,
-            verification.information,
+            verification.information * self.config.confidence,
             EdgeKind::Loop,
         );
         let chi2_before = self.graph.chi2();
@@ -226,6 +232,7 @@ impl Slam {
         }
         self.chi2 = self.graph.chi2();
         self.last_loop_node = verification.from_node;
+        self.held.clear();
         let newest = verification.from_node;
         let correction = self.graph.pose(newest) * poses_before[newest].inverse();
         self.front_end.correct(&correction);

@@ -61,6 +61,7 @@ pub struct Refinement {
     pass: usize,
     node: usize,
     links: Vec<LoopVerification>,
+    concluded: Option<LoopVerification>,
     workspace: LoopWorkspace,
 }
 
@@ -69,6 +70,12 @@ impl Refinement {
     #[must_use]
     pub fn links(&self) -> &[LoopVerification] {
         &self.links
+    }
+
+    /// The loop that waited for others to the end, and was closed then.
+    #[must_use]
+    pub fn concluded(&self) -> Option<&LoopVerification> {
+        self.concluded.as_ref()
     }
 }
 
@@ -79,6 +86,9 @@ impl Slam {
         let config = self.config.refinement;
         if refinement.pass >= config.passes || self.config.loop_closure == LoopClosure::Off {
             return false;
+        }
+        if refinement.pass == 0 && refinement.node == 0 {
+            refinement.concluded = self.conclude();
         }
         if refinement.node == 0 {
             refinement.links.clear();
@@ -102,6 +112,7 @@ impl Slam {
             pass: 0,
             node: 0,
             links: Vec::new(),
+            concluded: None,
             workspace: LoopWorkspace::new(matcher.build(&self.config.loops.submap)),
         }
     }
@@ -177,7 +188,7 @@ impl Slam {
                 link.candidate.node,
                 link.from_node,
                 link.registered,
-                link.information,
+                link.information * self.config.confidence,
                 EdgeKind::Loop,
             );
         }
@@ -226,7 +237,8 @@ mod tests {
         let newest = slam.keyframes().len() - 1;
         let right = slam.graph().pose(3).between(&slam.graph().pose(newest));
         let wrong = right * SE2::new(0.3, 0.1, 0.05);
-        let trust = Matrix3::identity() * 100.0;
+        // As sure of itself as the right ones.
+        let trust = Matrix3::identity() * (100.0 * slam.config.confidence);
         slam.graph_mut()
             .add_edge(3, newest, wrong, trust, EdgeKind::Loop);
         slam.graph_mut().optimize(10, 1e-9);

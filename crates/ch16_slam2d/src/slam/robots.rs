@@ -3,7 +3,7 @@
 use super::config::{PredictionUse, SlamConfig, ThresholdConfig};
 use super::{MotionNoise, RefinementConfig};
 use crate::icp::{IcpConfig, IcpVariant};
-use crate::loops::{Detection, LoopConfig, WideSearch};
+use crate::loops::{Detection, LoopConfig, LoopGuard, WideSearch};
 use crate::matching::{
     MapConfig, MatcherKind, SearchMatcherConfig, StagedMatcherConfig, TrustConfig,
 };
@@ -38,6 +38,8 @@ impl SlamConfig {
         let far = StagedMatcherConfig {
             good_score: 0.7,
             turns: 4,
+            lead: 0.05,
+            near_score: 2.0,
             ..StagedMatcherConfig::default()
         };
         Self {
@@ -57,6 +59,7 @@ impl SlamConfig {
                 min_motion_m: 0.016,
                 max_range_m: 20.0,
             },
+            confidence: 10.0,
             keyframe_distance_m: 0.65,
             keyframe_turn_rad: 0.35,
             odometry_trust: TrustConfig {
@@ -90,9 +93,10 @@ impl SlamConfig {
                     },
                     min_way_m: 20.0,
                     candidates: 1,
-                    min_margin: 0.1,
+                    min_margin: 0.05,
                     min_score: 0.75,
                 }),
+                guard: Some(LoopGuard::default()),
                 drift_sigma_m: 0.07,
                 trust: TrustConfig {
                     sigma_m: SIGMA_M,

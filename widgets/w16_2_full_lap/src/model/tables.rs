@@ -160,6 +160,7 @@ fn verdict_with_reason(attempt: &LoopAttempt) -> &'static str {
         Some(LoopRejection::FewInliers { .. }) => "rejected: pairs",
         Some(LoopRejection::LowScore { .. }) => "rejected: score",
         Some(LoopRejection::Ambiguous { .. }) => "rejected: ambiguous",
+        Some(LoopRejection::Waiting { .. }) => "waits for others",
         Some(LoopRejection::OutsideGate(_)) => "rejected: χ²",
         Some(LoopRejection::NoCovariance(_)) => "rejected: no covariance",
         Some(LoopRejection::OptimizationFailed(_) | LoopRejection::CostRose { .. }) => "taken back",

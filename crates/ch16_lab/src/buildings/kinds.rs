@@ -1,0 +1,98 @@
+//! Kinds of buildings with the robots that drive through them.
+
+use core::f64::consts::TAU;
+
+use ch16_slam2d::slam::SlamConfig;
+
+use super::plan::{BuildingConfig, BuildingPlan, Layout, Rooms};
+use super::recording::{Recorder, Recording};
+use crate::lap::Choice;
+
+/// What is driven through, and with which scanner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Corridors around a block; half a circle, 361 beams, 80 m.
+    Ring,
+    /// One corridor whose rooms are driven into; half a circle, 360 beams, 80 m.
+    Hallway,
+    /// Corridors around a block; the full circle, 360 beams, 30 m.
+    Circle,
+    /// Corridors around a block of rooms that are all alike; half a circle, 181 beams, 8 m.
+    Alike,
+}
+
+impl Choice for Kind {
+    const ALL: &'static [Self] = &[Self::Ring, Self::Hallway, Self::Circle, Self::Alike];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Ring => "ring",
+            Self::Hallway => "hallway",
+            Self::Circle => "circle",
+            Self::Alike => "alike",
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Ring => "corridors around a block, 361 beams over half a circle, 80 m",
+            Self::Hallway => "a corridor and its rooms, 360 beams over half a circle, 80 m",
+            Self::Circle => "corridors around a block, 360 beams over the full circle, 30 m",
+            Self::Alike => "corridors around rooms that are all alike, 181 beams, 8 m",
+        }
+    }
+}
+
+/// What a robot records in the building of a seed, and the defaults for its scanner.
+#[must_use]
+pub fn recorded(kind: Kind, seed: u32) -> (Recording, SlamConfig) {
+    let plan = BuildingConfig {
+        seed,
+        ..BuildingConfig::default()
+    };
+    let robot = Recorder {
+        seed: seed ^ 0x5EED,
+        ..Recorder::default()
+    };
+    let (plan, robot) = match kind {
+        Kind::Ring => (plan, robot),
+        Kind::Hallway => (
+            BuildingConfig {
+                layout: Layout::Hallway,
+                extent_m: [38.0, 0.0],
+                visited: 0.4,
+                ..plan
+            },
+            Recorder {
+                beams: 360,
+                ..robot
+            },
+        ),
+        Kind::Circle => (
+            plan,
+            Recorder {
+                beams: 360,
+                field_of_view_rad: TAU,
+                max_range_m: 30.0,
+                ..robot
+            },
+        ),
+        Kind::Alike => (
+            BuildingConfig {
+                rooms: Rooms::Alike,
+                glass: 0.0,
+                visited: 0.0,
+                ..plan
+            },
+            Recorder {
+                beams: 181,
+                max_range_m: 8.0,
+                people: 0,
+                ..robot
+            },
+        ),
+    };
+    let recording = Recording::new(&BuildingPlan::new(&plan), &robot);
+    let config = SlamConfig::for_robot(&recording.frames[0].scan);
+    (recording, config)
+}

@@ -1,0 +1,220 @@
+//! Loops that wait until others agree with them.
+
+use nalgebra::Matrix3;
+use pr_geom::math;
+use pr_optim::OptimizeError;
+
+use super::Slam;
+use crate::graph::EdgeKind;
+use crate::loops::{
+    Detection, HeldLoop, KeyframeView, LoopConfig, LoopGuard, LoopRejection, LoopVerification,
+    LoopWorkspace, WideSearch, chi_squared_gate, verify_loop, widest_variance,
+};
+use crate::matching::{MatcherKind, SearchMatcherConfig};
+use crate::metrics::position_error_m;
+
+/// Two searches found the same place where they end so near, m and rad.
+const SAME_PLACE: (f64, f64) = (0.5, 0.35);
+
+impl Slam {
+    /// Whether loops wait for others at this node.
+    pub(super) fn is_waiting(&self, node: usize) -> bool {
+        let Some(guard) = self.config.loops.guard else {
+            return false;
+        };
+        let here_m = self.way_between_m(0, node);
+        let newest = self.held.last();
+        newest.is_some_and(|held| here_m - held.way_m <= 0.5 * guard.patience_m)
+    }
+
+    /// What the guard says of a loop that passed the other tests.
+    ///
+    /// A loop with a margin has been looked for in the whole window already.
+    pub(super) fn guarded(&mut self, found: LoopVerification) -> LoopVerification {
+        let Some(guard) = self.config.loops.guard.filter(|_| found.accepted()) else {
+            return found;
+        };
+        let (old, node) = (found.candidate.node, found.from_node);
+        let drift_m = self.blind_drift_m(self.last_loop_node, node);
+        let expected = match self.graph.relative_covariance(old, node) {
+            Ok(marginal) => guard.expected(&marginal, drift_m),
+            Err(error) => return rejected(found, LoopRejection::NoCovariance(error)),
+        };
+        let Some(information) = expected.try_inverse() else {
+            let error = OptimizeError::NotPositiveDefinite { node };
+            return rejected(found, LoopRejection::NoCovariance(error));
+        };
+        let gate = chi_squared_gate(&found.innovation, &information, guard.gate_chi2);
+        let reach_m = guard.reach_m(&expected);
+        let mut found = LoopVerification {
+            gate,
+            gate_information: information,
+            ..found
+        };
+        if gate.passes() && reach_m <= guard.sure_m {
+            return found;
+        }
+        if found.margin.is_none() {
+            let shift_m = math::norm2(found.innovation.x, found.innovation.y);
+            let half_m = math::max(reach_m, shift_m + 2.0 * SAME_PLACE.0);
+            let half_m = math::min(half_m, self.config.loops.max_radius_m);
+            found.margin = Some(self.lead(&found, half_m).unwrap_or(0.0));
+        }
+        let margin = found.margin.unwrap_or_default();
+        if margin < guard.min_margin {
+            let min_margin = guard.min_margin;
+            return rejected(found, LoopRejection::Ambiguous { margin, min_margin });
+        }
+        self.hold(found, &guard)
+    }
+
+    /// By how much the registered place is ahead of any other in a window of ± `half_width_m` around
+    /// the graph's belief; none where the best place is another one.
+    fn lead(&self, found: &LoopVerification, half_width_m: f64) -> Option<f64> {
+        let loops = self.config.loops;
+        let WideSearch { matcher, .. } = loops.search?;
+        let matcher = MatcherKind::Search(SearchMatcherConfig {
+            half_width_m,
+            ..matcher
+        });
+        let mut workspace = LoopWorkspace::new(matcher.build(&loops.submap));
+        let wider = LoopConfig {
+            detection: Detection::Visits,
+            radius_m: half_width_m,
+            ..loops
+        };
+        let view = KeyframeView {
+            poses: self.graph.poses(),
+            keyframes: &self.keyframes,
+        };
+        let candidate = crate::loops::LoopCandidate {
+            proposal: None,
+            ..found.candidate
+        };
+        let best = verify_loop(
+            view,
+            found.from_node,
+            candidate,
+            Ok(found.gate_information),
+            self.config.information_frame,
+            &wider,
+            &mut workspace,
+        );
+        let apart = best.registered.between(&found.registered);
+        let is_same = math::norm2(apart.x(), apart.y()) <= SAME_PLACE.0
+            && apart.theta().abs() <= SAME_PLACE.1;
+        is_same.then(|| best.margin.unwrap_or(f64::INFINITY))
+    }
+
+    /// Holds a loop back until enough others agree.
+    fn hold(&mut self, found: LoopVerification, guard: &LoopGuard) -> LoopVerification {
+        let way_m = self.way_between_m(0, found.from_node);
+        self.held
+            .retain(|held| way_m - held.way_m <= guard.patience_m);
+        let held = HeldLoop {
+            verification: found,
+            way_m,
+            is_expected: found.gate.passes(),
+        };
+        let agreeing = self.agreeing(&held, guard).len();
+        self.held.push(held);
+        let needed = if held.is_expected {
+            guard.agreeing
+        } else {
+            guard.agreeing_outside
+        };
+        if agreeing >= needed {
+            return found;
+        }
+        rejected(found, LoopRejection::Waiting { agreeing, needed })
+    }
+
+    /// Of the held loops those that agree with this one and with each other, itself among them.
+    fn agreeing(&mut self, held: &HeldLoop, guard: &LoopGuard) -> Vec<HeldLoop> {
+        let mut set = vec![*held];
+        for other in self.held.clone().iter().rev() {
+            let apart_m = |one: &HeldLoop| (one.way_m - other.way_m).abs();
+            if set.iter().any(|one| apart_m(one) < guard.apart_m) {
+                continue;
+            }
+            let agree = set.iter().all(|one| {
+                let (a, b) = (other.verification, one.verification);
+                let Ok(way) = self.way_covariance(a.from_node, b.from_node, guard) else {
+                    return false;
+                };
+                guard.agree(self.graph.poses(), &a, &b, &way)
+            });
+            if agree {
+                set.push(*other);
+            }
+        }
+        set
+    }
+
+    fn way_covariance(
+        &mut self,
+        old: usize,
+        new: usize,
+        guard: &LoopGuard,
+    ) -> Result<Matrix3<f64>, OptimizeError> {
+        let drift_m = self.blind_drift_m(old, new);
+        let marginal = self.graph.relative_covariance(old, new)?;
+        Ok(guard.expected(&marginal, drift_m))
+    }
+
+    /// At the end: closes what still waits, where most of it agrees.
+    pub(super) fn conclude(&mut self) -> Option<LoopVerification> {
+        let guard = self.config.loops.guard?;
+        let held = core::mem::take(&mut self.held);
+        let mut best: Vec<HeldLoop> = Vec::new();
+        for one in held.iter().filter(|one| one.is_expected) {
+            let mut others = held.clone();
+            others.retain(|other| other != one);
+            self.held = others;
+            let set = self.agreeing(one, &guard);
+            if set.len() > best.len() {
+                best = set;
+            }
+        }
+        self.held.clear();
+        let found = best.first()?.verification;
+        let is_most = 2 * best.len() > held.len();
+        // An error leaves the graph as it was.
+        (is_most && self.optimize_with(&found).is_ok()).then_some(found)
+    }
+
+    /// Drift of what goes one way between two nodes, a standard deviation, m.
+    ///
+    /// Each step counts by the share of it that the wheels alone tell: where the scans say where the robot
+    /// is, wheels of the wrong size do no harm.
+    fn blind_drift_m(&self, old: usize, new: usize) -> f64 {
+        let (first, last) = (old.min(new), old.max(new));
+        let steps = self.graph.edges().filter(|view| {
+            let (from, to) = (view.from.index(), view.to.index());
+            view.edge.kind == EdgeKind::Odometry && first <= from && to <= last
+        });
+        let blind = steps.map(|view| {
+            let motion = view.edge.measurement;
+            let wheels = self.config.odometry_noise.covariance(&motion);
+            let claimed = view.edge.information / self.config.confidence;
+            let known = claimed.try_inverse().unwrap_or(wheels);
+            let share = math::sqrt(widest_variance(&known) / wheels[(0, 0)]);
+            math::min(share, 1.0) * math::norm2(motion.x(), motion.y())
+        });
+        0.5 * self.config.loops.drift_share * blind.sum::<f64>()
+    }
+
+    /// Length of the way of the keyframes between two nodes, m.
+    pub(super) fn way_between_m(&self, old: usize, new: usize) -> f64 {
+        let way = &self.graph.poses()[old.min(new)..=old.max(new)];
+        let steps = way.windows(2);
+        steps.map(|pair| position_error_m(&pair[0], &pair[1])).sum()
+    }
+}
+
+fn rejected(found: LoopVerification, rejection: LoopRejection) -> LoopVerification {
+    LoopVerification {
+        rejection: Some(rejection),
+        ..found
+    }
+}

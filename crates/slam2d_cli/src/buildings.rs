@@ -1,0 +1,231 @@
+//! `slam2d buildings`: the defaults for robots on simulated recordings of office buildings.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::PathBuf;
+
+use ch16_lab::buildings::{Kind, Recording, Trial, recorded};
+use ch16_slam2d::slam::parameters::{Parameter, ParameterError};
+use clap::Args;
+use rayon::prelude::*;
+use robot_io::carmen::write_carmen;
+use robot_io::log::LogFrame;
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::numbers::{self, Seeds};
+use crate::output::{print_json, say};
+use crate::trial::choice;
+
+/// Most buildings of one sweep: each takes a second.
+const MAX_SEEDS: u64 = 100_000;
+
+/// Run the defaults for robots on simulated recordings of office buildings.
+#[derive(Args, Clone, Debug)]
+pub struct BuildingsArgs {
+    /// Seeds: A..=B, A..B or one.
+    #[arg(long, default_value = "1..=20", value_parser = numbers::seeds, allow_hyphen_values = true)]
+    seeds: Seeds,
+    /// What is driven through, and with which scanner.
+    #[arg(long, default_value = "ring", value_parser = choice::<Kind>())]
+    kind: Kind,
+    /// Leave the wheels out: scans alone.
+    #[arg(long)]
+    no_odometry: bool,
+    /// Another value of a parameter of the estimator, as docs/robots.md lists them.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
+    settings: Vec<(String, f64)>,
+    /// Write the recording of the first seed as a log of CARMEN instead, and its truth beside it.
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
+    /// Print one JSON list, an object for each seed.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Why nothing was run.
+#[derive(Debug, Error)]
+pub enum BuildingsFailure {
+    /// More than anyone waits for.
+    #[error("{seeds} seeds are too many, at most {MAX_SEEDS}")]
+    TooMany {
+        /// How many.
+        seeds: u64,
+    },
+    /// A parameter cannot be set.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// The log cannot be written.
+    #[error("{path}: {source}")]
+    Write {
+        /// The file.
+        path: String,
+        /// What the system says.
+        source: std::io::Error,
+    },
+}
+
+/// A run of one building.
+#[derive(Clone, Debug, Serialize)]
+struct Row {
+    seed: u32,
+    scans: usize,
+    keyframes: usize,
+    loops_tried: usize,
+    closed_right: usize,
+    closed_wrong: usize,
+    links_right: usize,
+    links_wrong: usize,
+    /// Mean error of relations between near keyframes, m.
+    relation_m: f64,
+    /// The largest of them, m.
+    worst_relation_m: f64,
+    /// Largest error of a keyframe, m.
+    worst_m: f64,
+    /// What 95 % of the normalized errors squared lie below; 7.8 by right.
+    nees_95: f64,
+    /// Share of the keyframes within their 95 % ellipsoid.
+    within_95: f64,
+}
+
+/// `NAME=VALUE`.
+pub fn setting(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("it has to be NAME=VALUE")?;
+    let value = value.parse().map_err(|_| format!("{value} is no number"))?;
+    Ok((name.to_owned(), value))
+}
+
+/// Runs the buildings and prints a line for each.
+///
+/// # Errors
+/// Where there are too many, a parameter cannot be set, or the log cannot be written.
+pub fn run(args: &BuildingsArgs) -> Result<(), BuildingsFailure> {
+    let seeds = args.seeds.count();
+    if seeds > MAX_SEEDS {
+        return Err(BuildingsFailure::TooMany { seeds });
+    }
+    if let Some(path) = &args.log {
+        let (recording, _) = recorded(args.kind, args.seeds.first);
+        return write(path, &recording).map_err(|source| BuildingsFailure::Write {
+            path: path.display().to_string(),
+            source,
+        });
+    }
+    for (name, value) in &args.settings {
+        Parameter::named(name)?.check(*value)?;
+    }
+    let rows: Result<Vec<Row>, ParameterError> = (args.seeds.first..=args.seeds.last)
+        .into_par_iter()
+        .map(|seed| row(args, seed))
+        .collect();
+    let rows = rows?;
+    if args.json {
+        print_json(&rows);
+    } else {
+        print(&rows);
+    }
+    Ok(())
+}
+
+fn row(args: &BuildingsArgs, seed: u32) -> Result<Row, ParameterError> {
+    let (recording, mut config) = recorded(args.kind, seed);
+    for (name, value) in &args.settings {
+        Parameter::named(name)?.set(&mut config, *value)?;
+    }
+    let trial = Trial::run(&recording, config, !args.no_odometry);
+    Ok(Row {
+        seed,
+        scans: recording.frames.len(),
+        keyframes: trial.nees.len() + 1,
+        loops_tried: trial.tried,
+        closed_right: trial.closed.right,
+        closed_wrong: trial.closed.wrong,
+        links_right: trial.links.right,
+        links_wrong: trial.links.wrong,
+        relation_m: trial.relation_m,
+        worst_relation_m: trial.worst_relation_m,
+        worst_m: trial.worst_m,
+        nees_95: {
+            let mut sorted = trial.nees.clone();
+            sorted.sort_by(f64::total_cmp);
+            sorted
+                .get(sorted.len() * 95 / 100)
+                .copied()
+                .unwrap_or_default()
+        },
+        within_95: trial.within_95(),
+    })
+}
+
+fn print(rows: &[Row]) {
+    say!(
+        "{:>6} {:>6} {:>6}  {:>13}  {:>13}  {:>11} {:>9} {:>9}  {:>9} {:>9}",
+        "seed",
+        "scans",
+        "nodes",
+        "closed, false",
+        "links, false",
+        "relations m",
+        "worst m",
+        "keyframe",
+        "in 95 %",
+        "nees 95"
+    );
+    for row in rows {
+        say!(
+            "{:>6} {:>6} {:>6}  {:>6} {:>6}  {:>6} {:>6}  {:>11.4} {:>9.3} {:>9.3}  {:>9.3} {:>9.2}",
+            row.seed,
+            row.scans,
+            row.keyframes,
+            row.closed_right,
+            row.closed_wrong,
+            row.links_right,
+            row.links_wrong,
+            row.relation_m,
+            row.worst_relation_m,
+            row.worst_m,
+            row.within_95,
+            row.nees_95
+        );
+    }
+    let mut errors: Vec<f64> = rows.iter().map(|row| row.relation_m).collect();
+    errors.sort_by(f64::total_cmp);
+    let runs = rows.len();
+    let share = |is: &dyn Fn(&Row) -> bool| rows.iter().filter(|row| is(row)).count();
+    let nodes: f64 = rows.iter().map(|row| row.keyframes as f64 - 1.0).sum();
+    let within: f64 = rows
+        .iter()
+        .map(|row| row.within_95 * (row.keyframes as f64 - 1.0))
+        .sum();
+    let closed: usize = rows.iter().map(|row| row.closed_right).sum();
+    say!(
+        "relations {:.4} m in the median run, {:.4} m in the worst; {} of {runs} runs with a keyframe \
+         1 m off; {} with a false loop, {} with a false link; {closed} right loops; {:.1} % of the \
+         keyframes in 95 %",
+        errors[runs / 2],
+        errors[runs - 1],
+        share(&|row| row.worst_m > 1.0),
+        share(&|row| row.closed_wrong > 0),
+        share(&|row| row.links_wrong > 0),
+        100.0 * within / nodes
+    );
+}
+
+/// Writes the log, and its truth as TUM beside it.
+fn write(path: &PathBuf, recording: &Recording) -> std::io::Result<()> {
+    let mut log = BufWriter::new(File::create(path)?);
+    let mut truth = BufWriter::new(File::create(path.with_extension("tum"))?);
+    for frame in &recording.frames {
+        let line = LogFrame {
+            stamp_s: frame.stamp_s,
+            odometry: Some(frame.odometry),
+            scan: frame.scan.clone(),
+        };
+        write_carmen(&line, &mut log)?;
+        let [x, y, theta] = frame.truth.to_array();
+        let (sin, cos) = (0.5 * theta).sin_cos();
+        writeln!(truth, "{} {x} {y} 0 0 0 {sin} {cos}", frame.stamp_s)?;
+    }
+    log.flush()?;
+    truth.flush()
+}
