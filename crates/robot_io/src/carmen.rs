@@ -19,12 +19,11 @@ mod raw_scans;
 mod sensor;
 mod write;
 
-use std::io::BufRead;
-
 pub use write::write_carmen;
 
-use crate::lines::{LineEnd, next_line, printable};
-use crate::log::{BrokenRecord, LogError, LogFrame, LogNotes, LogReader, Place};
+use crate::line_log::{LineFormat, LineReader};
+use crate::lines::printable;
+use crate::log::{LogFrame, LogNotes};
 use fields::{Fields, laser_message, odometry_message};
 use raw_scans::RawScans;
 use sensor::FrontLaser;
@@ -41,41 +40,28 @@ enum Source {
 }
 
 /// Reads a CARMEN log, line by line.
-#[derive(Debug)]
-pub struct CarmenReader<R> {
-    source: R,
-    name: String,
-    line: Vec<u8>,
-    notes: LogNotes,
+pub type CarmenReader<R> = LineReader<R, Carmen>;
+
+/// What the lines of a CARMEN log said so far.
+#[derive(Debug, Default)]
+pub struct Carmen {
     front: FrontLaser,
     chosen: Option<Source>,
     raw: RawScans,
-    frames: usize,
     known_lines: usize,
-    is_done: bool,
 }
 
-impl<R: BufRead> CarmenReader<R> {
-    /// A reader at the log's start; `name` is what errors call it.
-    #[must_use]
-    pub fn new(source: R, name: &str) -> Self {
-        Self {
-            source,
-            name: name.to_owned(),
-            line: Vec::new(),
-            notes: LogNotes::default(),
-            front: FrontLaser::default(),
-            chosen: None,
-            raw: RawScans::default(),
-            frames: 0,
-            known_lines: 0,
-            is_done: false,
-        }
-    }
+impl LineFormat for Carmen {
+    const NO_SCANS: &'static str =
+        "no line starts with FLASER, ROBOTLASER1 or RAWLASER1; record the laser as well";
 
-    /// Takes one line; answers with its frame where it completes one.
-    fn take_line(&mut self) -> Result<Option<LogFrame>, String> {
-        let text = std::str::from_utf8(&self.line)
+    fn take_line(
+        &mut self,
+        line: &[u8],
+        frames: usize,
+        notes: &mut LogNotes,
+    ) -> Result<Option<LogFrame>, String> {
+        let text = std::str::from_utf8(line)
             .map_err(|_| "the line has to be text, and holds other bytes".to_owned())?;
         let text = text.trim_start_matches('\u{feff}').trim();
         if text.is_empty() || text.starts_with('#') {
@@ -83,25 +69,26 @@ impl<R: BufRead> CarmenReader<R> {
         }
         let mut fields = Fields::of(text);
         let kind = fields.word();
-        let count = |notes: &mut LogNotes| {
+        let records = notes.records.len();
+        let mut count = || {
             *notes.records.entry(printable(kind)).or_default() += 1;
         };
         match kind {
             "FLASER" => {
-                let frame = self.front.frame(&mut fields, self.frames)?;
-                count(&mut self.notes);
+                let frame = self.front.frame(&mut fields, frames)?;
+                count();
                 self.known_lines += 1;
                 Ok(self.choose(Source::Flaser).then_some(frame))
             }
             "ROBOTLASER1" => {
-                let frame = laser_message(&mut fields, true, self.frames)?;
-                count(&mut self.notes);
+                let frame = laser_message(&mut fields, true, frames)?;
+                count();
                 self.known_lines += 1;
                 Ok(self.choose(Source::RobotLaser).then_some(frame))
             }
             "RAWLASER1" => {
-                let frame = laser_message(&mut fields, false, self.frames)?;
-                count(&mut self.notes);
+                let frame = laser_message(&mut fields, false, frames)?;
+                count();
                 self.known_lines += 1;
                 // A log often has the same scan as ROBOTLASER1 right after it.
                 if matches!(self.chosen, None | Some(Source::RawLaser)) {
@@ -111,14 +98,14 @@ impl<R: BufRead> CarmenReader<R> {
             }
             "ODOM" => {
                 let (stamp_s, pose) = odometry_message(&mut fields)?;
-                count(&mut self.notes);
+                count();
                 self.known_lines += 1;
                 self.raw.take_odometry(stamp_s, pose);
                 Ok(None)
             }
             "PARAM" => {
                 self.known_lines += 1;
-                count(&mut self.notes);
+                count();
                 self.front.take_parameter(&mut fields);
                 Ok(None)
             }
@@ -134,14 +121,32 @@ impl<R: BufRead> CarmenReader<R> {
                     ));
                 }
                 // A log of garbage has no end of names: memory is bounded.
-                if self.notes.records.len() < 100 {
-                    count(&mut self.notes);
+                if records < 100 {
+                    count();
                 }
                 Ok(None)
             }
         }
     }
 
+    fn waiting(&mut self, is_done: bool) -> Option<LogFrame> {
+        let frame = self.raw.pop(is_done)?;
+        self.choose(Source::RawLaser).then_some(frame)
+    }
+
+    fn is_foreign(&self, lines: usize) -> bool {
+        self.known_lines == 0 && lines >= FOREIGN_AFTER_LINES
+    }
+
+    fn foreign(&self) -> Option<(&'static str, &'static str)> {
+        (self.known_lines == 0).then_some((
+            "no CARMEN log",
+            "give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1",
+        ))
+    }
+}
+
+impl Carmen {
     /// Whether scans of this kind are the ones that are read.
     fn choose(&mut self, kind: Source) -> bool {
         if self.chosen.is_none() {
@@ -149,93 +154,6 @@ impl<R: BufRead> CarmenReader<R> {
             self.raw.forget();
         }
         self.chosen == Some(kind)
-    }
-
-    fn raw_frame(&mut self) -> Option<LogFrame> {
-        let frame = self.raw.pop(self.is_done)?;
-        self.choose(Source::RawLaser).then_some(frame)
-    }
-
-    fn nothing_found(&self) -> LogError {
-        let name = self.name.clone();
-        if self.notes.bytes == 0 {
-            return LogError::Empty { name };
-        }
-        if self.known_lines == 0 {
-            return LogError::Foreign {
-                name,
-                found: "no CARMEN log",
-                advice: "give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1",
-            };
-        }
-        let detail = match (&self.notes.first_broken, &self.notes.half_written) {
-            (Some(broken), _) | (None, Some(broken)) => {
-                format!("{}: {}", broken.place, broken.problem)
-            }
-            (None, None) => {
-                "no line starts with FLASER, ROBOTLASER1 or RAWLASER1; record the laser as well"
-                    .to_owned()
-            }
-        };
-        LogError::NoScans { name, detail }
-    }
-}
-
-impl<R: BufRead> LogReader for CarmenReader<R> {
-    fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
-        loop {
-            if let Some(frame) = self.raw_frame() {
-                self.frames += 1;
-                return Ok(Some(frame));
-            }
-            if self.is_done {
-                return Ok(None);
-            }
-            let read =
-                next_line(&mut self.source, &mut self.line).map_err(|source| LogError::Io {
-                    name: self.name.clone(),
-                    place: Place::Line(self.notes.lines + 1),
-                    source,
-                })?;
-            let Some((end, bytes)) = read else {
-                self.is_done = true;
-                if self.frames == 0 && self.raw.is_empty() {
-                    return Err(self.nothing_found());
-                }
-                continue;
-            };
-            self.notes.lines += 1;
-            self.notes.bytes += bytes;
-            let taken = if end == LineEnd::TooLong {
-                Err("a line has to be shorter than 4 MB".to_owned())
-            } else {
-                self.take_line()
-            };
-            match taken {
-                Ok(Some(frame)) => {
-                    self.frames += 1;
-                    return Ok(Some(frame));
-                }
-                Ok(None) => {}
-                Err(problem) if end == LineEnd::CutOff => {
-                    self.notes.half_written = Some(BrokenRecord {
-                        place: Place::Line(self.notes.lines),
-                        problem,
-                    });
-                }
-                Err(problem) => {
-                    let place = Place::Line(self.notes.lines);
-                    self.notes.leave_out(place, problem);
-                }
-            }
-            if self.known_lines == 0 && self.notes.lines >= FOREIGN_AFTER_LINES {
-                return Err(self.nothing_found());
-            }
-        }
-    }
-
-    fn notes(&self) -> &LogNotes {
-        &self.notes
     }
 }
 

@@ -10,14 +10,14 @@
 //! and so may `truth`, the true pose of a simulated robot, and `pose`, the one of an estimator: a log
 //! does not read these two.
 
-use std::io::{self, BufRead, Write};
+use std::io::{self, Write};
 
 use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 
-use crate::lines::{LineEnd, next_line};
-use crate::log::{BrokenRecord, LogError, LogFrame, LogNotes, LogReader, Place};
+use crate::line_log::{LineFormat, LineReader};
+use crate::log::{LogFrame, LogNotes};
 
 /// One line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -123,38 +123,27 @@ impl FrameLine {
 }
 
 /// Reads such a log, line by line.
-#[derive(Debug)]
-pub struct JsonLogReader<R> {
-    source: R,
-    name: String,
-    line: Vec<u8>,
-    notes: LogNotes,
-    frames: usize,
-}
+pub type JsonLogReader<R> = LineReader<R, JsonLines>;
 
-impl<R: BufRead> JsonLogReader<R> {
-    /// A reader at the log's start; `name` is what errors call it.
-    #[must_use]
-    pub fn new(source: R, name: &str) -> Self {
-        Self {
-            source,
-            name: name.to_owned(),
-            line: Vec::new(),
-            notes: LogNotes::default(),
-            frames: 0,
-        }
-    }
+/// Lines of JSON, each by itself.
+#[derive(Debug, Default)]
+pub struct JsonLines;
 
-    fn nothing_found(&self) -> LogError {
-        let broken = self.notes.first_broken.as_ref();
-        let broken = broken.or(self.notes.half_written.as_ref());
-        LogError::NoScans {
-            name: self.name.clone(),
-            detail: match broken {
-                Some(broken) => format!("{}: {}", broken.place, broken.problem),
-                None => "no line is a frame with ranges_m".to_owned(),
-            },
+impl LineFormat for JsonLines {
+    const NO_SCANS: &'static str = "no line is a frame with ranges_m";
+
+    fn take_line(
+        &mut self,
+        line: &[u8],
+        _frames: usize,
+        notes: &mut LogNotes,
+    ) -> Result<Option<LogFrame>, String> {
+        if line.trim_ascii().is_empty() {
+            return Ok(None);
         }
+        let line: FrameLine = serde_json::from_slice(line).map_err(|problem| in_words(&problem))?;
+        *notes.records.entry("frame".to_owned()).or_default() += 1;
+        Ok(Some(line.into()))
     }
 }
 
@@ -169,56 +158,10 @@ fn in_words(problem: &serde_json::Error) -> String {
     )
 }
 
-impl<R: BufRead> LogReader for JsonLogReader<R> {
-    fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
-        loop {
-            let read =
-                next_line(&mut self.source, &mut self.line).map_err(|source| LogError::Io {
-                    name: self.name.clone(),
-                    place: Place::Line(self.notes.lines + 1),
-                    source,
-                })?;
-            let Some((end, bytes)) = read else {
-                return if self.frames == 0 {
-                    Err(self.nothing_found())
-                } else {
-                    Ok(None)
-                };
-            };
-            self.notes.lines += 1;
-            self.notes.bytes += bytes;
-            let place = Place::Line(self.notes.lines);
-            if self.line.trim_ascii().is_empty() {
-                continue;
-            }
-            if end == LineEnd::TooLong {
-                let problem = "a line has to be shorter than 4 MB".to_owned();
-                self.notes.leave_out(place, problem);
-                continue;
-            }
-            match serde_json::from_slice::<FrameLine>(&self.line) {
-                Ok(line) => {
-                    self.frames += 1;
-                    *self.notes.records.entry("frame".to_owned()).or_default() += 1;
-                    return Ok(Some(line.into()));
-                }
-                Err(problem) if end == LineEnd::CutOff => {
-                    let problem = in_words(&problem);
-                    self.notes.half_written = Some(BrokenRecord { place, problem });
-                }
-                Err(problem) => self.notes.leave_out(place, in_words(&problem)),
-            }
-        }
-    }
-
-    fn notes(&self) -> &LogNotes {
-        &self.notes
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::log::LogReader;
 
     fn frame() -> LogFrame {
         LogFrame {

@@ -4,6 +4,7 @@
 //! - [`carmen`]: the text format of CARMEN, in both directions.
 //! - [`ros`]: recordings of ROS 2 (MCAP) and ROS 1 (bags).
 //! - [`json_log`]: a log as lines of JSON, in both directions.
+//! - [`line_log`]: what all formats of text share.
 //! - [`graph_file`]: pose graphs of g2o, TORO and JSON.
 //! - [`map_image`]: maps for Nav2's map_server.
 //! - [`recorder`] and [`report`]: what a run leaves for a map, and one HTML file with pictures.
@@ -23,6 +24,7 @@ pub mod evaluate;
 pub mod graph_file;
 pub mod info;
 pub mod json_log;
+pub mod line_log;
 pub mod log;
 pub mod map_image;
 pub mod quality;

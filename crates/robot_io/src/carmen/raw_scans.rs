@@ -29,11 +29,6 @@ impl RawScans {
         self.newest = Some((stamp_s, pose));
     }
 
-    /// Whether no scan waits.
-    pub fn is_empty(&self) -> bool {
-        self.waiting.is_empty()
-    }
-
     /// Forgets the scans that wait.
     pub fn forget(&mut self) {
         self.waiting.clear();

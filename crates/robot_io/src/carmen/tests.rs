@@ -3,6 +3,7 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use super::*;
+use crate::log::{LogError, LogReader};
 use pr_geom::SE2;
 
 /// All frames of a text, and what was noted.
