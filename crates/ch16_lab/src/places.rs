@@ -8,10 +8,17 @@ mod study;
 
 pub use study::{Place, PlaceStudy};
 
-use crate::lap::{Choice, Lap, LapConfig, LapDetector};
+use crate::lap::{Lap, LapConfig, LapDetector};
 
 /// Truths this near are the same place, m.
 pub const SAME_PLACE_M: f64 = 1.0;
+
+/// The detectors that give every pair a distance.
+pub const GRADED: [LapDetector; 3] = [
+    LapDetector::Nearby,
+    LapDetector::Histogram,
+    LapDetector::Context,
+];
 
 /// Points of a curve.
 const CURVE_POINTS: usize = 50;
@@ -25,8 +32,8 @@ pub struct PlacePair {
     pub nodes: [usize; 2],
     /// Whether the truths are within [`SAME_PLACE_M`].
     pub is_same: bool,
-    /// The distance by each detector, in the order of [`LapDetector::ALL`].
-    pub distances: [f64; 3],
+    /// The distance by each detector, in the order of [`GRADED`].
+    pub distances: [f64; GRADED.len()],
 }
 
 /// How a detector does at one threshold.
@@ -67,7 +74,7 @@ pub fn place_pairs(config: &LapConfig) -> Vec<PlacePair> {
 /// The curve of every detector over these pairs.
 #[must_use]
 pub fn place_curves(pairs: &[PlacePair]) -> Vec<PlaceCurve> {
-    let detectors = LapDetector::ALL.iter().enumerate();
+    let detectors = GRADED.iter().enumerate();
     detectors
         .map(|(index, &detector)| curve(pairs, index, detector))
         .collect()
