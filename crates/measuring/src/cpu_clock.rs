@@ -12,19 +12,19 @@ impl CpuClock {
     #[must_use]
     pub fn start() -> Self {
         Self {
-            started_s: now_s(),
+            started_s: now_s(Whose::Thread),
             elapsed_s: 0.0,
         }
     }
 
     /// Stops counting.
     pub fn pause(&mut self) {
-        self.elapsed_s += now_s() - self.started_s;
+        self.elapsed_s += now_s(Whose::Thread) - self.started_s;
     }
 
     /// Counts again.
     pub fn resume(&mut self) {
-        self.started_s = now_s();
+        self.started_s = now_s(Whose::Thread);
     }
 
     /// Milliseconds counted up to the last pause.
@@ -42,14 +42,28 @@ pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     (result, clock.elapsed_ms())
 }
 
+/// Whose time is counted.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Whose {
+    /// That of the calling thread.
+    Thread,
+    /// That of all threads of the process.
+    Process,
+}
+
+/// Seconds of CPU time up to now; wall time where the system has none.
 #[cfg(unix)]
-fn now_s() -> f64 {
-    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+pub(crate) fn now_s(whose: Whose) -> f64 {
+    use rustix::time::{ClockId, clock_gettime};
+    let time = clock_gettime(match whose {
+        Whose::Thread => ClockId::ThreadCPUTime,
+        Whose::Process => ClockId::ProcessCPUTime,
+    });
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
 #[cfg(not(unix))]
-fn now_s() -> f64 {
+pub(crate) fn now_s(_whose: Whose) -> f64 {
     use std::sync::OnceLock;
     use std::time::Instant;
     static START: OnceLock<Instant> = OnceLock::new();

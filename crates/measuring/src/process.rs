@@ -1,21 +1,12 @@
 //! What this process has used of the machine.
 
+use crate::cpu_clock::{Whose, now_s};
+
 /// Seconds that all threads of this process kept a core busy; wall time where the system has no such
 /// clock.
 #[must_use]
 pub fn cpu_s() -> f64 {
-    #[cfg(unix)]
-    {
-        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
-        time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
-    }
-    #[cfg(not(unix))]
-    {
-        use std::sync::OnceLock;
-        use std::time::Instant;
-        static START: OnceLock<Instant> = OnceLock::new();
-        START.get_or_init(Instant::now).elapsed().as_secs_f64()
-    }
+    now_s(Whose::Process)
 }
 
 /// Most memory that this process has held at once, in MB of 10⁶ bytes; none where the system does not
