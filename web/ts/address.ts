@@ -2,6 +2,7 @@
 //
 // An entry of the browser's history keeps the states of all linked widgets: Back finds each as it was.
 
+import { addressOf } from './beside';
 import { readQuery, withState } from './links';
 import type { WidgetSpec } from './schema';
 
@@ -26,10 +27,15 @@ export function readAddress(element: HTMLElement, spec: WidgetSpec, to: Addresse
   for (const problem of linked.problems) to.wrong('value', problem);
 }
 
-/** The page, where it keeps the widget's state in its address; else the widget on a page of its own. */
+/**
+ * The page, where it keeps the widget's state in its address; else the widget on a page of its own; where it has
+ * none, the query alone, which a notebook takes as well.
+ */
 export function linkTo(element: HTMLElement, spec: WidgetSpec | undefined, query: string): string {
   const isLinked = element.hasAttribute('linked');
-  const link = new URL(isLinked ? location.href : new URL('embed.html', import.meta.url));
+  const page = isLinked ? location.href : addressOf('embed.html');
+  if (page === undefined) return spec === undefined ? '' : withState('', spec, query);
+  const link = new URL(page);
   if (spec !== undefined) link.search = withState(link.search, spec, query);
   return link.href;
 }

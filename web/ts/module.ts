@@ -1,7 +1,6 @@
 // The one compiled module of the page. Every widget is an instance of it with a memory of its own.
 
-/** Set by the build: the wasm file's name holds a hash of its content. */
-declare const WASM_FILE: string;
+import { openProgram } from './beside';
 
 export class LoadError extends Error {}
 
@@ -45,10 +44,9 @@ async function compile(): Promise<WebAssembly.Module> {
   if (typeof WebAssembly !== 'object') {
     throw new LoadError('this browser has no WebAssembly');
   }
-  const url = new URL(WASM_FILE, import.meta.url);
   const silence = new Silence();
   try {
-    return await fetchAndCompile(url, silence);
+    return await fetchAndCompile(silence);
   } catch (error) {
     throw silence.isOver ? new LoadError('the server of the program does not answer') : error;
   } finally {
@@ -56,10 +54,10 @@ async function compile(): Promise<WebAssembly.Module> {
   }
 }
 
-async function fetchAndCompile(url: URL, silence: Silence): Promise<WebAssembly.Module> {
+async function fetchAndCompile(silence: Silence): Promise<WebAssembly.Module> {
   let response: Response;
   try {
-    response = await fetch(url, { cache: isRetry ? 'reload' : 'default', signal: silence.signal });
+    response = await openProgram(isRetry, silence.signal);
   } catch {
     throw new LoadError('the program could not be fetched');
   }

@@ -1,5 +1,6 @@
 // The picture that stands in for the canvas, and the pixels that are taken from it.
 
+import { addressOf } from './beside';
 import type { Theme } from './theme';
 
 interface Wish {
@@ -18,7 +19,8 @@ export class Pictures {
   /** The picture of the start, which the build drew; one of the reader's state is better. */
   showStart(widget: string, theme: Theme): void {
     if (this.#image.src.startsWith('data:')) return;
-    this.#image.src = new URL(`pictures/${widget}-${theme}.svg`, import.meta.url).href;
+    const drawn = addressOf(`pictures/${widget}-${theme}.svg`);
+    if (drawn !== undefined) this.#image.src = drawn;
   }
 
   /** The picture of the present state, drawn by the widget itself. */

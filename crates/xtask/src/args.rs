@@ -10,6 +10,7 @@ use crate::suite::{AfterFailure, Piece, Soak};
 pub const USAGE: &str = "\
 cargo xtask serve [--port 8016] [--release]   build the page and serve it
 cargo xtask build                             build the finished static site into dist/
+cargo xtask package                           build what people install into target/packages/: npm and Python
 cargo xtask test                              every check: format, lints, native, wasm, browser
 cargo xtask test --quick                      format, licences, lints and native tests
 cargo xtask test PIECE...                     of: format native lints counts site node browser
@@ -28,6 +29,8 @@ pub enum Command {
     Help,
     /// Build `dist/`.
     Build,
+    /// Build the site and the archives that people install.
+    Package,
     /// Build and serve.
     Serve {
         /// TCP port on the local machine.
@@ -66,6 +69,7 @@ pub fn parse(words: impl Iterator<Item = String>) -> Result<Command, String> {
     let command = match name.as_str() {
         "help" | "--help" | "-h" => Command::Help,
         "build" => Command::Build,
+        "package" => Command::Package,
         "test" => Command::Test(parse_pieces(&mut words)?),
         "peers" => Command::Peers,
         "soak" => Command::Soak(parse_soak(&mut words)?),

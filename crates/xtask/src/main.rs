@@ -1,4 +1,4 @@
-//! The project's commands: `cargo xtask serve`, `build`, `test`, `peers`, `soak`, `fuzz`,
+//! The project's commands: `cargo xtask serve`, `build`, `package`, `test`, `peers`, `soak`, `fuzz`,
 //! `bench`, `sizes`.
 //!
 //! Everything that a step needs is checked first and installed where cargo, npm or apt can do it;
@@ -13,6 +13,7 @@ mod fuzz;
 mod http;
 mod ledger;
 mod load;
+mod package;
 mod run;
 mod serve;
 mod site;
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
             Ok(())
         }
         Command::Build => site::build(site::Speed::SmallAndFast),
+        Command::Package => package::package(),
         Command::Serve { port, speed } => serve::serve(port, speed),
         Command::Test(pieces) => suite::test(&pieces),
         Command::Peers => suite::peers(),

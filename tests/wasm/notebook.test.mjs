@@ -1,0 +1,70 @@
+// The Python wheel as somebody gets it: packed from dist/, installed into a folder, asked by Python.
+
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+import { skip } from '../skip.mjs';
+
+const root = fileURLToPath(new URL('../../', import.meta.url));
+const python = process.env.PYTHON ?? 'python3';
+const dist = join(root, 'dist');
+
+function has(module) {
+  try {
+    execFileSync(python, ['-c', `import ${module}`], { stdio: 'ignore' });
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+test('the wheel holds the program, and a class for each widget with its parameters', (context) => {
+  if (!has('anywidget') || !has('hatchling')) {
+    skip(context, `${python} has no anywidget or no hatchling; pip install anywidget hatchling`);
+    return;
+  }
+  const folder = mkdtempSync(join(tmpdir(), 'slam-packages-'));
+  try {
+    execFileSync('node', [join(root, 'web', 'package.mjs'), dist, folder], { cwd: root, stdio: 'ignore' });
+    const files = readdirSync(folder).sort();
+    assert.deepEqual(files, ['slam-widgets-0.1.0.tgz', 'slam_widgets-0.1.0-py3-none-any.whl']);
+    const site = join(folder, 'site');
+    execFileSync(python, ['-m', 'pip', 'install', '--quiet', '--no-deps', '--no-index', '--target', site, join(folder, files[1])]);
+    const whole = readFileSync(join(site, 'slam_widgets', 'static', 'slam-widgets.js'), 'utf8');
+    assert.doesNotMatch(whole, /import\s*["'{*]/, 'the module asks for files beside it');
+    const said = execFileSync(python, ['-c', `
+import json
+import slam_widgets
+from slam_widgets import Basin, WIDGETS
+basin = Basin(heading=60)
+basin.tau = 1.2
+refused = []
+for wrong in (lambda: Basin(headin=60), lambda: slam_widgets.SlamWidget(name="w99"), lambda: Basin.from_link("?w=16.2")):
+    try:
+        wrong()
+    except Exception as error:
+        refused.append(str(error))
+print(json.dumps({
+    "ids": list(WIDGETS), "value": basin.value, "default": basin.dx, "refused": refused,
+    "link": Basin.from_link("?w=16.1&heading=25&variant=point-to-plane&other=1").value,
+    "doc": Basin.__doc__,
+}))`], { env: { ...process.env, PYTHONPATH: site }, encoding: 'utf8' });
+    const { ids, value, default: dx, refused, link, doc } = JSON.parse(said);
+    const schema = JSON.parse(readFileSync(join(dist, 'schema.json'), 'utf8'));
+    assert.deepEqual(ids, schema.map((widget) => widget.id));
+    assert.deepEqual(value, { heading: 60, tau: 1.2 });
+    assert.equal(dx, schema[0].params.find((param) => param.id === 'dx').default);
+    assert.deepEqual(link, { heading: 25, variant: 'point-to-plane' });
+    assert.match(doc, /heading: -180 to 180 °\./);
+    assert.match(refused[0], /Basin has no parameter 'headin'; it has heading, /);
+    assert.match(refused[1], /no widget is called 'w99'; there are w16\.1, /);
+    assert.match(refused[2], /the link is of w16\.2, and Basin is w16\.1/);
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+});

@@ -1,0 +1,76 @@
+// node web/package.mjs DIST OUT: from the built site in DIST to what people install, in OUT.
+//
+// 1. the npm archive, packed from DIST;
+// 2. the Python wheel: the anywidget module as one file with the program inside, beside `web/python`.
+
+import { execFileSync } from 'node:child_process';
+import { cp, mkdir, mkdtemp, readFile, readdir, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { basename, dirname, join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { gzipSync } from 'node:zlib';
+import * as esbuild from 'esbuild';
+
+const WEB = dirname(fileURLToPath(import.meta.url));
+
+const [dist, out] = process.argv.slice(2).map((path) => resolve(path));
+if (dist === undefined || out === undefined) throw new Error('usage: node web/package.mjs DIST OUT');
+
+await mkdir(out, { recursive: true });
+npm();
+await wheel();
+for (const file of (await readdir(out)).sort()) console.log(join(basename(out), file));
+
+function npm() {
+  execFileSync('npm', ['pack', '--silent', dist, '--pack-destination', out], { stdio: ['ignore', 'ignore', 'inherit'] });
+}
+
+async function wheel() {
+  const folder = await mkdtemp(join(tmpdir(), 'slam-wheel-'));
+  try {
+    await cp(join(WEB, 'python'), folder, { recursive: true });
+    const inside = join(folder, 'slam_widgets', 'static');
+    await mkdir(inside);
+    await writeFile(join(inside, 'slam-widgets.js'), await wholeModule());
+    await cp(join(dist, 'schema.json'), join(inside, 'schema.json'));
+    for (const text of ['LICENSE-MIT', 'LICENSE-APACHE', 'THIRD-PARTY-NOTICES.txt']) {
+      await cp(join(dist, text), join(folder, text));
+    }
+    const python = process.env.PYTHON ?? 'python3';
+    execFileSync(python, ['-m', 'pip', 'wheel', '--quiet', '--no-deps', '--wheel-dir', out, folder], { stdio: 'inherit' });
+  } finally {
+    await rm(folder, { recursive: true });
+  }
+}
+
+/** The element, the program and the anywidget module, in one file of text. */
+async function wholeModule() {
+  const wasmFile = (await readdir(dist)).find((file) => /^slam_web-.*\.wasm$/.test(file));
+  if (wasmFile === undefined) throw new Error(`${dist} holds no program; run cargo xtask build`);
+  const program = gzipSync(await readFile(join(dist, wasmFile)), { level: 9 }).toString('base64');
+  const inside = {
+    name: 'inside',
+    setup(build) {
+      build.onResolve({ filter: /^program\.wasm\.gz$/ }, () => ({ path: 'program', namespace: 'inside' }));
+      build.onLoad({ filter: /.*/, namespace: 'inside' }, () => ({
+        contents: `export default ${JSON.stringify(program)};`,
+      }));
+      // What stands beside this file elsewhere stands in it here.
+      build.onResolve({ filter: /^\.\/slam-widget\.js$/ }, () => ({ path: join(WEB, 'ts', 'main.ts') }));
+    },
+  };
+  const { outputFiles } = await esbuild.build({
+    entryPoints: [join(WEB, 'ts', 'whole.ts')],
+    bundle: true,
+    format: 'esm',
+    target: 'es2022',
+    minify: true,
+    // No address of its own is ever asked for.
+    define: { WASM_FILE: '""', 'import.meta.url': '""' },
+    write: false,
+    legalComments: 'none',
+    logLevel: 'warning',
+    plugins: [inside],
+  });
+  return outputFiles[0].text;
+}
