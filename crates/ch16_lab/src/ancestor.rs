@@ -6,6 +6,7 @@ use ch16_slam2d::ancestor::{AncestorConfig, CycleTest, CycleVerdict, Incremental
 use ch16_slam2d::metrics::{DisagreementConfig, MapDisagreement, position_error_m, rms};
 use ch16_slam2d::slam::SlamConfig;
 use pr_geom::{SE2, math};
+use serde::{Deserialize, Serialize};
 
 use crate::lap::{Drive, Keyframe, LAST_KEYFRAMES, LapConfig, WayErrors};
 
@@ -40,7 +41,7 @@ impl Ancestor {
 }
 
 /// The rows of the results table for an ancestor.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AncestorSummary {
     /// Ticks of the lap.
     pub ticks: usize,
@@ -65,7 +66,7 @@ pub struct AncestorSummary {
 }
 
 /// What statistics need of an ancestor's lap.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AncestorOutcome {
     /// The rows of the results table.
     pub summary: AncestorSummary,

@@ -3,6 +3,8 @@
 //! One seed is an anecdote. Everything here is about laps that have been run; who runs them, and on
 //! how many threads, is up to the caller.
 
+use serde::{Deserialize, Serialize};
+
 use crate::ancestor::{Ancestor, AncestorOutcome, AncestorTrace};
 use crate::lap::{LapRecord, LapSummary, WAY_SHARES, WayErrors};
 
@@ -77,7 +79,7 @@ impl Row {
 }
 
 /// What statistics need of one lap.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LapOutcome {
     /// The lap as configured.
     pub lap: LapSummary,
@@ -89,7 +91,9 @@ pub struct LapOutcome {
     pub front_end_way: WayErrors,
     /// Loops that were closed although they are false.
     pub false_acceptances: usize,
-    /// Digest of all poses; see [`LapRecord::digest`].
+    /// Digest of all poses; see [`LapRecord::digest`]. It is written in hexadecimal, for readers whose
+    /// numbers end at 2⁵³.
+    #[serde(with = "hexadecimal")]
     pub digest: u64,
     /// The ancestors on the same drive, those that were run.
     pub ancestors: [Option<AncestorOutcome>; Ancestor::ALL.len()],
@@ -166,6 +170,20 @@ impl LapOutcome {
             Row::Rms => Some(self.lap.odometry_rms_m),
             _ => None,
         }
+    }
+}
+
+mod hexadecimal {
+    use serde::de::{Deserialize, Deserializer, Error};
+    use serde::ser::Serializer;
+
+    pub fn serialize<S: Serializer>(value: &u64, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(&format_args!("{value:016x}"))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
+        let digits = <&str>::deserialize(deserializer)?;
+        u64::from_str_radix(digits, 16).map_err(D::Error::custom)
     }
 }
 

@@ -2,8 +2,11 @@
 
 mod nudge;
 mod random;
+mod rows;
+mod shard;
 
 use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
 
 use ch16_lab::ancestor::Ancestor;
 use ch16_lab::lap::{Choice, LapEstimator, LapRunner};
@@ -18,6 +21,8 @@ use crate::numbers::{self, Seeds};
 use crate::output::{print_json, say};
 use crate::trial::{Trial, TrialArgs, choice};
 use crate::world::WorldError;
+use rows::RowsFailure;
+use shard::Shard;
 
 /// Most laps of one sweep.
 const MAX_LAPS: u64 = 10_000_000;
@@ -63,6 +68,23 @@ pub struct SweepArgs {
     /// that every figure is finite.
     #[arg(long, conflicts_with_all = ["nudge", "noise", "world", "matcher", "information", "estimator"])]
     random: bool,
+    /// Keep what each lap came to in this file, a line each. Laps that are in it are not driven again.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["nudge", "random"])]
+    rows: Option<PathBuf>,
+    /// Drive one part of the seeds alone: 2/4 is the second of four. Its laps go to the file of --rows.
+    #[arg(long, value_name = "K/N", value_parser = shard::shard, requires = "rows")]
+    shard: Option<Shard>,
+    /// Drive nothing: put the rows of these files together and print how their figures are distributed.
+    #[arg(
+        long,
+        value_name = "FILES",
+        num_args = 1..,
+        conflicts_with_all = [
+            "seeds", "noise", "rows", "shard", "nudge", "random", "threads", "world", "matcher",
+            "loop_matcher", "detector", "information", "estimator",
+        ]
+    )]
+    merge: Vec<PathBuf>,
     /// Print one JSON list, an object for each noise factor.
     #[arg(long)]
     json: bool,
@@ -88,6 +110,9 @@ pub enum SweepFailure {
     /// There is no such world.
     #[error(transparent)]
     World(#[from] WorldError),
+    /// Rows cannot be kept or put together.
+    #[error(transparent)]
+    Rows(#[from] RowsFailure),
     /// A lap within the documented ranges broke down.
     #[error("the lap at the random configuration {seed} is not sound: {fault}")]
     Unsound {
@@ -161,9 +186,20 @@ struct Entry {
 /// Runs all laps and prints their distribution.
 ///
 /// # Errors
-/// Where the sweep is too large, the world cannot be driven, the threads cannot be started, or a random
-/// lap is not sound.
+/// Where the sweep is too large, the world cannot be driven, the threads cannot be started, rows cannot be
+/// kept or put together, or a random lap is not sound.
 pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
+    if !args.merge.is_empty() {
+        let (header, rows) = rows::read_all(&args.merge)?;
+        let args = SweepArgs {
+            seeds: header.seeds(),
+            noise: header.noise.clone(),
+            estimator: header.estimators(),
+            ..args.clone()
+        };
+        print(&args, &rows.by_seed(&header)?);
+        return Ok(());
+    }
     let laps = args.seeds.count() * args.noise.len() as u64;
     if laps > MAX_LAPS {
         return Err(SweepFailure::TooMany { laps });
@@ -191,22 +227,50 @@ pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
         pool.install(|| nudge::print(args, &trial));
         return Ok(());
     }
-    let by_seed = pool.install(|| all_runs(args, &trial));
-    let levels: Vec<Level> = args
-        .noise
-        .iter()
-        .enumerate()
-        .map(|(k, &noise)| {
-            let outcomes = by_seed.iter().map(|runs| runs[k]).collect();
-            Level::new(noise, args, &LapStatistics { outcomes })
-        })
-        .collect();
+    let by_seed = match &args.rows {
+        None => pool.install(|| all_runs(args, &trial)),
+        Some(path) => {
+            let part = args.shard.unwrap_or(Shard::WHOLE);
+            let driven = pool.install(|| shard::drive(args, &trial, part, path))?;
+            if args.shard.is_some() {
+                say_driven(&driven, path, args.json);
+                return Ok(());
+            }
+            driven.by_seed
+        }
+    };
+    print(args, &by_seed);
+    Ok(())
+}
+
+/// Prints how the figures are distributed at each noise factor.
+fn print(args: &SweepArgs, by_seed: &[Vec<LapOutcome>]) {
+    let level = |(k, &noise): (usize, &f64)| {
+        let outcomes = by_seed.iter().map(|runs| runs[k]).collect();
+        Level::new(noise, args, &LapStatistics { outcomes })
+    };
+    let levels: Vec<Level> = args.noise.iter().enumerate().map(level).collect();
     if args.json {
         print_json(&levels);
     } else {
         levels.iter().for_each(print_level);
     }
-    Ok(())
+}
+
+/// A part of a sweep has no distribution of its own: it says where its rows are.
+fn say_driven(driven: &shard::Driven, path: &Path, json: bool) {
+    let file = path.display();
+    if json {
+        print_json(&serde_json::json!({
+            "rows": file.to_string(), "laps": driven.laps, "kept": driven.kept,
+        }));
+        return;
+    }
+    let kept = match driven.kept {
+        0 => String::new(),
+        kept => format!(", {kept} of them from before"),
+    };
+    say!("{} laps{kept}: {file}", driven.laps);
 }
 
 /// The runs of every seed, in order of the seeds; each has one run for each noise factor.

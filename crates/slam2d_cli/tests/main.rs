@@ -1,9 +1,11 @@
 //! The command as a reader calls it: one binary, one module for each kind of call.
 
 mod commands;
+mod dask;
 mod estimators;
 mod files;
 mod logs;
 mod optimize;
+mod shards;
 mod support;
 mod worlds;

@@ -5,6 +5,7 @@
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
+use serde::{Deserialize, Serialize};
 
 use super::report::{Keyframe, LoopAttempt, TickReport, WindowSweep};
 use super::{Drive, Lap, LapConfig, LoopClosure};
@@ -58,7 +59,7 @@ pub struct LapTrace {
 }
 
 /// The rows of the chapter's results table, and the counts of the run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LapSummary {
     /// Ticks of the lap.
     pub ticks: usize,

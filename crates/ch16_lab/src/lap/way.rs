@@ -4,6 +4,7 @@
 //! lap is cut into equal shares of the way that was truly driven.
 
 use pr_geom::math;
+use serde::{Deserialize, Serialize};
 
 use super::Drive;
 use super::record::{LapRecord, LapTrace};
@@ -12,7 +13,7 @@ use super::record::{LapRecord, LapTrace};
 pub const WAY_SHARES: usize = 20;
 
 /// The errors of one estimator at the ends of the shares, from the start to the end of the way.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WayErrors {
     /// Position errors at the final poses, m; linear between keyframes.
     pub errors_m: [f64; WAY_SHARES + 1],

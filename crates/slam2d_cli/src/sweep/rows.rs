@@ -1,0 +1,348 @@
+//! `--rows FILE`: what each lap of a sweep came to, a line each, so that a sweep can be spread over
+//! machines and goes on where it was ended.
+//!
+//! ```text
+//! {"sweep": 1, "slam2d": "0.1.0", "seeds": [1, 1000], "noise": [0.25, 1], "laps": "9c1f…"}
+//! {"seed": 1, "noise": 0.25, "outcome": {…}}
+//! ```
+//!
+//! The first line says which sweep it is, the same in the files of all shards. `laps` is a digest of the
+//! configuration of its first laps: world, matchers, everything. Rows may stand in any order.
+
+use std::collections::HashMap;
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use ch16_lab::lap::{Choice, LapEstimator};
+use ch16_lab::results::LapOutcome;
+use ch16_slam2d::digest::Digest;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::SweepArgs;
+use crate::numbers::Seeds;
+use crate::trial::Trial;
+
+/// Version of the format.
+const FORMAT: u32 = 1;
+
+/// Which sweep the rows of a file belong to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    sweep: u32,
+    slam2d: String,
+    seeds: [u32; 2],
+    /// Factors of the wheels' noise.
+    pub noise: Vec<f64>,
+    estimators: Vec<String>,
+    laps: String,
+}
+
+/// One lap.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LapRow {
+    /// Its seed.
+    pub seed: u32,
+    /// Its factor of the wheels' noise.
+    pub noise: f64,
+    /// What it came to.
+    pub outcome: LapOutcome,
+}
+
+/// Why rows cannot be kept or put together.
+#[derive(Debug, Error)]
+pub enum RowsFailure {
+    /// The system could not do it.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// It is no file of rows.
+    #[error("{}: line {line}: {problem}; give a file that slam2d sweep --rows wrote", path.display())]
+    NoRow {
+        /// The file.
+        path: PathBuf,
+        /// Number of the line, counted from 1.
+        line: usize,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// It belongs to another sweep.
+    #[error("{} holds rows of another sweep: {difference}; give another file", path.display())]
+    OtherSweep {
+        /// The file.
+        path: PathBuf,
+        /// Where the two differ.
+        difference: String,
+    },
+    /// Two rows of one lap differ.
+    #[error("{}: line {line}: seed {seed} at noise ×{noise} ended otherwise before; one of the machines \
+             computes other bits", path.display())]
+    OtherBits {
+        /// The file.
+        path: PathBuf,
+        /// Number of the line, counted from 1.
+        line: usize,
+        /// The lap's seed.
+        seed: u32,
+        /// Its noise.
+        noise: f64,
+    },
+    /// Laps are missing.
+    #[error(
+        "{missing} of {laps} laps are missing, the first is seed {seed} at noise ×{noise}; drive their \
+             shard again with the same --rows file, or name its file as well"
+    )]
+    Missing {
+        /// How many.
+        missing: u64,
+        /// Of how many.
+        laps: u64,
+        /// Seed of the first.
+        seed: u32,
+        /// Noise of the first.
+        noise: f64,
+    },
+}
+
+impl Header {
+    /// That of the sweep that `args` ask for, over such laps.
+    pub fn of(args: &SweepArgs, trial: &Trial) -> Self {
+        let mut digest = Digest::new();
+        for &noise in &args.noise {
+            let words = format!("{:?}", trial.lap(args.seeds.first, noise));
+            words.bytes().for_each(|byte| digest.add_bits(byte.into()));
+        }
+        Self {
+            sweep: FORMAT,
+            slam2d: env!("CARGO_PKG_VERSION").to_owned(),
+            seeds: [args.seeds.first, args.seeds.last],
+            noise: args.noise.clone(),
+            estimators: args.estimator.iter().map(|e| e.name().to_owned()).collect(),
+            laps: format!("{:016x}", digest.value()),
+        }
+    }
+
+    /// All seeds.
+    pub fn seeds(&self) -> Seeds {
+        let [first, last] = self.seeds;
+        Seeds { first, last }
+    }
+
+    /// What estimated the laps.
+    pub fn estimators(&self) -> Vec<LapEstimator> {
+        let names = self.estimators.iter();
+        names.filter_map(|name| LapEstimator::named(name)).collect()
+    }
+
+    /// Where `other` is another sweep; none where it is the same.
+    fn difference(&self, other: &Self) -> Option<String> {
+        let differs = |what: &str, theirs: &str, ours: &str| {
+            (theirs != ours).then(|| format!("its {what} {theirs}, not {ours}"))
+        };
+        let seeds = |header: &Self| format!("{}..={}", header.seeds[0], header.seeds[1]);
+        let noise = |header: &Self| format!("{:?}", header.noise);
+        differs(
+            "format is",
+            &other.sweep.to_string(),
+            &self.sweep.to_string(),
+        )
+        .or_else(|| differs("seeds are", &seeds(other), &seeds(self)))
+        .or_else(|| differs("noise factors are", &noise(other), &noise(self)))
+        .or_else(|| differs("program is slam2d", &other.slam2d, &self.slam2d))
+        .or_else(|| {
+            (other.laps != self.laps)
+                .then(|| "its world, matcher or another option differs".to_owned())
+        })
+    }
+}
+
+/// Rows by seed and noise.
+#[derive(Debug, Default)]
+pub struct Rows {
+    by_lap: HashMap<(u32, u64), LapOutcome>,
+}
+
+impl Rows {
+    /// The lap at `seed` and `noise`, where it was driven.
+    pub fn get(&self, seed: u32, noise: f64) -> Option<LapOutcome> {
+        self.by_lap.get(&(seed, noise.to_bits())).copied()
+    }
+
+    /// The laps of every seed in order, each with one outcome for each noise factor.
+    ///
+    /// # Errors
+    /// Where laps are missing.
+    pub fn by_seed(&self, header: &Header) -> Result<Vec<Vec<LapOutcome>>, RowsFailure> {
+        let [first, last] = header.seeds;
+        let laps =
+            (first..=last).flat_map(|seed| header.noise.iter().map(move |&noise| (seed, noise)));
+        let is_missing = |&(seed, noise): &(u32, f64)| self.get(seed, noise).is_none();
+        if let Some((seed, noise)) = laps.clone().find(is_missing) {
+            return Err(RowsFailure::Missing {
+                missing: laps.clone().filter(is_missing).count() as u64,
+                laps: laps.count() as u64,
+                seed,
+                noise,
+            });
+        }
+        let of_seed = |seed| {
+            header
+                .noise
+                .iter()
+                .filter_map(move |&noise| self.get(seed, noise))
+        };
+        Ok((first..=last).map(|seed| of_seed(seed).collect()).collect())
+    }
+
+    /// Takes the rows of a file; answers with its header and the bytes of its whole lines. `expected` is
+    /// what the header has to be, where that is known.
+    fn read(
+        &mut self,
+        file: &File,
+        path: &Path,
+        expected: Option<&Header>,
+    ) -> Result<(Option<Header>, u64), RowsFailure> {
+        let io = |source| RowsFailure::Io {
+            path: path.to_owned(),
+            source,
+        };
+        let mut source = BufReader::new(file);
+        let (mut line, mut number, mut whole_bytes) = (Vec::new(), 0, 0);
+        let mut header: Option<Header> = None;
+        loop {
+            line.clear();
+            let bytes = source.read_until(b'\n', &mut line).map_err(io)?;
+            // A last line without its end was being written when the program was ended.
+            if line.last() != Some(&b'\n') {
+                return Ok((header, whole_bytes));
+            }
+            number += 1;
+            let no_row = |problem: String| RowsFailure::NoRow {
+                path: path.to_owned(),
+                line: number,
+                problem,
+            };
+            match &header {
+                None => {
+                    let found: Header = serde_json::from_slice(&line).map_err(|e| {
+                        no_row(format!("the header of a sweep was expected, but {e}"))
+                    })?;
+                    if let Some(difference) = expected.and_then(|ours| ours.difference(&found)) {
+                        return Err(RowsFailure::OtherSweep {
+                            path: path.to_owned(),
+                            difference,
+                        });
+                    }
+                    header = Some(found);
+                }
+                Some(_) => {
+                    let row: LapRow = serde_json::from_slice(&line)
+                        .map_err(|e| no_row(format!("a lap was expected, but {e}")))?;
+                    let before = self
+                        .by_lap
+                        .insert((row.seed, row.noise.to_bits()), row.outcome);
+                    if before.is_some_and(|before| before != row.outcome) {
+                        return Err(RowsFailure::OtherBits {
+                            path: path.to_owned(),
+                            line: number,
+                            seed: row.seed,
+                            noise: row.noise,
+                        });
+                    }
+                }
+            }
+            whole_bytes += bytes as u64;
+        }
+    }
+}
+
+/// The rows of all `paths`, which have to belong to one sweep.
+///
+/// # Errors
+/// Where a file cannot be read, or the files do not belong together.
+pub fn read_all(paths: &[PathBuf]) -> Result<(Header, Rows), RowsFailure> {
+    let mut rows = Rows::default();
+    let mut header: Option<Header> = None;
+    for path in paths {
+        let file = File::open(path).map_err(|source| RowsFailure::Io {
+            path: path.clone(),
+            source,
+        })?;
+        let (found, _) = rows.read(&file, path, header.as_ref())?;
+        let found = found.ok_or_else(|| RowsFailure::NoRow {
+            path: path.clone(),
+            line: 1,
+            problem: "the file is empty".to_owned(),
+        })?;
+        header.get_or_insert(found);
+    }
+    Ok((header.expect("clap asks for a file"), rows))
+}
+
+/// A file that rows are added to.
+#[derive(Debug)]
+pub struct RowsFile {
+    path: PathBuf,
+    file: File,
+}
+
+impl RowsFile {
+    /// Opens or makes `path` for the rows of this sweep, and reads those that are there. Where another
+    /// program writes to it, this one waits until that has ended.
+    ///
+    /// # Errors
+    /// Where the file cannot be used, or belongs to another sweep.
+    pub fn open(path: &Path, header: &Header) -> Result<(Self, Rows), RowsFailure> {
+        let io = |source| RowsFailure::Io {
+            path: path.to_owned(),
+            source,
+        };
+        let mut options = OpenOptions::new();
+        let file = options.read(true).write(true).create(true).truncate(false);
+        let file = file.open(path).map_err(io)?;
+        if file.try_lock().is_err() {
+            eprintln!(
+                "slam2d: another sweep writes {}; waiting for its end",
+                path.display()
+            );
+            file.lock().map_err(io)?;
+        }
+        let mut rows = Rows::default();
+        let (found, whole_bytes) = rows.read(&file, path, Some(header))?;
+        file.set_len(whole_bytes).map_err(io)?;
+        let mut kept = Self {
+            path: path.to_owned(),
+            file,
+        };
+        kept.file.seek(SeekFrom::Start(whole_bytes)).map_err(io)?;
+        if found.is_none() {
+            kept.write(header)?;
+        }
+        Ok((kept, rows))
+    }
+
+    /// Adds one lap.
+    ///
+    /// # Errors
+    /// Where the system cannot write it.
+    pub fn add(&mut self, row: &LapRow) -> Result<(), RowsFailure> {
+        self.write(row)
+    }
+
+    /// One line by one call, so that no other program sees half of it.
+    fn write(&mut self, line: &impl Serialize) -> Result<(), RowsFailure> {
+        let mut bytes = serde_json::to_vec(line).expect("plain numbers and lists");
+        bytes.push(b'\n');
+        self.file
+            .write_all(&bytes)
+            .map_err(|source| RowsFailure::Io {
+                path: self.path.clone(),
+                source,
+            })
+    }
+}
