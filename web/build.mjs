@@ -4,7 +4,7 @@
 // 2. runs the module here in Node: it writes its own schema, says how high each widget is at each width,
 //    and draws the static pictures;
 // 3. bundles the element; wasm and bundle carry a hash of their content in their names, so that an
-//    old cached one is never paired with a new one;
+//    old cached one is never paired with a new one; so does the worker that maps logs, with its module;
 // 4. writes our licences and the notices of others' work;
 // 5. measures what a reader downloads.
 
@@ -24,6 +24,7 @@ import { brotli, withoutNames } from './wasm-file.mjs';
 
 const WEB = dirname(fileURLToPath(import.meta.url));
 const PKG = join(WEB, 'pkg');
+const ROBOT_PKG = join(WEB, 'pkg-robot');
 const PICTURE_WIDTH_PX = 900;
 /**
  * All widgets together, wasm and glue, brotli −11. The first five fit into 1.0 MB; those on what robots really run (the
@@ -51,6 +52,11 @@ for (const { id } of schema) await drawPictures(id);
 
 const wasmFile = `slam_web-${hash(wasm)}.wasm`;
 await writeFile(join(dist, wasmFile), wasm);
+const robotWasm = withoutNames(await readFile(join(ROBOT_PKG, 'slam_robot_bg.wasm')));
+const robotWasmFile = `slam_robot-${hash(robotWasm)}.wasm`;
+await writeFile(join(dist, robotWasmFile), robotWasm);
+const sampleFiles = await writeSample();
+let robotWorker;
 const metafiles = await bundle();
 await writeNotices(metafiles).catch(endWithOneSentence);
 await copyExamples();
@@ -106,6 +112,29 @@ async function drawPictures(id) {
   }
 }
 
+/** The log that a reader may map who has none: the simulator's ring, and the truth of it. */
+async function writeSample() {
+  const robot = await import(pathToFileURL(join(ROBOT_PKG, 'slam_robot.js')).href);
+  robot.initSync({ module: robotWasm });
+  const names = ['samples/ring.log', 'samples/ring-truth.tum'];
+  await mkdir(join(dist, 'samples'), { recursive: true });
+  for (const [at, bytes] of robot.sampleFiles().entries()) await writeFile(join(dist, names[at]), bytes);
+  return names.map((name) => `./${name}`);
+}
+
+/** The worker is a file of its own, whose name the element knows. */
+async function bundleWorker(shared) {
+  const { outputFiles, metafile } = await esbuild.build({
+    ...shared,
+    entryPoints: [join(WEB, 'ts', 'robot', 'worker.ts')],
+    outfile: join(dist, 'slam-robot-worker.js'),
+  });
+  const [code] = outputFiles.filter((file) => file.path.endsWith('.js'));
+  const file = `slam-robot-${hash(code.contents)}.js`;
+  await writeFile(join(dist, file), code.contents);
+  return { file, metafile, code };
+}
+
 async function bundle() {
   const shared = {
     bundle: true,
@@ -119,8 +148,15 @@ async function bundle() {
     legalComments: 'none',
     logLevel: 'warning',
   };
+  robotWorker = await bundleWorker(shared);
   const built = await esbuild.build({
     ...shared,
+    define: {
+      ...shared.define,
+      ROBOT_WASM_FILE: JSON.stringify(`./${robotWasmFile}`),
+      ROBOT_WORKER_FILE: JSON.stringify(`./${robotWorker.file}`),
+      SAMPLE_FILES: JSON.stringify(sampleFiles),
+    },
     entryPoints: [join(WEB, 'ts', 'main.ts')],
     outfile: join(dist, 'slam-widget-core.js'),
   });
@@ -129,7 +165,7 @@ async function bundle() {
   await writeFile(join(dist, coreFile), code.contents);
   // The one name that pages know; small, and fetched afresh.
   await writeFile(join(dist, 'slam-widget.js'), `export * from './${coreFile}';\n`);
-  const metafiles = [built.metafile];
+  const metafiles = [robotWorker.metafile, built.metafile];
   for (const entry of ['embed', 'predict', 'anywidget']) {
     const { metafile } = await esbuild.build({
       ...shared,
@@ -176,7 +212,13 @@ async function measure() {
     format: 'esm',
     write: false,
   });
-  const files = { wasm, glue: Buffer.from(glueBundle.outputFiles[0].contents) };
+  const files = {
+    wasm,
+    glue: Buffer.from(glueBundle.outputFiles[0].contents),
+    // Fetched only once a reader opens a log.
+    'wasm of the worker': robotWasm,
+    'script of the worker': Buffer.from(robotWorker.code.contents),
+  };
   const sizes = {};
   for (const [name, bytes] of Object.entries(files)) {
     sizes[name] = {
@@ -198,12 +240,15 @@ async function writeSizes(sizes) {
   const rows = Object.entries(sizes).map(
     ([name, { raw, gzip, brotli: small }]) => `| ${name} | ${raw} | ${gzip} | ${small} |`,
   );
+  // What the page loads at once stands above its sum, what a log needs below.
+  const [ofPage, ofWorker] = [rows.slice(0, 2), rows.slice(2)];
   const total = (which) => sizes.wasm[which] + sizes.glue[which];
   const table = [
     '| bytes | raw | gzip −9 | brotli −11 |',
     '| --- | --- | --- | --- |',
-    ...rows,
+    ...ofPage,
     `| both | ${total('raw')} | ${total('gzip')} | ${total('brotli')} |`,
+    ...ofWorker,
   ];
   await writeMarked(join(WEB, '..', 'README.md'), 'sizes', table.join('\n'));
 }

@@ -66,7 +66,13 @@ async function wholeModule() {
     target: 'es2022',
     minify: true,
     // No address of its own is ever asked for.
-    define: { WASM_FILE: '""', 'import.meta.url': '""' },
+    define: {
+      WASM_FILE: '"program"',
+      // A recorded log needs files beside the page; the widget says so.
+      ROBOT_WASM_FILE: '"worker"',
+      ROBOT_WORKER_FILE: '"worker"',
+      'import.meta.url': '""',
+    },
     write: false,
     legalComments: 'none',
     logLevel: 'warning',

@@ -100,6 +100,8 @@ export declare class SlamWidget extends HTMLElement {
   /** Zooms every map, or moves the part that is seen. */
   look(way: 'in' | 'out' | 'left' | 'right' | 'up' | 'down' | 'whole'): void;
   suspend(): void;
+  /** Hands a file to a widget that takes files: a log, or a reference to grade it with. */
+  openFile(file: File): void;
   addEventListener<K extends keyof SlamWidgetEvents>(
     type: K,
     listener: (this: SlamWidget, event: SlamWidgetEvents[K]) => void,
@@ -139,6 +141,8 @@ export interface WidgetSpec {
   buttons: { id: string; label: string; help: string }[];
   presets: { id: string; label: string; help: string }[];
   summary: string;
+  /** Whether a reader may hand it a file. */
+  takesFiles: boolean;
 }
 
 /** Every widget of the module. */

@@ -28,7 +28,8 @@ export async function partsOfWidgets(metafiles) {
     folder: path.join(ROOT, 'web/fonts'),
   };
   return grouped({
-    'In the WebAssembly module': [library, ...cratesOfModule(), font],
+    'In the WebAssembly module': [library, ...cratesOfModule('slam_web'), font],
+    'In the module that maps a reader’s log': [library, ...cratesOfModule('slam_robot')],
     'In the scripts of the element': await npmPackagesIn(...metafiles),
   });
 }

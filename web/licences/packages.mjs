@@ -32,13 +32,14 @@ export function cratesOf(manifest, ...filter) {
 }
 
 /**
- * The crates of others whose code is in the WebAssembly module.
+ * The crates of others whose code is in a WebAssembly module: that of the widgets, `slam_web`, or that
+ * of the worker, `slam_robot`.
  *
  * `cargo metadata` unites the features of all members, and so lists crates that the module does
  * not hold; `cargo tree` resolves the module's own. Macros run while compiling and stay out.
  */
-export function cratesOfModule() {
-  const tree = cargo('tree', '--package', 'slam_web', '--target', TARGET, '--edges', 'normal,no-proc-macro',
+export function cratesOfModule(name) {
+  const tree = cargo('tree', '--package', name, '--target', TARGET, '--edges', 'normal,no-proc-macro',
     '--prefix', 'none', '--format', '{p}');
   const inside = new Set(tree.split('\n').map((line) => line.match(/^(\S+) v(\S+)/)?.slice(1).join(' ')));
   const all = cratesOf('Cargo.toml', '--filter-platform', TARGET);

@@ -23,7 +23,14 @@ pub struct Shared {
     pub dragging: Cell<bool>,
     /// A touch was cancelled, of which egui hears nothing.
     pub cancelled: Cell<bool>,
+    /// The reader pressed on the map of a widget that is all map, and the pointer is still there.
+    pub engaged: Cell<bool>,
 }
+
+/// A turn of the wheel by so many points doubles the zoom, or halves it.
+const WHEEL_DOUBLES: f32 = 240.0;
+/// Points of a line, where a wheel counts in lines.
+const LINE_POINTS: f32 = 40.0;
 
 impl Shared {
     /// Whether something that drags lies there; no while the widget is busy with itself.
@@ -31,6 +38,14 @@ impl Shared {
         self.shell
             .try_borrow()
             .is_ok_and(|shell| shell.drags_at(pos))
+    }
+
+    /// Whether the wheel is the map's there, once it was pressed: that of a widget that is all map.
+    fn is_on_map(&self, pos: Pos2) -> bool {
+        self.shell.try_borrow().is_ok_and(|shell| {
+            let map = shell.scene_rect().filter(|_| shell.model().takes_files());
+            map.is_some_and(|map| map.contains([pos.x, pos.y]))
+        })
     }
 
     /// Asks for a frame, where the widget runs.
@@ -91,6 +106,9 @@ impl eframe::App for WidgetApp {
     }
 
     fn raw_input_hook(&mut self, _ctx: &egui::Context, input: &mut RawInput) {
+        if self.shared.engaged.get() {
+            input.events.iter_mut().for_each(zoom_by_wheel);
+        }
         input.events.retain(|event| !scrolls_page(event));
         let touch_cancelled = input.events.iter().any(|event| {
             matches!(
@@ -122,6 +140,21 @@ fn scrolls_page(event: &Event) -> bool {
     matches!(event, Event::MouseWheel { modifiers, .. } if !modifiers.ctrl && !modifiers.command)
 }
 
+/// Makes a turn of the plain wheel a zoom.
+fn zoom_by_wheel(event: &mut Event) {
+    if !scrolls_page(event) {
+        return;
+    }
+    let Event::MouseWheel { unit, delta, .. } = event else {
+        return;
+    };
+    let points = match unit {
+        egui::MouseWheelUnit::Point => delta.y,
+        _ => LINE_POINTS * delta.y,
+    };
+    *event = Event::Zoom((points / WHEEL_DOUBLES).exp2());
+}
+
 /// Far outside, so that the release is a click on nothing.
 fn release_pointer(input: &mut RawInput) {
     let nowhere = Pos2::new(-1e4, -1e4);
@@ -151,14 +184,26 @@ fn is_ours_alone(shared: &Shared, event: &Event) -> bool {
     match event {
         // Zooms our view, not the page.
         Event::Zoom(_) | Event::Rotate(_) => true,
-        Event::MouseWheel { modifiers, .. } => modifiers.ctrl || modifiers.command,
+        Event::MouseWheel { modifiers, .. } => {
+            modifiers.ctrl || modifiers.command || shared.engaged.get()
+        }
         // A touch scrolls the page unless it starts on something that drags.
         Event::PointerButton { pos, pressed, .. } => {
+            shared.engaged.set(shared.is_on_map(*pos));
             let was_dragging = shared.dragging.get();
             shared.dragging.set(*pressed && shared.drags_at(*pos));
             was_dragging || shared.dragging.get()
         }
-        Event::PointerMoved(_) | Event::PointerGone | Event::Touch { .. } => shared.dragging.get(),
+        Event::PointerMoved(pos) => {
+            let is_on_map = shared.engaged.get() && shared.is_on_map(*pos);
+            shared.engaged.set(is_on_map);
+            shared.dragging.get()
+        }
+        Event::PointerGone => {
+            shared.engaged.set(false);
+            shared.dragging.get()
+        }
+        Event::Touch { .. } => shared.dragging.get(),
         Event::Text(_) | Event::Paste(_) | Event::Copy | Event::Cut => {
             let ctx = shared.ctx.borrow();
             ctx.as_ref()

@@ -4,6 +4,7 @@ use std::cell::{Cell, OnceCell, RefCell};
 use std::rc::Rc;
 
 use kit::model::{Activity, Motion, read_text};
+use kit::outside::Delivery;
 use kit::palette::Theme;
 use kit::param::{ParamError, ParamSpec};
 use kit::shell::Shell;
@@ -118,6 +119,7 @@ impl Widget {
             frames: Cell::new(0),
             dragging: Cell::new(false),
             cancelled: Cell::new(false),
+            engaged: Cell::new(false),
         };
         Ok(Self {
             shared: Rc::new(shared),
@@ -204,6 +206,26 @@ impl Widget {
         self.shared.shell.borrow_mut().model_mut().press(id)?;
         self.shared.request_repaint();
         Ok(())
+    }
+
+    /// Hands the widget what its host brings: a kind, words, numbers, bytes.
+    pub fn deliver(&self, kind: &str, text: &str, numbers: &[f64], bytes: &[u8]) {
+        let delivery = Delivery {
+            kind,
+            text,
+            numbers,
+            bytes,
+        };
+        let mut shell = self.shared.shell.borrow_mut();
+        shell.model_mut().receive(&delivery);
+        drop(shell);
+        self.shared.request_repaint();
+    }
+
+    /// What the widget asks of its host since the last call.
+    #[wasm_bindgen(js_name = takeOrders)]
+    pub fn take_orders(&self) -> Vec<String> {
+        self.shared.shell.borrow_mut().take_orders()
     }
 
     /// Every value as JSON, each as a link writes it.

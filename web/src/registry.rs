@@ -7,7 +7,7 @@ use kit::spec::WidgetSpec;
 pub type Maker = fn() -> Shell;
 
 /// The widgets with their names.
-pub const WIDGETS: [(&str, Maker); 8] = [
+pub const WIDGETS: [(&str, Maker); 9] = [
     ("w16.1", w16_1_basin_explorer::widget),
     ("w16.2", w16_2_full_lap::widget),
     ("w16.3", w16_3_cost_terraces::widget),
@@ -16,6 +16,7 @@ pub const WIDGETS: [(&str, Maker); 8] = [
     ("w16.6", w16_6_whole_window::widget),
     ("w16.7", w16_7_been_here::widget),
     ("w16.8", w16_8_moving_box::widget),
+    ("w16.10", w16_10_own_robot::widget),
 ];
 
 /// What never changes about them, in the same order.
@@ -28,6 +29,7 @@ const SPECS: [&WidgetSpec; WIDGETS.len()] = [
     &w16_6_whole_window::spec::SPEC,
     &w16_7_been_here::spec::SPEC,
     &w16_8_moving_box::spec::SPEC,
+    &w16_10_own_robot::spec::SPEC,
 ];
 
 /// What never changes about the widget of that name; nothing is computed for it.

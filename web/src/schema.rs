@@ -28,6 +28,7 @@ pub fn widget(model: &dyn Model) -> Value {
         "buttons": buttons.collect::<Vec<_>>(),
         "presets": presets.collect::<Vec<_>>(),
         "summary": model.summary(),
+        "takesFiles": model.takes_files(),
     })
 }
 

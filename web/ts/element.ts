@@ -21,6 +21,9 @@ import { findParam, findWidget, widgets } from './schema';
 import { State } from './state';
 import { defaultText, shorten, type Value } from './values';
 import { unwatchVisibility, watchVisibility } from './visibility';
+import { Desk, hand } from './robot/desk';
+import { chooseFile, takeDrops } from './robot/files';
+import type { Delivery } from './robot/protocol';
 
 export class SlamWidget extends HTMLElement {
   static readonly observedAttributes: string[] = ['name', 'theme'];
@@ -37,6 +40,8 @@ export class SlamWidget extends HTMLElement {
   #controls: Controls | undefined;
   #lastOutcome: Outcome | undefined;
   #unwatch: (() => void)[] = [];
+  /** Where a reader's own file is worked on, once there is one. */
+  #desk: Desk | undefined;
 
   constructor() {
     super();
@@ -62,6 +67,9 @@ export class SlamWidget extends HTMLElement {
       listen(this, 'pointerenter', () => this.#life.askAgain()),
       listen(this, 'focusin', () => this.#life.askAgain()),
     ];
+    if (this.#state?.spec.takesFiles === true) {
+      this.#unwatch.push(takeDrops(this.#parts.frame, (files) => this.#openDesk().take(files)));
+    }
     this.#place.fit();
     watchVisibility(this, this.#life);
   }
@@ -72,6 +80,10 @@ export class SlamWidget extends HTMLElement {
     this.#unwatch = [];
     this.#news.stop();
     this.#life.leave();
+    // What moves within its page is back at once.
+    setTimeout(() => {
+      if (!this.isConnected) this.#closeDesk();
+    });
   }
 
   attributeChangedCallback(name: string, old: string | null, value: string | null): void {
@@ -220,9 +232,17 @@ export class SlamWidget extends HTMLElement {
     this.#life.wake();
   }
 
-  /** Panics in the widget on purpose, for tests of a page's recovery. */
-  crashForTest(): void {
-    this.#life.ask((widget) => widget.crashForTest());
+  /** Panics on purpose, in the widget or in the worker beside it, for tests of a page's recovery. */
+  crashForTest(where?: 'worker'): void {
+    if (where === 'worker') this.#desk?.crashForTest();
+    else this.#life.ask((widget) => widget.crashForTest());
+  }
+
+  /** Hands a file to a widget that takes files: a log, or a reference to grade it with. */
+  openFile(file: File): void {
+    if (!this.#isSetUp) this.#setUp();
+    if (this.#state?.spec.takesFiles !== true) throw new TypeError(`${this.name} takes no files`);
+    this.#openDesk().take([file]);
   }
 
   /** Gives context and memory back; the values stay, and the picture shows them. */
@@ -240,7 +260,9 @@ export class SlamWidget extends HTMLElement {
   #setUp(): void {
     const parts = this.#parts;
     this.#isSetUp = true;
+    this.#closeDesk();
     const spec = findWidget(this.name);
+    parts.frame.classList.toggle('takes-files', spec?.takesFiles === true);
     this.#state = spec && new State(spec);
     this.#lastOutcome = undefined;
     this.#notes.clear();
@@ -288,6 +310,7 @@ export class SlamWidget extends HTMLElement {
       isHere: () => this.isConnected,
       prepare: (widget) => {
         const state = this.#state;
+        this.#desk?.restore(widget);
         for (const [id, text] of state?.texts ?? []) widget.set(id, text);
         // The model may keep less than was asked for: no moment after the end of its run.
         for (const id of state?.texts.keys() ?? []) state?.keep(id, widget.text(id));
@@ -319,6 +342,7 @@ export class SlamWidget extends HTMLElement {
 
   /** Takes over what changed in the widget: pointer, playback, presets. */
   #sync(): void {
+    this.#carryOrders();
     const changes = this.#takeChanges();
     if (changes.length === 0) return;
     const timeline = this.#shownTimeline();
@@ -332,6 +356,32 @@ export class SlamWidget extends HTMLElement {
 
   #takeChanges(): [string, string][] {
     return this.#life.ask((_, instance) => instance.takeChanges()) ?? [];
+  }
+
+  /** What the widget asks of its host: a file, its mapping, a file to save. */
+  #carryOrders(): void {
+    const orders = this.#life.ask((widget) => widget.takeOrders()) ?? [];
+    for (const order of orders) this.#openDesk().order(order);
+  }
+
+  #openDesk(): Desk {
+    this.#desk ??= new Desk({
+      deliver: (deliveries) => this.#deliver(deliveries),
+      choose: (accept, chosen) => chooseFile(this.#parts.frame, accept, chosen),
+    });
+    return this.#desk;
+  }
+
+  #closeDesk(): void {
+    this.#desk?.close();
+    this.#desk = undefined;
+  }
+
+  #deliver(deliveries: readonly Delivery[]): void {
+    this.#life.ask((widget) => deliveries.forEach((delivery) => hand(widget, delivery)));
+    this.#told(this.#takeChanges());
+    this.#carryOrders();
+    this.#life.wake();
   }
 
   /** Keeps changes, and tells controls and page of them. */
@@ -381,6 +431,7 @@ export class SlamWidget extends HTMLElement {
       return running.text(id);
     });
     this.#told(new Map([[id, kept ?? parsed.text], ...this.#takeChanges()]));
+    this.#carryOrders();
     this.#life.wake();
     return undefined;
   }

@@ -46,7 +46,8 @@ function saveCsv(files: CsvFile[], name: string): void {
   }
 }
 
-function saveBlob(blob: Blob, fileName: string): void {
+/** Hands a file to the reader. */
+export function saveBlob(blob: Blob, fileName: string): void {
   const url = URL.createObjectURL(blob);
   const link = document.createElement('a');
   link.href = url;

@@ -1,6 +1,9 @@
 // The one compiled module of the page. Every widget is an instance of it with a memory of its own.
 
-import { openProgram } from './beside';
+import { openFile } from './beside';
+
+/** Set by the build: the wasm file's name holds a hash of its content. */
+declare const WASM_FILE: string;
 
 export class LoadError extends Error {}
 
@@ -16,66 +19,92 @@ const SILENCE_MS = 10_000;
 
 type Listener = (share: number) => void;
 
-let compiled: Promise<WebAssembly.Module> | undefined;
-let share = 0;
-/** Whether the last attempt was in vain: a broken copy may sit in a cache. */
-let isRetry = false;
-const listeners = new Set<Listener>();
+/** A wasm file beside this script: fetched once, compiled once, for every instance there will be. */
+export class ModuleFile {
+  readonly #name: string;
+  #compiled: Promise<WebAssembly.Module> | undefined;
+  #share = 0;
+  /** Whether the last attempt was in vain: a broken copy may sit in a cache. */
+  #isRetry = false;
+  readonly #listeners = new Set<Listener>();
 
-/** Compiles the module, once for the page; `progress` hears the share that has arrived, 0 to 1. */
+  constructor(name: string) {
+    this.#name = name;
+  }
+
+  /** Compiles it, once for the page; `progress` hears the share that has arrived, 0 to 1. */
+  load(progress: Listener): Promise<WebAssembly.Module> {
+    this.#listeners.add(progress);
+    progress(this.#share);
+    this.#compiled ??= this.#compile().catch((error: unknown) => {
+      this.forget();
+      throw error;
+    });
+    return this.#compiled.finally(() => this.#listeners.delete(progress));
+  }
+
+  /** The next attempt fetches afresh, past every cache. */
+  forget(): void {
+    this.#compiled = undefined;
+    this.#share = 0;
+    this.#isRetry = true;
+  }
+
+  async #compile(): Promise<WebAssembly.Module> {
+    if (typeof WebAssembly !== 'object') {
+      throw new LoadError('this browser has no WebAssembly');
+    }
+    const silence = new Silence();
+    try {
+      return await this.#fetchAndCompile(silence);
+    } catch (error) {
+      throw silence.isOver ? new LoadError('the server of the program does not answer') : error;
+    } finally {
+      silence.end();
+    }
+  }
+
+  async #fetchAndCompile(silence: Silence): Promise<WebAssembly.Module> {
+    let response: Response;
+    try {
+      response = await openFile(this.#name, this.#isRetry, silence.signal);
+    } catch {
+      throw new LoadError('the program could not be fetched');
+    }
+    if (!response.ok || response.body === null) {
+      throw new LoadError(`the program could not be fetched (${response.status})`);
+    }
+    const told = (share: number): void => this.#tell(share);
+    const counted = new Response(count(response.body, expectedLength(response), silence, told), {
+      // Whatever type the server gave: what is no wasm is refused by its first bytes.
+      headers: { 'Content-Type': 'application/wasm' },
+    });
+    try {
+      return await WebAssembly.compileStreaming(counted);
+    } catch (error) {
+      if (error instanceof EvalError || String(error).includes('Content Security Policy')) {
+        throw new LoadError("the page's security policy lacks 'wasm-unsafe-eval'");
+      }
+      throw new LoadError('the program arrived incomplete or is too new for this browser');
+    }
+  }
+
+  #tell(share: number): void {
+    this.#share = share;
+    for (const listener of this.#listeners) listener(share);
+  }
+}
+
+const widgets = new ModuleFile(WASM_FILE);
+
+/** Compiles the module of the widgets, once for the page. */
 export function loadModule(progress: Listener): Promise<WebAssembly.Module> {
-  listeners.add(progress);
-  progress(share);
-  compiled ??= compile().catch((error: unknown) => {
-    forgetModule();
-    throw error;
-  });
-  return compiled.finally(() => listeners.delete(progress));
+  return widgets.load(progress);
 }
 
 /** The next attempt fetches afresh, past every cache. */
 export function forgetModule(): void {
-  compiled = undefined;
-  share = 0;
-  isRetry = true;
-}
-
-async function compile(): Promise<WebAssembly.Module> {
-  if (typeof WebAssembly !== 'object') {
-    throw new LoadError('this browser has no WebAssembly');
-  }
-  const silence = new Silence();
-  try {
-    return await fetchAndCompile(silence);
-  } catch (error) {
-    throw silence.isOver ? new LoadError('the server of the program does not answer') : error;
-  } finally {
-    silence.end();
-  }
-}
-
-async function fetchAndCompile(silence: Silence): Promise<WebAssembly.Module> {
-  let response: Response;
-  try {
-    response = await openProgram(isRetry, silence.signal);
-  } catch {
-    throw new LoadError('the program could not be fetched');
-  }
-  if (!response.ok || response.body === null) {
-    throw new LoadError(`the program could not be fetched (${response.status})`);
-  }
-  const counted = new Response(count(response.body, expectedLength(response), silence), {
-    // Whatever type the server gave: what is no wasm is refused by its first bytes.
-    headers: { 'Content-Type': 'application/wasm' },
-  });
-  try {
-    return await WebAssembly.compileStreaming(counted);
-  } catch (error) {
-    if (error instanceof EvalError || String(error).includes('Content Security Policy')) {
-      throw new LoadError("the page's security policy lacks 'wasm-unsafe-eval'");
-    }
-    throw new LoadError('the program arrived incomplete or is too new for this browser');
-  }
+  widgets.forget();
 }
 
 function expectedLength(response: Response): number {
@@ -117,6 +146,7 @@ function count(
   body: ReadableStream<Uint8Array>,
   expected: number,
   silence: Silence,
+  told: Listener,
 ): ReadableStream<Uint8Array> {
   let arrived = 0;
   return body.pipeThrough(
@@ -124,8 +154,7 @@ function count(
       transform(chunk, controller) {
         silence.heard();
         arrived += chunk.byteLength;
-        share = expected > 0 ? Math.min(arrived / expected, 1) : arrived / (arrived + 1e6);
-        for (const listener of listeners) listener(share);
+        told(expected > 0 ? Math.min(arrived / expected, 1) : arrived / (arrived + 1e6));
         controller.enqueue(chunk);
       },
       // What is whole may take its time to compile.

@@ -37,6 +37,8 @@ export interface WidgetSpec {
   buttons: ButtonSpec[];
   presets: ButtonSpec[];
   summary: string;
+  /** Whether a reader may hand it a file. */
+  takesFiles: boolean;
   heights: Heights;
 }
 

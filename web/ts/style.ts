@@ -13,6 +13,8 @@ export const STYLE = `
 .picture { display: block; width: 100%; height: auto; }
 .stage[style*='--place'] .picture { height: 100%; object-fit: contain; object-position: top; }
 canvas { display: block; width: 100%; touch-action: pan-y pinch-zoom; outline: none; }
+.frame.takes-files canvas { touch-action: pan-y; }
+.frame.dropping { border-color: var(--accent); box-shadow: 0 0 0 3px var(--accent); }
 .pinned { position: fixed; top: 0; z-index: 3; pointer-events: none; background: var(--paper);
   border-bottom: 2px solid var(--accent); box-shadow: 0 3px 10px #0005; touch-action: auto; }
 .stage.waiting canvas { position: absolute; inset: 0; visibility: hidden; }

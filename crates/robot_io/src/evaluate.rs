@@ -6,4 +6,6 @@ mod truth_errors;
 
 pub use relation_errors::{RelationErrors, RelationReport, relation_errors};
 pub use statistics::{PoseErrors, Spread};
-pub use truth_errors::{Alignment, RelativeErrors, TruthProblem, TruthReport, truth_errors};
+pub use truth_errors::{
+    Alignment, RelativeErrors, TruthProblem, TruthReport, onto_truth, truth_errors,
+};

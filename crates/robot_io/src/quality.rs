@@ -223,7 +223,8 @@ impl LinkQuality {
 }
 
 /// Why a loop was turned away, in words.
-fn reason(rejection: &LoopRejection) -> String {
+#[must_use]
+pub fn reason(rejection: &LoopRejection) -> String {
     match rejection {
         LoopRejection::PoorFit { rmse_m, max_rmse_m } => {
             format!("what fits is {rmse_m:.3} m off, {max_rmse_m:.3} m is asked")

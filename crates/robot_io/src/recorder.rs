@@ -22,6 +22,12 @@ impl RunRecorder {
         }
     }
 
+    /// The frames of the keyframes, in order.
+    #[must_use]
+    pub fn keyframes(&self) -> &[LogFrame] {
+        &self.keyframes
+    }
+
     /// The keyframes' scans with the poses that the graph gives them now: what a map is made of.
     #[must_use]
     pub fn map_lines(&self, run: &LogRun) -> Vec<FrameLine> {

@@ -3,7 +3,7 @@
 use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::scan::{Frame, FrameError};
 use ch16_slam2d::slam::parameters::Parameter;
-use ch16_slam2d::slam::{Slam, SlamConfig, SlamReport};
+use ch16_slam2d::slam::{Refinement, Slam, SlamConfig, SlamReport};
 use pr_geom::SE2;
 
 use crate::log::LogFrame;
@@ -159,26 +159,53 @@ impl LogRun {
 
     /// Says that no scan follows.
     pub fn finish(&mut self) {
-        if let Some(slam) = &mut self.slam {
-            let refinement = slam.refine();
-            self.links = refinement.links().to_vec();
-            if let Some(found) = refinement.concluded() {
-                let is_it = |tried: &&mut TriedLoop| {
-                    let waited = &tried.verification;
-                    (waited.from_node, waited.registered) == (found.from_node, found.registered)
-                };
-                if let Some(tried) = self.loops.iter_mut().find(is_it) {
-                    tried.verification.rejection = None;
-                    tried.accepted = true;
-                }
+        if let Some(mut refinement) = self.finishing() {
+            while self.finish_step(&mut refinement) {}
+        }
+    }
+
+    /// What [`finish`](Self::finish) does, piece by piece; none before the first scan.
+    #[must_use]
+    pub fn finishing(&self) -> Option<Refinement> {
+        Some(self.slam.as_ref()?.refinement())
+    }
+
+    /// The next piece; false once nothing is left to do.
+    pub fn finish_step(&mut self, refinement: &mut Refinement) -> bool {
+        let Some(slam) = &mut self.slam else {
+            return false;
+        };
+        if slam.refine_step(refinement) {
+            return true;
+        }
+        self.links = refinement.links().to_vec();
+        if let Some(found) = refinement.concluded() {
+            let is_it = |tried: &&mut TriedLoop| {
+                let waited = &tried.verification;
+                (waited.from_node, waited.registered) == (found.from_node, found.registered)
+            };
+            if let Some(tried) = self.loops.iter_mut().find(is_it) {
+                tried.verification.rejection = None;
+                tried.accepted = true;
             }
         }
+        false
     }
 
     /// The estimator; none before the first scan.
     #[must_use]
     pub fn slam(&self) -> Option<&Slam> {
         self.slam.as_ref()
+    }
+
+    /// The estimator, for who changes its graph by hand; none before the first scan.
+    pub fn slam_mut(&mut self) -> Option<&mut Slam> {
+        self.slam.as_mut()
+    }
+
+    /// Says which links are in the graph, after it was changed by hand.
+    pub fn set_links(&mut self, links: Vec<LoopVerification>) {
+        self.links = links;
     }
 
     /// Scans taken.

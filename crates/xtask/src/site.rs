@@ -51,6 +51,24 @@ fn compile_wasm(speed: Speed) -> Result<(), Failure> {
     step(
         "Compiling the widgets to WebAssembly (the first time takes minutes)",
         &mut wasm_build("pkg", speed),
+    )?;
+    step(
+        "Compiling the worker that maps logs",
+        &mut robot_build(speed),
+    )
+}
+
+/// The build of the second module, which a reader's log is mapped in, into `web/pkg-robot`.
+fn robot_build(speed: Speed) -> Command {
+    tools::wasm_pack_build(
+        "web/robot",
+        &[
+            // One instance in a worker of its own: the glue is a module that the worker's script takes in.
+            "--target=web",
+            "--out-dir=../pkg-robot",
+            "--out-name=slam_robot",
+            &format!("--profile={}", speed.profile()),
+        ],
     )
 }
 

@@ -12,12 +12,13 @@ use w16_5_pose_graph_toy::model::PoseGraphToy;
 use w16_6_whole_window::model::WholeWindow;
 use w16_7_been_here::model::BeenHere;
 use w16_8_moving_box::model::MovingBox;
+use w16_10_own_robot::model::OwnRobot;
 
 /// How a model is made.
 pub type Maker = fn() -> Box<dyn Model>;
 
 /// A fresh model of every widget.
-pub const MODELS: [Maker; 8] = [
+pub const MODELS: [Maker; 9] = [
     || Box::new(BasinExplorer::new()),
     || Box::new(FullLap::new()),
     || Box::new(CostTerraces::new()),
@@ -26,12 +27,13 @@ pub const MODELS: [Maker; 8] = [
     || Box::new(WholeWindow::new()),
     || Box::new(BeenHere::new()),
     || Box::new(MovingBox::new()),
+    || Box::new(OwnRobot::new()),
 ];
 
 /// What never changes about each widget, in the order of [`MODELS`].
 ///
 /// Written out, so that a program which only reads texts holds no estimator.
-pub static SPECS: [&WidgetSpec; 8] = [
+pub static SPECS: [&WidgetSpec; 9] = [
     &w16_1_basin_explorer::spec::SPEC,
     &w16_2_full_lap::spec::SPEC,
     &w16_3_cost_terraces::spec::SPEC,
@@ -40,6 +42,7 @@ pub static SPECS: [&WidgetSpec; 8] = [
     &w16_6_whole_window::spec::SPEC,
     &w16_7_been_here::spec::SPEC,
     &w16_8_moving_box::spec::SPEC,
+    &w16_10_own_robot::spec::SPEC,
 ];
 
 /// A widget that takes values and presses by the rules of another, and computes nothing.

@@ -14,6 +14,7 @@ mod loops;
 mod moving_box;
 mod ndt;
 mod places;
+mod robots;
 mod search;
 mod setup;
 mod sweep;
@@ -64,6 +65,7 @@ impl Figures {
             }
             ["grid", run, what] => lap::grid(self.lap(run)?, what),
             ["lap", run, what @ ..] => lap::value(self.lap(run)?, what),
+            ["robots", row, column] => robots::value(row, column),
             ["worlds", what @ ..] => crate::worlds::value(what),
             ["sweep", what @ ..] => self.sweep.get_or_init(Sweep::run).value(what),
             _ => None,

@@ -1,7 +1,7 @@
 //! What the widgets share.
 //!
 //! The half without egui is what a widget's `model.rs` speaks: [`param`], [`spec`], [`model`],
-//! [`scene`], [`chart`], [`layers`], [`playback`], [`run`], [`ticks`], [`palette`]. Nothing in
+//! [`scene`], [`chart`], [`layers`], [`outside`], [`playback`], [`run`], [`ticks`], [`palette`]. Nothing in
 //! it may use the other half: the models are tested headless.
 //!
 //! The other half draws, and is compiled with the feature `view`. [`draw`] puts a scene on any
@@ -12,6 +12,7 @@
 pub mod chart;
 pub mod layers;
 pub mod model;
+pub mod outside;
 pub mod palette;
 pub mod param;
 pub mod playback;

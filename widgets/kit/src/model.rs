@@ -1,6 +1,7 @@
 //! What every widget's `model.rs` implements: state in, scene out, no egui, no clock.
 
 use crate::layers::Layer;
+use crate::outside::Delivery;
 use crate::param::{ParamError, Values, printable};
 use crate::scene::Scene;
 use crate::spec::{Preset, WidgetSpec};
@@ -85,6 +86,19 @@ pub trait Model {
 
     /// The pointer moved over a panel without pressing, or left it.
     fn hover(&mut self, _panel: &str, _at: Option<[f64; 2]>) {}
+
+    /// Whether a reader may hand it a file, by dropping it on the picture for example.
+    fn takes_files(&self) -> bool {
+        false
+    }
+
+    /// Takes what the host brings from outside; what a widget does not know leaves it as it is.
+    fn receive(&mut self, _delivery: &Delivery<'_>) {}
+
+    /// What the widget asks of its host, in words, each once and in order: `open`, `look 12`.
+    fn take_orders(&mut self) -> Vec<String> {
+        Vec::new()
+    }
 
     /// The reader wants no animation: jump to the end of each instead.
     fn set_motion(&mut self, _motion: Motion) {}

@@ -43,6 +43,7 @@ pub fn tone(theme: Theme, tone: Tone) -> Rgb {
             0.5,
         ),
         (theme, Tone::Class(class)) => class_color(theme, class),
+        (_, Tone::Level(level)) => level_color(f32::from(level) / 255.0),
     }
 }
 

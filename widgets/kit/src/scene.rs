@@ -31,6 +31,8 @@ pub enum Tone {
     Unseen,
     /// A thing of class n in a picture of classes: minima, cells. Each class also has a letter.
     Class(u8),
+    /// A value along a line, 0 … 255 over the perceptual colour map; it needs a line of ink below.
+    Level(u8),
 }
 
 /// Shape of a point; each of the first four belongs to the tone of its name.

@@ -130,6 +130,11 @@ impl Shell {
         self.model.as_mut()
     }
 
+    /// What the widget asks of its host, see [`Model::take_orders`]; the picture stays as it is.
+    pub fn take_orders(&mut self) -> Vec<String> {
+        self.model.take_orders()
+    }
+
     /// Finishes what the picture waits for, see [`Model::settle`]; says whether there was anything.
     pub fn settle(&mut self) -> bool {
         let settled = self.model.settle() == Activity::Busy;

@@ -66,16 +66,7 @@ pub fn truth_errors(
     truth: &Trajectory,
     alignment: Alignment,
 ) -> Result<TruthReport, TruthProblem> {
-    let pairs = associate(estimate, truth);
-    if pairs.len() < 2 {
-        return Err(TruthProblem::NoCommonStamps {
-            matched: pairs.len(),
-        });
-    }
-    let onto_truth = match alignment {
-        Alignment::None => SE2::identity(),
-        Alignment::Se2 => umeyama(&pairs),
-    };
+    let (pairs, onto_truth) = pairs_and_motion(estimate, truth, alignment)?;
     let absolute: Vec<f64> = pairs
         .iter()
         .map(|(estimate, truth)| {
@@ -106,6 +97,37 @@ pub fn truth_errors(
             rot_deg: PoseErrors::of(&turns),
         },
     })
+}
+
+/// The motion that brings a trajectory onto the truth before it is compared.
+///
+/// # Errors
+/// Where fewer than two poses have a partner.
+pub fn onto_truth(
+    estimate: &Trajectory,
+    truth: &Trajectory,
+    alignment: Alignment,
+) -> Result<SE2, TruthProblem> {
+    Ok(pairs_and_motion(estimate, truth, alignment)?.1)
+}
+
+/// Estimates with their truths, and what brings the ones onto the others.
+fn pairs_and_motion(
+    estimate: &Trajectory,
+    truth: &Trajectory,
+    alignment: Alignment,
+) -> Result<(Vec<(SE2, SE2)>, SE2), TruthProblem> {
+    let pairs = associate(estimate, truth);
+    if pairs.len() < 2 {
+        return Err(TruthProblem::NoCommonStamps {
+            matched: pairs.len(),
+        });
+    }
+    let onto_truth = match alignment {
+        Alignment::None => SE2::identity(),
+        Alignment::Se2 => umeyama(&pairs),
+    };
+    Ok((pairs, onto_truth))
 }
 
 /// Estimates with their truths: each pose of the shorter one with the nearest of the longer.

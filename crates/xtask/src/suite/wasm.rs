@@ -18,7 +18,8 @@ pub fn lints(ledger: &mut Ledger) -> Result<(), Failure> {
         ledger,
         "wasm: lint",
         cargo()
-            .args(["clippy", "--quiet", "--package", "slam_web"])
+            .args(["clippy", "--quiet"])
+            .args(["--package", "slam_web", "--package", "slam_robot"])
             .args(["--target", tools::TARGET, "--", "-D", "warnings"])
             .env("CARGO_INCREMENTAL", "0"),
     )

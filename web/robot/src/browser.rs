@@ -1,0 +1,128 @@
+//! What the worker's JavaScript sees: a file in, orders in, updates out.
+
+use std::io::{self, BufReader, Read};
+
+use js_sys::{Array, Float64Array, Function, Object, Reflect, Uint8Array};
+use wasm_bindgen::prelude::*;
+
+use crate::engine::Engine;
+use crate::sample;
+use crate::update::{Stage, Update};
+
+/// So much of a file is asked for at once, bytes.
+const PIECE_BYTES: usize = 1 << 18;
+
+/// A file that JavaScript reads: `read(from, to)` gives the bytes of that part.
+struct JsFile {
+    read: Function,
+    at: u64,
+    size: u64,
+}
+
+impl Read for JsFile {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let end = self.size.min(self.at + into.len() as u64);
+        if end == self.at {
+            return Ok(0);
+        }
+        // Sizes of files are whole numbers far below 2⁵³.
+        let (from, to) = (
+            JsValue::from_f64(self.at as f64),
+            JsValue::from_f64(end as f64),
+        );
+        let read = self.read.call2(&JsValue::NULL, &from, &to);
+        let bytes = read.map_err(|_| io::Error::other("the browser cannot read it any more"))?;
+        let bytes = Uint8Array::new(&bytes);
+        let count = (bytes.length() as usize).min(into.len());
+        bytes.subarray(0, count as u32).copy_to(&mut into[..count]);
+        self.at += count as u64;
+        Ok(count)
+    }
+}
+
+/// A log on its way to a map.
+#[wasm_bindgen]
+pub struct Robot {
+    engine: Engine<'static>,
+}
+
+#[wasm_bindgen]
+impl Robot {
+    /// Opens a file; `read(from, to)` gives its bytes as a `Uint8Array`.
+    ///
+    /// # Errors
+    /// One sentence where it cannot be mapped.
+    #[wasm_bindgen(constructor)]
+    pub fn new(name: &str, size: f64, read: Function) -> Result<Self, JsError> {
+        let file = JsFile {
+            read,
+            at: 0,
+            size: size as u64,
+        };
+        let source = BufReader::with_capacity(PIECE_BYTES, file);
+        let engine = Engine::open(source, name, size as u64).map_err(|said| JsError::new(&said))?;
+        Ok(Self { engine })
+    }
+
+    /// Does the next piece of work; false where nothing is left to do.
+    pub fn step(&mut self) -> bool {
+        self.engine.step()
+    }
+
+    /// Whether all of the file's work is done, or nothing came of it.
+    #[wasm_bindgen(js_name = isOver)]
+    pub fn is_over(&self) -> bool {
+        matches!(self.engine.stage(), Stage::Done | Stage::Failed)
+    }
+
+    /// Does what the reader asks.
+    pub fn order(&mut self, order: &str) {
+        self.engine.order(order);
+    }
+
+    /// What changed since the last call: objects of kind, text, numbers, bytes.
+    pub fn updates(&mut self) -> Array {
+        self.engine.updates().iter().map(to_js).collect()
+    }
+
+    /// Takes the file of a reference.
+    ///
+    /// # Errors
+    /// One sentence where it is none.
+    pub fn reference(&mut self, bytes: &[u8], name: &str) -> Result<(), JsError> {
+        let taken = self.engine.take_reference(bytes, name);
+        taken.map_err(|said| JsError::new(&said))
+    }
+
+    /// The bytes of a file to save.
+    ///
+    /// # Errors
+    /// One sentence where there is nothing to write.
+    pub fn file(&mut self, name: &str) -> Result<Vec<u8>, JsError> {
+        self.engine.file(name).map_err(|said| JsError::new(&said))
+    }
+}
+
+fn to_js(update: &Update) -> JsValue {
+    let object = Object::new();
+    let set = |name: &str, value: &JsValue| {
+        // A fresh object takes every property.
+        let _ = Reflect::set(&object, &JsValue::from_str(name), value);
+    };
+    set("kind", &JsValue::from_str(update.kind));
+    set("text", &JsValue::from_str(&update.text));
+    set("numbers", &Float64Array::from(update.numbers.as_slice()));
+    set("bytes", &Uint8Array::from(update.bytes.as_slice()));
+    object.into()
+}
+
+/// The sample log, and its true trajectory.
+#[wasm_bindgen(js_name = sampleFiles)]
+#[must_use]
+pub fn sample_files() -> Array {
+    let (log, truth) = sample::ring();
+    [log, truth]
+        .iter()
+        .map(|bytes| JsValue::from(Uint8Array::from(bytes.as_slice())))
+        .collect()
+}

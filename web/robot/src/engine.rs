@@ -1,0 +1,471 @@
+//! A log on its way to a map, one piece of work at a time, and the orders of its reader.
+//!
+//! [`Engine::step`] reads a scan, links a keyframe or paints a few scans, and says whether there is
+//! more; [`Engine::updates`] tells what changed. The file is read as far as a step needs it, so that its
+//! size costs no memory. Nothing here asks a clock: who calls decides how long a slice is.
+
+mod orders;
+
+use std::collections::BTreeMap;
+use std::io::BufRead;
+
+use ch16_slam2d::graph::PoseGraph;
+use ch16_slam2d::slam::Refinement;
+use pr_geom::SE2;
+use robot_io::log::{LogFormat, LogOptions, LogReader};
+use robot_io::quality::Quality;
+use robot_io::recorder::RunRecorder;
+use robot_io::run::{LogRun, OdometryUse};
+use robot_io::trajectory::{StampedPose, Trajectory};
+
+use crate::grade::Reference;
+use crate::graph_log::{self, GraphSolving, loops_of};
+use crate::links::Link;
+use crate::picture::MapPicture;
+use crate::update::{Stage, Update};
+
+/// Share of the work that reading is; linking is the rest.
+const READING_SHARE: f64 = 0.8;
+
+/// What is under way.
+enum Work<'a> {
+    Reading(Box<dyn LogReader + 'a>),
+    /// With the pieces done.
+    Linking(Box<Refinement>, usize),
+    Solving(Box<GraphSolving>),
+    Checking,
+    Idle,
+    Failed(String),
+}
+
+/// Which parts changed since they were told.
+#[derive(Clone, Copy, Debug, Default)]
+struct News {
+    file: bool,
+    keyframes: bool,
+    loops: bool,
+    doubts: bool,
+    grade: bool,
+}
+
+/// A log under way.
+pub struct Engine<'a> {
+    name: String,
+    size_bytes: u64,
+    work: Work<'a>,
+    run: LogRun,
+    recorder: RunRecorder,
+    /// The graph of a file that has no scans.
+    graph: Option<PoseGraph>,
+    /// Share of each keyframe's scan that fits; NaN where none was registered.
+    fits: Vec<f64>,
+    /// σ of each keyframe, m, once it was computed.
+    sigmas_m: Vec<f64>,
+    /// Which nodes held the gauge before any pin.
+    fixed: Vec<bool>,
+    links: Vec<Link>,
+    pins: BTreeMap<usize, SE2>,
+    picture: MapPicture,
+    remarks: Vec<String>,
+    doubts: Vec<String>,
+    look_into: Vec<usize>,
+    reference: Option<(String, Reference)>,
+    has_scans: bool,
+    news: News,
+    /// Updates that wait to be taken, answers among them.
+    waiting: Vec<Update>,
+}
+
+impl<'a> Engine<'a> {
+    /// Opens a file of that name and size.
+    ///
+    /// # Errors
+    /// One sentence where it is nothing that can be mapped or solved.
+    pub fn open(
+        mut source: impl BufRead + 'a,
+        name: &str,
+        size_bytes: u64,
+    ) -> Result<Self, String> {
+        let start = source.fill_buf().map_err(|problem| {
+            format!("{name} cannot be read: {problem}; it may have moved or changed")
+        })?;
+        let lower = name.to_ascii_lowercase();
+        let is_graph = [".g2o", ".graph", ".toro"]
+            .iter()
+            .any(|end| lower.ends_with(end));
+        let work =
+            if !start.is_empty() && (is_graph || LogFormat::detect(start) == LogFormat::Graph) {
+                if size_bytes > graph_log::MOST_BYTES {
+                    return Err(format!("{name} is larger than a pose graph of 256 MB"));
+                }
+                let mut bytes = Vec::new();
+                source
+                    .read_to_end(&mut bytes)
+                    .map_err(|problem| format!("{name} cannot be read: {problem}"))?;
+                Work::Solving(Box::new(GraphSolving::read(&bytes, name)?))
+            } else {
+                let reader = LogFormat::open(source, name, &LogOptions::default());
+                Work::Reading(reader.map_err(|problem| problem.to_string())?)
+            };
+        Ok(Self {
+            name: name.to_owned(),
+            size_bytes,
+            has_scans: matches!(work, Work::Reading(_)),
+            work,
+            run: LogRun::new(OdometryUse::Log),
+            recorder: RunRecorder::default(),
+            graph: None,
+            fits: Vec::new(),
+            sigmas_m: Vec::new(),
+            fixed: Vec::new(),
+            links: Vec::new(),
+            pins: BTreeMap::new(),
+            picture: MapPicture::default(),
+            remarks: Vec::new(),
+            doubts: Vec::new(),
+            look_into: Vec::new(),
+            reference: None,
+            news: News {
+                file: true,
+                ..News::default()
+            },
+            waiting: Vec::new(),
+        })
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn stage(&self) -> Stage {
+        match self.work {
+            Work::Reading(_) => Stage::Reading,
+            Work::Linking(..) => Stage::Linking,
+            Work::Solving(_) => Stage::Solving,
+            Work::Checking => Stage::Checking,
+            Work::Idle => Stage::Done,
+            Work::Failed(_) => Stage::Failed,
+        }
+    }
+
+    /// Does the next piece of work; false where nothing is left to do until an order comes.
+    pub fn step(&mut self) -> bool {
+        match core::mem::replace(&mut self.work, Work::Idle) {
+            Work::Reading(reader) => self.read(reader),
+            Work::Linking(refinement, done) => self.link(refinement, done),
+            Work::Solving(solving) => self.solve(solving),
+            Work::Checking => self.check(),
+            Work::Idle => return self.paint(),
+            Work::Failed(problem) => {
+                self.work = Work::Failed(problem);
+                return false;
+            }
+        }
+        true
+    }
+
+    fn read(&mut self, mut reader: Box<dyn LogReader + 'a>) {
+        match reader.next_frame() {
+            Ok(Some(frame)) => {
+                if let Some(report) = self.run.step(frame.clone()) {
+                    self.recorder.take(&frame, &report);
+                    if report.new_keyframe.is_some() {
+                        let matched = report.registration.map(|found| found.matched);
+                        let fit = matched.and_then(|matched| matched.score);
+                        self.fits.push(fit.unwrap_or(f64::NAN));
+                        self.news.keyframes = true;
+                    }
+                    if !report.loop_attempts.is_empty() {
+                        self.news.loops = true;
+                    }
+                    if report.closed_loop().is_some() {
+                        self.picture.follow(poses_of(&self.run));
+                    }
+                }
+                self.paint();
+                self.work = Work::Reading(reader);
+            }
+            Ok(None) => self.end_of_log(reader.as_ref(), None),
+            Err(problem) => self.end_of_log(reader.as_ref(), Some(problem.to_string())),
+        }
+    }
+
+    /// No scan follows: what is there is linked, or the reader is told why there is nothing.
+    fn end_of_log(&mut self, reader: &dyn LogReader, problem: Option<String>) {
+        let notes = reader.notes();
+        self.remarks.clone_from(&notes.about);
+        self.remarks.extend(notes.sentences(&self.name));
+        if self.run.late() > 0 {
+            self.remarks.push(format!(
+                "{}: {} scans are not after the one before them and were left out",
+                self.name,
+                self.run.late()
+            ));
+        }
+        let refused = self.run.refused().map(|why| why.to_string());
+        match self.run.finishing() {
+            Some(refinement) => {
+                self.remarks.extend(problem);
+                if let Some(why) = refused {
+                    let name = &self.name;
+                    let said = format!("{name}: scans were left out; the first because {why}");
+                    self.remarks.push(said);
+                }
+                self.work = Work::Linking(Box::new(refinement), 0);
+            }
+            None => {
+                let nothing = || match refused {
+                    Some(why) => format!("{}: no scan could be used: {why}", self.name),
+                    None => format!("{} was stopped before its first scan", self.name),
+                };
+                self.work = Work::Failed(problem.unwrap_or_else(nothing));
+            }
+        }
+        let remarks = self.remarks.join("\n");
+        self.waiting.push(Update::text("remarks", remarks));
+    }
+
+    fn link(&mut self, mut refinement: Box<Refinement>, done: usize) {
+        if self.run.finish_step(&mut refinement) {
+            self.work = Work::Linking(refinement, done + 1);
+            return;
+        }
+        self.begin_editing(links_of(&self.run));
+    }
+
+    fn solve(&mut self, mut solving: Box<GraphSolving>) {
+        let goes_on = solving.step();
+        let graph = solving.graph();
+        self.news.keyframes = true;
+        if goes_on {
+            self.graph = Some(graph);
+            self.work = Work::Solving(solving);
+            return;
+        }
+        let links = loops_of(&graph);
+        self.graph = Some(graph);
+        self.begin_editing(links);
+    }
+
+    /// The graph stands, and from now on the reader may change it.
+    fn begin_editing(&mut self, mut links: Vec<Link>) {
+        let doubt = |link: &Link| link.chi2.unwrap_or(f64::INFINITY) / link.gate_chi2;
+        links.sort_by(|a, b| {
+            let in_graph = |link: &Link| link.verdict.is_in_graph();
+            let by_graph = in_graph(b).cmp(&in_graph(a));
+            by_graph.then(doubt(b).total_cmp(&doubt(a)))
+        });
+        self.links = links;
+        self.fixed = self.graph().map_or_else(Vec::new, |graph| {
+            graph.nodes().map(|(_, node)| node.fixed).collect()
+        });
+        self.changed();
+    }
+
+    /// The graph changed: all that follows from it is computed anew, and told.
+    fn changed(&mut self) {
+        self.news.keyframes = true;
+        self.news.loops = true;
+        self.news.grade = true;
+        if self.has_scans {
+            self.picture.follow(poses_of(&self.run));
+        }
+        self.work = Work::Checking;
+    }
+
+    fn check(&mut self) {
+        if self.has_scans {
+            let quality = self.run.quality();
+            self.take_quality(&quality);
+        } else if let Some(graph) = &mut self.graph {
+            let covariances = graph.pose_covariances().unwrap_or_default();
+            let trace_m = |c: &pr_geom::Matrix3<f64>| pr_geom::math::sqrt(c[(0, 0)] + c[(1, 1)]);
+            self.sigmas_m = covariances.iter().map(trace_m).collect();
+            let residuals: Vec<_> = graph
+                .edges()
+                .map(|view| (view.edge.measurement, graph.edge_chi2(view.id)))
+                .collect();
+            for link in &mut self.links {
+                let of = residuals.iter().find(|(is, _)| *is == link.measurement);
+                link.chi2 = of.map(|(_, chi2)| *chi2).or(link.chi2);
+            }
+            self.look_into = contradicting(&self.links).collect();
+        }
+        self.news.keyframes = true;
+        self.news.loops = true;
+        self.news.doubts = true;
+        self.work = Work::Idle;
+    }
+
+    fn take_quality(&mut self, quality: &Quality) {
+        let keyframes = quality.keyframes.iter();
+        self.sigmas_m = keyframes.map(|keyframe| keyframe.sigma_m()).collect();
+        // The links that were told to the run come back in their order.
+        let in_graph = self
+            .links
+            .iter_mut()
+            .filter(|link| link.verdict.is_in_graph() && link.found.is_some());
+        for (link, known) in in_graph.zip(&quality.links) {
+            (link.chi2, link.gate_chi2) = (known.chi2, known.gate_chi2);
+        }
+        self.doubts.clone_from(&quality.doubts);
+        let stamps: Vec<f64> = quality.keyframes.iter().map(|k| k.stamp_s).collect();
+        let at = |stamp_s: f64| stamps.partition_point(|&s| s <= stamp_s).saturating_sub(1);
+        let poor = self.run.poor().iter().map(|poor| at(poor.stamp_s));
+        let mut all: Vec<usize> = contradicting(&self.links).chain(poor).collect();
+        all.sort_unstable();
+        all.dedup();
+        self.look_into = all;
+    }
+
+    /// Paints the next scans; false where all are painted.
+    fn paint(&mut self) -> bool {
+        let frames = self.recorder.keyframes();
+        self.picture.step(frames, poses_of(&self.run))
+    }
+
+    fn graph(&self) -> Option<&PoseGraph> {
+        let of_run = || self.run.slam().map(|slam| slam.graph());
+        self.graph.as_ref().or_else(of_run)
+    }
+
+    /// The keyframes with their times; nodes of a graph from a file are a second apart.
+    fn keyframes(&self) -> Trajectory {
+        let poses = self.graph().map_or(&[][..], |graph| graph.poses());
+        let keyframes = self.run.slam().map_or(&[][..], |slam| slam.keyframes());
+        let stamp_s = |k: usize| keyframes.get(k).map_or(k as f64, |k| k.stamp_s);
+        let stamped = poses.iter().enumerate().map(|(k, &pose)| StampedPose {
+            stamp_s: stamp_s(k),
+            pose,
+        });
+        Trajectory::new(stamped.collect())
+    }
+
+    /// Where every scan was taken; the nodes where there are no scans.
+    fn trajectory(&self) -> Trajectory {
+        if self.has_scans {
+            self.run.trajectory()
+        } else {
+            self.keyframes()
+        }
+    }
+
+    /// What changed since the last call.
+    pub fn updates(&mut self) -> Vec<Update> {
+        let mut updates = Vec::new();
+        let news = core::mem::take(&mut self.news);
+        if news.file {
+            let mut file = Update::text("file", self.name.clone());
+            let has_scans = f64::from(u8::from(self.has_scans));
+            file.numbers = vec![self.size_bytes as f64, has_scans];
+            updates.push(file);
+        }
+        updates.push(self.stage_update());
+        if news.keyframes {
+            updates.push(self.keyframes_update());
+        }
+        if news.loops {
+            updates.push(self.loops_update());
+        }
+        if news.doubts {
+            let mut doubts = Update::text("doubts", self.doubts.join("\n"));
+            doubts.numbers = self.look_into.iter().map(|&k| k as f64).collect();
+            updates.push(doubts);
+        }
+        if news.grade && self.stage() != Stage::Reading {
+            updates.extend(self.grade_updates());
+        }
+        if self.has_scans {
+            let scans = self.recorder.keyframes().len();
+            updates.extend(self.picture.update(scans));
+        }
+        updates.append(&mut self.waiting);
+        updates
+    }
+
+    fn stage_update(&self) -> Update {
+        let tried = self.run.loops();
+        let (mut share, mut words) = (1.0, String::new());
+        match &self.work {
+            Work::Reading(reader) => {
+                let read = reader.notes().bytes as f64 / (self.size_bytes as f64).max(1.0);
+                share = READING_SHARE * read.min(1.0);
+            }
+            Work::Linking(_, done) => {
+                let slam = self.run.slam();
+                let total = slam.map_or(1, |slam| {
+                    slam.config().refinement.passes * (slam.keyframes().len() + 1)
+                });
+                let done = *done as f64 / total.max(1) as f64;
+                share = READING_SHARE + (1.0 - READING_SHARE) * done.min(1.0);
+            }
+            Work::Failed(problem) => words.clone_from(problem),
+            Work::Solving(_) | Work::Checking | Work::Idle => {}
+        }
+        Update {
+            text: words,
+            ..Update::numbers(
+                "stage",
+                vec![
+                    f64::from(self.stage() as u8),
+                    share,
+                    self.run.scans() as f64,
+                    tried.len() as f64,
+                    tried.iter().filter(|tried| tried.accepted).count() as f64,
+                ],
+            )
+        }
+    }
+
+    fn keyframes_update(&self) -> Update {
+        let keyframes = self.keyframes();
+        let mut numbers = Vec::with_capacity(6 * keyframes.poses().len());
+        for (k, keyframe) in keyframes.poses().iter().enumerate() {
+            let of = |values: &[f64]| values.get(k).copied().unwrap_or(f64::NAN);
+            let [x, y, theta] = keyframe.pose.to_array();
+            let sigma_m = of(&self.sigmas_m);
+            numbers.extend([keyframe.stamp_s, x, y, theta, of(&self.fits), sigma_m]);
+        }
+        Update::numbers("keyframes", numbers)
+    }
+
+    fn loops_update(&self) -> Update {
+        let under_way;
+        let links = match self.work {
+            Work::Reading(_) | Work::Linking(..) => {
+                under_way = links_of(&self.run);
+                &under_way
+            }
+            _ => &self.links,
+        };
+        let reasons: Vec<&str> = links.iter().map(|link| link.reason.as_str()).collect();
+        Update {
+            text: reasons.join("\n"),
+            ..Update::numbers("loops", links.iter().flat_map(Link::numbers).collect())
+        }
+    }
+}
+
+fn poses_of(run: &LogRun) -> &[SE2] {
+    run.slam().map_or(&[], |slam| slam.graph().poses())
+}
+
+/// The links of the last pass; before it the loops that were tried.
+fn links_of(run: &LogRun) -> Vec<Link> {
+    if run.links().is_empty() {
+        let tried = run.loops().iter();
+        return tried
+            .map(|tried| Link::registered(&tried.verification, tried.accepted))
+            .collect();
+    }
+    let links = run.links().iter();
+    links
+        .map(|link| Link::registered(link, link.accepted()))
+        .collect()
+}
+
+/// The newer keyframes of loops in the graph that the rest of it contradicts.
+fn contradicting(links: &[Link]) -> impl Iterator<Item = usize> + '_ {
+    let is_doubted = |link: &&Link| {
+        link.verdict.is_in_graph() && link.chi2.is_some_and(|chi2| chi2 > link.gate_chi2)
+    };
+    links.iter().filter(is_doubted).map(|link| link.new)
+}

@@ -1,0 +1,295 @@
+//! What the reader asks of the engine, in words: `turn 3`, `add 120 14`, `pin 7 1.5 2 0.1`, `unpin`,
+//! `look 12`, `cancel`.
+
+use ch16_slam2d::loops::{
+    KeyframeView, LoopCandidate, LoopVerification, LoopWorkspace, marginal_information, verify_loop,
+};
+use ch16_slam2d::metrics::position_error_m;
+use ch16_slam2d::slam::SlamParts;
+use pr_geom::SE2;
+use robot_io::map_image::map_of;
+use robot_io::report::Report;
+
+use super::{Engine, Work};
+use crate::editing::{Solving, rebuilt, solve};
+use crate::files::{self, MAP_CELL_M, NAMES, REPORT_CELL_M};
+use crate::grade::Reference;
+use crate::links::{Link, Verdict};
+use crate::update::Update;
+
+/// How a graph from a file is solved after a change.
+const PLAIN: Solving = Solving {
+    iterations: 30,
+    tolerance: 1e-6,
+    huber: f64::INFINITY,
+};
+
+impl Engine<'_> {
+    /// Does what the reader asks; what became of it is told by the next updates.
+    pub fn order(&mut self, order: &str) {
+        let mut words = order.split_ascii_whitespace();
+        let name = words.next().unwrap_or_default();
+        let numbers: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
+        let answered = match (name, numbers.as_slice()) {
+            ("cancel", []) => self.cancel(),
+            ("look", [keyframe]) => self.look(*keyframe as usize),
+            ("turn", [link]) => self.turn(*link as usize),
+            ("add", [a, b]) => self.add(*a as usize, *b as usize),
+            ("pin", [keyframe, x, y, theta]) if x.is_finite() && y.is_finite() => {
+                self.pin(*keyframe as usize, SE2::new(*x, *y, *theta))
+            }
+            ("unpin", []) => self.unpin(),
+            _ => Err("this order is unknown".to_owned()),
+        };
+        let said = answered.unwrap_or_else(|problem| problem);
+        if !said.is_empty() {
+            self.waiting.push(Update::text("answer", said));
+        }
+    }
+
+    /// Ends the reading, and keeps what was read.
+    fn cancel(&mut self) -> Result<String, String> {
+        match core::mem::replace(&mut self.work, Work::Idle) {
+            Work::Reading(reader) => {
+                self.end_of_log(reader.as_ref(), None);
+                if let Work::Linking(..) = self.work {
+                    self.begin_editing(super::links_of(&self.run));
+                }
+                Ok(format!("Stopped after {} scans.", self.run.scans()))
+            }
+            Work::Linking(..) => {
+                self.begin_editing(super::links_of(&self.run));
+                Ok("Stopped before all keyframes were linked.".to_owned())
+            }
+            other => {
+                self.work = other;
+                Ok(String::new())
+            }
+        }
+    }
+
+    /// The scan of a keyframe, to be laid over the map.
+    fn look(&mut self, keyframe: usize) -> Result<String, String> {
+        let keyframes = self.run.slam().map_or(&[][..], |slam| slam.keyframes());
+        if let Some(at) = keyframes.get(keyframe) {
+            let mut numbers = vec![keyframe as f64];
+            numbers.extend(at.scan.iter().flat_map(|point| [point.x, point.y]));
+            self.waiting.push(Update::numbers("scan", numbers));
+        }
+        Ok(String::new())
+    }
+
+    /// Refuses a loop that is in the graph, or puts one in.
+    fn turn(&mut self, link: usize) -> Result<String, String> {
+        self.may_edit()?;
+        let Some(found) = self.links.get_mut(link) else {
+            return Err(format!("there is no loop {link}"));
+        };
+        let (before, ends) = (found.verdict, format!("{} to {}", found.new, found.old));
+        found.verdict = before.turned();
+        let said = match found.verdict {
+            Verdict::Refused => format!("The loop {ends} is out of the graph"),
+            _ => format!("The loop {ends} is in the graph"),
+        };
+        match self.resolve() {
+            Ok(moved_m) => Ok(format!("{said}; keyframes moved by up to {moved_m:.2} m.")),
+            Err(problem) => {
+                self.links[link].verdict = before;
+                Err(problem)
+            }
+        }
+    }
+
+    /// Registers one keyframe on what was seen around another, and closes the loop if it passes.
+    fn add(&mut self, a: usize, b: usize) -> Result<String, String> {
+        self.may_edit()?;
+        let (old, new) = (a.min(b), a.max(b));
+        let found = self.register(old, new)?;
+        let mut link = Link::registered(&found, found.accepted());
+        if found.accepted() {
+            link.verdict = Verdict::Added;
+        }
+        let reason = link.reason.clone();
+        self.links.insert(0, link);
+        self.news.loops = true;
+        if !found.accepted() {
+            return Ok(format!(
+                "Keyframe {new} does not close a loop with {old}: {reason}. It stands in the list; you may close it all the same."
+            ));
+        }
+        match self.resolve() {
+            Ok(moved_m) => Ok(format!(
+                "Keyframe {new} closes a loop with {old}; keyframes moved by up to {moved_m:.2} m."
+            )),
+            Err(problem) => {
+                self.links.remove(0);
+                Err(problem)
+            }
+        }
+    }
+
+    fn register(&mut self, old: usize, new: usize) -> Result<LoopVerification, String> {
+        let Some(slam) = self.run.slam_mut().filter(|_| self.graph.is_none()) else {
+            return Err("A graph has no scans, so nothing can be registered.".to_owned());
+        };
+        if new >= slam.keyframes().len() || old == new {
+            return Err("A loop needs two keyframes: mark one, then go to the other.".to_owned());
+        }
+        let gate = marginal_information(slam.graph_mut(), old, new);
+        let config = slam.config().clone();
+        let mut workspace = LoopWorkspace::new(SlamParts::of(&config).loops);
+        let poses = slam.graph().poses();
+        let candidate = LoopCandidate {
+            node: old,
+            distance_m: position_error_m(&poses[old], &poses[new]),
+            proposal: None,
+        };
+        let view = KeyframeView {
+            poses,
+            keyframes: slam.keyframes(),
+        };
+        let frame = config.information_frame;
+        Ok(verify_loop(
+            view,
+            new,
+            candidate,
+            gate,
+            frame,
+            &config.loops,
+            &mut workspace,
+        ))
+    }
+
+    /// Holds a keyframe where the reader put it.
+    fn pin(&mut self, keyframe: usize, pose: SE2) -> Result<String, String> {
+        self.may_edit()?;
+        if keyframe >= self.fixed.len() {
+            return Err(format!("there is no keyframe {keyframe}"));
+        }
+        let before = self.pins.insert(keyframe, pose);
+        let resolved = self.resolve();
+        if resolved.is_err() {
+            match before {
+                Some(pin) => self.pins.insert(keyframe, pin),
+                None => self.pins.remove(&keyframe),
+            };
+        }
+        resolved.map(|_| String::new())
+    }
+
+    fn unpin(&mut self) -> Result<String, String> {
+        self.may_edit()?;
+        self.pins.clear();
+        let moved_m = self.resolve()?;
+        Ok(format!(
+            "No keyframe is held any more; they moved by up to {moved_m:.2} m."
+        ))
+    }
+
+    fn may_edit(&self) -> Result<(), String> {
+        match self.work {
+            Work::Checking | Work::Idle if !self.fixed.is_empty() => Ok(()),
+            Work::Failed(_) => Err("There is no graph to change.".to_owned()),
+            _ => Err("The graph can be changed once the whole log is read.".to_owned()),
+        }
+    }
+
+    /// Solves the graph of what was decided; says how far a keyframe moved at most, m.
+    fn resolve(&mut self) -> Result<f64, String> {
+        let Some(base) = self.graph() else {
+            return Err("There is no graph to change.".to_owned());
+        };
+        let mut graph = rebuilt(base, &self.fixed, &self.links, &self.pins);
+        let before = base.poses().to_vec();
+        let how = self.run.slam().map_or(PLAIN, |slam| Solving {
+            iterations: slam.config().optimizer_iterations,
+            tolerance: slam.config().optimizer_tolerance,
+            huber: slam.config().refinement.huber,
+        });
+        if !solve(&mut graph, &how) {
+            return Err("The graph cannot be solved so; it stays as it was.".to_owned());
+        }
+        let moved = before.iter().zip(graph.poses());
+        let moved_m = moved.map(|(old, new)| position_error_m(old, new));
+        let moved_m = moved_m.fold(0.0, f64::max);
+        match self.run.slam_mut() {
+            Some(slam) if self.graph.is_none() => {
+                *slam.graph_mut() = graph;
+                let in_graph = self.links.iter().filter(|link| link.verdict.is_in_graph());
+                let found = in_graph.filter_map(|link| link.found);
+                let told = found.map(|found| LoopVerification {
+                    rejection: None,
+                    ..found
+                });
+                self.run.set_links(told.collect());
+            }
+            _ => self.graph = Some(graph),
+        }
+        self.changed();
+        Ok(moved_m)
+    }
+
+    /// Takes a reference, and compares with it from now on.
+    ///
+    /// # Errors
+    /// One sentence where it is none.
+    pub fn take_reference(&mut self, bytes: &[u8], name: &str) -> Result<(), String> {
+        let reference = Reference::read(bytes, name)?;
+        self.reference = Some((name.to_owned(), reference));
+        self.news.grade = true;
+        Ok(())
+    }
+
+    /// The errors against the reference, where there is one.
+    pub(super) fn grade_updates(&self) -> Vec<Update> {
+        let Some((name, reference)) = &self.reference else {
+            return Vec::new();
+        };
+        match reference.grade(&self.trajectory(), &self.keyframes(), name) {
+            Ok((grade, errors)) => vec![grade, Update::numbers("errors", errors)],
+            Err(problem) => vec![Update::text("answer", problem)],
+        }
+    }
+
+    /// The bytes of one of [`NAMES`].
+    ///
+    /// # Errors
+    /// One sentence where there is nothing to write.
+    pub fn file(&mut self, name: &str) -> Result<Vec<u8>, String> {
+        let Some(graph) = self.graph() else {
+            return Err("There is nothing to save yet.".to_owned());
+        };
+        match name {
+            "graph.g2o" => Ok(files::graph_file(graph)),
+            "trajectory.tum" => files::trajectory_file(&self.trajectory()),
+            "report.html" => Ok(self.report().into_bytes()),
+            _ if !NAMES.contains(&name) => Err(format!("there is no file {name} to save")),
+            _ if !self.has_scans => {
+                Err("A graph has no scans, so there is no map of it.".to_owned())
+            }
+            _ => {
+                let lines = self.recorder.map_lines(&self.run);
+                let map = map_of(&lines, MAP_CELL_M).map_err(|problem| problem.to_string())?;
+                files::map_file(&map, name)
+            }
+        }
+    }
+
+    fn report(&mut self) -> String {
+        let quality = self.run.quality();
+        let lines = self.recorder.map_lines(&self.run);
+        let map = map_of(&lines, REPORT_CELL_M).ok();
+        let mut remarks = self.remarks.clone();
+        remarks.extend(self.grade_updates().into_iter().map(|update| update.text));
+        remarks.retain(|remark| !remark.is_empty());
+        Report {
+            name: &self.name,
+            scans: self.run.scans(),
+            quality: &quality,
+            chi2_over_time: self.recorder.chi2_over_time(),
+            map: map.as_ref(),
+            remarks: &remarks,
+        }
+        .html()
+    }
+}

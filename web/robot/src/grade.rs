@@ -1,0 +1,156 @@
+//! A trajectory against a reference that the reader gives: relations, or the truth.
+//!
+//! The update `grade` has ten numbers: 1 for relations or 2 for the truth, how many were compared, then
+//! mean, standard deviation, median and 95 % of the translation's error (m), and the same of the
+//! rotation's (degrees). Against the truth the trajectory is moved onto it first, and the first number of
+//! each four is the root of the mean square.
+
+use pr_geom::math;
+use robot_io::evaluate::{Alignment, Spread, onto_truth, relation_errors, truth_errors};
+use robot_io::relations::{Relation, read_relations};
+use robot_io::trajectory::{StampedPose, Trajectory};
+
+use crate::update::Update;
+
+/// A true pose may lie so far in time from a keyframe, s.
+const SLACK_S: f64 = 0.1;
+/// How far a quaternion's length may be from 1 to be one.
+const UNIT_SLACK: f64 = 1e-3;
+
+/// What a trajectory is compared with.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reference {
+    /// Relations between two times.
+    Relations(Vec<Relation>),
+    /// True poses.
+    Truth(Trajectory),
+}
+
+impl Reference {
+    /// Reads either; the name decides, and else whether the last four numbers are a quaternion.
+    ///
+    /// # Errors
+    /// One sentence with the line that is not what it has to be.
+    pub fn read(bytes: &[u8], name: &str) -> Result<Self, String> {
+        let ends = |end: &str| name.to_ascii_lowercase().ends_with(end);
+        let is_truth = ends(".tum") || (!ends(".relations") && has_quaternions(bytes));
+        let read = if is_truth {
+            Trajectory::read_tum(bytes, name).map(Self::Truth)
+        } else {
+            read_relations(bytes, name).map(Self::Relations)
+        };
+        read.map_err(|problem| problem.to_string())
+    }
+
+    /// The errors in numbers and words, and the error of each keyframe, m.
+    ///
+    /// # Errors
+    /// One sentence where the two have no times in common.
+    pub fn grade(
+        &self,
+        trajectory: &Trajectory,
+        keyframes: &Trajectory,
+        name: &str,
+    ) -> Result<(Update, Vec<f64>), String> {
+        match self {
+            Self::Relations(relations) => {
+                let report = relation_errors(trajectory, relations).report();
+                if report.n == 0 {
+                    return Err(format!(
+                        "{name}: none of its {} relations lies within the times of the trajectory; give both the same clock",
+                        relations.len()
+                    ));
+                }
+                let words = format!(
+                    "{} relations: {:.3} m on average, half below {:.3} m; {:.2}° on average",
+                    report.n, report.trans.mean, report.trans.median, report.rot_deg.mean
+                );
+                let numbers = [numbers_of(&report.trans), numbers_of(&report.rot_deg)];
+                let errors = errors_by_relation(trajectory, relations, keyframes);
+                Ok((update(1.0, report.n, numbers.as_flattened(), words), errors))
+            }
+            Self::Truth(truth) => {
+                let said = |problem: robot_io::evaluate::TruthProblem| format!("{name}: {problem}");
+                let report = truth_errors(trajectory, truth, Alignment::Se2).map_err(said)?;
+                let onto = onto_truth(trajectory, truth, Alignment::Se2).map_err(said)?;
+                let (ate, turn) = (report.ate, report.rpe.rot_deg);
+                let words = format!(
+                    "{} poses: {:.3} m rms off the truth, {:.3} m at most",
+                    report.n, ate.rmse, ate.max
+                );
+                let numbers = [
+                    ate.rmse,
+                    ate.std,
+                    ate.median,
+                    ate.max,
+                    turn.rmse,
+                    turn.std,
+                    turn.median,
+                    turn.max,
+                ];
+                let off = |pose: &StampedPose| {
+                    let truth = truth.at(pose.stamp_s, SLACK_S)?;
+                    let moved = onto * pose.pose;
+                    Some(math::norm2(moved.x() - truth.x(), moved.y() - truth.y()))
+                };
+                let errors = keyframes.poses().iter();
+                let errors = errors.map(|pose| off(pose).unwrap_or(f64::NAN)).collect();
+                Ok((update(2.0, report.n, &numbers, words), errors))
+            }
+        }
+    }
+}
+
+fn update(kind: f64, count: usize, numbers: &[f64], words: String) -> Update {
+    let mut all = vec![kind, count as f64];
+    all.extend_from_slice(numbers);
+    Update {
+        text: words,
+        ..Update::numbers("grade", all)
+    }
+}
+
+fn numbers_of(spread: &Spread) -> [f64; 4] {
+    [spread.mean, spread.std, spread.median, spread.p95]
+}
+
+/// The largest error of the relations that end at a keyframe or at the scans after it.
+fn errors_by_relation(
+    trajectory: &Trajectory,
+    relations: &[Relation],
+    keyframes: &Trajectory,
+) -> Vec<f64> {
+    let mut errors = vec![f64::NAN; keyframes.poses().len()];
+    for relation in relations {
+        let one = relation_errors(trajectory, core::slice::from_ref(relation));
+        let Some(&error_m) = one.translations_m.first() else {
+            continue;
+        };
+        let poses = keyframes.poses();
+        let after = poses.partition_point(|pose| pose.stamp_s <= relation.second_s);
+        if let Some(slot) = errors.get_mut(after.saturating_sub(1)) {
+            // A NaN gives way to any number.
+            *slot = slot.max(error_m);
+        }
+    }
+    errors
+}
+
+/// Whether the last four numbers of the first line have the length 1.
+fn has_quaternions(bytes: &[u8]) -> bool {
+    let lines = bytes.split(|&byte| byte == b'\n').take(1000);
+    let mut lines = lines.filter_map(|line| core::str::from_utf8(line).ok());
+    let Some(line) = lines.find(|line| !line.trim().is_empty() && !line.trim().starts_with('#'))
+    else {
+        return false;
+    };
+    let numbers: Vec<f64> = line
+        .split_ascii_whitespace()
+        .filter_map(|word| word.parse().ok())
+        .collect();
+    let Some(last) = numbers.last_chunk::<4>().filter(|_| numbers.len() == 8) else {
+        return false;
+    };
+    let square: f64 = last.iter().map(|part| part * part).sum();
+    (math::sqrt(square) - 1.0).abs() < UNIT_SLACK
+}

@@ -1,0 +1,133 @@
+//! A pose graph from a file: g2o, TORO or JSON, solved step by step.
+
+use ch16_slam2d::graph::{EdgeKind, PoseGraph};
+use pr_optim::g2o::G2oFile;
+use pr_optim::{Method, Optimizer, Problem, Settings, StepReport};
+use robot_io::graph_file::GraphFile;
+
+use crate::links::{Link, Verdict};
+
+/// Larger graphs as text are not read, bytes.
+pub const MOST_BYTES: u64 = 1 << 28;
+/// Of three degrees of freedom, 999 of 1,000 lie below.
+const GATE_CHI2: f64 = 16.266;
+/// First damping of the solver, relative to the diagonal.
+const DAMPING: f64 = 1e-4;
+
+/// A graph under way to its minimum.
+pub struct GraphSolving {
+    problem: Problem,
+    optimizer: Optimizer,
+    steps: Vec<StepReport>,
+}
+
+impl GraphSolving {
+    /// Reads a graph; `name` is what errors call it.
+    ///
+    /// # Errors
+    /// One sentence with the line that is not what it has to be.
+    pub fn read(bytes: &[u8], name: &str) -> Result<Self, String> {
+        let graph = GraphFile::read(bytes, name).map_err(|problem| problem.to_string())?;
+        if graph.nodes.is_empty() {
+            return Err(format!(
+                "{name} holds no pose; a graph has lines of VERTEX_SE2 and EDGE_SE2"
+            ));
+        }
+        let mut problem = G2oFile::parse(graph.to_g2o())
+            .map_err(|problem| format!("{name}: {problem}"))?
+            .problem;
+        if !problem.fixed().contains(&true) {
+            problem = with_first_fixed(&problem);
+        }
+        let mut optimizer = Optimizer::new(Settings {
+            method: Method::LevenbergMarquardt {
+                initial_damping: DAMPING,
+            },
+            ..Settings::default()
+        });
+        optimizer.restart();
+        Ok(Self {
+            problem,
+            optimizer,
+            steps: Vec::new(),
+        })
+    }
+
+    /// One step; false once it has ended.
+    pub fn step(&mut self) -> bool {
+        self.optimizer
+            .advance(&mut self.problem, &mut self.steps)
+            .is_none()
+    }
+
+    /// Steps so far.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// The graph, as one that can be edited: edges between neighbours are odometry, all else loops.
+    #[must_use]
+    pub fn graph(&self) -> PoseGraph {
+        let mut graph = PoseGraph::new();
+        let nodes = self.problem.poses().iter().zip(self.problem.fixed());
+        for (pose, &fixed) in nodes {
+            if fixed {
+                graph.add_fixed_node(*pose);
+            } else {
+                graph.add_node(*pose);
+            }
+        }
+        for factor in self.problem.factors() {
+            let kind = match factor.from.abs_diff(factor.to) {
+                1 => EdgeKind::Odometry,
+                _ => EdgeKind::Loop,
+            };
+            graph.add_edge(
+                factor.from,
+                factor.to,
+                factor.measurement,
+                factor.information,
+                kind,
+            );
+        }
+        graph
+    }
+}
+
+/// The same problem with its first pose held.
+fn with_first_fixed(problem: &Problem) -> Problem {
+    let mut held = Problem::new();
+    for (node, pose) in problem.poses().iter().enumerate() {
+        if node == 0 {
+            held.add_fixed_pose(*pose);
+        } else {
+            held.add_pose(*pose);
+        }
+    }
+    for factor in problem.factors() {
+        held.add_factor(*factor);
+    }
+    held
+}
+
+/// The loops of a graph.
+#[must_use]
+pub fn loops_of(graph: &PoseGraph) -> Vec<Link> {
+    let loops = graph
+        .edges()
+        .filter(|view| view.edge.kind == EdgeKind::Loop);
+    loops
+        .map(|view| Link {
+            old: view.from.index(),
+            new: view.to.index(),
+            measurement: view.edge.measurement,
+            information: view.edge.information,
+            found: None,
+            chi2: Some(graph.edge_chi2(view.id)),
+            gate_chi2: GATE_CHI2,
+            reason: String::new(),
+            verdict: Verdict::Closed,
+        })
+        .collect()
+}

@@ -1,0 +1,113 @@
+//! The map as a picture, painted a few scans at a time, and anew where the graph has moved.
+
+use pr_geom::{SE2, math};
+use robot_io::log::LogFrame;
+use robot_io::map_image::MapBuilder;
+
+use crate::update::Update;
+
+/// Side of the finest cells, m.
+const FINEST_M: f64 = 0.05;
+/// A picture of more cells is painted with coarser ones.
+const MOST_CELLS: usize = 1_000_000;
+/// A scan that stands farther off than this share of a cell is painted anew.
+const MOVED_CELLS: f64 = 0.5;
+/// The same for its heading, rad.
+const TURNED_RAD: f64 = 0.01;
+/// So many scans are painted at once.
+const SCANS_AT_ONCE: usize = 8;
+
+/// The picture.
+#[derive(Clone, Debug)]
+pub struct MapPicture {
+    cell_m: f64,
+    map: MapBuilder,
+    /// Where each scan stood when it was painted.
+    painted: Vec<SE2>,
+    /// Something changed since the last [`MapPicture::update`].
+    is_new: bool,
+}
+
+impl Default for MapPicture {
+    fn default() -> Self {
+        Self {
+            cell_m: FINEST_M,
+            map: MapBuilder::new(FINEST_M),
+            painted: Vec::new(),
+            is_new: false,
+        }
+    }
+}
+
+impl MapPicture {
+    /// Begins anew where poses have moved since they were painted.
+    pub fn follow(&mut self, poses: &[SE2]) {
+        let has_moved = self.painted.iter().zip(poses).any(|(old, new)| {
+            let shift_m = math::norm2(old.x() - new.x(), old.y() - new.y());
+            shift_m > MOVED_CELLS * self.cell_m || old.between(new).theta().abs() > TURNED_RAD
+        });
+        if has_moved {
+            self.begin(self.cell_m);
+        }
+    }
+
+    fn begin(&mut self, cell_m: f64) {
+        self.cell_m = cell_m;
+        self.map = MapBuilder::new(cell_m);
+        self.painted.clear();
+    }
+
+    /// Paints the next scans; false where all are painted.
+    pub fn step(&mut self, frames: &[LogFrame], poses: &[SE2]) -> bool {
+        let next = self.painted.len();
+        let todo = frames.iter().zip(poses).skip(next).take(SCANS_AT_ONCE);
+        if todo.len() == 0 {
+            return false;
+        }
+        for (frame, pose) in todo {
+            if self.map.add(pose, &frame.scan).is_err() {
+                self.begin(2.0 * self.cell_m);
+                return true;
+            }
+            self.painted.push(*pose);
+        }
+        self.is_new = true;
+        true
+    }
+
+    /// The picture, where it is whole and another one than before.
+    pub fn update(&mut self, scans: usize) -> Option<Update> {
+        if !self.is_new || self.painted.len() < scans {
+            return None;
+        }
+        let map = self.map.finish().ok()?;
+        if map.width * map.height > MOST_CELLS {
+            self.begin(2.0 * self.cell_m);
+            return None;
+        }
+        self.is_new = false;
+        let rows = map.log_odds.chunks(map.width).rev();
+        Some(Update {
+            bytes: rows.flatten().map(|&log_odds| shade(log_odds)).collect(),
+            ..Update::numbers(
+                "map",
+                vec![
+                    map.width as f64,
+                    map.height as f64,
+                    map.origin_m[0],
+                    map.origin_m[1],
+                    map.cell_m,
+                ],
+            )
+        })
+    }
+}
+
+/// 0 where nothing is known, else 1 for free to 255 for occupied.
+fn shade(log_odds: f64) -> u8 {
+    if log_odds == 0.0 {
+        return 0;
+    }
+    let probability = 1.0 / (1.0 + math::exp(-log_odds));
+    1 + (254.0 * probability).round() as u8
+}

@@ -1,0 +1,236 @@
+//! The sample through the engine, and what a reader asks of it.
+
+use std::sync::OnceLock;
+
+use slam_robot::engine::Engine;
+use slam_robot::sample;
+use slam_robot::update::{Stage, Update};
+
+fn files() -> &'static (Vec<u8>, Vec<u8>) {
+    static FILES: OnceLock<(Vec<u8>, Vec<u8>)> = OnceLock::new();
+    FILES.get_or_init(sample::ring)
+}
+
+fn open<'a>(bytes: &'a [u8], name: &str) -> Result<Engine<'a>, String> {
+    Engine::open(bytes, name, bytes.len() as u64)
+}
+
+fn finished(bytes: &[u8]) -> Engine<'_> {
+    let mut engine = open(bytes, "ring.log").unwrap();
+    while engine.step() {}
+    engine
+}
+
+fn of<'u>(updates: &'u [Update], kind: &str) -> &'u Update {
+    updates
+        .iter()
+        .find(|update| update.kind == kind)
+        .unwrap_or_else(|| panic!("no update of {kind}"))
+}
+
+#[test]
+fn the_sample_becomes_a_map_with_loops_and_its_grade() {
+    let (log, truth) = files();
+    let mut engine = finished(log);
+    assert_eq!(engine.stage(), Stage::Done);
+    engine.take_reference(truth, "ring-truth.tum").unwrap();
+    let updates = engine.updates();
+    let stage = &of(&updates, "stage").numbers;
+    assert_eq!((stage[0], stage[1]), (5.0, 1.0));
+    assert!(stage[2] > 100.0, "scans: {}", stage[2]);
+    let keyframes = of(&updates, "keyframes").numbers.len() / 6;
+    let map = of(&updates, "map");
+    assert_eq!(map.numbers[0] * map.numbers[1], map.bytes.len() as f64);
+    assert!(map.bytes.contains(&0) && map.bytes.iter().any(|&cell| cell > 240));
+    let loops = &of(&updates, "loops").numbers;
+    assert!(loops.chunks(10).any(|found| found[8] == 0.0), "none closed");
+    let grade = of(&updates, "grade");
+    // The sensor sees to the centimetre and the ring is 40 m long: off by more would be lost.
+    assert!(grade.numbers[2] < 0.1, "{}", grade.text);
+    assert_eq!(of(&updates, "errors").numbers.len(), keyframes);
+}
+
+#[test]
+fn a_loop_that_is_refused_leaves_the_graph_and_comes_back() {
+    let (log, _) = files();
+    let mut engine = finished(log);
+    let before = engine.updates();
+    let edges = |engine: &mut Engine<'_>| {
+        let graph = String::from_utf8(engine.file("graph.g2o").unwrap()).unwrap();
+        graph.matches("EDGE_SE2").count()
+    };
+    let all = edges(&mut engine);
+    assert_eq!(
+        of(&before, "loops").numbers[8],
+        0.0,
+        "closed ones come first"
+    );
+    engine.order("turn 0");
+    while engine.step() {}
+    let after = engine.updates();
+    assert!(of(&after, "answer").text.contains("is out of the graph"));
+    assert_eq!(of(&after, "loops").numbers[8], 2.0);
+    assert_eq!(edges(&mut engine), all - 1);
+    engine.order("turn 0");
+    while engine.step() {}
+    assert_eq!(edges(&mut engine), all);
+    let back = engine.updates();
+    let [old, new] = [&before, &back].map(|updates| &of(updates, "keyframes").numbers);
+    // 1e-3 m: the solver ends where a step is small, from another start.
+    let off = |k: &usize| (old[*k] - new[*k]).abs() > 1e-3;
+    let places = (0..old.len()).filter(|k| [1, 2].contains(&(k % 6)));
+    assert_eq!(places.filter(off).count(), 0);
+}
+
+#[test]
+fn a_keyframe_that_is_dragged_stays_there_until_it_is_let_go() {
+    let (log, _) = files();
+    let mut engine = finished(log);
+    let before = engine.updates();
+    let keyframes = &of(&before, "keyframes").numbers;
+    let [x, y, theta] = [1, 2, 3].map(|at| keyframes[6 * 20 + at]);
+    engine.order(&format!("pin 20 {} {y} {theta}", x + 0.5));
+    let during = engine.updates();
+    let moved = &of(&during, "keyframes").numbers;
+    assert_eq!(moved[6 * 20 + 1], x + 0.5);
+    assert!(
+        moved[6 * 19 + 1] > keyframes[6 * 19 + 1] + 0.1,
+        "its neighbours follow"
+    );
+    engine.order("unpin");
+    while engine.step() {}
+    let back = engine.updates();
+    // 0.01 m: back at the same minimum, within the solver's last step.
+    assert!((of(&back, "keyframes").numbers[6 * 20 + 1] - x).abs() < 0.01);
+}
+
+#[test]
+fn a_loop_is_added_where_two_scans_fit_and_told_why_not_where_they_do_not() {
+    let (log, _) = files();
+    let mut engine = finished(log);
+    let updates = engine.updates();
+    let keyframes = of(&updates, "keyframes").numbers.len() / 6;
+    let loops = &of(&updates, "loops").numbers;
+    let (new, old) = (loops[0], loops[1]);
+    engine.order(&format!("add {new} {old}"));
+    let said = of(&engine.updates(), "answer").text.clone();
+    assert!(said.contains("closes a loop with"), "{said}");
+    // Opposite sides of the ring see different corridors.
+    engine.order(&format!("add 0 {}", keyframes / 4));
+    let said = of(&engine.updates(), "answer").text.clone();
+    assert!(said.contains("does not close a loop"), "{said}");
+    engine.order("add 3 3");
+    let said = of(&engine.updates(), "answer").text.clone();
+    assert!(said.contains("two keyframes"), "{said}");
+}
+
+#[test]
+fn a_reading_that_is_stopped_keeps_what_was_read() {
+    let (log, _) = files();
+    let mut engine = open(log, "ring.log").unwrap();
+    for _ in 0..60 {
+        engine.step();
+    }
+    engine.order("turn 0");
+    engine.order("cancel");
+    while engine.step() {}
+    let updates = engine.updates();
+    assert_eq!(engine.stage(), Stage::Done);
+    assert_eq!(of(&updates, "stage").numbers[2], 60.0);
+    let said: Vec<_> = updates
+        .iter()
+        .filter(|update| update.kind == "answer")
+        .collect();
+    assert!(said[0].text.contains("once the whole log is read"));
+    assert_eq!(said[1].text, "Stopped after 60 scans.");
+    assert!(engine.file("map.pgm").unwrap().starts_with(b"P5"));
+}
+
+#[test]
+fn every_file_that_can_be_saved_is_what_its_name_says() {
+    let (log, _) = files();
+    let mut engine = finished(log);
+    for (name, start) in [
+        ("map.pgm", "P5\n"),
+        ("map.png", "\u{fffd}PNG"),
+        ("map.yaml", "image: map.pgm\n"),
+        ("trajectory.tum", "0 "),
+        ("graph.g2o", "VERTEX_SE2 0 "),
+        ("report.html", "<!doctype html>"),
+    ] {
+        let bytes = engine.file(name).unwrap();
+        let text = String::from_utf8_lossy(&bytes);
+        assert!(text.starts_with(start), "{name}: {:.20}", text);
+    }
+    assert!(engine.file("../x").is_err());
+    assert!(
+        slam_robot::files::NAMES
+            .iter()
+            .all(|name| engine.file(name).is_ok())
+    );
+}
+
+#[test]
+fn a_graph_is_solved_and_edited_without_scans() {
+    let (log, _) = files();
+    let mut source = finished(log);
+    let graph = source.file("graph.g2o").unwrap();
+    let mut engine = open(&graph, "graph.g2o").unwrap();
+    while engine.step() {}
+    let updates = engine.updates();
+    assert_eq!(engine.stage(), Stage::Done);
+    assert_eq!(of(&updates, "file").numbers[1], 0.0);
+    assert!(!of(&updates, "loops").numbers.is_empty());
+    engine.order("turn 0");
+    while engine.step() {}
+    assert!(
+        of(&engine.updates(), "answer")
+            .text
+            .contains("out of the graph")
+    );
+    engine.order("add 3 30");
+    assert!(of(&engine.updates(), "answer").text.contains("no scans"));
+    assert!(engine.file("map.png").unwrap_err().contains("no map"));
+    assert!(engine.file("graph.g2o").unwrap().starts_with(b"VERTEX_SE2"));
+}
+
+#[test]
+fn files_that_are_no_logs_are_answered_in_one_sentence() {
+    let (log, _) = files();
+    let half = &log[..log.len() / 2];
+    let mut engine = open(half, "half.log").unwrap();
+    while engine.step() {}
+    assert_eq!(engine.stage(), Stage::Done);
+    let said = of(&engine.updates(), "remarks").text.clone();
+    assert!(said.contains("half written"), "{said}");
+
+    assert_eq!(
+        open(b"", "x.log").err().unwrap(),
+        "x.log is empty; give a recorded log"
+    );
+    assert!(
+        open(b"\x1f\x8b\x08", "x.gz")
+            .err()
+            .unwrap()
+            .contains("gunzip")
+    );
+    assert!(
+        open(b"VERTEX_SE2 0 0\n", "x.g2o")
+            .err()
+            .unwrap()
+            .contains("line 1")
+    );
+    for bytes in [
+        &b"hello\nworld\n"[..],
+        &[0x89, 0x50, 0x4e, 0x47, 0, 1, 2, 3],
+    ] {
+        let mut engine = open(bytes, "photo.png").unwrap();
+        while engine.step() {}
+        assert_eq!(engine.stage(), Stage::Failed);
+        let said = of(&engine.updates(), "stage").text.clone();
+        assert!(said.starts_with("photo.png is no CARMEN log"), "{said}");
+        engine.order("turn 0");
+        assert!(of(&engine.updates(), "answer").text.contains("no graph"));
+        assert!(engine.file("graph.g2o").is_err());
+    }
+}

@@ -1,0 +1,3 @@
+//! What the worker promises, without any browser.
+
+mod engine;

@@ -1,0 +1,279 @@
+// The host of a widget that shows a reader's own log: it keeps the file and the worker that maps it, and
+// carries orders one way and what the worker tells the other. The widget's picture may come and go
+// meanwhile; what was told last is told again to the next one.
+
+import type { Widget } from '../../pkg/glue.js';
+import { saveBlob } from '../export';
+import { LoadError, ModuleFile } from '../module';
+import { told, type Delivery, type Order, type Report } from './protocol';
+
+/** Set by the build: the program that maps logs, its worker, and the sample with its truth. */
+declare const ROBOT_WASM_FILE: string;
+declare const ROBOT_WORKER_FILE: string;
+declare const SAMPLE_FILES: readonly string[];
+
+/** What is a reference and no log, by the ends of names. */
+const REFERENCES = ['.relations', '.tum'];
+/** What the file picker offers first. */
+const LOGS = '.log,.clf,.mcap,.bag,.g2o,.graph,.toro,.jsonl';
+/** Larger references are none, bytes. */
+const MOST_REFERENCE = 1 << 28;
+/** So often a file is begun again whose mapping broke. */
+const MOST_CRASHES = 1;
+
+const NO_WORKER =
+  'A log is read by a worker beside the page, and this page may not start one: its frame or its security ' +
+  'policy forbids it. Open the widget on a page of its own.';
+
+const program = new ModuleFile(ROBOT_WASM_FILE);
+
+export interface DeskHost {
+  /** Hands it to the widget, where one runs. */
+  deliver(deliveries: readonly Delivery[]): void;
+  /** Opens the system's dialog for a file. */
+  choose(accept: string, chosen: (file: File) => void): void;
+}
+
+export class Desk {
+  readonly #host: DeskHost;
+  /** The last of each kind, in the order in which they first came. */
+  readonly #latest = new Map<string, Delivery>();
+  #worker: Worker | undefined;
+  #file: File | undefined;
+  #reference: File | undefined;
+  /** A reference that came before its log. */
+  #early: File | undefined;
+  /** What was ordered before the worker was there. */
+  #waiting: Order[] = [];
+  /** Whether a log was asked for and not closed. */
+  #isOpen = false;
+  #crashes = 0;
+  /** What the reader changed of the graph; done again after a crash. */
+  #edits: string[] = [];
+  #owesEdits = false;
+  /** Counts the files: what comes late of an older one is dropped. */
+  #turn = 0;
+
+  constructor(host: DeskHost) {
+    this.#host = host;
+  }
+
+  /** Tells a new picture all that is known. */
+  restore(widget: Widget): void {
+    for (const delivery of this.#latest.values()) hand(widget, delivery);
+  }
+
+  /** Does what the widget asks. */
+  order(order: string): void {
+    const [name = '', ...words] = order.split(' ');
+    switch (name) {
+      case 'open':
+        this.#host.choose(LOGS, (file) => this.open(file));
+        break;
+      case 'reference':
+        this.#host.choose(REFERENCES.join(), (file) => void this.#grade(file));
+        break;
+      case 'sample':
+        void this.#openSample();
+        break;
+      case 'close':
+        this.#renew();
+        this.#isOpen = false;
+        this.#early = undefined;
+        this.#latest.clear();
+        break;
+      case 'save':
+        this.#send({ save: words.join(' ') });
+        break;
+      default:
+        if (['turn', 'add', 'pin', 'unpin'].includes(name)) this.#keepEdit(order);
+        this.#send({ order });
+    }
+  }
+
+  /** Takes files that were dropped or handed over: a log, a reference, or both. */
+  take(files: readonly File[]): void {
+    const isReference = (file: File): boolean => REFERENCES.some((end) => file.name.toLowerCase().endsWith(end));
+    const log = files.find((file) => !isReference(file));
+    const reference = files.find(isReference);
+    if (log !== undefined) this.open(log, reference);
+    else if (reference !== undefined) void this.#grade(reference);
+  }
+
+  /** Maps a file from its start; what was mapped before is gone. */
+  open(file: File, reference?: File): void {
+    this.#renew();
+    this.#setOut(file, reference);
+  }
+
+  /** Gives worker and memory back. */
+  close(): void {
+    this.#turn += 1;
+    this.#worker?.terminate();
+    this.#worker = undefined;
+    this.#waiting = [];
+  }
+
+  /** Breaks the program on purpose, for tests of the recovery. */
+  crashForTest(): void {
+    this.#send({ order: 'crash-for-test' });
+  }
+
+  /** Another file was asked for, or none: what is ordered from now on is meant for it. */
+  #renew(): void {
+    this.close();
+    this.#isOpen = true;
+    this.#crashes = 0;
+    this.#edits = [];
+  }
+
+  #setOut(file: File, reference: File | undefined): void {
+    this.#file = file;
+    this.#reference = reference ?? this.#early;
+    this.#early = undefined;
+    void this.#begin(file);
+  }
+
+  async #begin(file: File): Promise<void> {
+    const turn = this.#turn;
+    this.#owesEdits = this.#edits.length > 0;
+    this.#latest.clear();
+    this.#tell([told('opening', file.name)]);
+    try {
+      const module = await program.load(() => {});
+      if (turn !== this.#turn) return;
+      const worker = startWorker();
+      worker.addEventListener('message', ({ data }: MessageEvent<Report>) => {
+        if (turn === this.#turn) this.#hear(data);
+      });
+      worker.addEventListener('error', (event) => {
+        event.preventDefault();
+        if (turn === this.#turn) this.#fail(NO_WORKER);
+      });
+      this.#worker = worker;
+      this.#send({ module, file });
+      for (const order of this.#waiting.splice(0)) this.#send(order);
+      if (this.#reference !== undefined) void this.#sendReference(this.#reference);
+    } catch (error) {
+      if (turn !== this.#turn) return;
+      const why = error instanceof LoadError ? `The log cannot be mapped: ${error.message}.` : NO_WORKER;
+      this.#fail(why);
+    }
+  }
+
+  async #openSample(): Promise<void> {
+    this.#renew();
+    const turn = this.#turn;
+    try {
+      const [log, truth] = await Promise.all(SAMPLE_FILES.map(fetchFile));
+      if (log !== undefined && turn === this.#turn) this.#setOut(log, truth);
+    } catch {
+      if (turn === this.#turn) this.#fail('The sample could not be fetched; open a log of your own, or try again.');
+    }
+  }
+
+  #hear(report: Report): void {
+    if ('deliveries' in report) {
+      this.#tell(report.deliveries);
+      this.#doEditsAgain(report.deliveries);
+    } else if ('saved' in report) {
+      saveBlob(new Blob([report.bytes as Uint8Array<ArrayBuffer>]), report.saved);
+    } else if ('failed' in report) {
+      this.#fail(report.failed);
+    } else {
+      this.#crashed();
+    }
+  }
+
+  #crashed(): void {
+    this.#crashes += 1;
+    if (this.#crashes <= MOST_CRASHES && this.#file !== undefined) {
+      this.close();
+      void this.#begin(this.#file);
+      this.#tell([told('answer', 'The mapping stopped by an error in its program and was begun again.')]);
+      return;
+    }
+    const megabytes = Math.ceil((this.#file?.size ?? 0) / 1e6);
+    this.#fail(
+      `The program that maps the log stopped again (the file has ${megabytes} MB); ` +
+        'it may need more memory than the browser gives. Try slam2d run on the command line.',
+    );
+  }
+
+  #fail(sentence: string): void {
+    this.close();
+    this.#isOpen = false;
+    this.#tell([told('failed', sentence)]);
+  }
+
+  /** Once the map stands again, the reader's changes are made again. */
+  #doEditsAgain(deliveries: readonly Delivery[]): void {
+    const DONE = 5;
+    const isDone = deliveries.some(({ kind, numbers }) => kind === 'stage' && numbers[0] === DONE);
+    if (!this.#owesEdits || !isDone) return;
+    this.#owesEdits = false;
+    for (const order of this.#edits) this.#send({ order });
+  }
+
+  /** A keyframe that is dragged needs its last place alone. */
+  #keepEdit(order: string): void {
+    const pinned = (text: string | undefined): string => /^pin \d+ /.exec(text ?? '')?.[0] ?? '';
+    if (pinned(order) !== '' && pinned(order) === pinned(this.#edits.at(-1))) this.#edits.pop();
+    this.#edits.push(order);
+  }
+
+  async #grade(file: File): Promise<void> {
+    if (!this.#isOpen) {
+      this.#early = file;
+      this.#tell([told('answer', `${file.name} waits for a log to be opened.`)]);
+      return;
+    }
+    this.#reference = file;
+    // Before the worker is there it is not needed: it is sent as that starts.
+    if (this.#worker !== undefined) await this.#sendReference(file);
+  }
+
+  async #sendReference(file: File): Promise<void> {
+    const turn = this.#turn;
+    if (file.size > MOST_REFERENCE) {
+      this.#tell([told('answer', `${file.name} is larger than a reference of 256 MB.`)]);
+      return;
+    }
+    try {
+      const bytes = new Uint8Array(await file.arrayBuffer());
+      if (turn === this.#turn) this.#send({ reference: bytes, name: file.name });
+    } catch {
+      this.#tell([told('answer', `${file.name} cannot be read any more; it may have moved or changed.`)]);
+    }
+  }
+
+  #send(order: Order): void {
+    if (!this.#isOpen) this.#tell([told('answer', 'Open a log first.')]);
+    else if (this.#worker === undefined) this.#waiting.push(order);
+    else this.#worker.postMessage(order);
+  }
+
+  #tell(deliveries: readonly Delivery[]): void {
+    for (const delivery of deliveries) this.#latest.set(delivery.kind, delivery);
+    this.#host.deliver(deliveries);
+  }
+}
+
+/** Hands a delivery to a widget's model. */
+export function hand(widget: Widget, { kind, text, numbers, bytes }: Delivery): void {
+  widget.deliver(kind, text, numbers, bytes);
+}
+
+/** A page from elsewhere may not start our script as a worker, but one of its own that takes ours in. */
+function startWorker(): Worker {
+  const url = new URL(ROBOT_WORKER_FILE, import.meta.url);
+  if (url.origin === location.origin) return new Worker(url, { type: 'module' });
+  const script = URL.createObjectURL(new Blob([`import ${JSON.stringify(url.href)};`], { type: 'text/javascript' }));
+  return new Worker(script, { type: 'module' });
+}
+
+async function fetchFile(name: string): Promise<File> {
+  const response = await fetch(new URL(name, import.meta.url));
+  if (!response.ok) throw new LoadError(`${name} could not be fetched`);
+  return new File([await response.blob()], name.replace(/^.*\//, ''));
+}

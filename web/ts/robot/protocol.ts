@@ -1,0 +1,33 @@
+// What the widget's host and the worker that maps a log say to each other.
+
+/** One part of what the worker knows, as the widget's model takes it. */
+export interface Delivery {
+  kind: string;
+  text: string;
+  numbers: Float64Array;
+  bytes: Uint8Array;
+}
+
+/** To the worker. */
+export type Order =
+  /** Comes first: the program, and the log. */
+  | { module: WebAssembly.Module; file: File }
+  | { order: string }
+  | { reference: Uint8Array; name: string }
+  | { save: string };
+
+/** From the worker. */
+export type Report =
+  | { deliveries: Delivery[] }
+  | { saved: string; bytes: Uint8Array }
+  /** The file cannot be used, in one sentence. */
+  | { failed: string }
+  /** The program broke. */
+  | { crashed: string };
+
+const NONE = new Uint8Array();
+
+/** A delivery of words alone, or of words and numbers. */
+export function told(kind: string, text: string, numbers: number[] = []): Delivery {
+  return { kind, text, numbers: Float64Array.from(numbers), bytes: NONE };
+}

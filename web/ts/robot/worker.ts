@@ -1,0 +1,140 @@
+// Maps a log beside the page: the program and the file come first, then what the reader wants. It works
+// in slices, and hears orders in between.
+
+import init, { Robot } from '../../pkg-robot/slam_robot.js';
+import { told, type Delivery, type Order, type Report } from './protocol';
+
+/** So long it works before it listens. */
+const SLICE_MS = 40;
+/** So often it tells what has changed. */
+const TELL_MS = 150;
+/** So long after a drag it waits with what costs more than the answer to it. */
+const DRAG_MS = 250;
+
+/** What TypeScript's library for pages does not know: reading a file at once, which workers may. */
+declare class FileReaderSync {
+  readAsArrayBuffer(blob: Blob): ArrayBuffer;
+}
+
+let robot: Robot | undefined;
+let isHeld = false;
+let isScheduled = false;
+let busyUntil = 0;
+let toldAt = 0;
+const waiting: Order[] = [];
+
+// A message to itself waits for nothing but the messages before it, where a timer waits for milliseconds.
+const turn = new MessageChannel();
+turn.port1.onmessage = (): void => {
+  isScheduled = false;
+  guard(work);
+};
+
+self.addEventListener('message', ({ data }: MessageEvent<Order>) => {
+  if ('module' in data) void open(data.module, data.file);
+  else if (robot === undefined) waiting.push(data);
+  else guard(() => obey(data));
+});
+
+async function open(module: WebAssembly.Module, file: File): Promise<void> {
+  try {
+    await init({ module_or_path: module });
+    const reader = new FileReaderSync();
+    robot = new Robot(file.name, file.size, (from: number, to: number) => {
+      return new Uint8Array(reader.readAsArrayBuffer(file.slice(from, to)));
+    });
+  } catch (error) {
+    // What the program says of a file is a sentence; all else is its own end.
+    if (error instanceof Error && error.constructor === Error) say({ failed: error.message });
+    else say({ crashed: String(error) });
+    return;
+  }
+  for (const order of waiting.splice(0)) guard(() => obey(order));
+  schedule();
+}
+
+/** A panic ends the program: the host makes another worker. */
+function guard(act: () => void): void {
+  try {
+    act();
+  } catch (error) {
+    robot = undefined;
+    say({ crashed: String(error) });
+  }
+}
+
+function obey(order: Order): void {
+  if (robot === undefined || 'module' in order) return;
+  if ('save' in order) save(robot, order.save);
+  else if ('reference' in order) grade(robot, order.reference, order.name);
+  else if (order.order === 'pause' || order.order === 'resume') hold(order.order === 'pause');
+  else if (order.order === 'crash-for-test') throw new WebAssembly.RuntimeError('crashed on purpose');
+  else {
+    if (order.order === 'cancel') hold(false);
+    robot.order(order.order);
+    if (order.order.startsWith('pin')) busyUntil = performance.now() + DRAG_MS;
+    tell(robot);
+  }
+  schedule();
+}
+
+function hold(isOn: boolean): void {
+  isHeld = isOn;
+  say({ deliveries: [told('paused', '', [isOn ? 1 : 0])] });
+}
+
+function save(from: Robot, name: string): void {
+  try {
+    const bytes = from.file(name);
+    say({ saved: name, bytes }, [bytes.buffer]);
+  } catch (error) {
+    answer(error);
+  }
+}
+
+function grade(by: Robot, bytes: Uint8Array, name: string): void {
+  try {
+    by.reference(bytes, name);
+    tell(by);
+  } catch (error) {
+    answer(error);
+  }
+}
+
+/** Says what the program refused; a panic is not for saying. */
+function answer(error: unknown): void {
+  if (!(error instanceof Error) || error instanceof WebAssembly.RuntimeError) throw error;
+  say({ deliveries: [told('answer', error.message)] });
+}
+
+function schedule(): void {
+  if (isScheduled || isHeld || robot === undefined) return;
+  isScheduled = true;
+  const rest = busyUntil - performance.now();
+  if (rest > 0) setTimeout(() => turn.port2.postMessage(0), rest);
+  else turn.port2.postMessage(0);
+}
+
+function work(): void {
+  if (robot === undefined || isHeld) return;
+  if (performance.now() < busyUntil) {
+    schedule();
+    return;
+  }
+  const end = performance.now() + SLICE_MS;
+  let isMore = true;
+  while (isMore && performance.now() < end) isMore = robot.step();
+  if (!isMore || performance.now() - toldAt > TELL_MS) tell(robot);
+  if (isMore) schedule();
+}
+
+function tell(what: Robot): void {
+  toldAt = performance.now();
+  const deliveries = what.updates() as Delivery[];
+  const buffers = deliveries.flatMap(({ numbers, bytes }) => [numbers.buffer, bytes.buffer]);
+  say({ deliveries }, buffers as ArrayBuffer[]);
+}
+
+function say(report: Report, buffers: ArrayBufferLike[] = []): void {
+  self.postMessage(report, { transfer: buffers as ArrayBuffer[] });
+}

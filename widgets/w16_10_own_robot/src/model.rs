@@ -1,0 +1,351 @@
+//! The state of the widget: what the worker has told of a log, and how the reader looks at it.
+
+mod hands;
+mod picture;
+pub mod robot;
+mod settings;
+mod tables;
+mod words;
+
+use kit::model::{
+    Activity, Handle, Model, Motion, Outcome, Standing, Table, TablePlace, Timeline, TimelineMark,
+    press_preset,
+};
+use kit::outside::Delivery;
+use kit::param::{Changed, ParamError, Values};
+use kit::playback::{Playback, speed_factor};
+use kit::scene::Scene;
+use kit::spec::{DEFAULTS, PLAY, WidgetSpec};
+
+use crate::spec::{FILES, MOST_KEYFRAMES, PARAMS, SPEC};
+use robot::{Robot, Stage};
+
+/// Names of the panels.
+pub mod panel {
+    /// The map with the way and the loops.
+    pub const MAP: &str = "map";
+    /// Share of each scan that fits.
+    pub const FIT: &str = "fit";
+    /// σ of each keyframe.
+    pub const SURE: &str = "sure";
+}
+
+/// A whole way plays in about so many seconds at normal speed.
+const PLAY_S: f64 = 12.0;
+/// More marks on a timeline are a blur.
+const MOST_MARKS: usize = 150;
+
+/// The reader's own robot.
+pub struct OwnRobot {
+    values: Values,
+    robot: Robot,
+    playback: Playback,
+    orders: Vec<String>,
+}
+
+impl Default for OwnRobot {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl OwnRobot {
+    /// No log is open.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            values: Values::defaults(PARAMS),
+            robot: Robot::default(),
+            playback: Playback::default(),
+            orders: Vec::new(),
+        }
+    }
+
+    /// What the worker has told.
+    #[must_use]
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    fn last(&self) -> usize {
+        self.robot.keyframes.len().saturating_sub(1)
+    }
+
+    /// The keyframe that is shown.
+    fn keyframe(&self) -> usize {
+        (self.values.get("keyframe") as usize).min(self.last())
+    }
+
+    /// The loop that is shown, where there is one.
+    fn link(&self) -> Option<usize> {
+        let last = self.robot.links.len().checked_sub(1)?;
+        Some((self.values.get("loop") as usize).min(last))
+    }
+
+    /// Keeps a value that lies in its range by construction.
+    fn store(&mut self, id: &str, value: f64) {
+        if let Err(error) = self.values.set(SPEC.id, id, value) {
+            panic!("a value of our own was refused: {error}");
+        }
+    }
+
+    /// Asks for something; of two orders of a kind that replace each other only the later stands.
+    fn ask(&mut self, order: String) {
+        let kind = |order: &str| order.split(' ').next().unwrap_or_default().to_owned();
+        let replaces = ["look", "pin"].contains(&kind(&order).as_str());
+        self.orders
+            .retain(|old| !replaces || kind(old) != kind(&order));
+        self.orders.push(order);
+    }
+
+    /// Shows a keyframe, and asks for its scan.
+    fn show(&mut self, keyframe: usize) {
+        self.store("keyframe", keyframe as f64);
+        self.look();
+    }
+
+    fn look(&mut self) {
+        let keyframe = self.keyframe();
+        let is_there = matches!(&self.robot.scan, Some((of, _)) if *of == keyframe);
+        if self.robot.has_scans && !is_there && !self.robot.keyframes.is_empty() {
+            self.ask(format!("look {keyframe}"));
+        }
+    }
+
+    fn press_play(&mut self) {
+        match self.robot.stage {
+            Stage::Empty | Stage::Failed => self.begin_sample(),
+            stage if stage.is_under_way() => {
+                self.robot.paused = !self.robot.paused;
+                let order = if self.robot.paused { "pause" } else { "resume" };
+                self.ask(order.to_owned());
+            }
+            _ => {
+                let (here, last) = (self.keyframe() as f64, self.last() as f64);
+                let position = self.playback.toggle(here, last);
+                self.store("keyframe", position);
+                self.look();
+            }
+        }
+    }
+
+    fn begin_sample(&mut self) {
+        self.ask("sample".to_owned());
+        self.robot = Robot::opening("the sample");
+        self.playback.pause();
+    }
+
+    /// The loop after or before the one that is shown.
+    fn go_to_link(&mut self, forward: bool) {
+        let Some(here) = self.link() else {
+            return;
+        };
+        let last = self.robot.links.len() - 1;
+        let next = match (forward, here) {
+            (true, here) if here == last => 0,
+            (true, here) => here + 1,
+            (false, 0) => last,
+            (false, here) => here - 1,
+        };
+        self.store("loop", next as f64);
+        self.show_link();
+    }
+
+    /// Goes to the newer keyframe of the loop that is shown.
+    fn show_link(&mut self) {
+        let ends = self.link().map(|link| self.robot.links[link].new);
+        if let Some(new) = ends.filter(|new| *new < self.robot.keyframes.len()) {
+            self.playback.pause();
+            self.show(new);
+        }
+    }
+
+    /// The keyframes to look into: of loops that contradict the graph, and of scans that fit badly.
+    fn doubts(&self) -> Vec<usize> {
+        let poor = self.values.get("poor");
+        let keyframes = self.robot.keyframes.iter().enumerate();
+        let badly = keyframes.filter(|(_, keyframe)| keyframe.fit < poor);
+        let mut doubts: Vec<usize> = badly.map(|(k, _)| k).collect();
+        let last = self.last();
+        let told = self.robot.look_into.iter().copied();
+        doubts.extend(told.filter(|keyframe| *keyframe <= last));
+        doubts.sort_unstable();
+        doubts.dedup();
+        doubts
+    }
+
+    fn go_to_doubt(&mut self) {
+        let here = self.keyframe();
+        let doubts = self.doubts();
+        let next = doubts.iter().find(|&&keyframe| keyframe > here);
+        if let Some(&next) = next.or(doubts.first()) {
+            self.playback.pause();
+            self.show(next);
+        }
+    }
+
+    /// What a button does here; none where the button is none of this widget's own.
+    fn press_own(&mut self, id: &str) -> Option<()> {
+        let keyframe = self.keyframe();
+        match id {
+            "open" | "cancel" | "unpin" | "reference" => self.ask(id.to_owned()),
+            "sample" => self.begin_sample(),
+            "doubt" => self.go_to_doubt(),
+            "previous" => self.go_to_link(false),
+            "next" => self.go_to_link(true),
+            "mark" => self.store("marked", keyframe as f64),
+            "turn" => {
+                if let Some(link) = self.link() {
+                    self.ask(format!("turn {link}"));
+                }
+            }
+            "add" => {
+                let marked = self.values.get("marked");
+                self.ask(format!("add {marked} {keyframe}"));
+                // What is added comes first.
+                self.store("loop", 0.0);
+            }
+            "save" => {
+                let file = FILES[self.values.get("save") as usize].label;
+                self.ask(format!("save {file}"));
+            }
+            _ if id == PLAY.id => self.press_play(),
+            _ => return None,
+        }
+        Some(())
+    }
+}
+
+impl Model for OwnRobot {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        if self.values.set(SPEC.id, id, value)? == Changed::Yes {
+            match id {
+                "keyframe" => self.look(),
+                "loop" => self.show_link(),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        if self.press_own(id).is_some() {
+            return Ok(());
+        }
+        if id != DEFAULTS.id {
+            return press_preset(self, id);
+        }
+        self.playback.pause();
+        self.values.reset();
+        self.robot = Robot::default();
+        self.orders.clear();
+        self.ask("close".to_owned());
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        if !self.playback.is_playing() {
+            return Activity::Idle;
+        }
+        let last = self.last() as f64;
+        let rate = (last / PLAY_S).max(4.0) * speed_factor(self.values.get("speed"));
+        let here = self.keyframe() as f64;
+        let next = self.playback.advance(here, last, elapsed_s, rate);
+        self.store("keyframe", next);
+        self.look();
+        Activity::Busy
+    }
+
+    fn takes_files(&self) -> bool {
+        true
+    }
+
+    fn receive(&mut self, delivery: &Delivery<'_>) {
+        self.robot.receive(delivery);
+        if delivery.kind == "opening" {
+            self.playback.pause();
+            self.store("keyframe", MOST_KEYFRAMES);
+            self.store("loop", 0.0);
+            self.store("marked", 0.0);
+        }
+        if delivery.kind == "stage" && self.robot.stage == Stage::Done {
+            self.look();
+        }
+    }
+
+    fn take_orders(&mut self) -> Vec<String> {
+        core::mem::take(&mut self.orders)
+    }
+
+    fn scene(&self) -> Scene {
+        picture::scene(self)
+    }
+
+    fn outcome(&self) -> Outcome {
+        words::outcome(self)
+    }
+
+    fn summary(&self) -> String {
+        words::summary(self)
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        let closed = self.robot.links.iter().filter(|link| link.is_in_graph());
+        let loops = closed.map(|link| TimelineMark {
+            at: link.new as f64,
+            label: format!("loop {} to {}", link.new, link.old),
+            standing: Standing::Good,
+        });
+        let doubts = self.doubts().into_iter().map(|keyframe| TimelineMark {
+            at: keyframe as f64,
+            label: format!("look into keyframe {keyframe}"),
+            standing: Standing::Bad,
+        });
+        // Before there is a way, there is a step to stand for it.
+        let last = self.last().max(1) as f64;
+        let is_read = self.robot.stage.is_under_way() && !self.robot.paused;
+        Some(Timeline {
+            param: "keyframe",
+            last,
+            playing: is_read || self.playback.is_playing(),
+            marks: doubts
+                .chain(loops)
+                .filter(|mark| mark.at <= last)
+                .take(MOST_MARKS)
+                .collect(),
+        })
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        tables::all(self)
+    }
+
+    fn shown_tables(&self) -> Vec<Table> {
+        let mut tables = tables::shown(self);
+        tables.retain(|table| table.place == TablePlace::Shown);
+        tables
+    }
+
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        hands::grab(self, panel, at, reach)
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        hands::drag(self, handle, at);
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        let last = self.last() as f64;
+        if let Some(end) = self.playback.set_motion(motion, last) {
+            self.store("keyframe", end);
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! What the reader takes hold of: any keyframe to be shown, and the one that is shown to be dragged.
+
+use kit::model::Handle;
+
+use super::robot::Stage;
+use super::{OwnRobot, panel};
+
+/// Keyframes are dragged no farther from the middle of the world, m.
+const FARTHEST_M: f64 = 1e6;
+/// A press that moves a keyframe by less does not drag it, m.
+const STILL_M: f64 = 1e-6;
+
+/// The nearest keyframe within reach.
+fn nearest(robot: &OwnRobot, at: [f64; 2], reach: [f64; 2]) -> Option<(usize, [f64; 2])> {
+    let share = |spot: [f64; 2]| {
+        let away = [at[0] - spot[0], at[1] - spot[1]];
+        (away[0] / reach[0]).abs().max((away[1] / reach[1]).abs())
+    };
+    let keyframes = robot.robot.keyframes.iter().enumerate();
+    let spots = keyframes.map(|(k, keyframe)| (k, [keyframe.pose[0], keyframe.pose[1]]));
+    spots
+        .filter(|(_, spot)| share(*spot) <= 1.0)
+        .min_by(|a, b| share(a.1).total_cmp(&share(b.1)))
+}
+
+/// The keyframe that is shown is held itself; another one is shown.
+pub fn grab(robot: &OwnRobot, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+    match panel {
+        panel::MAP => {}
+        panel::FIT | panel::SURE => {
+            let now = robot.keyframe() as f64;
+            let panel = if panel == panel::FIT {
+                panel::FIT
+            } else {
+                panel::SURE
+            };
+            return kit::chart::grab_now(panel, now, at, reach);
+        }
+        _ => return None,
+    }
+    let (keyframe, spot) = nearest(robot, at, reach)?;
+    let shown = robot.robot.keyframes[robot.keyframe()].pose;
+    let is_shown = keyframe == robot.keyframe() || spot == [shown[0], shown[1]];
+    let may_move = matches!(robot.robot.stage, Stage::Done | Stage::Checking);
+    Some(Handle {
+        panel: panel::MAP,
+        id: if is_shown && may_move {
+            "held"
+        } else {
+            "keyframe"
+        },
+        offset: [at[0] - spot[0], at[1] - spot[1]],
+    })
+}
+
+/// Shows the keyframe at the pointer, or moves the one that is held.
+pub fn drag(robot: &mut OwnRobot, handle: Handle, at: [f64; 2]) {
+    let spot = [at[0] - handle.offset[0], at[1] - handle.offset[1]];
+    if !spot.iter().all(|value| value.abs() < FARTHEST_M) {
+        return;
+    }
+    let shown = robot.keyframe();
+    match handle.id {
+        "now" => {
+            let to = kit::chart::dragged_to(handle, at) as usize;
+            robot.playback.pause();
+            robot.show(to.min(robot.last()));
+        }
+        "held" => {
+            let Some(keyframe) = robot.robot.keyframes.get_mut(shown) else {
+                return;
+            };
+            let moved = [0, 1].map(|i| (keyframe.pose[i] - spot[i]).abs());
+            if moved.iter().all(|&moved_m| moved_m < STILL_M) {
+                return;
+            }
+            // It follows the pointer at once; the others follow when the graph answers.
+            (keyframe.pose[0], keyframe.pose[1]) = (spot[0], spot[1]);
+            let [x, y, theta] = keyframe.pose;
+            robot.ask(format!("pin {shown} {x} {y} {theta}"));
+        }
+        _ => {
+            if let Some((keyframe, _)) = nearest(robot, spot, [f64::MAX; 2]) {
+                robot.playback.pause();
+                if keyframe != shown {
+                    robot.show(keyframe);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! What the worker has told of a log. The kinds of deliveries stand in `web/robot/src/update.rs`; a
+//! delivery that does not hold what its kind has to hold changes nothing.
+
+use std::sync::Arc;
+
+use kit::outside::Delivery;
+use kit::scene::{Bounds, Cell, Raster};
+
+/// How far the worker is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stage {
+    /// No log is open.
+    #[default]
+    Empty,
+    /// A log was given, and the worker has not yet begun.
+    Opening,
+    /// Scans are read.
+    Reading,
+    /// Keyframes are registered once more on all that was seen around them.
+    Linking,
+    /// A graph from a file is solved.
+    Solving,
+    /// The covariances are computed.
+    Checking,
+    /// The map stands.
+    Done,
+    /// Nothing could be done with the file.
+    Failed,
+}
+
+impl Stage {
+    fn of(number: f64) -> Option<Self> {
+        let stages = [
+            Self::Reading,
+            Self::Linking,
+            Self::Solving,
+            Self::Checking,
+            Self::Done,
+            Self::Failed,
+        ];
+        stages.get((number as usize).checked_sub(1)?).copied()
+    }
+
+    /// Whether the worker can be held.
+    #[must_use]
+    pub fn is_under_way(self) -> bool {
+        matches!(
+            self,
+            Self::Opening | Self::Reading | Self::Linking | Self::Solving
+        )
+    }
+}
+
+/// A keyframe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Keyframe {
+    /// Time of its scan, s.
+    pub stamp_s: f64,
+    /// `[x, y, θ]`, m and rad.
+    pub pose: [f64; 3],
+    /// Share of its scan that fits; NaN where none was registered.
+    pub fit: f64,
+    /// Standard deviation of its position, m; NaN until it is known.
+    pub sigma_m: f64,
+}
+
+/// What was decided on a loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Its tests passed.
+    Closed,
+    /// Its tests turned it away.
+    TurnedAway,
+    /// The reader took it out.
+    Refused,
+    /// The reader put it in.
+    Added,
+}
+
+/// A loop with its evidence; NaN where there is no number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link {
+    /// The newer keyframe.
+    pub new: usize,
+    /// The older keyframe.
+    pub old: usize,
+    /// Share of the newer scan that fits.
+    pub share: f64,
+    /// Root mean square distance of what fits, m.
+    pub rmse_m: f64,
+    /// Points that fit.
+    pub points: f64,
+    /// By how much the best other place was behind.
+    pub margin: f64,
+    /// Squared innovation against the graph.
+    pub chi2: f64,
+    /// The largest that passes.
+    pub gate_chi2: f64,
+    /// What was decided.
+    pub verdict: Verdict,
+    /// Why its tests turned it away.
+    pub reason: String,
+}
+
+impl Link {
+    /// Whether the graph holds it.
+    #[must_use]
+    pub fn is_in_graph(&self) -> bool {
+        matches!(self.verdict, Verdict::Closed | Verdict::Added)
+    }
+}
+
+/// The errors against a reference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grade {
+    /// In words.
+    pub words: String,
+    /// Mean, or root of the mean square against the truth, m.
+    pub error_m: f64,
+}
+
+/// Everything that is known of a log.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Robot {
+    /// Name of the file.
+    pub name: String,
+    /// How far the worker is.
+    pub stage: Stage,
+    /// Whether it is held.
+    pub paused: bool,
+    /// Share of the work that is done.
+    pub share: f64,
+    /// Scans taken.
+    pub scans: f64,
+    /// Loops looked at while reading, and closed of them.
+    pub tried: [f64; 2],
+    /// Whether there are scans; a graph from a file has none.
+    pub has_scans: bool,
+    /// What failed.
+    pub problem: String,
+    /// The keyframes in order.
+    pub keyframes: Vec<Keyframe>,
+    /// The map.
+    pub map: Option<Raster>,
+    /// The loops, the least sure first.
+    pub links: Vec<Link>,
+    /// Keyframes to look into.
+    pub look_into: Vec<usize>,
+    /// What should be doubted, a sentence each.
+    pub doubts: Vec<String>,
+    /// What the owner of the log should know, a sentence each.
+    pub remarks: Vec<String>,
+    /// A keyframe's points in its own frame, m.
+    pub scan: Option<(usize, Vec<[f64; 2]>)>,
+    /// The grade, where a reference was given.
+    pub grade: Option<Grade>,
+    /// Error of each keyframe against the reference, m.
+    pub errors_m: Vec<f64>,
+    /// What became of the last order.
+    pub answer: String,
+}
+
+impl Robot {
+    /// A log that was given.
+    #[must_use]
+    pub fn opening(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            stage: Stage::Opening,
+            ..Self::default()
+        }
+    }
+
+    /// Takes a delivery.
+    pub fn receive(&mut self, delivery: &Delivery<'_>) {
+        let Delivery { text, numbers, .. } = *delivery;
+        match delivery.kind {
+            "opening" => {
+                // What was held before its file had come stays held.
+                let is_held = self.paused && self.stage == Stage::Opening;
+                *self = Self::opening(text);
+                self.paused = is_held;
+            }
+            "failed" => {
+                self.stage = Stage::Failed;
+                self.problem = text.to_owned();
+            }
+            "paused" => self.paused = numbers.first() == Some(&1.0),
+            "file" => {
+                self.name = text.to_owned();
+                self.has_scans = numbers.get(1) == Some(&1.0);
+            }
+            "stage" => self.receive_stage(text, numbers),
+            "keyframes" => self.keyframes = numbers.chunks_exact(6).map(keyframe).collect(),
+            "map" => self.receive_map(delivery),
+            "loops" => {
+                let reasons = text.split('\n').chain(core::iter::repeat(""));
+                let links = numbers.chunks_exact(10).zip(reasons);
+                self.links = links
+                    .filter_map(|(numbers, why)| link(numbers, why))
+                    .collect();
+            }
+            "doubts" => {
+                self.doubts = lines(text);
+                self.look_into = numbers.iter().map(|&number| number as usize).collect();
+            }
+            "remarks" => self.remarks = lines(text),
+            "scan" => {
+                if let Some((&keyframe, points)) = numbers.split_first() {
+                    let points = points.chunks_exact(2).map(|point| [point[0], point[1]]);
+                    self.scan = Some((keyframe as usize, points.collect()));
+                }
+            }
+            "grade" => {
+                self.grade = Some(Grade {
+                    words: text.to_owned(),
+                    error_m: numbers.get(2).copied().unwrap_or(f64::NAN),
+                });
+            }
+            "errors" => self.errors_m = numbers.to_vec(),
+            "answer" => self.answer = text.to_owned(),
+            _ => {}
+        }
+    }
+
+    fn receive_stage(&mut self, text: &str, numbers: &[f64]) {
+        let &[stage, share, scans, tried, closed] = numbers else {
+            return;
+        };
+        let Some(stage) = Stage::of(stage) else {
+            return;
+        };
+        self.stage = stage;
+        self.share = share;
+        self.scans = scans;
+        self.tried = [tried, closed];
+        self.problem = text.to_owned();
+        self.paused &= stage.is_under_way();
+    }
+
+    fn receive_map(&mut self, delivery: &Delivery<'_>) {
+        let &[columns, rows, x, y, cell_m] = delivery.numbers else {
+            return;
+        };
+        let (columns, rows) = (columns as usize, rows as usize);
+        let is_whole = columns.checked_mul(rows) == Some(delivery.bytes.len());
+        if !is_whole || columns == 0 || !(x + y + cell_m).is_finite() || cell_m <= 0.0 {
+            return;
+        }
+        let cells: Arc<[Cell]> = delivery.bytes.iter().map(|&byte| cell(byte)).collect();
+        let size = [columns as f64 * cell_m, rows as f64 * cell_m];
+        self.map = Some(Raster {
+            bounds: Bounds {
+                min: [x, y],
+                max: [x + size[0], y + size[1]],
+            },
+            columns,
+            rows,
+            cells,
+            revision: self.map.as_ref().map_or(0, |map| map.revision + 1),
+        });
+    }
+}
+
+fn lines(text: &str) -> Vec<String> {
+    text.lines().map(str::to_owned).collect()
+}
+
+fn keyframe(numbers: &[f64]) -> Keyframe {
+    Keyframe {
+        stamp_s: numbers[0],
+        pose: [numbers[1], numbers[2], numbers[3]],
+        fit: numbers[4],
+        sigma_m: numbers[5],
+    }
+}
+
+fn link(numbers: &[f64], reason: &str) -> Option<Link> {
+    let verdicts = [
+        Verdict::Closed,
+        Verdict::TurnedAway,
+        Verdict::Refused,
+        Verdict::Added,
+    ];
+    Some(Link {
+        new: numbers[0] as usize,
+        old: numbers[1] as usize,
+        share: numbers[2],
+        rmse_m: numbers[3],
+        points: numbers[4],
+        margin: numbers[5],
+        chi2: numbers[6],
+        gate_chi2: numbers[7],
+        verdict: *verdicts.get(numbers[8] as usize)?,
+        reason: reason.to_owned(),
+    })
+}
+
+/// 0 is unknown, 1 free, 255 occupied.
+fn cell(byte: u8) -> Cell {
+    match byte.checked_sub(1) {
+        None => Cell::Unknown,
+        Some(level) => Cell::Occupancy(f32::from(level) / 254.0),
+    }
+}

@@ -1,0 +1,175 @@
+//! The result in words and numbers.
+
+use kit::model::{Fact, Outcome, Standing};
+use pr_geom::math;
+
+use super::OwnRobot;
+use super::robot::{Link, Robot, Stage, Verdict};
+
+/// What is promised of the reader's file.
+const STAYS: &str = "The file stays in this browser; nothing of it is sent anywhere.";
+
+/// The result, as far as it is.
+pub fn outcome(own: &OwnRobot) -> Outcome {
+    let robot = &own.robot;
+    let (standing, verdict) = match robot.stage {
+        Stage::Empty => (Standing::Neutral, "no log yet"),
+        Stage::Failed => (Standing::Bad, "no map"),
+        _ if robot.paused => (Standing::Neutral, "held"),
+        Stage::Opening => (Standing::Neutral, "opening"),
+        Stage::Reading => (Standing::Neutral, "reading"),
+        Stage::Linking => (Standing::Neutral, "linking"),
+        Stage::Solving => (Standing::Neutral, "solving"),
+        Stage::Checking => (Standing::Neutral, "checking"),
+        Stage::Done if contradicted(robot) > 0 => (Standing::Bad, "loops contradict"),
+        Stage::Done => (Standing::Good, "mapped"),
+    };
+    Outcome {
+        standing,
+        verdict: verdict.to_owned(),
+        sentence: sentence(robot),
+        facts: facts(own),
+    }
+}
+
+/// Loops of the graph that the rest of it contradicts.
+fn contradicted(robot: &Robot) -> usize {
+    let doubted = |link: &&Link| link.is_in_graph() && link.chi2 > link.gate_chi2;
+    robot.links.iter().filter(doubted).count()
+}
+
+fn sentence(robot: &Robot) -> String {
+    let name = &robot.name;
+    let done = (100.0 * robot.share).round();
+    let said = match robot.stage {
+        Stage::Empty => "Drop a log, open one, or map the sample.".to_owned(),
+        Stage::Failed => return robot.problem.clone(),
+        Stage::Opening => format!("{name} is opened."),
+        Stage::Reading => format!(
+            "{name}: {done:.0} % done, {:.0} scans, {} keyframes, {:.0} loops closed.",
+            robot.scans,
+            robot.keyframes.len(),
+            robot.tried[1]
+        ),
+        Stage::Linking => format!("{name}: {done:.0} % done, every keyframe is linked once more."),
+        Stage::Solving => format!("{name}: {} poses are solved.", robot.keyframes.len()),
+        Stage::Checking | Stage::Done => finished(robot),
+    };
+    let held = if robot.paused { " It is held." } else { "" };
+    let answer = match robot.answer.as_str() {
+        "" => String::new(),
+        answer => format!(" {answer}"),
+    };
+    let grade = robot.grade.as_ref();
+    let grade = grade.map_or(String::new(), |grade| format!(" {}.", grade.words));
+    format!("{said}{held}{grade}{answer} {STAYS}")
+}
+
+fn finished(robot: &Robot) -> String {
+    let closed = robot.links.iter().filter(|link| link.is_in_graph()).count();
+    let doubted = match contradicted(robot) {
+        0 => "no loop contradicts the graph".to_owned(),
+        1 => "one loop contradicts the graph".to_owned(),
+        many => format!("{many} loops contradict the graph"),
+    };
+    let source = if robot.has_scans {
+        format!(
+            "{:.0} scans became {} keyframes",
+            robot.scans,
+            robot.keyframes.len()
+        )
+    } else {
+        format!("{} poses", robot.keyframes.len())
+    };
+    format!(
+        "{}: {source} on a way of {:.0} m with {closed} loops; {doubted}.",
+        robot.name,
+        way_m(robot)
+    )
+}
+
+/// Length of the way over the keyframes, m.
+fn way_m(robot: &Robot) -> f64 {
+    let steps = robot.keyframes.windows(2);
+    let steps = steps.map(|two| {
+        let [a, b] = [two[0].pose, two[1].pose];
+        math::norm2(b[0] - a[0], b[1] - a[1])
+    });
+    steps.sum()
+}
+
+/// What was decided on a loop.
+pub fn verdict(link: &Link) -> &'static str {
+    match link.verdict {
+        Verdict::Closed => "closed",
+        Verdict::TurnedAway => "turned away",
+        Verdict::Refused => "refused by you",
+        Verdict::Added => "closed by you",
+    }
+}
+
+fn facts(own: &OwnRobot) -> Vec<Fact> {
+    let robot = &own.robot;
+    let count = |of: &dyn Fn(&Link) -> bool| {
+        let links = robot.links.iter().filter(|link| of(link)).count();
+        links as f64
+    };
+    let sigmas = robot.keyframes.iter().map(|keyframe| keyframe.sigma_m);
+    let worst_m = sigmas.filter(|s| s.is_finite()).fold(f64::NAN, f64::max);
+    let shown = robot.keyframes.get(own.keyframe());
+    let of_shown = |of: fn(&super::robot::Keyframe) -> f64| shown.map_or(f64::NAN, of);
+    let grade_m = robot.grade.as_ref().map_or(f64::NAN, |grade| grade.error_m);
+    let done = 100.0 * robot.share;
+    vec![
+        Fact::count("done_percent", "done, %", done.floor()),
+        Fact::count("scans", "scans", robot.scans),
+        Fact::count("keyframes", "keyframes", robot.keyframes.len() as f64),
+        Fact::new("way_m", "way", way_m(robot), "m", 1),
+        Fact::count("loops", "loops in the graph", count(&Link::is_in_graph)),
+        Fact::count(
+            "loops_refused",
+            "loops not in the graph",
+            count(&|link| !link.is_in_graph()),
+        ),
+        Fact::count(
+            "loops_doubted",
+            "loops that contradict",
+            contradicted(robot) as f64,
+        ),
+        Fact::metres("worst_sigma_m", "largest σ", worst_m),
+        Fact::metres("error_m", "error against the reference", grade_m),
+        Fact::new("fit", "scan shown: fits", of_shown(|k| k.fit), "", 2),
+        Fact::metres("sigma_m", "keyframe shown: σ", of_shown(|k| k.sigma_m)),
+    ]
+}
+
+/// A text that stands for the picture.
+pub fn summary(own: &OwnRobot) -> String {
+    let robot = &own.robot;
+    if robot.keyframes.is_empty() {
+        return format!(
+            "An empty map that waits for the log of a robot. {}",
+            sentence(robot)
+        );
+    }
+    let shown = own.keyframe();
+    let [x, y, theta] = robot.keyframes[shown].pose;
+    let link = own.link().map_or(String::new(), |link| {
+        let link = &robot.links[link];
+        let why = match link.reason.as_str() {
+            "" => String::new(),
+            reason => format!(", because {reason}"),
+        };
+        format!(
+            " The loop of the list goes from keyframe {} to {}: {}{why}.",
+            link.new,
+            link.old,
+            verdict(link)
+        )
+    });
+    format!(
+        "A map with the way of the robot. {} Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°.{link}",
+        sentence(robot),
+        theta.to_degrees()
+    )
+}

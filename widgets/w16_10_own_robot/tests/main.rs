@@ -1,0 +1,4 @@
+//! What the widget promises, without a display.
+
+mod model;
+mod view;
