@@ -37,6 +37,8 @@ export interface BasinExplorerState {
 
 /** The full lap: every parameter. */
 export interface TheFullLapState {
+  /** What is driven through. The Apartment by the chapter's estimator, every other world by the default one. */
+  world: 'apartment' | 'ring' | 'twins' | 'corridor' | 'hall';
   /** Multiplies the variances of the wheel odometry: 1 is the chapter's robot. 0.25 to 4. */
   noise: number;
   /** Whether a keyframe near an old one is matched against it. */
@@ -51,7 +53,21 @@ export interface TheFullLapState {
   matcher: 'p2p' | 'p2l' | 'ndt';
   /** The frame in which an edge says what it is sure of. As the chapter's figures were computed, it is turned by a heading of the world; exactly, it stands at the edge's target, the newer of its ends. */
   information: 'chapter' | 'exact';
-  /** The moment shown; a tick is a quarter of a second, and the marks are loops. 0 to 129. */
+  /** What of the graph is looked at and told in numbers. On the map, a click or a tap chooses it, and one beside everything chooses nothing. */
+  pick: 'nothing' | 'keyframe' | 'edge' | 'loop';
+  /** The number of the keyframe; of the keyframe where the edge begins; of the newer keyframe of the loop. 0 to 999. */
+  number: number;
+  /** A loop between any two keyframes. Registered: what the sweeps say, from where the graph believes them to be. The truth: what no robot knows. “The same place”: that both stand at one spot, right or wrong. */
+  own: 'none' | 'registered' | 'truth' | 'same-place';
+  /** One end of your own loop. On the map, drag from the keyframe that is looked at to any other. 0 to 999. */
+  'own-from': number;
+  /** The other end of your own loop. 0 to 999. */
+  'own-to': number;
+  /** Whether the tests may turn your own loop away: fit, pairs and gate where it is registered, the gate where it is asserted. */
+  'own-gate': boolean;
+  /** What the graph is solved under once your own loop is in it: plain least squares, Huber's kernel from 1.345 standard deviations on, or dynamic covariance scaling from χ² 10 on. */
+  kernel: 'quadratic' | 'huber' | 'dcs';
+  /** The moment shown; a tick is a quarter of a second, the marks are loops, and past the end means the end. 0 to 2000. */
   t: number;
   /** Draws the whole lap into the plots, also what comes after the moment shown. */
   future: boolean;
@@ -250,7 +266,7 @@ export interface WidgetStates {
 /** The buttons and presets of each widget, for `press`. */
 export interface WidgetButtons {
   'w16.1': 'play' | 'step' | 'reset' | 'defaults' | 'near' | 'quarter-turn' | 'between' | 'between-plane' | 'half-turn' | 'fence' | 'short-sighted';
-  'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'bells' | 'sliding';
+  'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'one-back' | 'one-on' | 'tie' | 'undo' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'wrong-loop' | 'tamed-loop' | 'true-loop' | 'ring' | 'twins' | 'corridor' | 'hall' | 'bells' | 'sliding';
   'w16.3': 'drop' | 'drop-100' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'bowl' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'own-corridor' | 'drop-room' | 'drop-corridor' | 'turned';
   'w16.4': 'play' | 'step' | 'reset' | 'next-event' | 'defaults' | 'watch' | 'blurred' | 'rebuilt' | 'noisy' | 'wrong-loop' | 'open';
   'w16.5': 'play' | 'step' | 'reset' | 'defaults' | 'three-poses' | 'stiff' | 'unpinned' | 'square' | 'tangled';
@@ -325,6 +341,7 @@ export interface SlamWidgetProperties {
   iteration: number | undefined;
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold' | undefined;
   more: boolean | undefined;
+  world: 'apartment' | 'ring' | 'twins' | 'corridor' | 'hall' | 'apartment' | 'ring' | undefined;
   noise: number | undefined;
   loops: boolean | undefined;
   gate: number | undefined;
@@ -332,6 +349,16 @@ export interface SlamWidgetProperties {
   gateModel: 'path' | 'exact' | undefined;
   matcher: 'p2p' | 'p2l' | 'ndt' | undefined;
   information: 'chapter' | 'exact' | undefined;
+  pick: 'nothing' | 'keyframe' | 'edge' | 'loop' | undefined;
+  number: number | undefined;
+  own: 'none' | 'registered' | 'truth' | 'same-place' | undefined;
+  'own-from': number | undefined;
+  ownFrom: number | undefined;
+  'own-to': number | undefined;
+  ownTo: number | undefined;
+  'own-gate': boolean | undefined;
+  ownGate: boolean | undefined;
+  kernel: 'quadratic' | 'huber' | 'dcs' | undefined;
   t: number | undefined;
   future: boolean | undefined;
   'ndt-cell': number | undefined;
@@ -374,7 +401,6 @@ export interface SlamWidgetProperties {
   step: number | undefined;
   called: number | undefined;
   detector: 'nearby' | 'histogram' | 'context' | undefined;
-  world: 'apartment' | 'ring' | undefined;
   old: number | undefined;
   new: number | undefined;
   share: number | undefined;

@@ -14,6 +14,7 @@ mod loop_error;
 mod loop_words;
 mod map;
 mod newest;
+mod own_loop;
 mod ranges;
 mod record;
 mod replay;
@@ -34,6 +35,9 @@ pub use judge::Judge;
 pub use loop_error::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopError, LoopJudgement};
 pub use map::GridExtent;
 pub use newest::{NewestLap, NewestStep};
+pub use own_loop::{
+    Claim, EdgeStrain, GateUse, OwnKernel, OwnLoop, OwnLoopError, OwnLoopRequest, edge_strain,
+};
 pub use ranges::{ConfigRange, RANGES, random_config};
 pub use record::{Epoch, LAST_KEYFRAMES, LapRecord, LapSummary, LapTrace, RecordedEdge};
 pub use replay::RegistrationView;

@@ -16,9 +16,10 @@
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::{
-    Between, JacobianModel, Method, OptimizeError, Optimizer, Problem, Report, RobustKernel,
-    Settings,
+    Between, JacobianModel, Method, OptimizeError, Optimizer, Problem, Report, Settings,
 };
+
+pub use pr_optim::{RobustKernel, StopReason};
 
 /// Handle of a node. Nodes are numbered from 0 in the order in which they were added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -268,7 +269,17 @@ impl PoseGraph {
     ///
     /// Where the Mahalanobis norm `m` of a residual exceeds `huber`, Ω is scaled by `huber / m`.
     pub fn optimize_robust(&mut self, max_iters: usize, tolerance: f64, huber: f64) -> Report {
-        self.optimizer.settings.kernel = RobustKernel::Huber { width: huber };
+        self.optimize_with(max_iters, tolerance, RobustKernel::Huber { width: huber })
+    }
+
+    /// [`PoseGraph::optimize`] under any robust kernel.
+    pub fn optimize_with(
+        &mut self,
+        max_iters: usize,
+        tolerance: f64,
+        kernel: RobustKernel,
+    ) -> Report {
+        self.optimizer.settings.kernel = kernel;
         self.optimizer.settings.max_iterations = max_iters;
         self.optimizer.settings.step_tolerance = tolerance;
         self.optimizer.run(&mut self.problem)

@@ -1,9 +1,10 @@
 //! A course: a world, where the robot starts in it, and the way points that it visits.
 //!
-//! Two are built in, the chapter's Apartment and a ring of corridors; [`Course::from_json`] reads
-//! any other. What a course promises: the driver, which turns toward the next way point and drives
+//! Built in are the chapter's Apartment, a ring of corridors, and three that break a map; [`Course::from_json`]
+//! reads any other. What a course promises: the driver, which turns toward the next way point and drives
 //! straight to it, touches no wall and arrives.
 
+mod breaking;
 mod clearance;
 mod error;
 mod file;

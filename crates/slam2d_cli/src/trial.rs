@@ -22,7 +22,7 @@ pub struct TrialArgs {
     /// What proposes loops; what is near in the graph without it.
     #[arg(long, value_parser = choice::<LapDetector>())]
     detector: Option<LapDetector>,
-    /// What is driven: apartment, ring, or a file that ends in .json.
+    /// What is driven: apartment, ring, twins, corridor, hall, or a file that ends in .json.
     #[arg(long, default_value = "apartment")]
     world: WorldArg,
     /// In which frame the information of edges is expressed: that of the chapter's figures in the

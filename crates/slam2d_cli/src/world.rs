@@ -1,4 +1,4 @@
-//! `--world`: the Apartment, the ring, or a file with walls, start and way points.
+//! `--world`: a built-in world, or a file with walls, start and way points.
 
 use std::fs;
 use std::path::PathBuf;
@@ -24,7 +24,11 @@ impl FromStr for WorldArg {
         match BuiltInWorld::named(text) {
             Some(world) => Ok(Self::BuiltIn(world)),
             None if text.ends_with(".json") => Ok(Self::File(text.into())),
-            None => Err("not apartment, ring or a file that ends in .json".to_owned()),
+            None => {
+                let known = BuiltInWorld::ALL.iter().map(|world| world.name());
+                let known = known.collect::<Vec<_>>().join(", ");
+                Err(format!("not {known} or a file that ends in .json"))
+            }
         }
     }
 }

@@ -130,5 +130,8 @@ fn a_world_that_cannot_be_driven_is_one_sentence() {
     assert_refused(&["lap", "--world", "nowhere.json"], "nowhere.json");
     assert_refused(&["sweep", "--world", "nowhere.json"], "nowhere.json");
     assert_refused(&["lap", "--matcher", "best"], "best");
-    assert_refused(&["lap", "--world", "moon"], "not apartment, ring or a file");
+    assert_refused(
+        &["lap", "--world", "moon"],
+        "not apartment, ring, twins, corridor, hall or a file",
+    );
 }

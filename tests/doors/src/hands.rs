@@ -107,6 +107,7 @@ fn drag(bytes: &mut Unstructured<'_>, model: &mut dyn Model) -> Result<()> {
     let at = point(bytes, panel)?;
     let reach = [0.05, 0.05].map(|share| share * (panel.x.max - panel.x.min).abs());
     let Some(handle) = model.grab(panel.id, at, reach) else {
+        model.tap(panel.id, at, reach);
         return Ok(());
     };
     assert_eq!(handle.panel, panel.id);
@@ -189,7 +190,7 @@ fn numbers_are_finite(layer: &Layer) -> bool {
         Layer::Line { .. } => true,
         Layer::Segments { segments, .. } => finite(segments.as_flattened().as_flattened()),
         Layer::Pose { pose, .. } => finite(pose),
-        Layer::Handle { at, .. } | Layer::Text { at, .. } => finite(at),
+        Layer::Handle { at, .. } | Layer::Text { at, .. } | Layer::Label { at, .. } => finite(at),
         Layer::Ellipse {
             center, half_axes, ..
         } => finite(center) && finite(half_axes.as_flattened()),

@@ -4,7 +4,7 @@ use crate::model::Model;
 use crate::palette::{Rgb, Theme};
 use crate::picture::picture;
 use crate::scene::Raster;
-use crate::surface::{Align, Measure, Pen, Px, PxRect, Surface, TextSize};
+use crate::surface::{Align, Haloed, Measure, Pen, Px, PxRect, Surface, TextSize};
 use crate::svg::SvgSurface;
 use crate::view::View;
 
@@ -19,11 +19,7 @@ const SLACK: f32 = 1.0;
 /// Widths are those of the widest usual face, so what passes here passes in narrower ones.
 #[must_use]
 pub fn text_faults(model: &dyn Model, view: &dyn View, width_px: f32) -> Vec<String> {
-    let mut recorder = Recorder {
-        measure: SvgSurface::new(Theme::Light),
-        texts: Vec::new(),
-        in_layers: false,
-    };
+    let mut recorder = Recorder::new();
     let height = picture(&mut recorder, model, view, width_px, Theme::Light);
     let mut faults = Vec::new();
     for (index, (text, rect)) in recorder.texts.iter().enumerate() {
@@ -47,6 +43,23 @@ pub fn text_faults(model: &dyn Model, view: &dyn View, width_px: f32) -> Vec<Str
     faults
 }
 
+/// A sentence for every two texts over the data of one panel that lie on each other, at that width.
+#[must_use]
+pub fn label_faults(model: &dyn Model, view: &dyn View, width_px: f32) -> Vec<String> {
+    let mut recorder = Recorder::new();
+    picture(&mut recorder, model, view, width_px, Theme::Light);
+    let mut faults = Vec::new();
+    for (index, (text, rect)) in recorder.labels.iter().enumerate() {
+        let others = recorder.labels[index + 1..].iter();
+        faults.extend(
+            others
+                .filter(|(_, place)| overlap(rect, place))
+                .map(|(other, _)| format!("`{text}` lies on `{other}` at a width of {width_px}")),
+        );
+    }
+    faults
+}
+
 fn overlap(a: &PxRect, b: &PxRect) -> bool {
     a.left + SLACK < b.right()
         && b.left + SLACK < a.right()
@@ -58,7 +71,20 @@ fn overlap(a: &PxRect, b: &PxRect) -> bool {
 struct Recorder {
     measure: SvgSurface,
     texts: Vec<(String, PxRect)>,
+    /// Words over data.
+    labels: Vec<(String, PxRect)>,
     in_layers: bool,
+}
+
+impl Recorder {
+    fn new() -> Self {
+        Self {
+            measure: SvgSurface::new(Theme::Light),
+            texts: Vec::new(),
+            labels: Vec::new(),
+            in_layers: false,
+        }
+    }
 }
 
 impl Measure for Recorder {
@@ -84,9 +110,6 @@ impl Surface for Recorder {
     fn raster(&mut self, _rect: PxRect, _raster: &Raster, _key: &str) {}
 
     fn text(&mut self, at: Px, align: Align, text: &str, size: TextSize, _color: Rgb) {
-        if self.in_layers {
-            return;
-        }
         let width = self.text_width(text, size);
         let left = match align {
             Align::Left => at[0],
@@ -95,7 +118,16 @@ impl Surface for Recorder {
         };
         let height = LETTER_HEIGHT * size.px();
         let rect = PxRect::new(left, at[1] - 0.5 * height, width, height);
-        self.texts.push((text.to_owned(), rect));
+        let kept = if self.in_layers {
+            &mut self.labels
+        } else {
+            &mut self.texts
+        };
+        kept.push((text.to_owned(), rect));
+    }
+
+    fn haloed_text(&mut self, at: Px, align: Align, text: &str, size: TextSize, colors: Haloed) {
+        self.text(at, align, text, size, colors.ink);
     }
 
     fn snap(&self, coordinate: f32) -> f32 {

@@ -1,6 +1,7 @@
 //! Draws a panel on a surface: the one drawing code for the live picture, SVG and print.
 
 mod frame;
+mod labels;
 mod layers;
 mod marks;
 
@@ -32,6 +33,7 @@ pub fn panel(
         let key = format!("{}/{index}", panel.id);
         layers::layer(surface, layer, &transform, theme, &key);
     }
+    labels::labels(surface, panel, &transform, theme);
     surface.clip(None);
     frame::front(surface, panel, layout, origin, &transform, theme);
 }

@@ -84,6 +84,9 @@ pub trait Model {
     /// Moves what was grabbed so that the grabbed spot lies at that point.
     fn drag(&mut self, _handle: Handle, _at: [f64; 2]) {}
 
+    /// A click or a tap at that point of a panel; `reach` is that of [`Model::grab`].
+    fn tap(&mut self, _panel: &str, _at: [f64; 2], _reach: [f64; 2]) {}
+
     /// The pointer moved over a panel without pressing, or left it.
     fn hover(&mut self, _panel: &str, _at: Option<[f64; 2]>) {}
 

@@ -19,6 +19,8 @@ pub struct Pointer {
     /// How far each map is zoomed in.
     pub zoom: Zoom,
     held: Option<Held>,
+    /// Whether the last press was that of a finger.
+    by_touch: bool,
     hovered: Option<(&'static str, [f64; 2])>,
 }
 
@@ -67,8 +69,9 @@ impl Pointer {
         }
         self.wheel(ui, &response, panel, to);
         let pressed = self.press(ui, &response, panel, to, model);
+        let tapped = self.tap(&response, panel, to, model);
         let hovered = self.hover(ui, &response, panel, to, model);
-        if pressed == Touched::Yes || hovered == Touched::Yes {
+        if [pressed, tapped, hovered].contains(&Touched::Yes) {
             Touched::Yes
         } else {
             Touched::No
@@ -100,6 +103,7 @@ impl Pointer {
             (input.pointer.primary_pressed(), input.any_touches(), moved)
         });
         if just_pressed {
+            self.by_touch = touch;
             self.held = match model.grab(panel.id, at, reach(to, touch)) {
                 Some(handle) => Some(Held::Thing(handle)),
                 None if self.zoom.is_zoomed(panel.id) => Some(Held::Map {
@@ -123,6 +127,25 @@ impl Pointer {
             }
             _ => Touched::No,
         }
+    }
+
+    /// What was pressed and let go without a move.
+    fn tap(
+        &mut self,
+        response: &Response,
+        panel: &Panel,
+        to: &Transform,
+        model: &mut dyn Model,
+    ) -> Touched {
+        let Some(pos) = response
+            .interact_pointer_pos()
+            .filter(|_| response.clicked())
+        else {
+            return Touched::No;
+        };
+        let at = to.from_px([pos.x, pos.y]);
+        model.tap(panel.id, at, reach(to, self.by_touch));
+        Touched::Yes
     }
 
     fn hover(

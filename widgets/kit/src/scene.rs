@@ -164,6 +164,18 @@ pub enum Layer {
         /// Meaning.
         tone: Tone,
     },
+    /// Words near a point: they stand where no other words of the panel stand, those of earlier layers
+    /// first, and are left out where there is no such place.
+    Label {
+        /// The point that they name.
+        at: [f64; 2],
+        /// The words.
+        text: String,
+        /// Meaning.
+        tone: Tone,
+        /// They keep so far from the point, in pixels; 0 may stand on it.
+        clear_px: f32,
+    },
 }
 
 impl Layer {
@@ -175,6 +187,17 @@ impl Layer {
             mark,
             tone,
             radius_px,
+        }
+    }
+
+    /// [`Layer::Label`] in ink.
+    #[must_use]
+    pub fn label(at: [f64; 2], text: String, clear_px: f32) -> Self {
+        Self::Label {
+            at,
+            text,
+            tone: Tone::Ink,
+            clear_px,
         }
     }
 

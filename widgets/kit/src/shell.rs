@@ -6,7 +6,7 @@ mod stage;
 use egui::{Pos2, Rect, Ui, UiBuilder, pos2, vec2};
 use web_time::{Duration, Instant};
 
-use crate::audit::text_faults;
+use crate::audit::{label_faults, text_faults};
 use crate::egui_surface::{Textures, color};
 use crate::hot::Hot;
 use crate::model::{Activity, Model, Motion, Outcome, Table};
@@ -224,6 +224,12 @@ impl Shell {
     #[must_use]
     pub fn text_faults(&self, width_px: f32) -> Vec<String> {
         text_faults(self.model.as_ref(), self.view.as_ref(), width_px)
+    }
+
+    /// Words over the data of that picture that lie on each other.
+    #[must_use]
+    pub fn label_faults(&self, width_px: f32) -> Vec<String> {
+        label_faults(self.model.as_ref(), self.view.as_ref(), width_px)
     }
 
     /// Whether another frame is needed although nobody touches anything.

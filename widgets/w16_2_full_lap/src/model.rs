@@ -4,7 +4,10 @@
 //! asked for first; the old one stays until the new one is whole, and the moment shown stays.
 
 mod gates;
+mod hands;
 mod moment;
+mod own;
+mod pick;
 mod picture;
 mod runs;
 mod settings;
@@ -13,7 +16,7 @@ mod track;
 mod transition;
 mod words;
 
-use ch16_lab::lap::{LapRecord, LoopAttempt, NewestLap, NewestStep};
+use ch16_lab::lap::{LapRecord, LoopAttempt, NewestLap, NewestStep, OwnLoopError};
 use kit::chart::{dragged_to, grab_now};
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
@@ -25,6 +28,8 @@ use kit::spec::WidgetSpec;
 
 use crate::spec::{LOOP_BUTTONS, SPEC};
 use moment::Moment;
+use own::Own;
+use pick::{Part, Step};
 use runs::{Results, Runs};
 use settings::LapSettings;
 use transition::Transition;
@@ -41,9 +46,12 @@ pub struct FullLap {
     laps: NewestLap,
     /// Buttons that wait for the lap they were pressed for.
     pressed: Vec<&'static str>,
-    canonical: Results,
+    /// The results of the chapter's run after each tick.
+    canonical: Vec<Results>,
     playback: Playback,
     transition: Option<Transition>,
+    own: Own,
+    hovered: Option<Part>,
 }
 
 impl Default for FullLap {
@@ -64,18 +72,21 @@ impl FullLap {
         laps.ask(LapSettings::read(&values).config());
         let runs = Runs::new(*laps.finish().expect("a lap was asked for"));
         Self {
-            canonical: runs.results(),
+            canonical: runs.results_over_time(),
             values,
             runs,
             laps,
             pressed: Vec::new(),
             playback: Playback::default(),
             transition: None,
+            own: Own::default(),
+            hovered: None,
         }
     }
 
+    /// The moment shown: that of the lap which is shown, however late the one is that was asked for.
     fn tick(&self) -> usize {
-        self.values.get("t") as usize
+        (self.values.get("t") as usize).min(self.runs.ticks())
     }
 
     fn last(&self) -> f64 {
@@ -88,17 +99,89 @@ impl FullLap {
         self.values
             .set(SPEC.id, "t", tick)
             .expect("a tick of the lap is within the timeline");
+        self.hovered = None;
+        self.own.refresh(&self.values, &self.runs, tick as usize);
+        // A loop of the reader's own stands already while the time goes on.
+        if self.own.tried().is_none() {
+            self.animate();
+        } else {
+            self.transition = None;
+        }
+    }
+
+    /// Where a loop was closed, the nodes move from old to new.
+    fn animate(&mut self) {
+        let attempt = self.runs.graph.attempt_at(self.tick());
+        let own = self.own.tried().map(|own| &own.attempt);
+        let closed = own.or(attempt).is_some_and(LoopAttempt::accepted);
+        self.transition =
+            (closed && self.playback.motion() == Motion::Full).then(Transition::default);
+    }
+
+    /// Sets values that lie in their ranges by construction.
+    fn store(&mut self, values: impl IntoIterator<Item = (&'static str, f64)>) {
+        for (id, value) in values {
+            if let Err(error) = self.values.set(SPEC.id, id, value) {
+                panic!("a value of our own was refused: {error}");
+            }
+        }
+    }
+
+    /// Looks at a part of the graph, or at nothing.
+    fn look_at(&mut self, part: Option<Part>) {
+        let [pick, number] = Part::values(part);
+        self.store([("pick", pick), ("number", number)]);
+    }
+
+    /// Looks at the next part, or at the one before.
+    fn look_on(&mut self, step: Step) {
+        let part = Part::stepped(Part::chosen(&self.values), step, &self.moment());
+        self.look_at(part);
+    }
+
+    /// A loop of the reader's own between two keyframes.
+    fn tie(&mut self, [from, to]: [usize; 2]) {
+        // What was chosen of it stays; without a choice, the sweeps are asked.
+        let claim = self.values.get("own").max(1.0);
+        let ends = [("own-from", from as f64), ("own-to", to as f64)];
+        self.store([("own", claim)].into_iter().chain(ends));
+        self.own.tied = None;
+        self.refresh_own();
+    }
+
+    fn refresh_own(&mut self) {
+        let tick = self.tick();
+        self.own.refresh(&self.values, &self.runs, tick);
         self.animate();
     }
 
-    fn animate(&mut self) {
-        let closed = self
-            .runs
-            .graph
-            .attempt_at(self.tick())
-            .is_some_and(LoopAttempt::accepted);
-        self.transition =
-            (closed && self.playback.motion() == Motion::Full).then(Transition::default);
+    /// Begins a loop at the keyframe that is looked at, or ends it there.
+    fn press_tie(&mut self) {
+        let Some(Part::Keyframe(node)) = Part::chosen(&self.values) else {
+            self.own.tied = None;
+            return;
+        };
+        match self.own.tied {
+            Some(from) if from != node => {
+                self.own.keep(&self.values);
+                self.tie([from, node]);
+                self.look_at(None);
+            }
+            Some(_) => self.own.tied = None,
+            None => {
+                // A value changes, so that whoever hears the page hears of it.
+                self.own.keep(&self.values);
+                self.store([("own-from", node as f64)]);
+                self.refresh_own();
+                self.own.tied = Some(node);
+            }
+        }
+    }
+
+    fn undo(&mut self) {
+        let before = self.own.undone(&self.values);
+        self.store(before);
+        self.refresh_own();
     }
 
     fn press_loop_button(&mut self, offset: isize) {
@@ -123,6 +206,8 @@ impl FullLap {
         self.playback.pause();
         self.transition = None;
         self.pressed.clear();
+        self.own.forget();
+        self.hovered = None;
         self.recompute();
     }
 
@@ -134,10 +219,12 @@ impl FullLap {
     /// Shows a lap that is whole, and does what waited for it.
     fn show(&mut self, record: LapRecord) {
         self.runs = Runs::new(record);
-        self.transition = None;
-        if self.values.get("t") > self.last() {
+        self.hovered = None;
+        if self.values.get("t") > self.last() && !self.laps.is_running() {
             self.go_to(self.runs.ticks());
         }
+        self.own.refresh(&self.values, &self.runs, self.tick());
+        self.transition = None;
         if !self.laps.is_running() {
             for button in core::mem::take(&mut self.pressed) {
                 self.press_loop(button);
@@ -165,7 +252,7 @@ impl FullLap {
 
     /// Plays on; stops for the animation of every loop on the way.
     fn play(&mut self, elapsed_s: f64) {
-        let now = self.values.get("t");
+        let now = self.tick() as f64;
         let rate = TICKS_PER_S * speed_factor(self.values.get("speed"));
         let reached = self.playback.advance(now, self.last(), elapsed_s, rate) as usize;
         let ahead = |attempt: &&LoopAttempt| attempt.tick > now as usize && attempt.tick < reached;
@@ -180,14 +267,29 @@ impl FullLap {
         }
     }
 
-    fn moment(&self) -> Moment<'_> {
-        let share = self.transition.as_ref().map_or(1.0, Transition::share);
-        let seen_until = if self.values.get("future") == 0.0 {
+    /// The last tick of which anything tells.
+    fn seen_until(&self) -> usize {
+        if self.values.get("future") == 0.0 {
             self.tick()
         } else {
             self.runs.ticks()
-        };
-        Moment::new(&self.runs, self.tick(), share, seen_until)
+        }
+    }
+
+    fn moment(&self) -> Moment<'_> {
+        let share = self.transition.as_ref().map_or(1.0, Transition::share);
+        let seen_until = self.seen_until();
+        let own = self.own.tried();
+        Moment {
+            picked: Part::chosen(&self.values),
+            hovered: self.hovered,
+            tied: self.own.tied,
+            ..Moment::new(&self.runs, self.tick(), share, seen_until, own)
+        }
+    }
+
+    fn own_refused(&self) -> Option<&OwnLoopError> {
+        self.own.made.as_ref()?.as_ref().err()
     }
 }
 
@@ -201,19 +303,26 @@ impl Model for FullLap {
     }
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        let before = self.values.clone();
         if self.values.set(SPEC.id, id, value)? == Changed::No {
             return Ok(());
         }
         match id {
+            // A lap under way may be longer than the one that is shown.
+            "t" if self.laps.is_running() && value > self.last() => self.refresh_own(),
             "t" => self.go_to(self.tick()),
-            "speed" | "more" | "future" => {}
+            "speed" | "more" | "future" | "pick" | "number" => {}
+            _ if own::PARAMS.contains(&id) => {
+                self.own.keep(&before);
+                self.refresh_own();
+            }
             _ => self.recompute(),
         }
         Ok(())
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let now = self.values.get("t");
+        let now = self.tick() as f64;
         if let Some(position) = self.playback.press(id, now, self.last()) {
             if position != now {
                 self.go_to(position as usize);
@@ -224,6 +333,10 @@ impl Model for FullLap {
             return Ok(());
         }
         match id {
+            "one-back" => self.look_on(Step::Back),
+            "one-on" => self.look_on(Step::On),
+            "tie" => self.press_tie(),
+            "undo" => self.undo(),
             "defaults" => self.back_to_defaults(),
             _ => return press_preset(self, id),
         }
@@ -268,11 +381,11 @@ impl Model for FullLap {
     }
 
     fn outcome(&self) -> Outcome {
-        words::outcome(&self.runs, self.tick())
+        words::outcome(&self.moment(), self.own_refused())
     }
 
     fn summary(&self) -> String {
-        words::summary(&self.runs, self.tick())
+        words::summary(&self.moment(), self.own_refused())
     }
 
     fn timeline(&self) -> Option<Timeline> {
@@ -286,29 +399,76 @@ impl Model for FullLap {
             param: "t",
             last: self.last(),
             playing: self.playback.is_playing(),
-            marks: self.runs.graph.attempts().iter().map(mark).collect(),
+            marks: self
+                .runs
+                .attempts_until(self.seen_until())
+                .iter()
+                .map(mark)
+                .collect(),
         })
     }
 
     fn tables(&self) -> Vec<Table> {
-        tables::all(&self.runs, &self.canonical)
+        let mut tables = tables::all(&self.runs, self.seen_until(), &self.canonical);
+        tables.push(tables::edges(&self.moment()));
+        tables
     }
 
     fn shown_tables(&self) -> Vec<Table> {
-        tables::shown(&self.runs, &self.canonical)
+        tables::shown(&self.runs, self.seen_until(), &self.canonical)
     }
 
-    /// The line at the moment shown, in every plot over time.
+    /// The line at the moment shown, in every plot over time; on the map, the keyframe that is looked
+    /// at.
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        if let Some(handle) = hands::grab(&self.moment(), panel, at, reach) {
+            return Some(handle);
+        }
         let panel = *picture::OVER_TIME.iter().find(|id| **id == panel)?;
         grab_now(panel, self.values.get("t"), at, reach)
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        if handle.panel == picture::panel::MAP {
+            let ends = hands::dragged_ends(&self.moment(), handle, at);
+            if let Some(ends) = ends.filter(|ends| !self.own.is_between(&self.values, *ends)) {
+                if self.own.drag_from(ends[0]) {
+                    self.own.keep(&self.values);
+                }
+                self.tie(ends);
+                // Under the pointer the graph follows at once.
+                self.transition = None;
+            }
+            return;
+        }
         let tick = dragged_to(handle, at) as usize;
         if tick != self.tick() {
             self.go_to(tick);
         }
+    }
+
+    /// What is tapped is looked at; beside everything, nothing is. A second keyframe ends a loop.
+    fn tap(&mut self, panel: &str, at: [f64; 2], reach: [f64; 2]) {
+        self.own.let_go();
+        if ![
+            picture::panel::MAP,
+            picture::panel::STRAIN,
+            picture::panel::GATE,
+        ]
+        .contains(&panel)
+        {
+            return;
+        }
+        let part = hands::part_at(&self.moment(), panel, at, reach);
+        self.look_at(part);
+        if self.own.tied.is_some() && matches!(part, Some(Part::Keyframe(_))) {
+            self.press_tie();
+        }
+    }
+
+    fn hover(&mut self, panel: &str, at: Option<[f64; 2]>) {
+        self.own.let_go();
+        self.hovered = at.and_then(|at| hands::hovered(&self.moment(), panel, at));
     }
 
     fn set_motion(&mut self, motion: Motion) {

@@ -23,6 +23,7 @@ const LOOP: Slot = Slot {
 const ERRORS: Slot = plot("errors");
 const DISAGREEMENT: Slot = plot("disagreement");
 const GATE: Slot = plot("gate");
+const STRAIN: Slot = plot("strain");
 
 const fn plot(panel: &'static str) -> Slot {
     Slot {
@@ -42,7 +43,7 @@ impl View for FullLapView {
                 stage: vec![Row {
                     columns: vec![column(2.0, &[MAP]), column(1.0, &[LOOP, ERRORS])],
                 }],
-                below: vec![Row::of(&[DISAGREEMENT, GATE])],
+                below: vec![Row::of(&[DISAGREEMENT, GATE, STRAIN])],
             }
         } else if width >= SIDE_BY_SIDE {
             Arrangement {
@@ -50,12 +51,12 @@ impl View for FullLapView {
                 below: vec![Row {
                     columns: vec![
                         column(1.0, &[LOOP, DISAGREEMENT]),
-                        column(1.0, &[ERRORS, GATE]),
+                        column(1.0, &[ERRORS, GATE, STRAIN]),
                     ],
                 }],
             }
         } else {
-            let below = [LOOP, ERRORS, DISAGREEMENT, GATE];
+            let below = [LOOP, ERRORS, DISAGREEMENT, GATE, STRAIN];
             Arrangement {
                 stage: vec![Row::of(&[MAP])],
                 below: below.iter().map(|slot| Row::of(&[*slot])).collect(),

@@ -40,26 +40,47 @@ pub enum BuiltInWorld {
     Apartment,
     /// Corridors around a block: its free space has a hole.
     Ring,
+    /// Two rooms that look alike: a loop may be of the wrong one.
+    TwinRooms,
+    /// A corridor without a door: along it, nothing is seen.
+    Corridor,
+    /// A round hall: its wall tells no heading.
+    Hall,
 }
 
 impl BuiltInWorld {
+    /// Those in which detectors of places are graded; in the others a place is not told by its looks.
+    pub const GRADED: [Self; 2] = [Self::Apartment, Self::Ring];
+
     /// The world and the way through it.
     #[must_use]
     pub fn course(self) -> Course {
         match self {
             Self::Apartment => Course::apartment(),
             Self::Ring => Course::ring(),
+            Self::TwinRooms => Course::twin_rooms(),
+            Self::Corridor => Course::bare_corridor(),
+            Self::Hall => Course::round_hall(),
         }
     }
 }
 
 impl Choice for BuiltInWorld {
-    const ALL: &'static [Self] = &[Self::Apartment, Self::Ring];
+    const ALL: &'static [Self] = &[
+        Self::Apartment,
+        Self::Ring,
+        Self::TwinRooms,
+        Self::Corridor,
+        Self::Hall,
+    ];
 
     fn name(self) -> &'static str {
         match self {
             Self::Apartment => "apartment",
             Self::Ring => "ring",
+            Self::TwinRooms => "twins",
+            Self::Corridor => "corridor",
+            Self::Hall => "hall",
         }
     }
 
@@ -67,6 +88,9 @@ impl Choice for BuiltInWorld {
         match self {
             Self::Apartment => "the Apartment",
             Self::Ring => "a ring of corridors",
+            Self::TwinRooms => "two rooms alike",
+            Self::Corridor => "a bare corridor",
+            Self::Hall => "a round hall",
         }
     }
 }
@@ -257,7 +281,7 @@ impl LapConfig {
         let chapter = Self::with_seed_and_noise(seed, noise_factor);
         match world {
             BuiltInWorld::Apartment => chapter,
-            BuiltInWorld::Ring => chapter.elsewhere(&world.course()),
+            _ => chapter.elsewhere(&world.course()),
         }
     }
 

@@ -147,6 +147,13 @@ impl LapTrace {
             .map(|(pose, keyframe)| position_error_m(pose, &keyframe.truth))
     }
 
+    /// The summary as it was at the end of `tick`; that of the last tick is the lap's.
+    #[must_use]
+    pub fn summary_at(&self, tick: usize) -> LapSummary {
+        let errors: Vec<f64> = self.keyframe_errors_m(tick).collect();
+        LapSummary::so_far(&errors, &self.reports[..tick.min(self.reports.len())])
+    }
+
     /// The sweeps of the local map on which the sweep of `tick` was registered, oldest first.
     #[must_use]
     pub fn window(&self, tick: usize, config: &LapConfig) -> Vec<WindowSweep> {
@@ -280,7 +287,11 @@ impl LapSummary {
     /// The summary of a lap: its present state and the reports of its ticks.
     #[must_use]
     pub fn of(lap: &Lap, reports: &[TickReport]) -> Self {
-        let errors: Vec<f64> = lap.keyframe_errors_m().collect();
+        Self::so_far(&lap.keyframe_errors_m().collect::<Vec<_>>(), reports)
+    }
+
+    /// From the position errors of the keyframes so far, m, and the reports so far.
+    fn so_far(errors: &[f64], reports: &[TickReport]) -> Self {
         let last = &errors[errors.len().saturating_sub(LAST_KEYFRAMES)..];
         let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
         let attempts = || reports.iter().filter_map(|report| report.loop_attempt);
@@ -294,7 +305,7 @@ impl LapSummary {
             odometry_rms_m: metrics.map_or(0.0, |m| m.odometry_rms_m),
             keyframe_end_error_m: metrics.map_or(0.0, |m| m.keyframe_error_m),
             keyframe_rms_m: metrics.map_or(0.0, |m| m.keyframe_rms_m),
-            keyframe_max_m: largest(&errors),
+            keyframe_max_m: largest(errors),
             last_keyframes_m: (
                 last.iter().copied().fold(f64::INFINITY, f64::min),
                 largest(last),

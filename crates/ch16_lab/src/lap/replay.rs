@@ -95,7 +95,10 @@ impl LapTrace {
 }
 
 /// The graph with these poses, the first of them fixed.
-fn graph_of<'a>(poses: &[SE2], edges: impl Iterator<Item = &'a RecordedEdge>) -> PoseGraph {
+pub(super) fn graph_of<'a>(
+    poses: &[SE2],
+    edges: impl Iterator<Item = &'a RecordedEdge>,
+) -> PoseGraph {
     let mut graph = PoseGraph::new();
     for (node, pose) in poses.iter().enumerate() {
         match node {

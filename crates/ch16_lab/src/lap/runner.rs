@@ -106,6 +106,16 @@ mod tests {
     }
 
     #[test]
+    fn the_summary_of_the_last_tick_is_that_of_the_lap_and_one_before_knows_nothing_after_it() {
+        let record = LapRunner::new().run(&LapConfig::default());
+        let last = record.ticks();
+        assert_eq!(record.lap.summary_at(last), record.lap.summary);
+        let so_far = record.lap.summary_at(91);
+        assert_eq!((so_far.ticks, so_far.loops), (91, 0));
+        assert_eq!(so_far, record.front_end.summary_at(91));
+    }
+
+    #[test]
     fn the_motion_of_a_loop_starts_where_the_graph_was_and_ends_where_it_is() {
         let lap = LapRunner::new().run(&LapConfig::default()).lap;
         for attempt in lap.loop_attempts() {

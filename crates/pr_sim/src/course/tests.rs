@@ -50,6 +50,36 @@ fn room(replace: &str, with: &str) -> String {
 }
 
 #[test]
+fn the_worlds_that_break_a_map_can_be_driven_all_the_same() {
+    for course in [
+        Course::twin_rooms(),
+        Course::bare_corridor(),
+        Course::round_hall(),
+    ] {
+        assert_eq!(course.check(), Ok(()));
+        assert!(clearance_of_drive(&course).is_some(), "the drive ends");
+    }
+}
+
+#[test]
+fn the_twin_rooms_are_alike_to_the_millimetre() {
+    let course = Course::twin_rooms();
+    let sweep = |x: f64| -> Vec<f64> {
+        let cast = |k: u32| {
+            // Half a degree off: no ray meets the end of a wall.
+            let angle = (f64::from(k) + 0.5) / 360.0 * core::f64::consts::TAU;
+            course.world().cast(Point2::new(x, 3.7), angle, 3.0)
+        };
+        // Up from the south: through the door the corridor looks another way.
+        (0..180).map(cast).collect()
+    };
+    for (one, other) in sweep(4.85).iter().zip(sweep(6.15)) {
+        // 1e-9: the second room's walls lie at other multiples of the last bit.
+        assert!((one - other).abs() < 1e-9, "{one} and {other}");
+    }
+}
+
+#[test]
 fn a_file_is_read_as_it_is_written() {
     let course = read(&room("", "")).unwrap();
     assert_eq!(course.world().walls().len(), 5);

@@ -1,6 +1,9 @@
 //! Laps by name, and what the results table says of each.
 
-use ch16_lab::lap::{LapConfig, LapRecord, LapTrace};
+use ch16_lab::lap::{
+    BuiltInWorld, CANONICAL_SEED, Choice as _, Claim, GateUse, LapConfig, LapMatcher, LapRecord,
+    LapTrace, OwnKernel, OwnLoopRequest,
+};
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
 use pr_geom::Translation;
@@ -24,6 +27,10 @@ pub fn config(name: &str) -> Option<LapConfig> {
             config.slam.loops.gate_model = GateModel::ExactMarginal;
             config
         }
+        "twins" => LapConfig::in_world(BuiltInWorld::TwinRooms, CANONICAL_SEED, 1.0),
+        "corridor" => LapConfig::in_world(BuiltInWorld::Corridor, CANONICAL_SEED, 1.0),
+        "hall" => LapConfig::in_world(BuiltInWorld::Hall, CANONICAL_SEED, 1.0)
+            .with_matcher(LapMatcher::PointToPlane),
         "six" => LapConfig::with_seed_and_noise(6, 1.0),
         _ => return None,
     })
@@ -51,11 +58,35 @@ pub fn value(record: &LapRecord, path: &[&str]) -> Option<f64> {
             let attempt = record.lap.loop_attempts().nth(index.parse().ok()?)?;
             loops::attempt(attempt, &record.lap, what)
         }
+        ["own", claim, from, to, kernel, what] => own(record, [from, to], claim, kernel, what),
         ["right_refused"] => Some(loops::right_refused(&record.lap)),
         ["front_end", what] => summary(&record.front_end, what),
         [what] => summary(&record.lap, what),
         _ => None,
     }
+}
+
+/// What a loop of the reader's own does at the end of the lap, past the gate.
+fn own(record: &LapRecord, ends: [&str; 2], claim: &str, kernel: &str, what: &str) -> Option<f64> {
+    let request = OwnLoopRequest {
+        tick: record.ticks(),
+        nodes: [ends[0].parse().ok()?, ends[1].parse().ok()?],
+        claim: Claim::named(claim)?,
+        gate: GateUse::Bypassed,
+        kernel: OwnKernel::named(kernel)?,
+    };
+    let attempt = record.own_loop(&request).ok()?.attempt;
+    let effect = attempt.effect?;
+    Some(match what {
+        "from" => request.nodes[0] as f64,
+        "to" => request.nodes[1] as f64,
+        "gate_chi2" => attempt.verification.gate.chi2,
+        "max_shift" => effect.max_shift_m,
+        "chi2_after" => effect.chi2.after,
+        "rms_before" => effect.keyframe_rms_m.before,
+        "rms_after" => effect.keyframe_rms_m.after,
+        _ => return None,
+    })
 }
 
 /// Cells of the grid that is painted from a whole lap.

@@ -104,6 +104,8 @@ pub fn layer(surface: &mut dyn Surface, layer: &Layer, to: &Transform, theme: Th
                 words(surface, to.to_px(*at), text, *meaning, theme);
             }
         }
+        // Above all layers, once the places of all words are known.
+        Layer::Label { .. } => {}
     }
 }
 
@@ -115,7 +117,7 @@ fn handle(surface: &mut dyn Surface, at: Px, color: Rgb, theme: Theme) {
 }
 
 /// Words over data: black or white on the area of their class, otherwise with a halo of paper.
-fn words(surface: &mut dyn Surface, at: Px, text: &str, meaning: Tone, theme: Theme) {
+pub fn words(surface: &mut dyn Surface, at: Px, text: &str, meaning: Tone, theme: Theme) {
     let ink = tone(theme, meaning);
     if let Tone::Class(_) = meaning {
         let ink = readable_on(ink);
@@ -135,6 +137,6 @@ fn pen(theme: Theme, meaning: Tone, width: f32, stroke: Stroke) -> Pen {
     }
 }
 
-fn is_finite(at: &[f64; 2]) -> bool {
+pub fn is_finite(at: &[f64; 2]) -> bool {
     at[0].is_finite() && at[1].is_finite()
 }

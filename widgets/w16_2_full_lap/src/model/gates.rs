@@ -2,6 +2,7 @@
 //! measured position.
 
 use ch16_lab::lap::{LapTrace, LoopAttempt};
+use ch16_slam2d::graph::PoseGraph;
 use ch16_slam2d::loops::{
     GateModel, GateTest, LoopConfig, LoopVerification, chi_squared_gate, marginal_information,
     path_information,
@@ -41,12 +42,13 @@ pub struct Region {
 impl Gates {
     /// Both gates over an attempt of `lap`.
     pub fn of(lap: &LapTrace, attempt: &LoopAttempt, config: &LoopConfig) -> Self {
+        Self::on(&mut lap.graph_before(attempt), attempt, config)
+    }
+
+    /// Both gates over an attempt that met this graph.
+    pub fn on(graph: &mut PoseGraph, attempt: &LoopAttempt, config: &LoopConfig) -> Self {
         let loop_ = &attempt.verification;
-        let marginal = marginal_information(
-            &mut lap.graph_before(attempt),
-            loop_.candidate.node,
-            loop_.from_node,
-        );
+        let marginal = marginal_information(graph, loop_.candidate.node, loop_.from_node);
         let gate = |model, information| Gate {
             model,
             information,

@@ -1,9 +1,10 @@
 //! What the widget shows at a tick: poses of the graph, on the way from old to new where a loop's
 //! animation runs.
 
-use ch16_lab::lap::LoopAttempt;
+use ch16_lab::lap::{LoopAttempt, OwnLoop, RecordedEdge};
 use pr_geom::SE2;
 
+use super::pick::Part;
 use super::runs::Runs;
 
 /// The state at one tick.
@@ -12,51 +13,107 @@ pub struct Moment<'a> {
     pub runs: &'a Runs,
     /// Ticks done.
     pub tick: usize,
-    /// The last tick of which the plots tell: the one shown, or the end of the lap.
+    /// The last tick of which anything tells: the one shown, or the end of the lap.
     pub seen_until: usize,
     /// The attempt made in this tick.
     pub attempt: Option<&'a LoopAttempt>,
-    /// Poses of the graph's nodes before the attempt; empty without one.
+    /// The loop of the reader's own.
+    pub own: Option<&'a OwnLoop>,
+    /// Poses of the graph's nodes before the attempt, or before the own loop; empty without one.
     pub old_nodes: Vec<SE2>,
     /// Poses of the graph's nodes as shown: `world_from_body`.
     pub nodes: Vec<SE2>,
     /// The graph's pose of the robot as shown: `world_from_body`.
     pub estimate: SE2,
+    /// What is looked at.
+    pub picked: Option<Part>,
+    /// What the pointer is over.
+    pub hovered: Option<Part>,
+    /// The keyframe at which a loop of the reader's own begins that has no end yet.
+    pub tied: Option<usize>,
 }
 
 impl<'a> Moment<'a> {
-    /// The state at `tick`; `share` is the part of a loop's correction that is shown.
-    pub fn new(runs: &'a Runs, tick: usize, share: f64, seen_until: usize) -> Self {
+    /// The state at `tick` with the own loop; `share` is the part of a loop's correction that is shown.
+    pub fn new(
+        runs: &'a Runs,
+        tick: usize,
+        share: f64,
+        seen_until: usize,
+        own: Option<&'a OwnLoop>,
+    ) -> Self {
         let attempt = runs.graph.attempt_at(tick);
-        let mut nodes = runs.graph.poses_at(tick).to_vec();
+        let closed = own.filter(|own| own.is_closed());
+        let (mut nodes, old_nodes, effect) = match (closed, attempt) {
+            (Some(own), _) => (
+                own.poses.clone(),
+                runs.graph.poses_at(tick).to_vec(),
+                own.attempt.effect,
+            ),
+            (None, Some(attempt)) => (
+                runs.graph.poses_at(tick).to_vec(),
+                runs.graph.poses_before_loop(tick).to_vec(),
+                attempt.effect,
+            ),
+            (None, None) => (runs.graph.poses_at(tick).to_vec(), Vec::new(), None),
+        };
+        for (new, old) in nodes.iter_mut().zip(&old_nodes) {
+            *new = between(old, new, share);
+        }
         let mut estimate = runs.graph.estimate(tick);
-        let mut old_nodes = Vec::new();
-        if let Some(attempt) = attempt {
-            old_nodes = runs.graph.poses_before_loop(tick).to_vec();
-            for (new, old) in nodes.iter_mut().zip(&old_nodes) {
-                *new = between(old, new, share);
-            }
-            if let Some(effect) = &attempt.effect {
-                let old = effect.correction.inverse() * estimate;
-                estimate = between(&old, &estimate, share);
-            }
+        if let Some(effect) = effect {
+            let (old, new) = if closed.is_some() {
+                (estimate, effect.correction * estimate)
+            } else {
+                (effect.correction.inverse() * estimate, estimate)
+            };
+            estimate = between(&old, &new, share);
         }
         Self {
             runs,
             tick,
             seen_until,
             attempt,
+            own,
             old_nodes,
             nodes,
             estimate,
+            picked: None,
+            hovered: None,
+            tied: None,
         }
     }
 
     /// The loops tried up to here.
-    pub fn loops_tried(&self) -> impl Iterator<Item = &LoopAttempt> {
+    pub fn loops_tried(&self) -> impl DoubleEndedIterator<Item = &'a LoopAttempt> + use<'a> {
         let tick = self.tick;
         let attempts = self.runs.graph.attempts().iter();
         attempts.filter(move |attempt| attempt.tick <= tick)
+    }
+
+    /// The loop that the moment belongs to, as far as it may be told of.
+    pub fn loop_near(&self) -> Option<&'a LoopAttempt> {
+        let graph = &self.runs.graph;
+        let newest = graph.newest_attempt(self.seen_until.min(self.tick + 1));
+        let first = graph.attempts().first();
+        newest.or(first.filter(|attempt| attempt.tick <= self.seen_until))
+    }
+
+    /// The edges of the graph up to here, without the own loop.
+    pub fn edges(&self) -> impl Iterator<Item = &'a RecordedEdge> + use<'a> {
+        self.runs.graph.lap().edges(self.tick).iter()
+    }
+
+    /// The same with the own loop, where it is closed.
+    pub fn edges_with_own(&self) -> impl Iterator<Item = &'a RecordedEdge> + use<'a> {
+        let own = self.own.filter(|own| own.is_closed());
+        self.edges().chain(own.map(|own| &own.edge))
+    }
+
+    /// Whether something moved: a loop was closed in this tick, or the reader's own is.
+    pub fn has_moved(&self) -> bool {
+        let own = self.own.is_some_and(OwnLoop::is_closed);
+        own || self.attempt.is_some_and(LoopAttempt::accepted)
     }
 }
 

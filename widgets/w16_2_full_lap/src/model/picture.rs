@@ -1,15 +1,31 @@
-//! The panels: the map, the loop from near, the plots over time.
+//! The panels: the map, the loop from near, the plots over time, the strain of each edge.
 
 mod closeup;
 mod map;
+mod parts;
 mod plots;
+mod strain;
 
 use ch16_lab::lap::LoopAttempt;
 use kit::scene::{LegendEntry, Mark, Scene, Stroke, Tone};
 
 use super::moment::Moment;
 
-pub use plots::OVER_TIME;
+pub use map::loop_mark;
+pub use plots::{OVER_TIME, gate_mark};
+pub use strain::{part_of, strain_mark};
+
+/// Names of the panels.
+pub mod panel {
+    /// The world with the graph.
+    pub const MAP: &str = "map";
+    /// One loop from near.
+    pub const LOOP: &str = "loop";
+    /// χ² of each loop tried.
+    pub const GATE: &str = "gate";
+    /// √χ² of each edge.
+    pub const STRAIN: &str = "strain";
+}
 
 /// How a loop looks, in every panel.
 struct LoopLook {
@@ -54,6 +70,7 @@ pub fn scene(moment: &Moment) -> Scene {
             plots::errors(moment),
             plots::disagreement(moment),
             plots::gate(moment),
+            strain::strain(moment),
         ],
     }
 }

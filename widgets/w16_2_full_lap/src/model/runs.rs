@@ -2,9 +2,13 @@
 
 use std::sync::Arc;
 
-use ch16_lab::lap::{Drive, LapConfig, LapRecord, LapSummary, LoopAttempt};
+use ch16_lab::lap::{
+    BuiltInWorld, Choice as _, Drive, LapConfig, LapRecord, LapSummary, LoopAttempt, OwnLoop,
+    OwnLoopError, OwnLoopRequest,
+};
 use ch16_slam2d::loops::LoopConfig;
 use pr_geom::SE2;
+use pr_sim::World;
 
 use super::gates::Gates;
 use super::track::Track;
@@ -12,6 +16,7 @@ use super::track::Track;
 /// A drive with both estimators that ran over it, and the errors over time.
 pub struct Runs {
     config: LapConfig,
+    place: BuiltInWorld,
     drive: Arc<Drive>,
     /// Of each attempt of `graph`, in order.
     gates: Vec<Gates>,
@@ -55,9 +60,20 @@ impl Runs {
             front_end: Track::new(front_end, start),
             graph: Track::new(lap, start),
             gates,
+            place: place(&config),
             config,
             drive,
         }
+    }
+
+    /// The walls.
+    pub fn world(&self) -> &World {
+        &self.config.drive.world
+    }
+
+    /// Which of the built-in worlds it is.
+    pub fn place(&self) -> BuiltInWorld {
+        self.place
     }
 
     /// Ticks of the lap.
@@ -85,6 +101,25 @@ impl Runs {
         &self.gates[index]
     }
 
+    /// The attempts to close a loop in the first ticks, in order.
+    pub fn attempts_until(&self, tick: usize) -> &[LoopAttempt] {
+        let all = self.graph.attempts();
+        &all[..all.partition_point(|attempt| attempt.tick <= tick)]
+    }
+
+    /// A loop of the reader's own in the graph.
+    pub fn own_loop(&self, request: &OwnLoopRequest) -> Result<OwnLoop, OwnLoopError> {
+        self.graph
+            .lap()
+            .own_loop(request, &self.drive, &self.config)
+    }
+
+    /// Both gates over a loop of the reader's own.
+    pub fn gates_of_own(&self, own: &OwnLoop) -> Gates {
+        let mut graph = self.graph.lap().graph(own.request.tick);
+        Gates::on(&mut graph, &own.attempt, self.loop_config())
+    }
+
     /// True pose after so many ticks, world frame.
     pub fn truth(&self, tick: usize) -> SE2 {
         self.drive.truth(tick)
@@ -108,21 +143,33 @@ impl Runs {
         })
     }
 
-    /// Whether the robot is on its way back after so many ticks.
+    /// Whether the robot sees again what it has seen, after so many ticks.
     pub fn is_way_back(&self, tick: usize) -> bool {
-        let turn = self
-            .drive
-            .ticks()
-            .iter()
-            .position(|tick| tick.reached == Some(0));
+        let reached = self.config.drive.turn;
+        let mut ticks = self.drive.ticks().iter();
+        let turn = ticks.position(|tick| reached.is_some() && tick.reached == reached);
         turn.is_some_and(|turn| tick > turn)
     }
 
-    /// The results table.
-    pub fn results(&self) -> Results {
+    /// The results table as far as a tick knows.
+    pub fn results_at(&self, tick: usize) -> Results {
         Results {
-            front_end: *self.front_end.summary(),
-            graph: *self.graph.summary(),
+            front_end: self.front_end.lap().summary_at(tick),
+            graph: self.graph.lap().summary_at(tick),
         }
     }
+
+    /// The results table of every tick, the start first.
+    pub fn results_over_time(&self) -> Vec<Results> {
+        (0..=self.ticks())
+            .map(|tick| self.results_at(tick))
+            .collect()
+    }
+}
+
+/// The built-in world with these walls.
+fn place(config: &LapConfig) -> BuiltInWorld {
+    let all = BuiltInWorld::ALL.iter().copied();
+    let mut found = all.filter(|place| place.course().world() == &*config.drive.world);
+    found.next().unwrap_or_default()
 }

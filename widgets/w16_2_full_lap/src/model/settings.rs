@@ -1,6 +1,6 @@
 //! What the values of the parameter list mean to the core.
 
-use ch16_lab::lap::{Choice, LapConfig, LapMatcher, LoopClosure};
+use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LoopClosure};
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::matching::InformationFrame;
@@ -9,6 +9,8 @@ use kit::param::Values;
 /// What a lap depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LapSettings {
+    /// What is driven through.
+    pub world: BuiltInWorld,
     /// Seed of all noise.
     pub seed: u32,
     /// Multiplies the variances of the wheels.
@@ -29,6 +31,7 @@ impl LapSettings {
     /// Reads the list.
     pub fn read(values: &Values) -> Self {
         Self {
+            world: BuiltInWorld::ALL[values.get("world") as usize],
             seed: values.get("seed") as u32,
             noise_factor: values.get("noise"),
             loop_closure: if values.get("loops") == 0.0 {
@@ -49,7 +52,7 @@ impl LapSettings {
 
     /// What the core runs with.
     pub fn config(&self) -> LapConfig {
-        let mut config = LapConfig::with_seed_and_noise(self.seed, self.noise_factor);
+        let mut config = LapConfig::in_world(self.world, self.seed, self.noise_factor);
         config.slam.loop_closure = self.loop_closure;
         config.slam.loops.gate_chi2 = self.gate_chi2;
         config.slam.loops.gate_model = self.gate_model;

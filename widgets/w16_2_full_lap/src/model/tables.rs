@@ -1,29 +1,54 @@
 //! The tables: this run beside the canonical one, the loops, and the data of every plot.
+//!
+//! Each tells of the first ticks alone, up to the last one that is seen.
 
-use ch16_lab::lap::{LapSummary, LoopAttempt, LoopEffect};
+use ch16_lab::lap::{LapSummary, LoopAttempt, LoopEffect, RecordedEdge, edge_strain};
 use ch16_slam2d::loops::LoopRejection;
 use kit::model::{Table, TablePlace};
 
+use super::moment::Moment;
+use super::pick::Part;
+use super::picture::part_of;
 use super::runs::{Results, Runs};
 use super::words::{ends, model_name};
 
 /// The tables beside the picture.
-pub fn shown(runs: &Runs, canonical: &Results) -> Vec<Table> {
+pub fn shown(runs: &Runs, seen: usize, canonical: &[Results]) -> Vec<Table> {
+    let when = |last: usize| {
+        if seen < last {
+            format!("after tick {seen}")
+        } else {
+            "at the end".to_owned()
+        }
+    };
+    let chapters_last = canonical.len() - 1;
     vec![
-        results("run", "This run", &runs.results()),
-        results("canonical", "The chapter's run", canonical),
-        loops(runs),
+        results(
+            "run",
+            format!("This run {}", when(runs.ticks())),
+            &runs.results_at(seen),
+        ),
+        results(
+            "canonical",
+            format!("The chapter's run {}", when(chapters_last)),
+            &canonical[seen.min(chapters_last)],
+        ),
+        loops(runs, seen),
     ]
 }
 
 /// All tables, the shown ones first.
-pub fn all(runs: &Runs, canonical: &Results) -> Vec<Table> {
-    let mut tables = shown(runs, canonical);
-    tables.extend([loop_attempts(runs), over_time(runs), keyframes(runs)]);
+pub fn all(runs: &Runs, seen: usize, canonical: &[Results]) -> Vec<Table> {
+    let mut tables = shown(runs, seen, canonical);
+    tables.extend([
+        loop_attempts(runs, seen),
+        over_time(runs, seen),
+        keyframes(runs, seen),
+    ]);
     tables
 }
 
-fn results(id: &'static str, title: &str, results: &Results) -> Table {
+fn results(id: &'static str, title: String, results: &Results) -> Table {
     let Results { front_end, graph } = results;
     let keyframes = |name: &str, of: fn(&LapSummary) -> String| {
         vec![name.to_owned(), String::new(), of(front_end), of(graph)]
@@ -38,7 +63,7 @@ fn results(id: &'static str, title: &str, results: &Results) -> Table {
     };
     Table {
         id,
-        title: title.to_owned(),
+        title,
         columns: vec![
             "error in m".to_owned(),
             "odometry".to_owned(),
@@ -49,7 +74,7 @@ fn results(id: &'static str, title: &str, results: &Results) -> Table {
             },
         ],
         rows: vec![
-            with_odometry("at the end", graph.odometry_end_error_m, |lap| {
+            with_odometry("newest keyframe", graph.odometry_end_error_m, |lap| {
                 lap.keyframe_end_error_m
             }),
             with_odometry("rms", graph.odometry_rms_m, |lap| lap.keyframe_rms_m),
@@ -66,7 +91,7 @@ fn results(id: &'static str, title: &str, results: &Results) -> Table {
     }
 }
 
-fn loops(runs: &Runs) -> Table {
+fn loops(runs: &Runs, seen: usize) -> Table {
     let head = [
         "loop",
         "χ² path",
@@ -96,13 +121,13 @@ fn loops(runs: &Runs) -> Table {
             runs.gate_chi2()
         ),
         columns: head.map(str::to_owned).to_vec(),
-        rows: runs.graph.attempts().iter().map(row).collect(),
+        rows: runs.attempts_until(seen).iter().map(row).collect(),
         place: TablePlace::Shown,
     }
 }
 
 /// All that is known of each attempt.
-fn loop_attempts(runs: &Runs) -> Table {
+fn loop_attempts(runs: &Runs, seen: usize) -> Table {
     let head = [
         "tick",
         "new node",
@@ -148,7 +173,7 @@ fn loop_attempts(runs: &Runs) -> Table {
         id: "loop-attempts",
         title: "Loops tried".to_owned(),
         columns: head.map(str::to_owned).to_vec(),
-        rows: runs.graph.attempts().iter().map(row).collect(),
+        rows: runs.attempts_until(seen).iter().map(row).collect(),
         place: TablePlace::ExportOnly,
     }
 }
@@ -167,7 +192,7 @@ fn verdict_with_reason(attempt: &LoopAttempt) -> &'static str {
     }
 }
 
-fn over_time(runs: &Runs) -> Table {
+fn over_time(runs: &Runs, seen: usize) -> Table {
     let head = [
         "tick",
         "odometry error (m)",
@@ -195,12 +220,12 @@ fn over_time(runs: &Runs) -> Table {
         id: "errors-over-time",
         title: "Errors over time".to_owned(),
         columns: head.map(str::to_owned).to_vec(),
-        rows: (0..=runs.ticks()).map(row).collect(),
+        rows: (0..=seen).map(row).collect(),
         place: TablePlace::ExportOnly,
     }
 }
 
-fn keyframes(runs: &Runs) -> Table {
+fn keyframes(runs: &Runs, seen: usize) -> Table {
     let head = [
         "node",
         "tick",
@@ -210,7 +235,7 @@ fn keyframes(runs: &Runs) -> Table {
         "y (m)",
         "heading (rad)",
     ];
-    let poses = runs.graph.poses_at(runs.ticks());
+    let poses = runs.graph.poses_at(seen);
     let row = |(node, pose): (usize, &pr_geom::SE2)| {
         let tick = runs.graph.keyframe_tick(node);
         let truth = runs.truth(tick);
@@ -223,9 +248,47 @@ fn keyframes(runs: &Runs) -> Table {
     };
     Table {
         id: "keyframes",
-        title: "Keyframes at the end of the lap".to_owned(),
+        title: format!("Keyframes after tick {seen}"),
         columns: head.map(str::to_owned).to_vec(),
         rows: poses.iter().enumerate().map(row).collect(),
+        place: TablePlace::ExportOnly,
+    }
+}
+
+/// Every edge of the graph at the moment shown.
+pub fn edges(moment: &Moment) -> Table {
+    let head = [
+        "from node",
+        "to node",
+        "kind",
+        "χ²",
+        "left ahead (m)",
+        "left aside (m)",
+        "left turn (rad)",
+    ];
+    let row = |edge: &RecordedEdge| {
+        let strain = edge_strain(edge, &moment.nodes);
+        let kind = match part_of(moment, edge) {
+            Part::Own => "your loop",
+            Part::Loop(_) => "loop",
+            Part::Edge(_) | Part::Keyframe(_) => "odometry",
+        };
+        let numbers = [
+            strain.chi2,
+            strain.residual.x,
+            strain.residual.y,
+            strain.residual.z,
+        ];
+        [edge.from.to_string(), edge.to.to_string(), kind.to_owned()]
+            .into_iter()
+            .chain(numbers.map(exact))
+            .collect()
+    };
+    Table {
+        id: "edges",
+        title: format!("Edges after tick {}", moment.tick),
+        columns: head.map(str::to_owned).to_vec(),
+        rows: moment.edges_with_own().map(row).collect(),
         place: TablePlace::ExportOnly,
     }
 }

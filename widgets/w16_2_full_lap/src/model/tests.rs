@@ -1,11 +1,14 @@
 //! The widget without its picture, against the reference laps and the words it says of itself.
 
 mod both_gates;
+mod own;
+mod parts;
 mod playing;
 mod reference;
 mod settings;
+mod worlds;
 
-use kit::model::Fact;
+use kit::model::{Fact, Standing};
 use kit::scene::{Layer, Mark, Stroke, Tone};
 
 use super::*;
@@ -37,6 +40,11 @@ fn set(model: &mut FullLap, id: &str, value: f64) {
 fn press(model: &mut FullLap, id: &str) {
     model.press(id).unwrap();
     model.settle();
+}
+
+/// The results table at the end of the lap.
+fn results(model: &FullLap) -> Results {
+    model.runs.results_at(model.runs.ticks())
 }
 
 fn table(model: &FullLap, id: &str) -> Vec<Vec<String>> {

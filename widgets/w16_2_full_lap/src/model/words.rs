@@ -1,10 +1,27 @@
 //! The result in words and numbers.
 
-use ch16_lab::lap::{LoopAttempt, LoopEffect, LoopJudgement};
+use ch16_lab::lap::{
+    BuiltInWorld, Choice as _, LoopAttempt, LoopEffect, LoopJudgement, OwnLoopError,
+};
 use ch16_slam2d::loops::GateModel;
 use kit::model::{Fact, Outcome, Standing};
 
+use super::moment::Moment;
 use super::runs::Runs;
+
+pub mod parts;
+
+pub use parts::part_label;
+
+/// What is said first: how good, in a word or two, and in a sentence.
+pub struct Said {
+    /// Good or bad.
+    pub standing: Standing,
+    /// One or two words.
+    pub verdict: String,
+    /// One sentence.
+    pub sentence: String,
+}
 
 /// `29 to 7`: the new node and the old one.
 pub fn ends(attempt: &LoopAttempt) -> String {
@@ -29,33 +46,54 @@ pub fn standing(judgement: LoopJudgement) -> Standing {
     }
 }
 
-/// The result at a tick: of the loop where one is tried in it, of the estimates where none is.
-pub fn outcome(runs: &Runs, tick: usize) -> Outcome {
-    let lap = runs.graph.lap();
-    let (standing, verdict, sentence) = match runs.graph.attempt_at(tick) {
-        Some(attempt) => {
-            let judgement = lap.judge(attempt);
-            let verdict = judgement.to_string();
-            (standing(judgement), verdict, lap.loop_sentence(attempt))
-        }
-        None if tick == runs.ticks() => (
-            Standing::Neutral,
-            "lap finished".to_owned(),
-            lap_sentence(runs),
-        ),
-        None => (
-            Standing::Neutral,
-            "on the way".to_owned(),
-            tick_sentence(runs, tick),
-        ),
-    };
+/// The result at a moment: of what is looked at, else of the reader's own loop, else of the loop that is
+/// tried in the tick, else of the estimates. `refused` says why the own loop cannot be.
+pub fn outcome(moment: &Moment, refused: Option<&OwnLoopError>) -> Outcome {
+    let Said {
+        standing,
+        verdict,
+        sentence,
+    } = said(moment, refused);
+    let (runs, tick) = (moment.runs, moment.tick);
     let mut facts = moment_facts(runs, tick);
     facts.extend(loop_facts(runs, tick));
+    facts.extend(parts::facts(moment));
     Outcome {
         standing,
         verdict,
         sentence,
         facts,
+    }
+}
+
+fn said(moment: &Moment, refused: Option<&OwnLoopError>) -> Said {
+    let (runs, tick) = (moment.runs, moment.tick);
+    let neutral = |verdict: &str, sentence| Said {
+        standing: Standing::Neutral,
+        verdict: verdict.to_owned(),
+        sentence,
+    };
+    if let Some(part) = moment.picked {
+        return parts::part_said(moment, part);
+    }
+    if let Some(own) = moment.own {
+        return parts::own_said(moment, own);
+    }
+    if let Some(refused) = refused {
+        return neutral("no loop of your own", refused.to_string());
+    }
+    let lap = runs.graph.lap();
+    match moment.attempt {
+        Some(attempt) => {
+            let judgement = lap.judge(attempt);
+            Said {
+                standing: standing(judgement),
+                verdict: judgement.to_string(),
+                sentence: lap.loop_sentence(attempt),
+            }
+        }
+        None if tick == runs.ticks() => neutral("lap finished", lap_sentence(runs)),
+        None => neutral("on the way", tick_sentence(runs, tick)),
     }
 }
 
@@ -184,32 +222,53 @@ fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
 }
 
 /// A text that stands for the picture.
-pub fn summary(runs: &Runs, tick: usize) -> String {
+pub fn summary(moment: &Moment, refused: Option<&OwnLoopError>) -> String {
+    let (runs, tick) = (moment.runs, moment.tick);
     let truth = runs.truth(tick);
     let way = if runs.is_way_back(tick) {
-        "on its way back"
+        "where it has been before"
     } else {
         "on its way out"
     };
-    let loops: Vec<_> = runs
-        .graph
-        .attempts()
-        .iter()
-        .filter(|attempt| attempt.tick <= tick)
-        .map(|attempt| runs.graph.lap().loop_sentence(attempt))
-        .collect();
+    let lap = runs.graph.lap();
+    let loops = moment.loops_tried();
+    let loops: Vec<_> = loops.map(|attempt| lap.loop_sentence(attempt)).collect();
     let loops = if loops.is_empty() {
         "No loop was tried so far".to_owned()
     } else {
         format!("So far: {}", loops.join("; "))
     };
+    let mut rest = String::new();
+    if let Some(own) = moment.own {
+        rest += &format!(" Then {}.", parts::own_said(moment, own).sentence);
+    } else if let Some(refused) = refused {
+        rest += &format!(" Your own loop: {refused}.");
+    }
+    if let Some(part) = moment.picked {
+        rest += &format!(" Looked at: {}.", parts::part_said(moment, part).sentence);
+    }
     format!(
-        "Map of the Apartment, 12 m by 9 m, with a corridor along its middle. \
-         The robot is at x {:.1} m, y {:.1} m, {way}; {}. \
-         The pose graph has {} keyframes. {loops}.",
+        "{}. The robot is at x {:.1} m, y {:.1} m, {way}; {}. \
+         The pose graph has {} keyframes. {loops}.{rest}",
+        place_words(runs),
         truth.x(),
         truth.y(),
         tick_sentence(runs, tick),
         runs.graph.keyframes_until(tick),
     )
+}
+
+/// `Map of the Apartment, 12 m by 9 m, with a corridor along its middle`.
+fn place_words(runs: &Runs) -> String {
+    let bounds = runs.world().bounds();
+    let [width, height] = [bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y];
+    let looks = match runs.place() {
+        BuiltInWorld::Apartment => ", with a corridor along its middle",
+        BuiltInWorld::Ring => " around a block of rooms",
+        BuiltInWorld::TwinRooms => " on a corridor, side by side",
+        BuiltInWorld::Corridor => " without a door or a pillar",
+        BuiltInWorld::Hall => " without a corner",
+    };
+    let label = runs.place().label();
+    format!("Map of {label}, {width:.1} m by {height:.1} m{looks}")
 }

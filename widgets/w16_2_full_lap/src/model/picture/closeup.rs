@@ -5,7 +5,8 @@ use ch16_lab::lap::LoopAttempt;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::SE2;
 
-use crate::model::gates::{Gate, Region};
+use super::panel;
+use crate::model::gates::{Gate, Gates, Region};
 use crate::model::moment::Moment;
 use crate::model::runs::Runs;
 use crate::model::words::{ends, model_name};
@@ -13,16 +14,38 @@ use crate::model::words::{ends, model_name};
 /// Half width and half height of the view, m: the corridor is 1.2 m wide.
 const HALF_VIEW_M: [f64; 2] = [2.0, 1.3];
 
-/// The newest loop, from the tick before it is tried, or words where none was tried so far.
+/// Room around both nodes, m; candidates of the lap always have it.
+const ROOM_M: f64 = 0.25;
+
+/// The reader's own loop, else the newest one of the lap, or words where none was tried so far.
 pub fn closeup(moment: &Moment) -> Panel {
     let runs = moment.runs;
-    let seen = moment.seen_until.max(moment.tick + 1);
-    let near = runs.graph.attempt_near(moment.tick);
-    match near.filter(|attempt| attempt.tick <= seen) {
-        Some(attempt) => of_loop(runs, attempt),
-        None => panel(
+    if let Some(own) = moment.own {
+        let before = runs.graph.poses_at(moment.tick);
+        let shown = LoopShown {
+            attempt: &own.attempt,
+            gates: &runs.gates_of_own(own),
+            before,
+            after: &own.poses,
+            title: format!("Your loop {} from near", ends(&own.attempt)),
+        };
+        return of_loop(runs, &shown);
+    }
+    match moment.loop_near() {
+        Some(attempt) => of_loop(
+            runs,
+            &LoopShown {
+                attempt,
+                gates: runs.gates(attempt),
+                before: runs.graph.poses_before_loop(attempt.tick),
+                after: runs.graph.poses_at(attempt.tick),
+                title: format!("Loop {} from near, tick {}", ends(attempt), attempt.tick),
+            },
+        ),
+        None => view(
             "No loop tried so far".to_owned(),
             [0.0, 0.0],
+            1.0,
             vec![Layer::Text {
                 at: [0.0, 0.0],
                 text: "no loop tried so far".to_owned(),
@@ -33,11 +56,21 @@ pub fn closeup(moment: &Moment) -> Panel {
     }
 }
 
-fn of_loop(runs: &Runs, attempt: &LoopAttempt) -> Panel {
+/// A loop with the poses of all nodes before and after it.
+struct LoopShown<'a> {
+    attempt: &'a LoopAttempt,
+    gates: &'a Gates,
+    before: &'a [SE2],
+    after: &'a [SE2],
+    title: String,
+}
+
+fn of_loop(runs: &Runs, shown: &LoopShown) -> Panel {
+    let attempt = shown.attempt;
     let loop_ = &attempt.verification;
     let (predicted, registered) = (loop_.belief, loop_.registered);
     let mut layers = vec![
-        Layer::points(submap(runs, attempt), Mark::Dot, Tone::Prior, 1.6),
+        Layer::points(submap(runs, shown), Mark::Dot, Tone::Prior, 1.6),
         Layer::points(
             runs.sweep_at(loop_.from_node, predicted).collect(),
             Mark::Dot,
@@ -51,7 +84,7 @@ fn of_loop(runs: &Runs, attempt: &LoopAttempt) -> Panel {
             2.4,
         ),
     ];
-    let gates = runs.gates(attempt);
+    let gates = shown.gates;
     let chosen = runs.loop_config().gate_model;
     let gates = [&gates.path, &gates.exact].map(|gate| GateShown {
         gate,
@@ -74,28 +107,33 @@ fn of_loop(runs: &Runs, attempt: &LoopAttempt) -> Panel {
         pose(predicted, Mark::Triangle, Tone::Prediction, 7.0),
     ]);
     if attempt.accepted() {
-        let nodes = runs.graph.poses_at(attempt.tick);
+        let nodes = shown.after;
         let graph = nodes[loop_.candidate.node].between(&nodes[loop_.from_node]);
         layers.push(pose(graph, Mark::Square, Tone::Posterior, 5.0));
     }
     // On top and larger: the graph ends close to what was registered.
     layers.push(pose(registered, Mark::Cross, Tone::Measurement, 9.0));
-    // Both nodes in view: candidates lie within 2 m.
+    // Both nodes in view: candidates lie within 2 m, the ends of an own loop may lie anywhere.
     let middle = [0.5 * predicted.x(), 0.5 * predicted.y()];
-    let title = format!("Loop {} from near, tick {}", ends(attempt), attempt.tick);
-    panel(title, middle, layers, legend(&gates, attempt.accepted()))
+    let wider = (0..2).map(|i| (middle[i].abs() + ROOM_M) / HALF_VIEW_M[i]);
+    let scale = wider.fold(1.0, f64::max);
+    let legend = legend(&gates, attempt.accepted());
+    view(shown.title.clone(), middle, scale, layers, legend)
 }
 
-fn panel(title: String, middle: [f64; 2], layers: Vec<Layer>, legend: Vec<LegendEntry>) -> Panel {
+fn view(
+    title: String,
+    middle: [f64; 2],
+    scale: f64,
+    layers: Vec<Layer>,
+    legend: Vec<LegendEntry>,
+) -> Panel {
     let axis = |label, i: usize| {
-        Axis::new(
-            label,
-            middle[i] - HALF_VIEW_M[i],
-            middle[i] + HALF_VIEW_M[i],
-        )
+        let half = scale * HALF_VIEW_M[i];
+        Axis::new(label, middle[i] - half, middle[i] + half)
     };
     Panel {
-        id: "loop",
+        id: panel::LOOP,
         title,
         weight: Weight::Side,
         aspect: Aspect::Equal,
@@ -108,10 +146,10 @@ fn panel(title: String, middle: [f64; 2], layers: Vec<Layer>, legend: Vec<Legend
 }
 
 /// The old sweeps as verification saw them: around the candidate, at the poses before the loop.
-fn submap(runs: &Runs, attempt: &LoopAttempt) -> Vec<[f64; 2]> {
-    let candidate = attempt.verification.candidate.node;
+fn submap(runs: &Runs, shown: &LoopShown) -> Vec<[f64; 2]> {
+    let candidate = shown.attempt.verification.candidate.node;
     let reach = runs.loop_config().submap_half_width;
-    let nodes = runs.graph.poses_before_loop(attempt.tick);
+    let nodes = shown.before;
     let last = (candidate + reach).min(nodes.len() - 1);
     (candidate.saturating_sub(reach)..=last)
         .flat_map(|near| runs.sweep_at(near, nodes[candidate].between(&nodes[near])))

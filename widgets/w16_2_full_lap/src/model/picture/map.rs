@@ -1,14 +1,14 @@
-//! The map panel: the Apartment, the three estimates, the graph and its map.
+//! The map panel: the world, the three estimates, the graph and its map.
 
-use ch16_lab::lap::LoopAttempt;
-use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use ch16_lab::lap::{BuiltInWorld, Choice as _, LoopAttempt, OwnLoop};
+use kit::scene::{Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::{SE2, math};
 use pr_sim::World;
 
-use super::LoopLook;
+use super::{LoopLook, panel, parts};
 use crate::model::moment::Moment;
 
-/// Room around the Apartment, m.
+/// Room around the world, m.
 const MARGIN_M: f64 = 0.4;
 
 /// Lowest and highest arc of a loop, m; in between it is as high as its ends are apart.
@@ -20,49 +20,82 @@ const ARROW_HEAD_M: f64 = 0.09;
 /// Segments of a loop's arc.
 const ARC_STEPS: u32 = 24;
 
-/// The Apartment at a moment.
+/// The world at a moment.
 pub fn map(moment: &Moment) -> Panel {
-    let bounds = World::apartment().bounds();
-    let mut layers = apartment();
+    let world = moment.runs.world();
+    let bounds = shown_bounds(moment);
+    let mut layers = vec![walls(world)];
     layers.extend(map_points(moment));
     layers.extend(paths(moment));
     layers.extend(history(moment));
     layers.extend(graph(moment));
-    layers.extend(attempt_now(moment));
     layers.extend(robots(moment));
+    layers.extend(parts::looked_at(moment));
+    layers.extend(attempt_now(moment));
+    if moment.runs.place() == BuiltInWorld::Apartment {
+        layers.extend(rooms());
+    }
     Panel {
-        id: "map",
-        title: format!("The Apartment after tick {}", moment.tick),
+        id: panel::MAP,
+        title: title(moment),
         weight: Weight::Main,
         aspect: Aspect::Equal,
-        x: Axis::new("x (m)", bounds.min.x - MARGIN_M, bounds.max.x + MARGIN_M),
-        y: Axis::new("y (m)", bounds.min.y - MARGIN_M, bounds.max.y + MARGIN_M),
+        x: Axis::new("x (m)", bounds.min[0], bounds.max[0]),
+        y: Axis::new("y (m)", bounds.min[1], bounds.max[1]),
         layers,
-        legend: legend(),
+        legend: legend(moment),
         color_bar: None,
     }
 }
 
-fn apartment() -> Vec<Layer> {
-    let world = World::apartment();
+/// `The Apartment after tick 92`.
+fn title(moment: &Moment) -> String {
+    let mut words = moment.runs.place().label().to_owned();
+    words[..1].make_ascii_uppercase();
+    format!("{words} after tick {}", moment.tick)
+}
+
+/// The world with some room around it, and all that the estimates make of it outside of the Apartment,
+/// whose axes never move.
+fn shown_bounds(moment: &Moment) -> Bounds {
+    let walls = moment.runs.world().bounds();
+    let mut min = [walls.min.x, walls.min.y];
+    let mut max = [walls.max.x, walls.max.y];
+    if moment.runs.place() != BuiltInWorld::Apartment {
+        let ends = moment.runs.graph.poses_at(moment.runs.ticks());
+        for pose in ends.iter().chain(&moment.nodes).map(xy) {
+            for i in 0..2 {
+                min[i] = math::min(min[i], pose[i]);
+                max[i] = math::max(max[i], pose[i]);
+            }
+        }
+    }
+    Bounds {
+        min: min.map(|least| least - MARGIN_M),
+        max: max.map(|most| most + MARGIN_M),
+    }
+}
+
+fn walls(world: &World) -> Layer {
     let walls = world.walls().iter();
     let walls = walls.map(|wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]]);
-    let mut layers = vec![Layer::Segments {
+    Layer::Segments {
         segments: walls.collect(),
         stroke: Stroke::Solid,
         tone: Tone::Ink,
         width_px: 1.0,
-    }];
-    // In the middle of a room, where no sweep has points.
-    layers.extend(World::apartment_rooms().iter().map(|room| Layer::Text {
-        at: [
+    }
+}
+
+/// In the middle of each room, where no sweep has points.
+fn rooms() -> impl Iterator<Item = Layer> {
+    World::apartment_rooms().into_iter().map(|room| {
+        let middle = [
             0.5 * (room.bounds.min.x + room.bounds.max.x),
             0.5 * (room.bounds.min.y + room.bounds.max.y),
-        ],
-        text: room.name.to_owned(),
-        tone: Tone::Ink,
-    }));
-    layers
+        ];
+        Layer::label(middle, room.name.to_owned(), 0.0)
+    })
 }
 
 /// The sweeps of the keyframes at the graph's poses: dots from the way out, × in the other green from
@@ -111,19 +144,21 @@ fn paths(moment: &Moment) -> [Layer; 3] {
 /// Nodes, the factors between neighbours, and the factors of the loops closed so far.
 fn graph(moment: &Moment) -> Vec<Layer> {
     let nodes: Vec<_> = moment.nodes.iter().map(xy).collect();
-    let mut layers = vec![Layer::Segments {
-        segments: nodes.windows(2).map(|pair| [pair[0], pair[1]]).collect(),
-        stroke: Stroke::Solid,
-        tone: Tone::Posterior,
-        width_px: 1.0,
-    }];
+    let mut layers = parts::edges(moment);
     layers.extend(moment.loops_tried().flat_map(|attempt| {
         let arc = arc(moment, attempt);
         let top = arc[arc.len() / 2];
         loop_layers(attempt, arc, top)
     }));
+    layers.extend(parts::own(moment));
     layers.push(Layer::points(nodes, Mark::Square, Tone::Posterior, 3.0));
     layers
+}
+
+/// Where the mark of a loop stands: at the top of its arc.
+pub fn loop_mark(moment: &Moment, attempt: &LoopAttempt) -> [f64; 2] {
+    let arc = arc(moment, attempt);
+    arc[arc.len() / 2]
 }
 
 /// A loop that was accepted is solid and green, a refused one dotted, grey and hollow.
@@ -141,7 +176,7 @@ fn loop_layers(attempt: &LoopAttempt, arc: Vec<[f64; 2]>, top: [f64; 2]) -> [Lay
 }
 
 /// A loop's factor, bent to the north: straight it would hide behind the factors of the corridor.
-fn arc(moment: &Moment, attempt: &LoopAttempt) -> Vec<[f64; 2]> {
+pub fn arc(moment: &Moment, attempt: &LoopAttempt) -> Vec<[f64; 2]> {
     let loop_ = &attempt.verification;
     let [from, to] = [loop_.from_node, loop_.candidate.node].map(|node| xy(&moment.nodes[node]));
     let apart = math::norm2(to[0] - from[0], to[1] - from[1]);
@@ -158,9 +193,10 @@ fn arc(moment: &Moment, attempt: &LoopAttempt) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// At a closed loop: where the nodes stood before it, and how each moved.
+/// At a closed loop, one of the lap or of the reader's own: where the nodes stood before it, and how
+/// each moved.
 fn history(moment: &Moment) -> Vec<Layer> {
-    if !moment.attempt.is_some_and(LoopAttempt::accepted) {
+    if !moment.has_moved() {
         return Vec::new();
     }
     let old: Vec<_> = moment.old_nodes.iter().map(xy).collect();
@@ -195,13 +231,8 @@ fn attempt_now(moment: &Moment) -> Vec<Layer> {
     let Some(attempt) = moment.attempt else {
         return Vec::new();
     };
-    let arc = arc(moment, attempt);
-    let top = arc[arc.len() / 2];
-    vec![Layer::Text {
-        at: [top[0], top[1] + 0.35],
-        text: moment.runs.graph.lap().loop_headline(attempt),
-        tone: Tone::Ink,
-    }]
+    let headline = moment.runs.graph.lap().loop_headline(attempt);
+    vec![Layer::label(loop_mark(moment, attempt), headline, 8.0)]
 }
 
 /// Where each estimate has the robot now.
@@ -227,8 +258,8 @@ fn robots(moment: &Moment) -> [Layer; 4] {
     ]
 }
 
-fn legend() -> Vec<LegendEntry> {
-    vec![
+fn legend(moment: &Moment) -> Vec<LegendEntry> {
+    let mut legend = vec![
         LegendEntry::line("walls", Tone::Ink, Stroke::Solid),
         LegendEntry::marked_line("truth", Tone::Truth, Mark::Plus, Stroke::Dashed),
         LegendEntry::marked_line("odometry", Tone::Prediction, Mark::Triangle, Stroke::Solid),
@@ -248,9 +279,14 @@ fn legend() -> Vec<LegendEntry> {
         LegendEntry::mark("map, way back", Tone::Revisit, Mark::Cross),
         LoopLook::ACCEPTED.entry("loop accepted"),
         LoopLook::REFUSED.entry("loop refused"),
-    ]
+    ];
+    if moment.own.is_some_and(OwnLoop::is_closed) {
+        let wide = "wide: strained by your loop";
+        legend.push(LegendEntry::line(wide, Tone::Posterior, Stroke::Solid));
+    }
+    legend
 }
 
-fn xy(pose: &SE2) -> [f64; 2] {
+pub fn xy(pose: &SE2) -> [f64; 2] {
     [pose.x(), pose.y()]
 }

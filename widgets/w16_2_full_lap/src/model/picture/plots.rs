@@ -2,21 +2,24 @@
 
 use ch16_lab::lap::LoopAttempt;
 use kit::chart::{Series, TimeChart, axis_from_zero};
-use kit::scene::{Aspect, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
-use super::LoopLook;
+use super::{LoopLook, panel};
 use crate::model::moment::Moment;
 use crate::model::runs::Runs;
 use crate::model::words::ends;
 
 /// The panels whose horizontal axis is the time.
-pub const OVER_TIME: [&str; 3] = ["errors", "disagreement", "gate"];
+pub const OVER_TIME: [&str; 3] = ["errors", "disagreement", panel::GATE];
 
 /// Ticks beyond the last one on the time axis: a mark at the end is shown whole.
 const ROOM_TICKS: f64 = 5.0;
 
 /// The χ² axis ends at this many gates: what is far outside is drawn at its edge.
 const GATES_SHOWN: f64 = 3.0;
+
+/// Words keep so far from the mark that they name, in pixels.
+const LABEL_CLEAR_PX: f32 = 8.0;
 
 /// Position error over time of the three estimates.
 pub fn errors(moment: &Moment) -> Panel {
@@ -97,25 +100,16 @@ fn chart<'a>(
 /// χ² of each attempt so far with the gate: accepted ones are solid, refused ones hollow.
 pub fn gate(moment: &Moment) -> Panel {
     let (runs, tick) = (moment.runs, moment.tick);
-    let all = runs.graph.attempts();
-    let seen = all.partition_point(|attempt| attempt.tick <= moment.seen_until);
-    let attempts = &all[..seen];
+    let attempts = runs.attempts_until(moment.seen_until);
     let gate = runs.gate_chi2();
-    // Of the whole lap: the axis does not jump while it plays.
-    let highest = all
-        .iter()
-        .map(|a| a.verification.gate.chi2)
-        .fold(gate, f64::max)
-        .min(GATES_SHOWN * gate);
-    let chart = chart(runs, tick, "gate", "χ² of each loop tried", "χ²");
-    let y = axis_from_zero(chart.y_label, highest);
+    let chart = chart(runs, tick, panel::GATE, "χ² of each loop tried", "χ²");
+    let y = gate_axis(moment);
     let of = |accepted: bool| {
         let chosen = attempts.iter().filter(move |a| a.accepted() == accepted);
         chosen
             .map(|a| [a.tick as f64, a.verification.gate.chi2.min(y.max)])
             .collect::<Vec<_>>()
     };
-    let labels = labels(attempts, runs.ticks(), y.max);
     let mut layers = vec![
         chart.now_line(y.max),
         Layer::Line {
@@ -127,7 +121,7 @@ pub fn gate(moment: &Moment) -> Panel {
         look(&LoopLook::ACCEPTED, of(true)),
         look(&LoopLook::REFUSED, of(false)),
     ];
-    layers.extend(labels);
+    layers.extend(labels(attempts, y.max));
     with_room_at_the_end(Panel {
         id: chart.id,
         title: chart.title.to_owned(),
@@ -149,50 +143,35 @@ fn look(look: &LoopLook, at: Vec<[f64; 2]>) -> Layer {
     Layer::points(at, look.mark, look.tone, 5.5)
 }
 
-/// Half the width of a letter and half the height of a word, as shares of a narrow plot.
-const HALF_LETTER: f64 = 0.012;
-const HALF_WORD: f64 = 0.06;
-
-/// `29 to 7` near each mark where no word stands yet, with the number where the mark is at the edge.
-fn labels(attempts: &[LoopAttempt], last: usize, top: f64) -> Vec<Layer> {
-    let width = last as f64 + ROOM_TICKS;
-    // Middle and half size of each word, as shares of the plot.
-    let mut placed: Vec<([f64; 2], [f64; 2])> = Vec::new();
-    let mut layers = Vec::new();
-    for attempt in attempts {
+/// `29 to 7` near each mark, with the number where the mark is at the edge; left out where there is no
+/// room, for the table has it.
+fn labels(attempts: &[LoopAttempt], top: f64) -> impl Iterator<Item = Layer> + '_ {
+    attempts.iter().map(move |attempt| {
         let chi2 = attempt.verification.gate.chi2;
-        let share = (chi2 / top).min(1.0);
         let text = if chi2 > top {
             format!("{}: {chi2:.0}", ends(attempt))
         } else {
             ends(attempt)
         };
-        let half = [HALF_LETTER * text.chars().count() as f64, HALF_WORD];
-        let x = (attempt.tick as f64 / width).clamp(half[0], 1.0 - half[0]);
-        let is_free = |y: &f64| {
-            let inside = (half[1]..=1.0 - half[1]).contains(y);
-            let crowded = placed.iter().any(|([px, py], other)| {
-                (px - x).abs() < half[0] + other[0] && (py - y).abs() < half[1] + other[1]
-            });
-            inside && !crowded
-        };
-        // Beside the mark first, then ever farther off.
-        let away = [
-            0.12, -0.12, 0.25, -0.25, 0.38, -0.38, 0.51, -0.51, 0.64, -0.64,
-        ];
-        let mut candidates = away.iter().map(|away| share + away);
-        let Some(y) = candidates.find(is_free) else {
-            // Nothing fits: the table has it.
-            continue;
-        };
-        placed.push(([x, y], half));
-        layers.push(Layer::Text {
-            at: [x * width, y * top],
-            text,
-            tone: Tone::Ink,
-        });
-    }
-    layers
+        Layer::label([attempt.tick as f64, chi2.min(top)], text, LABEL_CLEAR_PX)
+    })
+}
+
+/// Where an attempt stands in the plot of the gate.
+pub fn gate_mark(moment: &Moment, attempt: &LoopAttempt) -> [f64; 2] {
+    let top = gate_axis(moment).max;
+    [attempt.tick as f64, attempt.verification.gate.chi2.min(top)]
+}
+
+/// The χ² axis; of the whole lap, so that it does not jump while it plays.
+fn gate_axis(moment: &Moment) -> Axis {
+    let gate = moment.runs.gate_chi2();
+    let attempts = moment.runs.graph.attempts().iter();
+    let highest = attempts
+        .map(|attempt| attempt.verification.gate.chi2)
+        .fold(gate, f64::max)
+        .min(GATES_SHOWN * gate);
+    axis_from_zero("χ²", highest)
 }
 
 fn with_room_at_the_end(mut panel: Panel) -> Panel {

@@ -104,7 +104,7 @@ fn the_gate_that_decides_is_solid_and_the_other_one_dotted() {
 fn the_exact_gate_lets_the_locked_out_loops_in() {
     let mut model = FullLap::new();
     press(&mut model, "locked-out");
-    let locked_out = model.runs.results().graph;
+    let locked_out = results(&model).graph;
     press(&mut model, "let-in");
     let attempts = model.runs.graph.attempts();
     assert_eq!(attempts.len(), 3);
@@ -119,7 +119,7 @@ fn the_exact_gate_lets_the_locked_out_loops_in() {
     let heading_variance = |gate: &Gate| gate.information.try_inverse().unwrap()[(2, 2)];
     assert!(heading_variance(exact) > 2.0 * heading_variance(path));
     // "More than a metre": the end of the lap, against the truth.
-    let let_in = model.runs.results().graph;
+    let let_in = results(&model).graph;
     assert!(locked_out.keyframe_end_error_m - let_in.keyframe_end_error_m > 1.0);
 }
 

@@ -185,12 +185,33 @@ fn nothing_of_the_future_is_drawn_unless_the_reader_asks_for_it() {
         set(&mut model, "future", 1.0);
         assert_eq!(told_until(&model), 129.0);
     }
+    // One tick before the first loop, nothing knows of it.
+    let mut model = at(&[("t", 91.0)]);
+    for (future, loops) in [(0.0, 0), (1.0, 3)] {
+        set(&mut model, "future", future);
+        assert_eq!(model.timeline().unwrap().marks.len(), loops);
+        for id in ["loops", "loop-attempts"] {
+            assert_eq!(table(&model, id).len(), loops, "{id}");
+        }
+        let rows = if future == 0.0 { 92 } else { 130 };
+        assert_eq!(table(&model, "errors-over-time").len(), rows);
+        let title = |model: &FullLap| model.scene().panels[1].title.clone();
+        assert_eq!(title(&model).starts_with("Loop 29 to 7"), future == 1.0);
+    }
+    let seen = table(&model, "run");
+    set(&mut model, "future", 0.0);
+    assert_ne!(table(&model, "run"), seen, "results so far");
+    set(&mut model, "t", 129.0);
+    assert_eq!(table(&model, "run"), seen, "results at the end");
+    // Between two loops the close-up shows the one that was.
     let closeup = |tick| {
         let scene = at(&[("t", tick)]).scene();
         scene.panels[1].title.clone()
     };
     assert_eq!(closeup(50.0), "No loop tried so far");
-    assert!(closeup(92.0).starts_with("Loop 29 to 7"));
+    for tick in [92.0, 106.0] {
+        assert!(closeup(tick).starts_with("Loop 29 to 7"));
+    }
 }
 
 /// The marks of loops on a panel: solid and green, hollow and grey.
@@ -221,7 +242,7 @@ fn accepted_loops_are_solid_and_refused_ones_hollow_on_the_map_and_in_the_plot()
     let expected = [accepted, attempts.len() - accepted];
     assert!(expected[0] > 0 && expected[1] > 0);
     let map = 0;
-    let gate = model.scene().panels.len() - 1;
+    let gate = model.scene().panels.len() - 2;
     for panel in [map, gate] {
         assert_eq!(loops_on(&model, panel), expected, "panel {panel}");
     }

@@ -1,0 +1,105 @@
+//! Words near points, placed so that none lies on another.
+
+use super::layers::{is_finite, words};
+use crate::palette::{self, Theme};
+use crate::scene::{Layer, Panel, Tone};
+use crate::surface::{Px, PxRect, Surface, TextSize};
+use crate::transform::Transform;
+
+/// Height of a line of small text with the room that it keeps.
+const LINE: f32 = 15.0;
+/// Room between the words and what stands beside them.
+const ROOM: f32 = 3.0;
+/// Where words are tried, as parts of half their size beyond the point: above and below, then aside.
+const SIDES: [[f32; 2]; 8] = [
+    [0.0, -1.0],
+    [0.0, 1.0],
+    [1.0, 0.0],
+    [-1.0, 0.0],
+    [1.0, -1.0],
+    [-1.0, -1.0],
+    [1.0, 1.0],
+    [-1.0, 1.0],
+];
+/// So many lines they are moved away at most.
+const MOST_LINES: u16 = 6;
+
+/// Draws the labels of a panel, those of earlier layers first.
+pub fn labels(surface: &mut dyn Surface, panel: &Panel, to: &Transform, theme: Theme) {
+    let mut taken = Vec::new();
+    for layer in &panel.layers {
+        if let Layer::Text { at, text, .. } = layer
+            && is_finite(at)
+        {
+            let width = surface.text_width(text, TextSize::Small);
+            taken.push(around(to.to_px(*at), width));
+        }
+    }
+    let plot = to.plot();
+    for layer in &panel.layers {
+        let Layer::Label {
+            at,
+            text,
+            tone,
+            clear_px,
+        } = layer
+        else {
+            continue;
+        };
+        let px = to.to_px(*at);
+        if !is_finite(at) || !plot.contains(px) {
+            continue;
+        }
+        let width = surface.text_width(text, TextSize::Small);
+        if let Some(place) = place(px, width, *clear_px, &plot, &taken) {
+            surface.rect(place, palette::tone(theme, Tone::Paper));
+            words(surface, place.center(), text, *tone, theme);
+            taken.push(place);
+        }
+    }
+}
+
+/// The nearest free place for words of that width; none where all are taken.
+fn place(at: Px, width: f32, clear_px: f32, plot: &PxRect, taken: &[PxRect]) -> Option<PxRect> {
+    let reach = |away: f32| {
+        let beyond = [clear_px + 0.5 * width + ROOM, clear_px + 0.5 * LINE];
+        SIDES.map(|[x, y]| {
+            [
+                at[0] + x * (beyond[0] + away),
+                at[1] + y * (beyond[1] + away),
+            ]
+        })
+    };
+    let on_it = (clear_px == 0.0).then_some(at);
+    let around_it = (0..=MOST_LINES).flat_map(|lines| reach(f32::from(lines) * LINE));
+    on_it.into_iter().chain(around_it).find_map(|middle| {
+        let place = within(around(middle, width), plot)?;
+        let covers = place.contains(at) && clear_px > 0.0;
+        let is_free = !covers && taken.iter().all(|other| !overlap(&place, other));
+        is_free.then_some(place)
+    })
+}
+
+/// The rectangle of words in the middle of which `at` lies.
+fn around(at: Px, width: f32) -> PxRect {
+    PxRect::new(at[0] - 0.5 * width, at[1] - 0.5 * LINE, width, LINE)
+}
+
+/// The rectangle moved sideways into the plot; none where it is too wide, or above or below it.
+fn within(rect: PxRect, plot: &PxRect) -> Option<PxRect> {
+    let fits = rect.width <= plot.width - 2.0 * ROOM
+        && rect.top >= plot.top
+        && rect.bottom() <= plot.bottom();
+    let left = rect.left.clamp(
+        plot.left + ROOM,
+        (plot.right() - ROOM - rect.width).max(plot.left + ROOM),
+    );
+    fits.then_some(PxRect { left, ..rect })
+}
+
+fn overlap(a: &PxRect, b: &PxRect) -> bool {
+    a.left < b.right() + ROOM
+        && b.left < a.right() + ROOM
+        && a.top < b.bottom()
+        && b.top < a.bottom()
+}

@@ -1,0 +1,128 @@
+//! The pointer on the graph: what lies under it, what a tap chooses, and loops that are dragged out.
+
+use ch16_lab::lap::edge_strain;
+use kit::model::Handle;
+use pr_geom::math;
+
+use super::moment::Moment;
+use super::pick::Part;
+use super::picture::{self, panel};
+
+/// A pointer that only moves about answers to what is so near on the map, m.
+const HOVER_M: f64 = 0.3;
+
+/// The same in a plot, as a share of its axes.
+const HOVER_SHARE: f64 = 0.03;
+
+/// The handle of a keyframe: a loop is dragged out of it.
+const KEYFRAME: &str = "keyframe";
+
+/// The part of the graph nearest to a point of a panel, within `reach` along each axis.
+pub fn part_at(moment: &Moment, name: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Part> {
+    let places = places(moment, name);
+    let away = |place: &[f64; 2]| {
+        math::norm2((place[0] - at[0]) / reach[0], (place[1] - at[1]) / reach[1])
+    };
+    let near = places
+        .into_iter()
+        .map(|(part, place)| (part, away(&place)))
+        .filter(|(_, away)| *away <= 1.0)
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    near.map(|(part, _)| part)
+}
+
+/// What lies under a pointer that presses nothing.
+pub fn hovered(moment: &Moment, name: &str, at: [f64; 2]) -> Option<Part> {
+    let reach = match name {
+        panel::MAP => [HOVER_M; 2],
+        _ => {
+            let scene = picture::scene(moment);
+            let shown = scene.panels.iter().find(|shown| shown.id == name)?;
+            [&shown.x, &shown.y].map(|axis| HOVER_SHARE * (axis.max - axis.min))
+        }
+    };
+    part_at(moment, name, at, reach)
+}
+
+/// Where each part stands in a panel: an edge at its middle, a loop at its mark.
+fn places(moment: &Moment, name: &str) -> Vec<(Part, [f64; 2])> {
+    let nodes = &moment.nodes;
+    match name {
+        panel::MAP => {
+            let at = |node: usize| [nodes[node].x(), nodes[node].y()];
+            let keyframes = (0..nodes.len()).map(|node| (Part::Keyframe(node), at(node)));
+            let mut places: Vec<_> = keyframes.collect();
+            places.extend((1..nodes.len()).map(|to| {
+                let (a, b) = (at(to - 1), at(to));
+                let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+                (Part::Edge(to - 1), middle)
+            }));
+            places.extend(moment.loops_tried().map(|attempt| {
+                let part = Part::Loop(attempt.verification.from_node);
+                (part, picture::loop_mark(moment, attempt))
+            }));
+            if let Some(own) = moment.own {
+                places.push((Part::Own, picture::loop_mark(moment, &own.attempt)));
+            }
+            places
+        }
+        panel::STRAIN => moment
+            .edges_with_own()
+            .map(|edge| {
+                let strain = edge_strain(edge, nodes);
+                (
+                    picture::part_of(moment, edge),
+                    picture::strain_mark(&strain),
+                )
+            })
+            .collect(),
+        panel::GATE => {
+            let tried = moment.loops_tried();
+            tried
+                .map(|attempt| {
+                    let part = Part::Loop(attempt.verification.from_node);
+                    (part, picture::gate_mark(moment, attempt))
+                })
+                .collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The keyframe that is looked at can be taken hold of.
+pub fn grab(moment: &Moment, name: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+    let Some(Part::Keyframe(node)) = moment.picked else {
+        return None;
+    };
+    let pose = moment.nodes.get(node).filter(|_| name == panel::MAP)?;
+    let off = [at[0] - pose.x(), at[1] - pose.y()];
+    let is_near = off[0].abs() <= reach[0] && off[1].abs() <= reach[1];
+    is_near.then_some(Handle {
+        panel: panel::MAP,
+        id: KEYFRAME,
+        // What is dragged is a line: it has no spot of its own, but a keyframe where it begins, and
+        // a reach.
+        offset: [node as f64, reach[0]],
+    })
+}
+
+/// The two ends of a loop that is dragged to a point; none before it reaches another keyframe.
+pub fn dragged_ends(moment: &Moment, handle: Handle, at: [f64; 2]) -> Option<[usize; 2]> {
+    if handle.id != KEYFRAME {
+        return None;
+    }
+    let [from, reach] = handle.offset;
+    let from = from as usize;
+    let away = |node: usize| {
+        let pose = &moment.nodes[node];
+        math::norm2(pose.x() - at[0], pose.y() - at[1])
+    };
+    let near = (0..moment.nodes.len())
+        .map(|node| (node, away(node)))
+        .filter(|(_, away)| *away <= reach)
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    let (to, _) = near?;
+    // A press that trembles is no drag.
+    let has_left = from < moment.nodes.len() && away(from) > 0.5 * reach;
+    (to != from && has_left).then_some([from, to])
+}
