@@ -42,9 +42,8 @@ pub fn nearest(cells: &Cells, query: Point2<f64>, tau_m: f64) -> Option<Point2<f
 
 /// A wall along x, a point every 10 cm, m.
 pub fn wall() -> Vec<Point2<f64>> {
-    (0..20)
-        .map(|k| Point2::new(0.1 * f64::from(k), 0.0))
-        .collect()
+    let along = (0..20).map(|k| 0.1 * f64::from(k));
+    along.map(|x| Point2::new(x, 0.0)).collect()
 }
 
 /// Shows who is whose partner beside the wall.

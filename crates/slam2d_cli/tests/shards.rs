@@ -44,8 +44,8 @@ fn shards_put_together_print_what_one_process_prints_to_the_last_digit() {
 fn a_sweep_that_was_killed_in_the_middle_of_a_row_goes_on_where_it_was() {
     let folder = tempfile::tempdir().unwrap();
     let rows = folder.path().join("rows.jsonl");
-    let whole = [&of_shard("1/1", &rows)[..], &["--json"]].concat();
-    let printed = said(&whole);
+    let kept_in = ["--rows", rows.to_str().unwrap(), "--json"];
+    let printed = said(&[&SWEEP[..], &kept_in].concat());
     let text = fs::read_to_string(&rows).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines.len(), 13);

@@ -450,16 +450,22 @@ fn poses_of(run: &LogRun) -> &[SE2] {
 
 /// The links of the last pass; before it the loops that were tried.
 fn links_of(run: &LogRun) -> Vec<Link> {
+    let confidence = confidence_of(run);
     if run.links().is_empty() {
         let tried = run.loops().iter();
         return tried
-            .map(|tried| Link::registered(&tried.verification, tried.accepted))
+            .map(|tried| Link::registered(&tried.verification, confidence, tried.accepted))
             .collect();
     }
     let links = run.links().iter();
     links
-        .map(|link| Link::registered(link, link.accepted()))
+        .map(|link| Link::registered(link, confidence, link.accepted()))
         .collect()
+}
+
+/// How often the estimator counts the information of an edge.
+fn confidence_of(run: &LogRun) -> f64 {
+    run.slam().map_or(1.0, |slam| slam.config().confidence)
 }
 
 /// The newer keyframes of loops in the graph that the rest of it contradicts.

@@ -68,6 +68,28 @@ impl Slam {
         self.hold(found, &guard)
     }
 
+    /// What a loop between two keyframes is tested against that somebody asks for: the information of their
+    /// relative pose that the graph holds, less what the guard adds for drift.
+    ///
+    /// # Errors
+    /// Where the graph has no covariance.
+    ///
+    /// # Panics
+    /// Where a node does not exist.
+    pub fn expected_information(
+        &mut self,
+        old: usize,
+        new: usize,
+    ) -> Result<Matrix3<f64>, OptimizeError> {
+        let covariance = match self.config.loops.guard {
+            Some(guard) => self.way_covariance(old, new, &guard)?,
+            None => self.graph.relative_covariance(old, new)?,
+        };
+        covariance
+            .try_inverse()
+            .ok_or(OptimizeError::NotPositiveDefinite { node: new })
+    }
+
     /// By how much the registered place is ahead of any other in a window of ± `half_width_m` around
     /// the graph's belief; none where the best place is another one.
     fn lead(&self, found: &LoopVerification, half_width_m: f64) -> Option<f64> {

@@ -2,7 +2,7 @@
 //! `look 12`, `cancel`.
 
 use ch16_slam2d::loops::{
-    KeyframeView, LoopCandidate, LoopVerification, LoopWorkspace, marginal_information, verify_loop,
+    KeyframeView, LoopCandidate, LoopVerification, LoopWorkspace, verify_loop,
 };
 use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::slam::SlamParts;
@@ -105,7 +105,7 @@ impl Engine<'_> {
         self.may_edit()?;
         let (old, new) = (a.min(b), a.max(b));
         let found = self.register(old, new)?;
-        let mut link = Link::registered(&found, found.accepted());
+        let mut link = Link::registered(&found, super::confidence_of(&self.run), found.accepted());
         if found.accepted() {
             link.verdict = Verdict::Added;
         }
@@ -135,7 +135,7 @@ impl Engine<'_> {
         if new >= slam.keyframes().len() || old == new {
             return Err("A loop needs two keyframes: mark one, then go to the other.".to_owned());
         }
-        let gate = marginal_information(slam.graph_mut(), old, new);
+        let gate = slam.expected_information(old, new);
         let config = slam.config().clone();
         let mut workspace = LoopWorkspace::new(SlamParts::of(&config).loops);
         let poses = slam.graph().poses();
