@@ -61,7 +61,7 @@ pub struct SweepArgs {
     nudge: bool,
     /// Draw the configuration of each lap from the documented ranges, noise included, and check
     /// that every figure is finite.
-    #[arg(long, conflicts_with_all = ["nudge", "noise", "world", "matcher", "information", "estimator"])]
+    #[arg(long, conflicts_with_all = ["nudge", "noise", "world", "matcher", "front_end", "information", "estimator"])]
     random: bool,
     /// Print one JSON list, an object for each noise factor.
     #[arg(long)]
