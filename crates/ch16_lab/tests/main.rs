@@ -10,6 +10,7 @@ mod patience;
 mod plane_step;
 mod random_laps;
 mod ring;
+mod submaps;
 mod terrain_rows;
 mod turned_frame;
 mod way;

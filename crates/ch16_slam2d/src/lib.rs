@@ -16,3 +16,4 @@ pub mod prelude;
 pub mod scan;
 pub mod search;
 pub mod slam;
+pub mod submaps;

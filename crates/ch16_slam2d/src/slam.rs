@@ -23,6 +23,7 @@ mod refinement;
 mod report;
 mod robots;
 mod scales;
+mod submap_loops;
 #[cfg(test)]
 mod test_room;
 
@@ -43,6 +44,7 @@ use crate::graph::{EdgeKind, PoseGraph};
 use crate::loops::{HeldLoop, LoopDetector, LoopWorkspace};
 use crate::metrics::position_error_m;
 use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer, is_finite};
+use crate::submaps::{FrontEndKind, SubmapLoops};
 
 /// The SLAM system, one frame at a time.
 #[derive(Clone)]
@@ -61,6 +63,8 @@ pub struct Slam {
     held: Vec<HeldLoop>,
     detector: Box<dyn LoopDetector>,
     loop_workspace: LoopWorkspace,
+    /// The finished submaps, where the front end makes some.
+    submap_loops: Option<SubmapLoops>,
     chi2: f64,
 }
 
@@ -78,6 +82,10 @@ impl Slam {
         Self {
             front_end: FrontEnd::new(&config, parts.front_end),
             loop_workspace: LoopWorkspace::new(parts.loops),
+            submap_loops: match config.front_end {
+                FrontEndKind::Window => None,
+                FrontEndKind::Submaps(submaps) => Some(SubmapLoops::new(submaps)),
+            },
             detector: parts.detector,
             graph: PoseGraph::new(),
             keyframes: Vec::new(),
@@ -168,6 +176,7 @@ impl Slam {
                 .register(frame, dt_s, self.frames - 1, &self.config);
             (Some(registration), self.take_keyframe(frame))
         };
+        self.keep_finished();
         Ok(PendingFrame {
             stamp_s: frame.stamp_s,
             registration,
@@ -236,6 +245,12 @@ impl Slam {
         &self.loop_workspace
     }
 
+    /// The finished submaps; none where the front end makes no submaps.
+    #[must_use]
+    pub fn submap_loops(&self) -> Option<&SubmapLoops> {
+        self.submap_loops.as_ref()
+    }
+
     /// χ² of the graph.
     #[must_use]
     pub fn chi2(&self) -> f64 {
@@ -265,18 +280,24 @@ impl Slam {
         {
             return None;
         }
-        let information = self.front_end.information(last_pose.theta(), &self.config);
-        let information = information * self.config.confidence;
-        let node = self.graph.add_node(estimate);
-        self.graph
-            .add_edge(last_node, node, relative, information, EdgeKind::Odometry);
+        let is_registered = self.front_end.is_registered();
+        let node = self.graph.add_node(estimate).index();
+        let ties = self.front_end.tie(node, &frame.cloud);
+        if ties.is_empty() || !is_registered {
+            let information = self.front_end.information(last_pose.theta(), &self.config);
+            let information = information * self.config.confidence;
+            self.graph
+                .add_edge(last_node, node, relative, information, EdgeKind::Odometry);
+        } else {
+            self.tie_to_submaps(last_node, node, relative, &ties);
+        }
         self.keyframes.push(Keyframe {
-            node: node.index(),
+            node,
             frame: self.frames - 1,
             stamp_s: frame.stamp_s,
             scan: Arc::clone(&frame.cloud),
         });
         self.chi2 = self.graph.chi2();
-        Some(node.index())
+        Some(node)
     }
 }

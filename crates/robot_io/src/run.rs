@@ -4,6 +4,7 @@ use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::scan::{Frame, FrameError};
 use ch16_slam2d::slam::parameters::Parameter;
 use ch16_slam2d::slam::{Refinement, Slam, SlamConfig, SlamReport};
+use ch16_slam2d::submaps::FrontEndChoice;
 use pr_geom::SE2;
 
 use crate::log::LogFrame;
@@ -47,6 +48,7 @@ const POOR_SCORE: f64 = 0.5;
 /// scans in between as well.
 pub struct LogRun {
     odometry_use: OdometryUse,
+    front_end: FrontEndChoice,
     config: Option<SlamConfig>,
     settings: Vec<(&'static Parameter, f64)>,
     slam: Option<Slam>,
@@ -74,6 +76,7 @@ impl LogRun {
     pub fn new(odometry_use: OdometryUse) -> Self {
         Self {
             odometry_use,
+            front_end: FrontEndChoice::Window,
             config: None,
             settings: Vec::new(),
             slam: None,
@@ -102,6 +105,13 @@ impl LogRun {
         self
     }
 
+    /// The same run with this front end, unless the configuration is one's own.
+    #[must_use]
+    pub fn with_front_end(mut self, front_end: FrontEndChoice) -> Self {
+        self.front_end = front_end;
+        self
+    }
+
     /// Takes the next scan; none where it is left out, because it is not after the one before it or
     /// because its numbers are no scan.
     pub fn step(&mut self, log: LogFrame) -> Option<SlamReport> {
@@ -119,11 +129,19 @@ impl LogRun {
             scan: log.scan,
         };
         let slam = self.slam.get_or_insert_with(|| {
-            let by_scan = || SlamConfig::for_robot(&frame.scan);
-            let mut config = self.config.take().unwrap_or_else(by_scan);
+            let own = self.config.take();
+            let front_end = match own {
+                Some(_) => FrontEndChoice::Window,
+                None => self.front_end,
+            };
+            let mut config = own.unwrap_or_else(|| SlamConfig::for_robot(&frame.scan));
             for (parameter, value) in &self.settings {
                 // Only what the configuration lacks is refused here: nothing to set.
                 let _ = parameter.set(&mut config, *value);
+            }
+            // Submaps take their lengths from the values that were set.
+            if front_end == FrontEndChoice::Submaps {
+                config = front_end.of(config);
             }
             Slam::new(config)
         });

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ch16_slam2d::slam::parameters::{Parameter, ParameterError};
+use ch16_slam2d::submaps::FrontEndChoice;
 use clap::Args;
 use measuring::process;
 use robot_io::quality::Quality;
@@ -19,6 +20,7 @@ use crate::grade::{Grade, GradeError, ReferenceArgs};
 use crate::log_file::{FileError, TopicArgs, open_log};
 use crate::output::{print_json, say};
 use crate::run_output::write_folder;
+use crate::trial::choice;
 
 /// Map a recorded log, and grade the trajectory where a reference is given.
 #[derive(Args, Clone, Debug)]
@@ -30,6 +32,9 @@ pub struct RunArgs {
     /// Write the results into this folder.
     #[arg(short = 'o', long, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// What the front end registers scans on.
+    #[arg(long, default_value = "window", value_parser = choice::<FrontEndChoice>())]
+    front_end: FrontEndChoice,
     /// Leave the wheels out: scans alone.
     #[arg(long)]
     no_odometry: bool,
@@ -104,7 +109,8 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
         OdometryUse::None
     } else {
         OdometryUse::Log
-    });
+    })
+    .with_front_end(args.front_end);
     for (name, value) in &args.settings {
         let parameter = Parameter::named(name)?;
         parameter.check(*value)?;

@@ -3,6 +3,7 @@
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapDetector, LapMatcher, LoopMatcher};
 use ch16_slam2d::matching::InformationFrame;
+use ch16_slam2d::submaps::FrontEndChoice;
 use clap::Args;
 use clap::builder::PossibleValue;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -16,6 +17,9 @@ pub struct TrialArgs {
     /// What registers scans, for the front end and for loops; p2p without it.
     #[arg(long, value_parser = choice::<LapMatcher>())]
     matcher: Option<LapMatcher>,
+    /// What the front end registers scans on; submaps have their own way to do so, and to find loops.
+    #[arg(long, value_parser = choice::<FrontEndChoice>())]
+    front_end: Option<FrontEndChoice>,
     /// What registers scans for loops alone; that of the front end without it.
     #[arg(long, value_parser = choice::<LoopMatcher>())]
     loop_matcher: Option<LoopMatcher>,
@@ -36,6 +40,7 @@ pub struct TrialArgs {
 pub struct Trial {
     course: Option<Course>,
     matcher: LapMatcher,
+    front_end: FrontEndChoice,
     loop_matcher: Option<LoopMatcher>,
     detector: LapDetector,
     information: Option<InformationFrame>,
@@ -46,6 +51,7 @@ impl TrialArgs {
     pub fn of_the_graph(&self) -> Option<&'static str> {
         let said = [
             (self.matcher.is_some(), "--matcher"),
+            (self.front_end.is_some(), "--front-end"),
             (self.loop_matcher.is_some(), "--loop-matcher"),
             (self.detector.is_some(), "--detector"),
             (self.information.is_some(), "--information"),
@@ -63,6 +69,7 @@ impl TrialArgs {
         Ok(Trial {
             course: course.transpose()?,
             matcher: self.matcher.unwrap_or_default(),
+            front_end: self.front_end.unwrap_or_default(),
             loop_matcher: self.loop_matcher,
             detector: self.detector.unwrap_or_default(),
             information: self.information,
@@ -84,10 +91,11 @@ impl Trial {
             Some(matcher) => lap.with_loop_matcher(matcher),
             None => lap,
         };
-        match self.information {
+        let lap = match self.information {
             Some(frame) => lap.with_information(frame),
             None => lap,
-        }
+        };
+        lap.with_front_end(self.front_end)
     }
 }
 

@@ -75,3 +75,17 @@ fn what_says_nothing_to_an_estimator_is_refused() {
     );
     assert_refused(&["lap", "--estimator", "kalman"], "kalman");
 }
+
+#[test]
+fn the_front_end_of_submaps_is_another_lap_and_no_matter_of_the_ancestor() {
+    let window = json(&["lap", "--json"]);
+    let said = json(&["lap", "--front-end", "window", "--json"]);
+    assert_eq!(window["digest"], said["digest"]);
+    let submaps = json(&["lap", "--front-end", "submaps", "--json"]);
+    assert_ne!(window["digest"], submaps["digest"]);
+    let ends =
+        ["keyframe_end_error", "odometry_end_error"].map(|end| submaps[end].as_f64().unwrap());
+    assert!(ends[0] < 0.7 * ends[1], "{ends:?}");
+    let refused = ["lap", "--estimator", "ml", "--front-end", "submaps"];
+    assert_refused(&refused, "--front-end says nothing to the estimator ml");
+}

@@ -6,6 +6,7 @@ use ch16_slam2d::loops::DetectorKind;
 use ch16_slam2d::matching::{InformationFrame, MatcherKind, NdtMatcherConfig, SearchMatcherConfig};
 use ch16_slam2d::places::PlaceDetectorConfig;
 use ch16_slam2d::slam::SlamConfig;
+use ch16_slam2d::submaps::FrontEndChoice;
 use pr_sim::Course;
 
 use super::config::LapConfig;
@@ -255,6 +256,24 @@ impl Choice for LapEstimator {
     }
 }
 
+impl Choice for FrontEndChoice {
+    const ALL: &'static [Self] = &[Self::Window, Self::Submaps];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Window => "window",
+            Self::Submaps => "submaps",
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Window => "the points of the last sweeps",
+            Self::Submaps => "two probability grids that overlap",
+        }
+    }
+}
+
 impl Choice for InformationFrame {
     const ALL: &'static [Self] = &[Self::Chapter, Self::Exact];
 
@@ -325,6 +344,13 @@ impl LapConfig {
         self
     }
 
+    /// The same lap with another front end, whose lengths follow from the rest: choose it last.
+    #[must_use]
+    pub fn with_front_end(mut self, front_end: FrontEndChoice) -> Self {
+        self.slam = front_end.of(self.slam);
+        self
+    }
+
     /// The same lap with the information of its edges in another frame.
     #[must_use]
     pub fn with_information(mut self, frame: InformationFrame) -> Self {
@@ -357,6 +383,7 @@ mod tests {
         check::<LapDetector>();
         check::<LoopMatcher>();
         check::<LapEstimator>();
+        check::<FrontEndChoice>();
         check::<InformationFrame>();
     }
 

@@ -236,7 +236,11 @@ pub fn verify_loop(
     }
 }
 
-fn rejection(found: &MatchSummary, gate: GateTest, config: &LoopConfig) -> Option<LoopRejection> {
+pub(crate) fn rejection(
+    found: &MatchSummary,
+    gate: GateTest,
+    config: &LoopConfig,
+) -> Option<LoopRejection> {
     if found.rmse_m > config.max_rmse_m || found.rmse_m.is_nan() {
         Some(LoopRejection::PoorFit {
             rmse_m: found.rmse_m,

@@ -7,6 +7,7 @@ use super::{MotionNoise, RefinementConfig};
 use crate::loops::LoopConfig;
 use crate::matching::{InformationFrame, MapConfig, MatcherKind, TrustConfig};
 use crate::scan::ScanConfig;
+use crate::submaps::FrontEndKind;
 
 /// Whether the back end looks for loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -73,6 +74,8 @@ pub struct SlamConfig {
     pub scan: ScanConfig,
     /// Whether loops are closed.
     pub loop_closure: LoopClosure,
+    /// What scans are registered on: the window below, or submaps.
+    pub front_end: FrontEndKind,
     /// What registers a scan on the local map.
     pub matcher: MatcherKind,
     /// Number of last sweeps in the local map.
@@ -157,6 +160,7 @@ impl SlamConfig {
             start: SE2::identity(),
             scan: ScanConfig::default(),
             loop_closure: LoopClosure::On,
+            front_end: FrontEndKind::Window,
             matcher: MatcherKind::PointToPoint,
             window_sweeps: 6,
             window_distance_m: 0.0,

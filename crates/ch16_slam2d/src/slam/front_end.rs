@@ -10,10 +10,12 @@ use super::fusion::fuse;
 use crate::cloud::PointCloud;
 use crate::icp::{AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
 use crate::matching::{
-    InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information, without_aperture,
+    InformationFrame, MatchRequest, MatchSummary, Matcher, TrustConfig, chapter_information,
+    match_information, without_aperture,
 };
 use crate::metrics::position_error_m;
 use crate::scan::{PreparedFrame, is_finite};
+use crate::submaps::{ActiveSubmaps, FinishedSubmap, FrontEndKind};
 
 /// A sweep of the local map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +59,8 @@ pub struct FrontEnd {
     threshold: AdaptiveThreshold,
     local_cloud: PointCloud,
     matcher: Box<dyn Matcher>,
+    /// In place of the window, where scans are registered on submaps.
+    submaps: Option<ActiveSubmaps>,
     pairs: Vec<Pair>,
     /// Covariance of the predicted motions since the last keyframe, where they are measurements.
     driven: Matrix3<f64>,
@@ -83,6 +87,10 @@ impl FrontEnd {
             ),
             local_cloud: PointCloud::default(),
             matcher,
+            submaps: match config.front_end {
+                FrontEndKind::Window => None,
+                FrontEndKind::Submaps(submaps) => Some(ActiveSubmaps::new(submaps)),
+            },
             pairs: Vec::new(),
             driven: Matrix3::zeros(),
             believed: 1.0,
@@ -120,8 +128,18 @@ impl FrontEnd {
         &self.local_cloud
     }
 
-    /// Takes the first scan into the window.
+    /// The submaps that scans are added to; none where there is a window.
+    #[must_use]
+    pub fn submaps(&self) -> Option<&ActiveSubmaps> {
+        self.submaps.as_ref()
+    }
+
+    /// Takes the first scan into the window, or begins the first submap.
     pub(super) fn start(&mut self, scan: Arc<PointCloud>) {
+        if let Some(submaps) = &mut self.submaps {
+            submaps.tie(0, &scan, &self.estimate);
+            return;
+        }
         self.window.push(WindowSweep {
             frame: 0,
             pose: self.estimate,
@@ -150,14 +168,16 @@ impl FrontEnd {
         };
         let prediction = before * motion;
         let tau_m = self.threshold.tau();
-        let matched = self.matcher.register(
-            &frame.cloud,
-            &MatchRequest {
-                guess: prediction,
-                tau_m,
-                max_iterations: config.max_iterations,
-            },
-        );
+        // What is weighed afterwards is not weighed while the scan climbs.
+        let believed = match config.prediction_use {
+            PredictionUse::Start => {
+                let noise = config.motion_noise(frame.odometry.is_some());
+                noise.covariance(&motion).try_inverse()
+            }
+            PredictionUse::Measurement => None,
+        };
+        let request = MatchRequest::new(prediction, tau_m, config.max_iterations);
+        let matched = self.match_scan(&frame.cloud, &request, believed);
         let accepted = matched.inliers >= config.min_inliers && is_finite(&matched.pose);
         self.estimate = if accepted { matched.pose } else { prediction };
         self.believed = 1.0;
@@ -192,13 +212,19 @@ impl FrontEnd {
                 return covariance.try_inverse().unwrap_or_else(Matrix3::identity);
             }
             (InformationFrame::Exact, None) => {
-                let known = self.matcher.information(&self.estimate, trust) * self.believed;
+                let known = self.matched_information(&self.estimate, trust) * self.believed;
                 let driven = std::mem::take(&mut self.driven);
                 let wheels = driven.try_inverse().unwrap_or_default();
                 without_aperture(&known, config.aperture) + wheels
             }
             (InformationFrame::Chapter, _) => {
-                self.matcher.pairs(&mut self.pairs);
+                match &self.submaps {
+                    Some(submaps) => {
+                        self.pairs.clear();
+                        self.pairs.extend_from_slice(submaps.pairs());
+                    }
+                    None => self.matcher.pairs(&mut self.pairs),
+                }
                 chapter_information(&self.pairs, source_theta, trust)
             }
         };
@@ -210,6 +236,53 @@ impl FrontEnd {
         self.estimate = *correction * self.estimate;
         for sweep in &mut self.window {
             sweep.pose = *correction * sweep.pose;
+        }
+        if let Some(submaps) = &mut self.submaps {
+            submaps.correct(correction);
+        }
+    }
+
+    /// Whether the last registration was believed.
+    pub(super) fn is_registered(&self) -> bool {
+        self.unregistered.is_none()
+    }
+
+    /// Ties keyframe `node` at the estimate to the submaps; the anchors with the node's pose in each
+    /// one's frame. Nothing where there is a window.
+    pub(super) fn tie(&mut self, node: usize, scan: &PointCloud) -> Vec<(usize, SE2)> {
+        let submaps = self.submaps.as_mut();
+        submaps.map_or_else(Vec::new, |submaps| submaps.tie(node, scan, &self.estimate))
+    }
+
+    /// The submap that was finished since this was asked last.
+    pub(super) fn take_finished(&mut self) -> Option<FinishedSubmap> {
+        self.submaps.as_mut()?.take_finished()
+    }
+
+    /// Information of the motions since the last keyframe, where they are measurements.
+    pub(super) fn take_wheels(&mut self) -> Option<Matrix3<f64>> {
+        let driven = std::mem::take(&mut self.driven);
+        let wheels = driven.try_inverse()?;
+        Some(regularize(wheels, INFORMATION_RIDGE, INFORMATION_CAP))
+    }
+
+    /// Registers a scan on the window or on the submaps; only these hold it by what is believed.
+    fn match_scan(
+        &mut self,
+        scan: &PointCloud,
+        request: &MatchRequest,
+        believed: Option<Matrix3<f64>>,
+    ) -> MatchSummary {
+        match &mut self.submaps {
+            Some(submaps) => submaps.register(scan, request, believed),
+            None => self.matcher.register(scan, request),
+        }
+    }
+
+    fn matched_information(&self, pose: &SE2, trust: &TrustConfig) -> Matrix3<f64> {
+        match &self.submaps {
+            Some(submaps) => match_information(submaps.pairs(), pose, trust),
+            None => self.matcher.information(pose, trust),
         }
     }
 
@@ -232,9 +305,7 @@ impl FrontEnd {
         config: &SlamConfig,
     ) {
         let share = matched.score.unwrap_or(1.0);
-        let known = self
-            .matcher
-            .information(&matched.pose, &config.odometry_trust);
+        let known = self.matched_information(&matched.pose, &config.odometry_trust);
         // What fits in part may fit elsewhere as well.
         let known = known * (share * share * share * share);
         let known = without_aperture(&known, config.aperture);
@@ -251,7 +322,7 @@ impl FrontEnd {
         if fusion.chi2 > chi2 {
             let mut fit_at = |pose: SE2| {
                 let request = MatchRequest::new(pose, config.threshold.initial_m, 0);
-                self.matcher.register(&frame.cloud, &request).score
+                self.match_scan(&frame.cloud, &request, None).score
             };
             let predicted = fit_at(*prediction).unwrap_or(0.0);
             // The pairs are asked for later: those of the pose that is taken.
@@ -272,6 +343,9 @@ impl FrontEnd {
     }
 
     fn rebuild_local_map(&mut self) {
+        if self.submaps.is_some() {
+            return;
+        }
         self.local_cloud.clear();
         for (sweep, scan) in self.window.iter().zip(&self.scans) {
             self.local_cloud.extend_transformed(scan, &sweep.pose);
@@ -296,6 +370,10 @@ impl FrontEnd {
     }
 
     fn join_window(&mut self, frame: &PreparedFrame, number: usize, config: &SlamConfig) -> bool {
+        if let Some(submaps) = &mut self.submaps {
+            let (distance_m, turn_rad) = (config.window_distance_m, config.window_turn_rad);
+            return submaps.insert(&frame.cloud, &self.estimate, distance_m, turn_rad);
+        }
         if let Some(newest) = self.window.last()
             && self.window.len() >= config.window_sweeps
         {

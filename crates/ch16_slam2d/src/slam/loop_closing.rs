@@ -34,6 +34,10 @@ impl Slam {
             return;
         }
         self.last_attempt_node = Some(node);
+        if self.submap_loops.is_some() {
+            self.verify_on_submaps(node, pending);
+            return;
+        }
         let mut query = LoopQuery::new(&mut self.graph, &self.keyframes);
         let mut candidates = self.detector.detect(&mut query);
         candidates.retain(|candidate| candidate.node < node);
@@ -119,7 +123,11 @@ impl Slam {
     }
 
     /// Adds an attempt to the frame's report; whether it was accepted.
-    fn report_attempt(&self, verification: LoopVerification, pending: &mut PendingFrame) -> bool {
+    pub(super) fn report_attempt(
+        &self,
+        verification: LoopVerification,
+        pending: &mut PendingFrame,
+    ) -> bool {
         let is_accepted = verification.accepted();
         pending.loop_attempts.push(LoopAttempt {
             frame: self.frames - 1,
@@ -135,7 +143,7 @@ impl Slam {
     }
 
     /// The S⁻¹ of the gate between two nodes.
-    fn gate_information(
+    pub(super) fn gate_information(
         &mut self,
         node: usize,
         candidate: usize,
