@@ -121,7 +121,7 @@ describe('the chapter', () => {
 
   it('sets a widget by a number in the text and brings it into view', async () => {
     await reading(async (tab) => {
-      await tab.locator('a.slam-link', { hasText: '75°' }).click();
+      await tab.locator('a.slam-link[href*="w=16.1"]', { hasText: '75°' }).click();
       await tab.waitForFunction((css) => document.querySelector(css).get('heading') === 75, widget('w16.1'));
       await h.ready(tab, widget('w16.1'));
       const verdict = await tab.evaluate((css) => document.querySelector(css).outcome.verdict, widget('w16.1'));

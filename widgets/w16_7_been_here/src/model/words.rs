@@ -170,7 +170,8 @@ fn facts(been: &BeenHere) -> Vec<Fact> {
 
 pub fn summary(been: &BeenHere) -> String {
     let Some(places) = &been.places else {
-        return "A lap is driven; its keyframes will be compared pair by pair.".to_owned();
+        return "A lap is driven; then its keyframes are compared pair by pair: by nearness in the graph, by histograms of ranges, and by Scan Context."
+            .to_owned();
     };
     let curves = places
         .curves
