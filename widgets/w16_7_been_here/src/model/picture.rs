@@ -162,7 +162,13 @@ fn shown_turn(been: &BeenHere, study: &PlaceStudy, [old, new]: [usize; 2]) -> SE
 fn scans(been: &BeenHere) -> Panel {
     let told = been.places.as_ref().zip(been.pair());
     let Some((places, [old, new])) = told else {
-        return empty(panel::SCANS, "No pair yet");
+        return Panel {
+            legend: two_keyframes(),
+            ..empty(
+                panel::SCANS,
+                "Scans of two keyframes, once the lap is driven",
+            )
+        };
     };
     let study = &places.study;
     let turn = shown_turn(been, study, [old, new]);
@@ -185,12 +191,16 @@ fn scans(been: &BeenHere) -> Panel {
             points(&of(new).transformed(&turn), Mark::Square, Tone::Posterior),
             Layer::pose([0.0; 3], Mark::Plus, Tone::Ink, 6.0),
         ],
-        legend: vec![
-            LegendEntry::mark("older keyframe", Tone::Measurement, Mark::Cross),
-            LegendEntry::mark("newer keyframe", Tone::Posterior, Mark::Square),
-        ],
+        legend: two_keyframes(),
         ..empty(panel::SCANS, "")
     }
+}
+
+fn two_keyframes() -> Vec<LegendEntry> {
+    vec![
+        LegendEntry::mark("older keyframe", Tone::Measurement, Mark::Cross),
+        LegendEntry::mark("newer keyframe", Tone::Posterior, Mark::Square),
+    ]
 }
 
 fn curves(been: &BeenHere) -> Panel {

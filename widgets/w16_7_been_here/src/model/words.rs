@@ -37,7 +37,9 @@ pub fn verdict(been: &BeenHere) -> &'static str {
 
 pub fn outcome(been: &BeenHere) -> Outcome {
     let sentence = match grade(been) {
-        None => "The lap is driven, and its places are compared.".to_owned(),
+        // As long as what comes: the page below stays where it is.
+        None => "The lap is driven, and its keyframes are compared pair by pair: which of them show the same place, by what is near, by histograms of ranges, and by Scan Context."
+            .to_owned(),
         Some((_, grade)) => {
             let called = format!(
                 "By {}, {} pairs are called the same place, and {} of them are; {} are not found.",

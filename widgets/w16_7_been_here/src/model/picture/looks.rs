@@ -10,7 +10,7 @@ use kit::scene::{
 };
 
 use super::super::{BeenHere, panel};
-use super::{empty, shown_turn};
+use super::{empty, shown_turn, two_keyframes};
 
 /// Rings of empty space between two contexts.
 const GAP_RINGS: usize = 2;
@@ -20,7 +20,8 @@ pub fn panel(been: &BeenHere) -> Panel {
     let Some((places, [old, new])) = told else {
         return Panel {
             aspect: Aspect::Free,
-            ..empty(panel::LOOKS, "No pair yet")
+            legend: two_keyframes(),
+            ..empty(panel::LOOKS, "How alike they look, once the lap is driven")
         };
     };
     match LapDetector::ALL[been.detector()] {
