@@ -93,7 +93,7 @@ describe('a link in the text', () => {
       await tab.waitForFunction((css) => {
         const { top, bottom } = document.querySelector(css).getBoundingClientRect();
         return top < innerHeight && bottom > 0;
-      }, widget('w16.2'));
+      }, widget(await question.getAttribute('widget')));
       assert.equal(await wayBack(tab).textContent(), 'Back to the question');
       await wayBack(tab).click();
       assert.equal(await wayBack(tab).count(), 0);
