@@ -83,7 +83,7 @@ it('a widget longer than a canvas can be is drawn coarser, to its end', async ()
       return { width, height, clientWidth, clientHeight };
     });
     assert.ok(canvas.clientHeight * 3 > 8192, `${canvas.clientHeight} px are not too high at a ratio of 3`);
-    assert.equal(canvas.height, 8192);
+    assert.ok(canvas.height > 7000 && canvas.height <= 8192, `${canvas.height} pixels`);
     const [across, down] = [canvas.width / canvas.clientWidth, canvas.height / canvas.clientHeight];
     assert.ok(Math.abs(across - down) < 0.01, `${across} and ${down} pixels for a CSS pixel`);
     // The browser gives all of it, and the widget fills it.
@@ -93,7 +93,7 @@ it('a widget longer than a canvas can be is drawn coarser, to its end', async ()
       copy.drawImage(picture, 0, 400 - picture.height);
       return { height: picture.height, colors: new Set(new Uint32Array(copy.getImageData(0, 0, picture.width, 400).data.buffer)).size };
     });
-    assert.equal(last.height, 8192);
+    assert.equal(last.height, canvas.height);
     assert.ok(last.colors > 3, `${last.colors} colours at the end`);
   }, { options: { sees: true, deviceScaleFactor: 3, viewport: { width: 390, height: 800 } } });
 });

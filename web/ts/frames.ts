@@ -25,6 +25,8 @@ export class FrameGate {
   #owed = 0;
   #open = false;
   #isInFrame = false;
+  /** The ratio of a widget that is too long for the screen's own. */
+  #held = Infinity;
 
   /** The glue calls this in place of `window.requestAnimationFrame`. */
   request(callback: Callback): number {
@@ -44,7 +46,12 @@ export class FrameGate {
   /** The glue calls this in place of `window.devicePixelRatio`. A very long widget is drawn coarser. */
   pixelRatio(): number {
     const longest = Math.max(this.canvas?.clientWidth ?? 0, this.canvas?.clientHeight ?? 0, 1);
-    return Math.min(window.devicePixelRatio, MOST_PIXELS / longest);
+    const fits = MOST_PIXELS / longest;
+    if (window.devicePixelRatio <= fits) return window.devicePixelRatio;
+    // Lines break elsewhere at another ratio, and then the height changes: the ratio must not follow each change.
+    const isHeld = this.#held <= fits && this.#held > fits - 0.25;
+    if (!isHeld) this.#held = Math.floor(8 * fits) / 8 || fits;
+    return this.#held;
   }
 
   /** The glue calls this in place of `entry.devicePixelContentBoxSize`. */
