@@ -37,6 +37,12 @@ impl NodeId {
     }
 }
 
+impl From<usize> for EdgeId {
+    fn from(number: usize) -> Self {
+        Self(number)
+    }
+}
+
 impl From<usize> for NodeId {
     fn from(number: usize) -> Self {
         Self(number)
@@ -148,6 +154,29 @@ impl PoseGraph {
                 ..Settings::default()
             }),
         }
+    }
+
+    /// A graph of these nodes and edges, solved with the chapter's Jacobians; handles follow the order.
+    ///
+    /// # Panics
+    /// Where an edge's end does not exist, or both are the same.
+    #[must_use]
+    pub fn of<'a>(
+        nodes: impl IntoIterator<Item = &'a PoseNode>,
+        edges: impl IntoIterator<Item = &'a EdgeView>,
+    ) -> Self {
+        let mut graph = Self::new();
+        for node in nodes {
+            if node.fixed {
+                graph.add_fixed_node(node.pose);
+            } else {
+                graph.add_node(node.pose);
+            }
+        }
+        for EdgeView { from, to, edge, .. } in edges {
+            graph.add_edge(*from, *to, edge.measurement, edge.information, edge.kind);
+        }
+        graph
     }
 
     /// Adds a node that the solver may move.

@@ -9,6 +9,7 @@
 //! - [`recorder`] and [`report`]: what a run leaves for a map, and one HTML file with pictures.
 //! - [`info`]: what is in a log.
 //! - [`run`]: a log through [`Slam`](ch16_slam2d::slam::Slam), frame by frame.
+//! - [`session`]: all that a run is, in one file.
 //! - [`quality`]: how far each keyframe and each loop is to be trusted, and what is to be doubted.
 //! - [`trajectory`]: stamped poses, and the TUM format in both directions.
 //! - [`relations`]: reference relations between two times.
@@ -31,6 +32,7 @@ pub mod relations;
 pub mod report;
 pub mod ros;
 pub mod run;
+pub mod session;
 pub mod trajectory;
 
 mod lines;

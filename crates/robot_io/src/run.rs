@@ -1,13 +1,14 @@
 //! A log through the estimator, one scan at a time.
 
 use ch16_slam2d::loops::LoopVerification;
-use ch16_slam2d::scan::{Frame, FrameError};
+use ch16_slam2d::scan::{Frame, FrameError, LaserScan};
 use ch16_slam2d::slam::parameters::Parameter;
-use ch16_slam2d::slam::{Slam, SlamConfig, SlamReport};
+use ch16_slam2d::slam::{Slam, SlamConfig, SlamReport, SlamSnapshot, SnapshotError};
 use pr_geom::SE2;
 
 use crate::log::LogFrame;
 use crate::quality::Quality;
+use crate::session::{MappedGraph, Session};
 use crate::trajectory::{StampedPose, Trajectory};
 
 /// Whether the wheels are listened to.
@@ -53,6 +54,12 @@ pub struct LogRun {
     last_odometry: Option<SE2>,
     last_stamp_s: f64,
     scans: Vec<ScanPlace>,
+    /// How many of them are keyframes of a session.
+    resumed: usize,
+    /// Where the beams point, without ranges.
+    sensor: Option<LaserScan>,
+    /// The estimator after the last scan, once its map was linked anew.
+    driven: Option<SlamSnapshot>,
     loops: Vec<TriedLoop>,
     links: Vec<LoopVerification>,
     poor: Vec<PoorFit>,
@@ -80,6 +87,9 @@ impl LogRun {
             last_odometry: None,
             last_stamp_s: f64::NEG_INFINITY,
             scans: Vec::new(),
+            resumed: 0,
+            sensor: None,
+            driven: None,
             loops: Vec::new(),
             links: Vec::new(),
             poor: Vec::new(),
@@ -100,6 +110,30 @@ impl LogRun {
     pub fn with_parameter(mut self, parameter: &'static Parameter, value: f64) -> Self {
         self.settings.push((parameter, value));
         self
+    }
+
+    /// A run that goes on where a session ended, in the same odometry's frame: its first scan is the
+    /// one after the session's last.
+    ///
+    /// # Errors
+    /// Where the session contradicts itself.
+    pub fn resume(session: &Session, odometry_use: OdometryUse) -> Result<Self, SnapshotError> {
+        let driven = &session.driven;
+        let keyframes = driven.keyframes.iter().enumerate();
+        let scans = keyframes.map(|(number, keyframe)| ScanPlace {
+            stamp_s: keyframe.stamp_s,
+            keyframe: number,
+            keyframe_from_body: SE2::identity(),
+        });
+        Ok(Self {
+            slam: Some(Slam::restore(driven)?),
+            last_odometry: session.last_odometry,
+            last_stamp_s: driven.last_stamp_s,
+            scans: scans.collect(),
+            resumed: driven.keyframes.len(),
+            sensor: session.sensor.clone(),
+            ..Self::new(odometry_use)
+        })
     }
 
     /// Takes the next scan; none where it is left out, because it is not after the one before it or
@@ -136,6 +170,11 @@ impl LogRun {
         };
         self.last_stamp_s = frame.stamp_s;
         self.last_odometry = log.odometry;
+        self.driven = None;
+        self.sensor.get_or_insert_with(|| LaserScan {
+            ranges_m: Vec::new(),
+            ..frame.scan
+        });
         let keyframe = slam.keyframes().len() - 1;
         self.scans.push(ScanPlace {
             stamp_s: frame.stamp_s,
@@ -160,6 +199,7 @@ impl LogRun {
     /// Says that no scan follows.
     pub fn finish(&mut self) {
         if let Some(slam) = &mut self.slam {
+            self.driven = Some(slam.snapshot());
             let refinement = slam.refine();
             self.links = refinement.links().to_vec();
             if let Some(found) = refinement.concluded() {
@@ -170,6 +210,12 @@ impl LogRun {
                 if let Some(tried) = self.loops.iter_mut().find(is_it) {
                     tried.verification.rejection = None;
                     tried.accepted = true;
+                } else {
+                    // It was found before the session was saved.
+                    self.loops.push(TriedLoop {
+                        verification: *found,
+                        accepted: true,
+                    });
                 }
             }
         }
@@ -181,10 +227,16 @@ impl LogRun {
         self.slam.as_ref()
     }
 
-    /// Scans taken.
+    /// Scans taken, without those of a session that it goes on from.
     #[must_use]
     pub fn scans(&self) -> usize {
-        self.scans.len()
+        self.scans.len() - self.resumed
+    }
+
+    /// Keyframes of the session that it goes on from.
+    #[must_use]
+    pub fn resumed_keyframes(&self) -> usize {
+        self.resumed
     }
 
     /// The loops that were looked at, in order.
@@ -205,6 +257,22 @@ impl LogRun {
         &self.poor
     }
 
+    /// All that the run is, to be saved; none before the first scan.
+    ///
+    /// To go on from it is to go on from the last scan: what [`finish`](Self::finish) linked anew is
+    /// kept beside it.
+    #[must_use]
+    pub fn session(&self) -> Option<Session> {
+        let slam = self.slam.as_ref()?;
+        let is_finished = self.driven.is_some();
+        Some(Session {
+            driven: self.driven.clone().unwrap_or_else(|| slam.snapshot()),
+            mapped: is_finished.then(|| MappedGraph::of(slam.graph())),
+            sensor: self.sensor.clone(),
+            last_odometry: self.last_odometry,
+        })
+    }
+
     /// What is known of the map's quality.
     pub fn quality(&mut self) -> Quality {
         Quality::of(self.slam.as_mut(), &self.loops, &self.links, &self.poor)
@@ -222,7 +290,7 @@ impl LogRun {
         self.refused
     }
 
-    /// Where every scan was taken, by the graph as it is now.
+    /// Where every scan was taken, by the graph as it is now; of a session its keyframes.
     #[must_use]
     pub fn trajectory(&self) -> Trajectory {
         let Some(slam) = &self.slam else {

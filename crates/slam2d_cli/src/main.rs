@@ -19,6 +19,7 @@ mod places;
 mod register;
 mod run_log;
 mod run_output;
+mod session_file;
 mod sweep;
 mod table;
 mod terrain;

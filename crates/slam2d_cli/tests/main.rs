@@ -5,5 +5,6 @@ mod estimators;
 mod files;
 mod logs;
 mod optimize;
+mod sessions;
 mod support;
 mod worlds;

@@ -1,0 +1,166 @@
+//! Saved sessions on the command line: gone on with, looked into, mapped and converted.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::support::{assert_refused, json, slam2d};
+use tempfile::TempDir;
+
+/// The simulator's lap as a log, whole and in two halves.
+struct Lap {
+    folder: TempDir,
+}
+
+impl Lap {
+    fn new() -> Self {
+        let folder = TempDir::new().unwrap();
+        let lap = Self { folder };
+        json(&["lap", "--frames", &lap.file("whole.jsonl"), "--json"]);
+        let text = fs::read_to_string(lap.file("whole.jsonl")).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        let (first, second) = lines.split_at(lines.len() / 2);
+        fs::write(lap.file("first.jsonl"), first.join("\n")).unwrap();
+        fs::write(lap.file("second.jsonl"), second.join("\n")).unwrap();
+        lap
+    }
+
+    fn file(&self, name: &str) -> String {
+        self.folder.path().join(name).display().to_string()
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn run(&self, log: &str, out: &str, more: &[&str]) -> serde_json::Value {
+        let (log, out) = (self.file(log), self.file(out));
+        let arguments = ["run", &log, "-o", &out, "--json"];
+        json(&[&arguments[..], more].concat())
+    }
+}
+
+fn lines(path: &Path) -> Vec<String> {
+    let text = fs::read_to_string(path).unwrap();
+    text.lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn a_run_in_two_parts_is_the_run_in_one() {
+    let lap = Lap::new();
+    let whole = lap.run("whole.jsonl", "whole", &[]);
+    let first = lap.run("first.jsonl", "first", &[]);
+    let folder = lap.file("first");
+    let second = lap.run("second.jsonl", "second", &["--continue", &folder]);
+    let scans = |run: &serde_json::Value| run["scans"].as_u64().unwrap();
+    assert_eq!(scans(&whole), scans(&first) + scans(&second));
+    assert_eq!(whole["keyframes"], second["keyframes"]);
+    let session = |run: &str| fs::read(lap.path(run).join("session.slam2d")).unwrap();
+    assert!(
+        session("second") == session("whole"),
+        "not a bit is another"
+    );
+    // Of the first part the keyframes are left, at the poses of the whole.
+    let whole_poses = lines(&lap.path("whole/trajectory.tum"));
+    let poses = lines(&lap.path("second/trajectory.tum"));
+    assert!(poses.iter().all(|line| whole_poses.contains(line)));
+    assert!(poses.len() as u64 > scans(&second));
+    assert_eq!(
+        lines(&lap.path("second/keyframes.jsonl")).len() as u64,
+        second["keyframes"].as_u64().unwrap()
+    );
+    let again = lap.file("second.jsonl");
+    assert_refused(
+        &[
+            "run",
+            &again,
+            "--continue",
+            &lap.file("second/session.slam2d"),
+        ],
+        "no scan is after the session's last one",
+    );
+}
+
+#[test]
+fn a_session_is_told_mapped_and_converted() {
+    let lap = Lap::new();
+    let run = lap.run("whole.jsonl", "out", &[]);
+    let session = lap.file("out/session.slam2d");
+    let info = json(&["info", &session, "--json"]);
+    assert_eq!(info, json(&["info", &lap.file("out"), "--json"]));
+    assert_eq!(info["keyframes"], run["keyframes"]);
+    assert_eq!(info["scans"], run["scans"]);
+    assert_eq!(info["refined"], true);
+    assert!(info["bytes_per_keyframe"].as_f64().unwrap() < 3000.0);
+    let (map, of_folder) = (lap.file("map.yaml"), lap.file("folder.yaml"));
+    assert!(slam2d(&["map", &session, "-o", &map]).status.success());
+    assert!(
+        slam2d(&["map", &lap.file("out"), "-o", &of_folder])
+            .status
+            .success()
+    );
+    let occupied = |name: &str| {
+        let pgm = fs::read(lap.path(name)).unwrap();
+        pgm.iter().filter(|pixel| **pixel == 0).count() as f64
+    };
+    let share = occupied("map.pgm") / occupied("folder.pgm");
+    // Thinned scans show the walls that all beams show.
+    assert!((0.6..1.6).contains(&share), "{share}");
+    let (g2o, tum) = (lap.file("out.g2o"), lap.file("out.tum"));
+    assert!(slam2d(&["convert", &session, &g2o]).status.success());
+    assert!(slam2d(&["convert", &session, &tum]).status.success());
+    assert_eq!(
+        fs::read_to_string(&g2o).unwrap(),
+        fs::read_to_string(lap.path("out/graph.g2o")).unwrap()
+    );
+    let keyframes = run["keyframes"].as_u64().unwrap();
+    assert_eq!(lines(Path::new(&tum)).len() as u64, keyframes);
+    assert_refused(
+        &["convert", &session, "x.clf"],
+        "a session becomes .g2o, .graph, .toro or .json, or .tum",
+    );
+}
+
+#[test]
+fn sessions_that_cannot_be_used_end_in_one_line() {
+    let lap = Lap::new();
+    lap.run("first.jsonl", "out", &[]);
+    let good = fs::read(lap.path("out/session.slam2d")).unwrap();
+    let write = |name: &str, bytes: &[u8]| {
+        fs::write(lap.path(name), bytes).unwrap();
+        lap.file(name)
+    };
+    let mut damaged = good.clone();
+    damaged[good.len() / 2] ^= 1;
+    let mut newer = good.clone();
+    newer[8] = 9;
+    fs::create_dir(lap.path("empty_folder")).unwrap();
+    let huge = fs::File::create(lap.path("huge.slam2d")).unwrap();
+    huge.set_len(1 << 31).unwrap();
+    let log = lap.file("second.jsonl");
+    for (file, said) in [
+        (
+            write("empty.slam2d", b""),
+            "empty.slam2d is empty; give a session",
+        ),
+        (write("foreign.slam2d", b"P5 foreign"), "is no session"),
+        (
+            write("cut.slam2d", &good[..good.len() - 9]),
+            "copy it again",
+        ),
+        (
+            write("damaged.slam2d", &damaged),
+            "is damaged: its checksum does not fit",
+        ),
+        (write("newer.slam2d", &newer), "is a session of version 9"),
+        (lap.file("absent.slam2d"), "absent.slam2d: "),
+        (lap.file("empty_folder"), "holds no session.slam2d"),
+        (lap.file("huge.slam2d"), "larger than 512 MB"),
+    ] {
+        assert_refused(&["run", &log, "--continue", &file], said);
+        if !file.ends_with("folder") {
+            assert_refused(&["info", &file], said);
+            assert_refused(&["map", &file, "-o", &lap.file("m.yaml")], said);
+            assert_refused(&["convert", &file, &lap.file("x.g2o")], said);
+        }
+    }
+}
