@@ -8,7 +8,7 @@ use pr_geom::SE2;
 
 use crate::log::LogFrame;
 use crate::quality::Quality;
-use crate::session::{MappedGraph, Session};
+use crate::session::{MappedGraph, ScanPlace, Session, places_kept};
 use crate::trajectory::{StampedPose, Trajectory};
 
 /// Whether the wheels are listened to.
@@ -54,7 +54,7 @@ pub struct LogRun {
     last_odometry: Option<SE2>,
     last_stamp_s: f64,
     scans: Vec<ScanPlace>,
-    /// How many of them are keyframes of a session.
+    /// How many of them are those of a session.
     resumed: usize,
     /// Where the beams point, without ranges.
     sensor: Option<LaserScan>,
@@ -65,14 +65,6 @@ pub struct LogRun {
     poor: Vec<PoorFit>,
     late: usize,
     refused: Option<FrameError>,
-}
-
-/// Where a scan was taken.
-#[derive(Clone, Copy, Debug)]
-struct ScanPlace {
-    stamp_s: f64,
-    keyframe: usize,
-    keyframe_from_body: SE2,
 }
 
 impl LogRun {
@@ -120,17 +112,22 @@ impl LogRun {
     pub fn resume(session: &Session, odometry_use: OdometryUse) -> Result<Self, SnapshotError> {
         let driven = &session.driven;
         let keyframes = driven.keyframes.iter().enumerate();
-        let scans = keyframes.map(|(number, keyframe)| ScanPlace {
+        let of_keyframes = keyframes.map(|(number, keyframe)| ScanPlace {
             stamp_s: keyframe.stamp_s,
             keyframe: number,
             keyframe_from_body: SE2::identity(),
         });
+        let scans = if session.places.is_empty() {
+            of_keyframes.collect()
+        } else {
+            session.places.clone()
+        };
         Ok(Self {
             slam: Some(Slam::restore(driven)?),
             last_odometry: session.last_odometry,
             last_stamp_s: driven.last_stamp_s,
-            scans: scans.collect(),
-            resumed: driven.keyframes.len(),
+            resumed: scans.len(),
+            scans,
             sensor: session.sensor.clone(),
             ..Self::new(odometry_use)
         })
@@ -233,12 +230,6 @@ impl LogRun {
         self.scans.len() - self.resumed
     }
 
-    /// Keyframes of the session that it goes on from.
-    #[must_use]
-    pub fn resumed_keyframes(&self) -> usize {
-        self.resumed
-    }
-
     /// The loops that were looked at, in order.
     #[must_use]
     pub fn loops(&self) -> &[TriedLoop] {
@@ -268,6 +259,7 @@ impl LogRun {
         Some(Session {
             driven: self.driven.clone().unwrap_or_else(|| slam.snapshot()),
             mapped: is_finished.then(|| MappedGraph::of(slam.graph())),
+            places: places_kept(&self.scans),
             sensor: self.sensor.clone(),
             last_odometry: self.last_odometry,
         })
@@ -290,7 +282,7 @@ impl LogRun {
         self.refused
     }
 
-    /// Where every scan was taken, by the graph as it is now; of a session its keyframes.
+    /// Where every scan was taken, by the graph as it is now; those of a session come first.
     #[must_use]
     pub fn trajectory(&self) -> Trajectory {
         let Some(slam) = &self.slam else {

@@ -50,10 +50,43 @@ pub struct Session {
     pub driven: SlamSnapshot,
     /// The map as it was linked once more after the last frame, where that was done.
     pub mapped: Option<MappedGraph>,
+    /// Where the scans were taken, at most eight for each keyframe but the last; none where nobody kept
+    /// them.
+    pub places: Vec<ScanPlace>,
     /// Where the beams of the laser point, without ranges.
     pub sensor: Option<LaserScan>,
     /// Pose by the wheels at the last frame, in the odometry's frame.
     pub last_odometry: Option<SE2>,
+}
+
+/// Where a scan was taken: in the frame of the keyframe before it, so that every loop moves it too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScanPlace {
+    /// Its time, s.
+    pub stamp_s: f64,
+    /// The keyframe.
+    pub keyframe: usize,
+    /// Its place in the keyframe's frame.
+    pub keyframe_from_body: SE2,
+}
+
+/// Scans that are kept for a keyframe that has been left.
+const PLACES_KEPT: usize = 8;
+
+/// At most eight places for each keyframe but the last, evenly chosen: a robot that waits for an hour
+/// does not fill the file.
+pub(crate) fn places_kept(places: &[ScanPlace]) -> Vec<ScanPlace> {
+    let mut kept = Vec::new();
+    let last = places.last().map(|place| place.keyframe);
+    for of_one in places.chunk_by(|a, b| a.keyframe == b.keyframe) {
+        let count = of_one.len();
+        if Some(of_one[0].keyframe) == last || count <= PLACES_KEPT {
+            kept.extend_from_slice(of_one);
+        } else {
+            kept.extend((0..PLACES_KEPT).map(|k| of_one[k * count / PLACES_KEPT]));
+        }
+    }
+    kept
 }
 
 /// Poses and loops after the last refinement; what is not a loop is as it was driven.
@@ -218,6 +251,14 @@ impl Session {
         self.driven.check().map_err(|problem| problem.to_string())?;
         if let Some(sensor) = &self.sensor {
             sensor.validate().map_err(|problem| problem.to_string())?;
+        }
+        let keyframes = self.driven.keyframes.len();
+        let in_order = self.places.windows(2);
+        let is_in_order = in_order
+            .into_iter()
+            .all(|two| two[0].stamp_s < two[1].stamp_s);
+        if !is_in_order || self.places.iter().any(|place| place.keyframe >= keyframes) {
+            return Err("the places of scans are not in order".to_owned());
         }
         let Some(mapped) = &self.mapped else {
             return Ok(());

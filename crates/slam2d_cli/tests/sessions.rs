@@ -59,11 +59,8 @@ fn a_run_in_two_parts_is_the_run_in_one() {
         session("second") == session("whole"),
         "not a bit is another"
     );
-    // Of the first part the keyframes are left, at the poses of the whole.
-    let whole_poses = lines(&lap.path("whole/trajectory.tum"));
-    let poses = lines(&lap.path("second/trajectory.tum"));
-    assert!(poses.iter().all(|line| whole_poses.contains(line)));
-    assert!(poses.len() as u64 > scans(&second));
+    let poses = |run: &str| lines(&lap.path(run).join("trajectory.tum"));
+    assert_eq!(poses("second"), poses("whole"));
     assert_eq!(
         lines(&lap.path("second/keyframes.jsonl")).len() as u64,
         second["keyframes"].as_u64().unwrap()
@@ -162,5 +159,51 @@ fn sessions_that_cannot_be_used_end_in_one_line() {
             assert_refused(&["map", &file, "-o", &lap.file("m.yaml")], said);
             assert_refused(&["convert", &file, &lap.file("x.g2o")], said);
         }
+    }
+}
+
+#[test]
+fn a_log_is_found_on_the_map_of_a_session() {
+    let lap = Lap::new();
+    lap.run("whole.jsonl", "out", &[]);
+    let (folder, log) = (lap.file("out"), lap.file("second.jsonl"));
+    let driven = lap.file("out/trajectory.tum");
+    let found = lap.file("found.tum");
+    for init in [&[][..], &["--init", "anywhere"], &["--init", "9,0.1,170"]] {
+        let arguments = [
+            "localize", &folder, &log, "-o", &found, "--truth", &driven, "--json",
+        ];
+        let run = json(&[&arguments[..], init].concat());
+        let count = |name: &str| run[name].as_u64().unwrap();
+        let believed = count("found") + count("tracking");
+        assert_eq!(believed + count("doubtful") + count("lost"), count("scans"));
+        assert!(2 * believed > count("scans"), "{init:?}: {believed}");
+        assert_eq!(lines(Path::new(&found)).len() as u64, believed);
+        // 0.15: the log is the one that the map was made of.
+        assert!(
+            run["truth"]["ate"]["max"].as_f64().unwrap() < 0.15,
+            "{}",
+            run["truth"]
+        );
+        let poses = run["poses"].as_array().unwrap();
+        assert_eq!(poses.len() as u64, count("scans"));
+        let last = &poses[poses.len() - 1];
+        assert_eq!(last["verdict"], "tracking");
+        assert!(last["covariance"][0][0].as_f64().unwrap() > 0.0);
+    }
+    let said = String::from_utf8(slam2d(&["localize", &folder, &log]).stdout).unwrap();
+    assert!(
+        said.contains("found at ") && said.contains("believed, "),
+        "{said}"
+    );
+    for (arguments, said) in [
+        (
+            vec!["localize", &folder, &log, "--init", "1,2"],
+            "neither x,y,deg nor anywhere",
+        ),
+        (vec!["localize", &log, &log], "is no session"),
+        (vec!["localize", &folder, "/absent"], "/absent: "),
+    ] {
+        assert_refused(&arguments, said);
     }
 }

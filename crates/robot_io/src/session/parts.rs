@@ -11,17 +11,19 @@ use pr_geom::{SE2, Vector3};
 
 use super::bytes::{Broken, Cursor, Writer};
 use super::config_text::{config_text, read_config};
-use super::{MappedGraph, Session, held, scans};
+use super::{MappedGraph, ScanPlace, Session, held, scans};
 
-/// Most bytes of a keyframe's scan, on the mean: with its node, its pose on the map and five edges it
-/// stays below 3,000.
-pub const SCAN_BYTES: usize = 2400;
+/// Most bytes of a keyframe's scan, on the mean: with its node, its pose on the map, eight places
+/// of scans and five edges it stays below 3,000.
+pub const SCAN_BYTES: usize = 2110;
 /// Two ends, the kind, the measurement, the information.
 const EDGE_BYTES: usize = 105;
 /// Whether it is fixed, the pose, the frame, the stamp.
 const NODE_BYTES: usize = 41;
 /// Three numbers of 64 bits.
 const POSE_BYTES: usize = 24;
+/// Stamp, keyframe, pose.
+const PLACE_BYTES: usize = 36;
 /// Frame and pose of a sweep, and the least that a scan takes.
 const SWEEP_BYTES: usize = 46;
 
@@ -29,6 +31,7 @@ pub fn write(session: &Session, out: &mut Writer) {
     let Session {
         driven,
         mapped,
+        places,
         sensor,
         last_odometry,
     } = session;
@@ -87,6 +90,14 @@ pub fn write(session: &Session, out: &mut Writer) {
             mapped.poses.iter().for_each(|pose| out.pose(pose));
             write_edges(&mapped.loops, out);
         });
+    });
+    out.section(b"WAYS", |out| {
+        out.count(places.len());
+        for place in places {
+            out.f64(place.stamp_s);
+            out.count(place.keyframe);
+            out.pose(&place.keyframe_from_body);
+        }
     });
     let front = &driven.front_end;
     out.section(b"FRNT", |out| {
@@ -175,6 +186,17 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
             })
         })
     })?;
+    let scan_places = from.section(b"WAYS", |from| {
+        let count = from.count(PLACE_BYTES)?;
+        let place = |_| {
+            Ok(ScanPlace {
+                stamp_s: from.f64()?,
+                keyframe: from.u32()? as usize,
+                keyframe_from_body: from.pose()?,
+            })
+        };
+        (0..count).map(place).collect::<Result<Vec<_>, Broken>>()
+    })?;
     let front_end = from.section(b"FRNT", |from| {
         let estimate = from.pose()?;
         let velocity = Vector3::new(from.f64()?, from.f64()?, from.f64()?);
@@ -220,6 +242,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
             front_end,
         },
         mapped,
+        places: scan_places,
         sensor,
         last_odometry,
     })

@@ -63,7 +63,7 @@ fn what_is_saved_loads_to_the_same_and_is_saved_to_the_same_bytes() {
             let loaded = Session::read(Bytes::new(&bytes), "x").unwrap();
             assert!(loaded.to_bytes() == bytes, "{beams} beams");
             // Not assert_eq: nobody reads a session.
-            assert_eq!(loaded == session, beams == 120, "{beams} beams");
+            assert!(beams != 120 || loaded == session);
         }
     }
 }
@@ -96,6 +96,7 @@ fn a_keyframe_takes_three_kilobytes_at_most_whatever_the_sensor() {
         let (points, keyframes) = (scans_m.max().unwrap(), session.driven.keyframes.len());
         let window = &session.driven.front_end.scans;
         let fixed: usize = window.iter().map(|scan| 60 + 32 * scan.len()).sum();
+        assert!(session.places.len() <= 8 * keyframes + 40);
         let each = (session.to_bytes().len() - fixed) / keyframes;
         assert!(each <= 3000, "{beams} beams, {points} points: {each} bytes");
         let loaded = Session::of_bytes(&session.to_bytes(), "x").unwrap();
@@ -150,7 +151,7 @@ fn scans_of_another_make_keep_their_normals_and_crowded_ones_are_thinned() {
         let back = scans::read(&mut cursor, radius_m, &mut estimator).unwrap();
         assert_eq!(cursor.left(), 0);
         assert_eq!(back == scan, exact, "{count} points");
-        assert_eq!(back.len() == count, count <= 400);
+        assert_eq!(back.len() == count, count <= 340);
         let mut again = Writer::default();
         scans::write_all(
             [&back].into_iter(),
@@ -277,4 +278,24 @@ fn rays_to_a_thinned_wall_end_on_it_and_leave_gaps_open() {
         }
     }
     assert!(met > 110, "{met}");
+}
+
+#[test]
+fn a_robot_that_waits_does_not_fill_the_file_with_places() {
+    let place = |number: usize, keyframe: usize| ScanPlace {
+        stamp_s: number as f64,
+        keyframe,
+        keyframe_from_body: SE2::identity(),
+    };
+    let keyframe = |number: usize| match number {
+        0..100 => 0,
+        100..105 => 1,
+        _ => 2,
+    };
+    let places: Vec<ScanPlace> = (0..150).map(|k| place(k, keyframe(k))).collect();
+    let kept = places_kept(&places);
+    // Eight of the first keyframe, all of the second, and all of the last, which may get more.
+    assert_eq!(kept.len(), 8 + 5 + 45);
+    assert_eq!((kept[0], kept[7].stamp_s), (places[0], 87.0));
+    assert_eq!(places_kept(&kept), kept);
 }
