@@ -10,6 +10,7 @@
 //! - [`info`]: what is in a log.
 //! - [`run`]: a log through [`Slam`](ch16_slam2d::slam::Slam), frame by frame.
 //! - [`session`]: all that a run is, in one file.
+//! - [`localize`]: a log on the map of a session.
 //! - [`quality`]: how far each keyframe and each loop is to be trusted, and what is to be doubted.
 //! - [`trajectory`]: stamped poses, and the TUM format in both directions.
 //! - [`relations`]: reference relations between two times.
@@ -24,6 +25,7 @@ pub mod evaluate;
 pub mod graph_file;
 pub mod info;
 pub mod json_log;
+pub mod localize;
 pub mod log;
 pub mod map_image;
 pub mod quality;
