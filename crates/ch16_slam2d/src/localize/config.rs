@@ -95,7 +95,7 @@ impl Default for LocalizeConfig {
             },
             search_reach_m: 10.0,
             search_cell_m: 0.25,
-            most_sums: 400_000,
+            most_sums: 200_000,
             neighborhood: SearchNeighborhood::default(),
             min_score: 0.55,
             min_margin: 0.05,

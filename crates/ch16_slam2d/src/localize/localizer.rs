@@ -22,6 +22,8 @@ const BELIEVED_CHI2: f64 = 11.34;
 const AGAIN: f64 = 0.4;
 /// A search is made at least once in so many frames while the robot is lost.
 const SEARCH_EVERY: usize = 20;
+/// After searches that found nothing so many sweeps of the trail are awaited at most.
+const MOST_AWAITED: usize = 4;
 /// Standard deviations of a given start within which it is looked for.
 const START_SIGMAS: f64 = 3.0;
 
@@ -53,6 +55,10 @@ pub struct Localizer {
     /// The place that the last search found, moved on since, while it is not believed.
     candidate: Option<SE2>,
     searched_ago: usize,
+    /// Sweeps that still have to join the trail before the next search, and how many it was told to
+    /// await: where the map knows nothing, every search is as long as it is vain.
+    awaited: usize,
+    patience: usize,
 }
 
 impl Localizer {
@@ -78,6 +84,8 @@ impl Localizer {
             belief: None,
             candidate: None,
             searched_ago: 0,
+            awaited: 0,
+            patience: 1,
             slam,
             config,
         }
@@ -237,7 +245,9 @@ impl Localizer {
         report: &mut LocalizeReport,
     ) {
         self.searched_ago += 1;
-        let is_due = moved.joined || self.searched_ago >= SEARCH_EVERY || self.frames == 1;
+        self.awaited = self.awaited.saturating_sub(usize::from(moved.joined));
+        let has_moved = moved.joined && self.awaited == 0;
+        let is_due = has_moved || self.searched_ago >= SEARCH_EVERY || self.frames == 1;
         if !is_due || frame.cloud.is_empty() {
             return;
         }
@@ -245,8 +255,11 @@ impl Localizer {
         let trail = self.trail.cloud(&frame.cloud, &self.config);
         let Some(result) = self.search_whole(&trail, &frame.cloud) else {
             self.candidate = None;
+            self.patience = (2 * self.patience).min(MOST_AWAITED);
+            self.awaited = self.patience;
             return;
         };
+        self.patience = 1;
         report.search = Some(result);
         let margin = result.margin().unwrap_or(1.0);
         let best = result.best.pose;

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use ch16_slam2d::cloud::NormalEstimator;
 use ch16_slam2d::graph::{EdgeKind, EdgeView, PoseEdge, PoseNode};
 use ch16_slam2d::loops::HeldLoop;
 use ch16_slam2d::scan::LaserScan;
@@ -36,7 +35,6 @@ pub fn write(session: &Session, out: &mut Writer) {
         last_odometry,
     } = session;
     let radius_m = driven.config.scan.normal_radius_m;
-    let mut estimator = NormalEstimator::default();
     out.section(b"CONF", |out| {
         out.bytes(config_text(&driven.config).as_bytes())
     });
@@ -82,7 +80,7 @@ pub fn write(session: &Session, out: &mut Writer) {
     out.section(b"SCAN", |out| {
         let keyframes = driven.keyframes.iter();
         let scans = keyframes.map(|keyframe| keyframe.scan.as_ref());
-        scans::write_all(scans, radius_m, SCAN_BYTES, &mut estimator, out);
+        scans::write_all(scans, radius_m, SCAN_BYTES, out);
     });
     out.section(b"MAPD", |out| {
         out.maybe(mapped.as_ref(), |out, mapped| {
@@ -112,7 +110,7 @@ pub fn write(session: &Session, out: &mut Writer) {
         for (sweep, scan) in front.window.iter().zip(&front.scans) {
             out.u64(sweep.frame as u64);
             out.pose(&sweep.pose);
-            scans::write_exactly(scan, radius_m, &mut estimator, out);
+            scans::write_exactly(scan, radius_m, out);
         }
     });
 }
@@ -139,7 +137,6 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
         read_config(text).map_err(|problem| from.broken(problem))
     })?;
     let radius_m = config.scan.normal_radius_m;
-    let mut estimator = NormalEstimator::default();
     let (sensor, last_odometry) = from.section(b"SENS", |from| {
         Ok((from.maybe(read_sensor)?, from.maybe(Cursor::pose)?))
     })?;
@@ -171,7 +168,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
                 node,
                 frame: *frame,
                 stamp_s: *stamp_s,
-                scan: Arc::new(scans::read(from, radius_m, &mut estimator)?),
+                scan: Arc::new(scans::read(from, radius_m)?),
             });
         }
         Ok(keyframes)
@@ -211,7 +208,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
                 frame: read_number(from)?,
                 pose: from.pose()?,
             });
-            window_scans.push(Arc::new(scans::read(from, radius_m, &mut estimator)?));
+            window_scans.push(Arc::new(scans::read(from, radius_m)?));
         }
         Ok(FrontEndSnapshot {
             estimate,

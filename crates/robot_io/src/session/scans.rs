@@ -9,7 +9,7 @@
 
 use std::borrow::Cow;
 
-use ch16_slam2d::cloud::{NormalEstimator, PointCloud};
+use ch16_slam2d::cloud::PointCloud;
 use pr_geom::{Point2, Vector2, math};
 
 use super::bytes::{Broken, Cursor, Writer};
@@ -88,12 +88,9 @@ pub fn write_all<'a>(
     scans: impl Iterator<Item = &'a PointCloud>,
     radius_m: f64,
     most_bytes: usize,
-    estimator: &mut NormalEstimator,
     out: &mut Writer,
 ) {
-    let fitted: Vec<Fitted<'_>> = scans
-        .map(|scan| fit(scan, radius_m, most_bytes, estimator))
-        .collect();
+    let fitted: Vec<Fitted<'_>> = scans.map(|scan| fit(scan, radius_m, most_bytes)).collect();
     let exact: usize = fitted.iter().map(|scan| scan.bytes(Precision::Exact)).sum();
     let all_exact = exact <= most_bytes * fitted.len();
     for scan in &fitted {
@@ -107,13 +104,8 @@ pub fn write_all<'a>(
 }
 
 /// Writes a scan with all bits, however many bytes it takes.
-pub fn write_exactly(
-    scan: &PointCloud,
-    radius_m: f64,
-    estimator: &mut NormalEstimator,
-    out: &mut Writer,
-) {
-    fit(scan, radius_m, usize::MAX, estimator).write(Precision::Exact, out);
+pub fn write_exactly(scan: &PointCloud, radius_m: f64, out: &mut Writer) {
+    fit(scan, radius_m, usize::MAX).write(Precision::Exact, out);
 }
 
 fn bytes(points: usize, precision: Precision, is_derived: bool) -> usize {
@@ -126,16 +118,11 @@ fn bytes(points: usize, precision: Precision, is_derived: bool) -> usize {
 }
 
 /// The scan at the best precision that fits, thinned where none does.
-fn fit<'a>(
-    scan: &'a PointCloud,
-    radius_m: f64,
-    most_bytes: usize,
-    estimator: &mut NormalEstimator,
-) -> Fitted<'a> {
+fn fit<'a>(scan: &'a PointCloud, radius_m: f64, most_bytes: usize) -> Fitted<'a> {
     let mut fitting = Cow::Borrowed(scan);
     let mut cell_m = radius_m.max(1e-3) / 16.0;
     loop {
-        let is_derived = *fitting == derived(&fitting, radius_m, estimator);
+        let is_derived = *fitting == derived(&fitting, radius_m);
         let fixed = (COARSEST_SHIFT..=FINEST_SHIFT).rev().map(Precision::Fixed);
         let all = [Precision::Exact, Precision::Single]
             .into_iter()
@@ -158,10 +145,10 @@ fn fit<'a>(
     }
 }
 
-/// The scan with the normals that its points give.
-fn derived(scan: &PointCloud, radius_m: f64, estimator: &mut NormalEstimator) -> PointCloud {
+/// The scan with the normals that its points give, whatever was seen before it.
+fn derived(scan: &PointCloud, radius_m: f64) -> PointCloud {
     let mut with_normals = PointCloud::new(scan.iter().collect(), scan.stamp_s());
-    estimator.estimate(&mut with_normals, radius_m);
+    with_normals.estimate_normals(radius_m);
     with_normals
 }
 
@@ -227,11 +214,7 @@ fn write_as(scan: &PointCloud, precision: Precision, is_derived: bool, out: &mut
 }
 
 /// Reads a scan.
-pub fn read(
-    from: &mut Cursor<'_>,
-    radius_m: f64,
-    estimator: &mut NormalEstimator,
-) -> Result<PointCloud, Broken> {
+pub fn read(from: &mut Cursor<'_>, radius_m: f64) -> Result<PointCloud, Broken> {
     let code = from.u8()?;
     let shift = from.u8()? as i8;
     let (precision, is_derived) = match code & 3 {
@@ -272,7 +255,7 @@ pub fn read(
     }
     let cloud = PointCloud::new(points, stamp_s);
     if is_derived {
-        return Ok(derived(&cloud, radius_m, estimator));
+        return Ok(derived(&cloud, radius_m));
     }
     let mut with_normals = PointCloud::new(Vec::new(), stamp_s);
     for point in cloud.iter() {

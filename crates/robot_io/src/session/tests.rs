@@ -62,8 +62,21 @@ fn what_is_saved_loads_to_the_same_and_is_saved_to_the_same_bytes() {
             let bytes = session.to_bytes();
             let loaded = Session::read(Bytes::new(&bytes), "x").unwrap();
             assert!(loaded.to_bytes() == bytes, "{beams} beams");
+            let whole = |of: &Session| {
+                let mut of = of.clone();
+                of.driven.keyframes.clear();
+                of
+            };
             // Not assert_eq: nobody reads a session.
-            assert!(beams != 120 || loaded == session);
+            assert!(whole(&loaded) == whole(&session), "{beams} beams");
+            let pairs = loaded
+                .driven
+                .keyframes
+                .iter()
+                .zip(&session.driven.keyframes);
+            for (a, b) in pairs {
+                assert_eq!((a.node, a.frame, a.stamp_s), (b.node, b.frame, b.stamp_s));
+            }
         }
     }
 }
@@ -106,10 +119,16 @@ fn a_keyframe_takes_three_kilobytes_at_most_whatever_the_sensor() {
             .iter()
             .zip(&session.driven.keyframes)
         {
-            assert_eq!(stored.scan.len(), seen.scan.len());
-            for (a, b) in stored.scan.iter().zip(seen.scan.iter()) {
-                // Half a step of 16-bit coordinates within 8 m.
-                assert!((a - b).abs().max() <= 0.5 / 2048.0);
+            if beams < 2880 {
+                assert_eq!(stored.scan.len(), seen.scan.len());
+            }
+            // More points than fit are thinned, and not to nothing.
+            assert!(stored.scan.len() > 2 * seen.scan.len() / 3);
+            if stored.scan.len() == seen.scan.len() {
+                for (a, b) in stored.scan.iter().zip(seen.scan.iter()) {
+                    // Half a step of 16-bit coordinates within 8 m.
+                    assert!((a - b).abs().max() <= 0.5 / 2048.0);
+                }
             }
         }
     }
@@ -128,38 +147,25 @@ fn scans_of_another_make_keep_their_normals_and_crowded_ones_are_thinned() {
         }
         cloud
     };
-    let mut estimator = ch16_slam2d::cloud::NormalEstimator::default();
     for (count, exact) in [
-        (70, true),
+        (60, true),
         (200, false),
-        (400, false),
+        (340, false),
         (5000, false),
         (0, true),
     ] {
         let scan = spiral(count);
         let mut first = Writer::default();
-        scans::write_all(
-            [&scan].into_iter(),
-            radius_m,
-            parts::SCAN_BYTES,
-            &mut estimator,
-            &mut first,
-        );
+        scans::write_all([&scan].into_iter(), radius_m, parts::SCAN_BYTES, &mut first);
         let first = first.finish();
         assert!(first.len() <= parts::SCAN_BYTES);
         let mut cursor = Cursor::new(&first, 0);
-        let back = scans::read(&mut cursor, radius_m, &mut estimator).unwrap();
+        let back = scans::read(&mut cursor, radius_m).unwrap();
         assert_eq!(cursor.left(), 0);
         assert_eq!(back == scan, exact, "{count} points");
         assert_eq!(back.len() == count, count <= 340);
         let mut again = Writer::default();
-        scans::write_all(
-            [&back].into_iter(),
-            radius_m,
-            parts::SCAN_BYTES,
-            &mut estimator,
-            &mut again,
-        );
+        scans::write_all([&back].into_iter(), radius_m, parts::SCAN_BYTES, &mut again);
         assert_eq!(again.finish(), first, "{count} points");
     }
 }
