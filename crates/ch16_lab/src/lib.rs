@@ -5,6 +5,7 @@ pub mod ancestor;
 pub mod basin;
 pub mod buildings;
 pub mod lap;
+pub mod laps;
 pub mod moving_box;
 pub mod nudge;
 pub mod places;

@@ -13,12 +13,15 @@
 //!
 //! Source: Grisetti, Kümmerle, Stachniss, Burgard, "A tutorial on graph-based SLAM", 2010.
 
+mod marginalize;
+
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::{
     Between, JacobianModel, Method, OptimizeError, Optimizer, Problem, Report, Settings,
 };
 
+pub use marginalize::{MarginalizeError, Marginalized};
 pub use pr_optim::{RobustKernel, StopReason};
 
 /// Handle of a node. Nodes are numbered from 0 in the order in which they were added.
@@ -60,7 +63,8 @@ impl EdgeId {
 /// Where a measurement comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EdgeKind {
-    /// From one keyframe to the next, by scan matching or wheels.
+    /// From one keyframe to the next, by scan matching or wheels; and what nodes that were taken out
+    /// have told of those around them.
     Odometry,
     /// Between keyframes far apart in time, by recognizing a place.
     Loop,

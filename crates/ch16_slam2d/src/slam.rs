@@ -26,6 +26,7 @@ mod scales;
 mod snapshot;
 #[cfg(test)]
 pub(crate) mod test_room;
+mod upkeep;
 
 use std::sync::Arc;
 
@@ -42,6 +43,7 @@ pub use pending::PendingFrame;
 pub use refinement::{Refinement, RefinementConfig};
 pub use report::{Change, Keyframe, LoopAttempt, LoopEffect, SlamReport};
 pub use snapshot::{FrontEndSnapshot, SlamSnapshot, SnapshotError};
+pub use upkeep::{Upkeep, UpkeepConfig};
 
 use crate::graph::{EdgeKind, PoseGraph};
 use crate::loops::{HeldLoop, LoopDetector, LoopWorkspace};

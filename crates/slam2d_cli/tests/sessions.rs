@@ -207,3 +207,30 @@ fn a_log_is_found_on_the_map_of_a_session() {
         assert_refused(&arguments, said);
     }
 }
+
+#[test]
+fn lap_after_lap_is_told_in_lines_and_left_as_a_session() {
+    let folder = TempDir::new().unwrap();
+    let session = folder.path().join("laps.slam2d").display().to_string();
+    let run = json(&["lap", "--laps", "2", "--session", &session, "--json"]);
+    let laps = run["laps"].as_array().unwrap();
+    assert_eq!(laps.len(), 2);
+    let info = json(&["info", &session, "--json"]);
+    assert_eq!(info["keyframes"], laps[1]["nodes"]);
+    assert_eq!(info["edges"], laps[1]["edges"]);
+    assert_eq!(info["bytes"], laps[1]["bytes"]);
+    for (arguments, said) in [
+        (vec!["lap", "--laps", "0"], "not within 1 to 10000"),
+        (vec!["lap", "--session", "x"], "--laps"),
+        (
+            vec!["lap", "--laps", "2", "--matcher", "ndt"],
+            "cannot be used with",
+        ),
+        (
+            vec!["lap", "--laps", "2", "--wardrobe", "1", "--world", "ring"],
+            "--wardrobe moves one through the Apartment",
+        ),
+    ] {
+        assert_refused(&arguments, said);
+    }
+}
