@@ -253,10 +253,8 @@ impl Session {
             sensor.validate().map_err(|problem| problem.to_string())?;
         }
         let keyframes = self.driven.keyframes.len();
-        let in_order = self.places.windows(2);
-        let is_in_order = in_order
-            .into_iter()
-            .all(|two| two[0].stamp_s < two[1].stamp_s);
+        let mut in_order = self.places.windows(2);
+        let is_in_order = in_order.all(|two| two[0].stamp_s < two[1].stamp_s);
         if !is_in_order || self.places.iter().any(|place| place.keyframe >= keyframes) {
             return Err("the places of scans are not in order".to_owned());
         }

@@ -215,8 +215,8 @@ impl FrontEndSnapshot {
 }
 
 fn is_cloud(cloud: &PointCloud) -> bool {
-    let values = cloud.xs().iter().chain(cloud.ys());
-    values.into_iter().all(|value| value.is_finite())
+    let mut values = cloud.xs().iter().chain(cloud.ys());
+    values.all(|value| value.is_finite())
 }
 
 impl Slam {

@@ -283,12 +283,15 @@ mod tests {
     fn stand_in_the_way(scan: &mut crate::scan::LaserScan, pose: &SE2) {
         let post = pose.inverse().transform(POST);
         let (at, away_m) = (math::atan2(post.y, post.x), math::norm2(post.x, post.y));
-        for beam in 0..scan.ranges_m.len() {
-            let turn = pr_geom::wrap_angle(scan.bearing_rad(beam) - at);
+        let bearings: Vec<f64> = (0..scan.ranges_m.len())
+            .map(|beam| scan.bearing_rad(beam))
+            .collect();
+        for (range_m, bearing) in scan.ranges_m.iter_mut().zip(bearings) {
+            let turn = pr_geom::wrap_angle(bearing - at);
             let side_m = away_m * math::sin(turn);
             if turn.abs() < 1.0 && side_m.abs() < 0.3 {
                 let front_m = away_m * math::cos(turn) - math::sqrt(0.09 - side_m * side_m);
-                scan.ranges_m[beam] = math::min(scan.ranges_m[beam], front_m);
+                *range_m = math::min(*range_m, front_m);
             }
         }
     }

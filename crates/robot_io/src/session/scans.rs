@@ -118,7 +118,7 @@ fn bytes(points: usize, precision: Precision, is_derived: bool) -> usize {
 }
 
 /// The scan at the best precision that fits, thinned where none does.
-fn fit<'a>(scan: &'a PointCloud, radius_m: f64, most_bytes: usize) -> Fitted<'a> {
+fn fit(scan: &PointCloud, radius_m: f64, most_bytes: usize) -> Fitted<'_> {
     let mut fitting = Cow::Borrowed(scan);
     let mut cell_m = radius_m.max(1e-3) / 16.0;
     loop {
@@ -174,7 +174,7 @@ fn steps(shift: i8) -> f64 {
 }
 
 fn write_as(scan: &PointCloud, precision: Precision, is_derived: bool, out: &mut Writer) {
-    out.u8(precision.code() | u8::from(!is_derived) << 2);
+    out.u8(precision.code() | (u8::from(!is_derived) << 2));
     let shift = match precision {
         Precision::Fixed(shift) => shift,
         _ => 0,

@@ -62,13 +62,6 @@ fn what_is_saved_loads_to_the_same_and_is_saved_to_the_same_bytes() {
             let bytes = session.to_bytes();
             let loaded = Session::read(Bytes::new(&bytes), "x").unwrap();
             assert!(loaded.to_bytes() == bytes, "{beams} beams");
-            let whole = |of: &Session| {
-                let mut of = of.clone();
-                of.driven.keyframes.clear();
-                of
-            };
-            // Not assert_eq: nobody reads a session.
-            assert!(whole(&loaded) == whole(&session), "{beams} beams");
             let pairs = loaded
                 .driven
                 .keyframes
