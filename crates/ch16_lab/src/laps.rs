@@ -175,7 +175,7 @@ impl Laps {
             nodes: self.slam.graph().node_count(),
             edges: self.slam.graph().edge_count(),
             loops,
-            rms_m: rms(errors_m.into_iter()),
+            rms_m: rms(errors_m),
             map_rms_m: rms(map_m),
             removed: done.removed.len(),
             divergence: done.divergence,

@@ -35,7 +35,7 @@ impl Place {
         let places = keyframes.iter().zip(&poses);
         let off_m =
             places.map(|(keyframe, pose)| position_error_m(pose, &lap.truth(keyframe.frame)));
-        let map_rms_m = rms(off_m.collect::<Vec<_>>().into_iter());
+        let map_rms_m = rms(off_m);
         let map = KnownMap::new(keyframes, poses, &LocalizeConfig::default());
         let map = Arc::new(map.unwrap());
         Self {

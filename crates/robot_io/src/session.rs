@@ -99,7 +99,7 @@ pub struct MappedGraph {
 }
 
 impl MappedGraph {
-    /// What refinement changes of a graph.
+    /// What refinement changes of a graph; its loops are numbered from 0.
     #[must_use]
     pub fn of(graph: &PoseGraph) -> Self {
         let loops = graph
@@ -107,7 +107,13 @@ impl MappedGraph {
             .filter(|view| view.edge.kind == EdgeKind::Loop);
         Self {
             poses: graph.poses().to_vec(),
-            loops: loops.collect(),
+            loops: loops
+                .enumerate()
+                .map(|(number, view)| EdgeView {
+                    id: number.into(),
+                    ..view
+                })
+                .collect(),
         }
     }
 }

@@ -272,6 +272,7 @@ impl Slam {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::loops::LoopGuard;
     use crate::slam::test_room::frame;
 
     fn driven(slam: &mut Slam, steps: core::ops::Range<usize>) {
@@ -280,9 +281,19 @@ mod tests {
         }
     }
 
-    fn configs() -> [SlamConfig; 3] {
+    fn configs() -> [SlamConfig; 4] {
         let scan = frame(0).scan;
+        // A guard that is never sure and never has enough: every loop waits.
+        let mut doubting = SlamConfig::for_robot(&scan);
+        doubting.loops.guard = Some(LoopGuard {
+            sure_m: 0.0,
+            min_margin: 0.0,
+            agreeing: 1000,
+            agreeing_outside: 1000,
+            ..LoopGuard::default()
+        });
         [
+            doubting,
             SlamConfig::for_robot(&scan),
             SlamConfig::for_scan(&scan, 0.02),
             SlamConfig::chapter(),
@@ -291,6 +302,7 @@ mod tests {
 
     #[test]
     fn a_run_that_is_interrupted_ends_in_the_same_bits() {
+        let mut waited = 0;
         for config in configs() {
             let mut whole = Slam::new(config.clone());
             driven(&mut whole, 0..140);
@@ -298,12 +310,14 @@ mod tests {
             for stop in [0, 1, 60, 121] {
                 let mut first = Slam::new(config.clone());
                 driven(&mut first, 0..stop);
+                waited += first.snapshot().held.len();
                 let mut second = Slam::restore(&first.snapshot()).unwrap();
                 driven(&mut second, stop..140);
                 assert_eq!(second.snapshot(), whole.snapshot(), "stopped after {stop}");
                 assert_eq!(second.chi2().to_bits(), whole.chi2().to_bits());
             }
         }
+        assert!(waited > 0, "no run was interrupted while a loop waited");
     }
 
     #[test]

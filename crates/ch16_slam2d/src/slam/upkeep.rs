@@ -254,6 +254,7 @@ impl Slam {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::loops::LoopGuard;
     use crate::slam::SlamConfig;
     use crate::slam::test_room::{frame, truth};
 
@@ -321,6 +322,38 @@ mod tests {
             assert!(error_m < 0.1, "{}: {error_m}", keyframe.frame);
         }
         assert!(slam.graph().edge_count() < 4 * slam.graph().node_count());
+    }
+
+    #[test]
+    fn loops_that_wait_follow_their_keyframes() {
+        let mut config = SlamConfig::for_robot(&frame(0).scan);
+        config.loops.guard = Some(LoopGuard {
+            sure_m: 0.0,
+            min_margin: 0.0,
+            agreeing: 1000,
+            agreeing_outside: 1000,
+            ..LoopGuard::default()
+        });
+        let mut slam = Slam::new(config);
+        (0..140).for_each(|step| drop(slam.step(&frame(step)).unwrap()));
+        let ends = |slam: &Slam| -> Vec<(usize, usize)> {
+            let frame = |node: usize| slam.keyframes[node].frame;
+            let found = slam.held.iter().map(|held| &held.verification);
+            found
+                .map(|found| (frame(found.from_node), frame(found.candidate.node)))
+                .collect()
+        };
+        let mut expected = ends(&slam);
+        assert!(!expected.is_empty());
+        let old = slam.held[0].verification.candidate.node;
+        // A keyframe that others follow, and then the end of a loop.
+        for node in [old + 2, old] {
+            let gone = slam.keyframes[node].frame;
+            slam.graph.marginalize(node).unwrap();
+            slam.forget(node);
+            expected.retain(|&(new, old)| new != gone && old != gone);
+            assert_eq!(ends(&slam), expected);
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::io::Cursor as Bytes;
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::scan::LaserScan;
 use ch16_slam2d::slam::SlamConfig;
+use ch16_slam2d::slam::parameters::Parameter;
 use pr_geom::{Point2, SE2, Vector3, math};
 
 use super::*;
@@ -60,16 +61,16 @@ fn what_is_saved_loads_to_the_same_and_is_saved_to_the_same_bytes() {
             let session = run.session().unwrap();
             assert_eq!(session.mapped.is_some(), is_finished);
             let bytes = session.to_bytes();
-            let loaded = Session::read(Bytes::new(&bytes), "x").unwrap();
+            let mut loaded = Session::read(Bytes::new(&bytes), "x").unwrap();
             assert!(loaded.to_bytes() == bytes, "{beams} beams");
-            let pairs = loaded
-                .driven
-                .keyframes
-                .iter()
-                .zip(&session.driven.keyframes);
-            for (a, b) in pairs {
-                assert_eq!((a.node, a.frame, a.stamp_s), (b.node, b.frame, b.stamp_s));
+            // Scans of more than 131 points are kept with fewer bits; nothing else is.
+            if beams > 120 {
+                let pairs = loaded.driven.keyframes.iter_mut();
+                for (a, b) in pairs.zip(&session.driven.keyframes) {
+                    a.scan = b.scan.clone();
+                }
             }
+            assert!(loaded == session, "{beams} beams");
         }
     }
 }
@@ -90,6 +91,39 @@ fn a_run_that_goes_on_from_a_file_ends_in_the_bits_of_one_that_was_never_interru
     let mut third = LogRun::resume(&session, OdometryUse::Log).unwrap();
     go_on(&mut third, 120, 150..170);
     assert_eq!(saved(&third), saved(&run(120, 0..170)));
+}
+
+#[test]
+fn loops_that_wait_are_saved_and_wait_on() {
+    // A guard that is never sure and never has enough.
+    let settings = [
+        ("loops.guard.sure_m", 0.0),
+        ("loops.guard.min_margin", 0.0),
+        ("loops.guard.agreeing", 1000.0),
+        ("loops.guard.agreeing_outside", 1000.0),
+    ];
+    let settings = settings.map(|(name, value)| (Parameter::named(name).unwrap(), value));
+    let doubting = |steps: core::ops::Range<usize>| {
+        let new = LogRun::new(OdometryUse::Log);
+        let mut run = settings.iter().fold(new, |run, (parameter, value)| {
+            run.with_parameter(parameter, *value)
+        });
+        go_on(&mut run, 120, steps);
+        run
+    };
+    let (half, mut whole) = (doubting(0..125), doubting(0..140));
+    let session = Session::of_bytes(&saved(&half), "x").unwrap();
+    assert!(!session.driven.held.is_empty());
+    assert_eq!(session, half.session().unwrap());
+    let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
+    go_on(&mut second, 120, 125..140);
+    assert_eq!(saved(&second), saved(&whole));
+    // At the end the loops that wait are closed or dropped, in the same way.
+    whole.finish();
+    second.finish();
+    assert_eq!(saved(&second), saved(&whole));
+    let closed = |run: &LogRun| run.loops().iter().filter(|tried| tried.accepted).count();
+    assert_eq!(closed(&second), closed(&whole));
 }
 
 #[test]
