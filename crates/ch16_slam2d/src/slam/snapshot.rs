@@ -292,6 +292,8 @@ mod tests {
             agreeing_outside: 1000,
             ..LoopGuard::default()
         });
+        // A lap has sixteen keyframes.
+        doubting.loops.min_gap_nodes = 10;
         [
             doubting,
             SlamConfig::for_robot(&scan),

@@ -334,6 +334,8 @@ mod tests {
             agreeing_outside: 1000,
             ..LoopGuard::default()
         });
+        // A lap has sixteen keyframes.
+        config.loops.min_gap_nodes = 10;
         let mut slam = Slam::new(config);
         (0..140).for_each(|step| drop(slam.step(&frame(step)).unwrap()));
         let ends = |slam: &Slam| -> Vec<(usize, usize)> {

@@ -97,6 +97,8 @@ fn a_run_that_goes_on_from_a_file_ends_in_the_bits_of_one_that_was_never_interru
 fn loops_that_wait_are_saved_and_wait_on() {
     // A guard that is never sure and never has enough.
     let settings = [
+        // A lap has sixteen keyframes.
+        ("loops.min_gap_nodes", 10.0),
         ("loops.guard.sure_m", 0.0),
         ("loops.guard.min_margin", 0.0),
         ("loops.guard.agreeing", 1000.0),
