@@ -127,7 +127,7 @@ fn bias(moving: &MovingBox) -> Panel {
     };
     Panel {
         id: panel::BIAS,
-        title: format!("How far the box pulls the mean away{progress}"),
+        title: format!("How far the box pulls the mean{progress}"),
         weight: Weight::Half,
         aspect: Aspect::Free,
         x: Axis::new("points on the box (%)", 0.0, MOST_SHARE),

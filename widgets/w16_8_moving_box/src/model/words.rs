@@ -55,7 +55,7 @@ pub fn outcome(moving: &MovingBox) -> Outcome {
         standing: standing(moving),
         verdict: verdict(moving).to_owned(),
         sentence: format!(
-            "With {share:.0} % of the points on the box, it ends with {}; the rmse of plain is {rmse:.3} m.",
+            "With {share:.0} % of the points on the box, registration ends with {}; the rmse of plain is {rmse:.3} m.",
             told.join(", ")
         ),
         facts: facts(moving),
