@@ -8,6 +8,8 @@
 
 mod bicubic;
 mod climb;
+#[cfg(test)]
+pub(crate) mod test_corner;
 mod tiled_grid;
 
 pub use bicubic::{FieldSample, bicubic};

@@ -29,7 +29,6 @@ mod test_room;
 
 use std::sync::Arc;
 
-use nalgebra::Vector3;
 use pr_geom::SE2;
 
 pub use config::{ContradictionConfig, LoopClosure, PredictionUse, SlamConfig, ThresholdConfig};
@@ -43,7 +42,7 @@ pub use report::{Change, Keyframe, LoopAttempt, LoopEffect, SlamReport};
 use crate::graph::{EdgeKind, PoseGraph};
 use crate::loops::{HeldLoop, LoopDetector, LoopWorkspace};
 use crate::metrics::position_error_m;
-use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer, is_finite};
+use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer};
 use crate::submaps::{FrontEndKind, SubmapLoops};
 
 /// The SLAM system, one frame at a time.
@@ -125,21 +124,9 @@ impl Slam {
     /// # Errors
     /// Where the frame cannot be used.
     pub fn prepare(&mut self, frame: &Frame) -> Result<PreparedFrame, FrameError> {
-        frame.validate()?;
-        let dt_s = frame.stamp_s - self.last_stamp_s;
-        let velocity = match frame.odometry {
-            Some(odometry) if dt_s > 0.0 && dt_s.is_finite() => odometry.log() / dt_s,
-            Some(_) => Vector3::zeros(),
-            None => self.front_end.velocity(),
-        };
-        let cloud = self
-            .preparer
-            .prepare(&frame.scan, &velocity, &self.config.scan);
-        Ok(PreparedFrame {
-            stamp_s: frame.stamp_s,
-            odometry: frame.odometry,
-            cloud: Arc::new(cloud),
-        })
+        let velocity = self.front_end.velocity();
+        self.preparer
+            .prepare_frame(frame, self.last_stamp_s, velocity, &self.config.scan)
     }
 
     /// First part of a frame: predict, register, and take a keyframe where one is due.
@@ -149,22 +136,7 @@ impl Slam {
     /// # Errors
     /// Where the frame cannot be used; the estimator stays as it was.
     pub fn begin(&mut self, frame: &PreparedFrame) -> Result<PendingFrame, FrameError> {
-        frame.validate()?;
-        let dt_s = frame.stamp_s - self.last_stamp_s;
-        if dt_s <= 0.0 {
-            return Err(FrameError::Stamp {
-                stamp_s: frame.stamp_s,
-                last_s: self.last_stamp_s,
-            });
-        }
-        if frame
-            .odometry
-            .is_some_and(|motion| !is_finite(&(self.front_end.estimate() * motion)))
-        {
-            return Err(FrameError::Odometry {
-                stamp_s: frame.stamp_s,
-            });
-        }
+        let dt_s = frame.seconds_after(self.last_stamp_s, &self.front_end.estimate())?;
         self.last_stamp_s = frame.stamp_s;
         self.frames += 1;
         let (registration, new_keyframe) = if self.keyframes.is_empty() {

@@ -236,19 +236,8 @@ impl PointScores for LikelihoodField<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::test_corner::corner;
     use crate::field::{ClimbConfig, ScanClimb};
-
-    /// Two walls of a room and a post, seen from its middle, with normals.
-    fn corner() -> PointCloud {
-        let mut cloud = PointCloud::default();
-        for k in 0..30 {
-            let along = 0.12 * f64::from(k) - 1.7;
-            cloud.push_with_normal(Point2::new(along, -1.5), Some(Vector2::y()));
-            cloud.push_with_normal(Point2::new(1.9, along + 0.2), Some(Vector2::x()));
-        }
-        cloud.push(Point2::new(0.4, 1.1));
-        cloud
-    }
 
     fn map() -> LikelihoodMap {
         let mut map = LikelihoodMap::new(LikelihoodMapConfig::of_cells(0.12));

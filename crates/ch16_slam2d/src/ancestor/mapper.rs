@@ -53,21 +53,13 @@ impl IncrementalMapper {
     /// # Errors
     /// Where the frame cannot be used; the mapper stays as it was.
     pub fn step(&mut self, frame: &Frame) -> Result<AncestorReport, FrameError> {
-        frame.validate()?;
-        let dt_s = frame.stamp_s - self.last_stamp_s;
-        let velocity = match frame.odometry {
-            Some(odometry) if dt_s > 0.0 && dt_s.is_finite() => odometry.log() / dt_s,
-            Some(_) => Vector3::zeros(),
-            None => self.velocity,
-        };
-        let cloud = self
-            .preparer
-            .prepare(&frame.scan, &velocity, &self.config.scan);
-        self.step_prepared(&PreparedFrame {
-            stamp_s: frame.stamp_s,
-            odometry: frame.odometry,
-            cloud: Arc::new(cloud),
-        })
+        let prepared = self.preparer.prepare_frame(
+            frame,
+            self.last_stamp_s,
+            self.velocity,
+            &self.config.scan,
+        )?;
+        self.step_prepared(&prepared)
     }
 
     /// [`IncrementalMapper::step`] with a scan that is already a cloud.
@@ -75,22 +67,7 @@ impl IncrementalMapper {
     /// # Errors
     /// Where the frame cannot be used; the mapper stays as it was.
     pub fn step_prepared(&mut self, frame: &PreparedFrame) -> Result<AncestorReport, FrameError> {
-        frame.validate()?;
-        let dt_s = frame.stamp_s - self.last_stamp_s;
-        if dt_s <= 0.0 {
-            return Err(FrameError::Stamp {
-                stamp_s: frame.stamp_s,
-                last_s: self.last_stamp_s,
-            });
-        }
-        if frame
-            .odometry
-            .is_some_and(|motion| !is_finite(&(self.estimate * motion)))
-        {
-            return Err(FrameError::Odometry {
-                stamp_s: frame.stamp_s,
-            });
-        }
+        let dt_s = frame.seconds_after(self.last_stamp_s, &self.estimate)?;
         self.last_stamp_s = frame.stamp_s;
         self.frames += 1;
         let mut report = AncestorReport {

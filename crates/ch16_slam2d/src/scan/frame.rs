@@ -49,6 +49,32 @@ impl PreparedFrame {
     pub fn validate(&self) -> Result<(), FrameError> {
         check_motion(self.stamp_s, self.odometry.as_ref())
     }
+
+    /// Whether the frame can follow one at `last_stamp_s`, s, whose estimate is `world_from_body`; returns
+    /// the time since then, s.
+    ///
+    /// # Errors
+    /// [`FrameError::Stamp`] where it is not later, [`FrameError::Odometry`] where its motion leads nowhere.
+    pub(crate) fn seconds_after(
+        &self,
+        last_stamp_s: f64,
+        world_from_body: &SE2,
+    ) -> Result<f64, FrameError> {
+        self.validate()?;
+        let stamp_s = self.stamp_s;
+        let dt_s = stamp_s - last_stamp_s;
+        if dt_s <= 0.0 {
+            return Err(FrameError::Stamp {
+                stamp_s,
+                last_s: last_stamp_s,
+            });
+        }
+        let leads_nowhere = |motion: SE2| !is_finite(&(*world_from_body * motion));
+        if self.odometry.is_some_and(leads_nowhere) {
+            return Err(FrameError::Odometry { stamp_s });
+        }
+        Ok(dt_s)
+    }
 }
 
 /// Whether all numbers of a pose are.

@@ -1,9 +1,11 @@
 //! From a sweep to a cloud: clean, deskew, thin, estimate normals.
 
+use std::sync::Arc;
+
 use nalgebra::{Point2, Vector3};
 use pr_geom::{Rotation, SE2};
 
-use super::LaserScan;
+use super::{Frame, FrameError, LaserScan, PreparedFrame};
 use crate::cloud::{Downsampler, NormalEstimator, PointCloud};
 
 /// How a scan becomes a cloud; the defaults are the chapter's.
@@ -40,6 +42,32 @@ impl ScanPreparer {
     #[must_use]
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// A frame with its scan as a cloud, after one at `last_stamp_s`, s. During the sweep the body moves as
+    /// its odometry says, and without odometry by `velocity` (m/s, m/s, rad/s).
+    ///
+    /// # Errors
+    /// Where the frame cannot be used.
+    pub fn prepare_frame(
+        &mut self,
+        frame: &Frame,
+        last_stamp_s: f64,
+        velocity: Vector3<f64>,
+        config: &ScanConfig,
+    ) -> Result<PreparedFrame, FrameError> {
+        frame.validate()?;
+        let dt_s = frame.stamp_s - last_stamp_s;
+        let velocity = match frame.odometry {
+            Some(odometry) if dt_s > 0.0 && dt_s.is_finite() => odometry.log() / dt_s,
+            Some(_) => Vector3::zeros(),
+            None => velocity,
+        };
+        Ok(PreparedFrame {
+            stamp_s: frame.stamp_s,
+            odometry: frame.odometry,
+            cloud: Arc::new(self.prepare(&frame.scan, &velocity, config)),
+        })
     }
 
     /// The returns of `scan` in the body's frame at the first beam, thinned, with the normals that

@@ -247,20 +247,9 @@ impl Walls for FinishedGrid {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::test_corner::corner;
     use crate::field::{ClimbConfig, ScanClimb};
     use nalgebra::Vector3;
-
-    /// Two walls of a room and a post, with normals.
-    fn corner() -> PointCloud {
-        let mut cloud = PointCloud::default();
-        for k in 0..30 {
-            let along = 0.12 * f64::from(k) - 1.7;
-            cloud.push_with_normal(Point2::new(along, -1.5), Some(Vector2::y()));
-            cloud.push_with_normal(Point2::new(1.9, along + 0.2), Some(Vector2::x()));
-        }
-        cloud.push(Point2::new(0.4, 1.1));
-        cloud
-    }
 
     fn truth() -> SE2 {
         SE2::new(0.3, -0.2, 0.4)

@@ -321,21 +321,16 @@ impl RowsFile {
         };
         kept.file.seek(SeekFrom::Start(whole_bytes)).map_err(io)?;
         if found.is_none() {
-            kept.write(header)?;
+            kept.add(header)?;
         }
         Ok((kept, rows))
     }
 
-    /// Adds one lap.
+    /// Adds a line by one call, so that no other program sees half of it.
     ///
     /// # Errors
     /// Where the system cannot write it.
-    pub fn add(&mut self, row: &LapRow) -> Result<(), RowsFailure> {
-        self.write(row)
-    }
-
-    /// One line by one call, so that no other program sees half of it.
-    fn write(&mut self, line: &impl Serialize) -> Result<(), RowsFailure> {
+    pub fn add(&mut self, line: &impl Serialize) -> Result<(), RowsFailure> {
         let mut bytes = serde_json::to_vec(line).expect("plain numbers and lists");
         bytes.push(b'\n');
         self.file
