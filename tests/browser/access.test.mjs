@@ -62,12 +62,12 @@ for (const widget of h.schema) {
         const said = widget.shadowRoot.querySelector('[aria-live="polite"]').textContent;
         return said.length > 15 && said === widget.outcome.sentence;
       });
-      const [summary, written] = await tab.evaluate(() => {
+      // A widget that goes on computing says more later, and its page follows.
+      await tab.waitForFunction(() => {
         const widget = document.querySelector('slam-widget');
-        return [widget.summary, widget.shadowRoot.querySelector('.summary').textContent];
+        const written = widget.shadowRoot.querySelector('.summary').textContent;
+        return written.length > 40 && written === widget.summary;
       });
-      assert.ok(summary.length > 40);
-      assert.equal(written, summary);
     });
 
     it('gives every control to the keyboard, in reading order and in sight', async () => {

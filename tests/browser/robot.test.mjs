@@ -157,7 +157,7 @@ describe('a log of one’s own', () => {
       await isMapped(tab);
       const { facts } = await outcome(tab);
       const saved = async (id) => {
-        await tab.evaluate((choice) => document.querySelector('slam-widget').set('save', choice), id);
+        await tab.evaluate((choice) => document.querySelector('slam-widget').set('file', choice), id);
         const download = tab.waitForEvent('download');
         await press(tab, 'save');
         const file = await download;

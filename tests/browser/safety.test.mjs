@@ -8,7 +8,7 @@ import { FROZEN_MS } from './clock.mjs';
 import * as h from './harness.mjs';
 
 const ONE = '<slam-widget name="w16.2"></slam-widget>';
-const WASM = readdirSync(h.DIST).find((file) => file.endsWith('.wasm'));
+const WASM = readdirSync(h.DIST).find((file) => /^slam_web-[0-9a-f]+\.wasm$/.test(file));
 
 const on = h.visitor();
 const failure = (tab) => tab.locator('slam-widget .failure');

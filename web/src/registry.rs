@@ -125,6 +125,23 @@ mod tests {
         }
     }
 
+    /// The page finds a control by its name alone, whatever its kind.
+    #[test]
+    fn no_two_controls_of_a_widget_share_a_name() {
+        for (name, maker) in WIDGETS {
+            let shell = maker();
+            let spec = shell.model().spec();
+            let mut ids: Vec<_> = (spec.presets.iter().map(|preset| preset.id))
+                .chain(spec.params.iter().map(|param| param.id))
+                .chain(spec.buttons.iter().map(|button| button.id))
+                .collect();
+            ids.sort_unstable();
+            for pair in ids.windows(2) {
+                assert_ne!(pair[0], pair[1], "{name} has two controls of this name");
+            }
+        }
+    }
+
     #[test]
     fn what_a_widget_opens_with_is_there() {
         for (name, maker) in WIDGETS {

@@ -206,7 +206,7 @@ impl OwnRobot {
                 self.store("loop", 0.0);
             }
             "save" => {
-                let file = FILES[self.values.get("save") as usize].label;
+                let file = FILES[self.values.get("file") as usize].label;
                 self.ask(format!("save {file}"));
             }
             _ if id == PLAY.id => self.press_play(),

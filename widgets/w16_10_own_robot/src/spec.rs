@@ -86,7 +86,7 @@ pub const PARAMS: &[ParamSpec] = &[
         help: "Keyframes of whose scan a smaller share fits are ringed on the map, and “Next doubt” stops there.",
     },
     ParamSpec {
-        id: "save",
+        id: "file",
         label: "file to save",
         unit: "",
         kind: ParamKind::Choice { options: FILES },

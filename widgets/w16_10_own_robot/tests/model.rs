@@ -136,7 +136,7 @@ fn the_list_is_walked_and_every_choice_becomes_an_order() {
     robot.set("poor", 0.75).unwrap();
     robot.press("doubt").unwrap();
     assert_eq!(robot.values().get("keyframe"), 4.0, "0.6 of it fits");
-    robot.set("save", 4.0).unwrap();
+    robot.set("file", 4.0).unwrap();
     robot.press("save").unwrap();
     robot.press("cancel").unwrap();
     let orders = robot.take_orders();

@@ -104,7 +104,7 @@ impl WholeWindow {
     }
 
     fn place(&self) -> usize {
-        (self.values.get("step") as usize).min(self.last())
+        (self.values.get("progress") as usize).min(self.last())
     }
 
     /// Boxes taken up at the place that is shown.
@@ -139,7 +139,7 @@ impl WholeWindow {
         );
         self.store("dx", offset(start.dx_m));
         self.store("dy", offset(start.dy_m));
-        self.store("step", 0.0);
+        self.store("progress", 0.0);
         self.start_over();
     }
 
@@ -162,7 +162,7 @@ impl Model for WholeWindow {
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         if self.values.set(SPEC.id, id, value)? == Changed::No
-            || ["step", "speed", MORE.id].contains(&id)
+            || ["progress", "speed", MORE.id].contains(&id)
         {
             return Ok(());
         }
@@ -181,7 +181,7 @@ impl Model for WholeWindow {
         }
         let (here, last) = (self.place() as f64, self.last() as f64);
         if let Some(position) = self.playback.press(id, here, last) {
-            self.store("step", position);
+            self.store("progress", position);
             return Ok(());
         }
         if id != DEFAULTS.id {
@@ -220,7 +220,7 @@ impl Model for WholeWindow {
         } else {
             next
         };
-        self.store("step", next);
+        self.store("progress", next);
         Activity::Busy
     }
 
@@ -270,7 +270,7 @@ impl Model for WholeWindow {
             mark(self.last(), words::verdict(self), standing);
         }
         Some(Timeline {
-            param: "step",
+            param: "progress",
             last: self.last() as f64,
             playing: self.playback.is_playing(),
             marks,
@@ -299,7 +299,7 @@ impl Model for WholeWindow {
         }
         let last = self.last() as f64;
         if let Some(end) = self.playback.set_motion(motion, last) {
-            self.store("step", end);
+            self.store("progress", end);
         }
     }
 }

@@ -81,7 +81,7 @@ fn playing_goes_through_the_search_and_the_steps_of_icp() {
     window.press("play").unwrap();
     let (mut places, mut frames) = (Vec::new(), 0);
     while window.advance(1.0 / 30.0) == Activity::Busy {
-        places.push(window.values().get("step"));
+        places.push(window.values().get("progress"));
         frames += 1;
     }
     let last = window.timeline().unwrap().last;
@@ -100,18 +100,18 @@ fn with_reduced_motion_play_shows_the_end_at_once() {
     window.set_motion(Motion::Reduced);
     window.press("play").unwrap();
     assert_eq!(window.advance(0.1), Activity::Idle);
-    assert_eq!(window.values().get("step"), window.timeline().unwrap().last);
+    assert_eq!(window.values().get("progress"), window.timeline().unwrap().last);
 }
 
 #[test]
 fn a_dragged_start_is_searched_anew_and_lies_where_it_was_put() {
-    let mut window = with(&[("step", 500.0)]);
+    let mut window = with(&[("progress", 500.0)]);
     // The truth is at (0.5, −0.35) m, the start on it.
     let handle = window
         .grab(panel::PLACES, [0.5, -0.35], [0.05, 0.05])
         .unwrap();
     window.drag(handle, [1.0, -0.15]);
-    assert_eq!(window.values().get("step"), 0.0);
+    assert_eq!(window.values().get("progress"), 0.0);
     assert!((window.values().get("dx") - 0.5).abs() < 1e-9);
     assert!((window.values().get("dy") - 0.2).abs() < 1e-9);
     assert_eq!(window.outcome().verdict, "searching");
@@ -158,7 +158,7 @@ fn extreme_settings_give_finite_pictures() {
         // A window of 3 m and other seeds are searched by other tests.
         let (min, max) = spec.range();
         for value in [min, max] {
-            let window = with(&[("cell", 0.15), (spec.id, value), ("step", 90.0)]);
+            let window = with(&[("cell", 0.15), (spec.id, value), ("progress", 90.0)]);
             assert!(!window.summary().contains("NaN"), "{} {value}", spec.id);
             for panel in window.scene().panels {
                 for axis in [&panel.x, &panel.y] {

@@ -23,7 +23,7 @@ fn a_press_takes_up_one_box() {
         let mut harness = harness(width);
         harness.get_by_label("One box").click();
         harness.run_steps(2);
-        assert_eq!(harness.state().model().values().get("step"), 1.0);
+        assert_eq!(harness.state().model().values().get("progress"), 1.0);
         assert!(harness.query_by_label("the search finds home").is_some());
         harness.get_by_role_and_label(Role::Slider, "heading error of the start");
     }
