@@ -198,7 +198,7 @@ export interface TheWholeWindowState {
   /** Where the range noise of both sweeps starts; 457 is the chapter's. 0 to 4294967295. */
   seed: number;
   /** How many boxes the search has taken up; behind the last one come the steps of ICP. 0 to 200000. */
-  step: number;
+  progress: number;
   /** How fast the run plays. */
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold';
   /** Shows all settings, presets, numbers, tables and plots. */
@@ -264,7 +264,7 @@ export interface YourOwnRobotState {
   /** Keyframes of whose scan a smaller share fits are ringed on the map, and “Next doubt” stops there. 0 to 1. */
   poor: number;
   /** Map for Nav2, trajectory as TUM, graph as g2o, or a report with pictures. */
-  save: 'map-pgm' | 'map-yaml' | 'map-png' | 'trajectory' | 'graph' | 'report';
+  file: 'map-pgm' | 'map-yaml' | 'map-png' | 'trajectory' | 'graph' | 'report';
   /** The keyframe whose scan lies over the map. 0 to 999999. */
   keyframe: number;
   /** How fast the run plays. */
@@ -422,7 +422,7 @@ export interface SlamWidgetProperties {
   window: number | undefined;
   turn: number | undefined;
   cell: number | undefined;
-  step: number | undefined;
+  progress: number | undefined;
   called: number | undefined;
   detector: 'nearby' | 'histogram' | 'context' | undefined;
   old: number | undefined;
@@ -435,7 +435,7 @@ export interface SlamWidgetProperties {
   loop: number | undefined;
   marked: number | undefined;
   poor: number | undefined;
-  save: 'map-pgm' | 'map-yaml' | 'map-png' | 'trajectory' | 'graph' | 'report' | undefined;
+  file: 'map-pgm' | 'map-yaml' | 'map-png' | 'trajectory' | 'graph' | 'report' | undefined;
   keyframe: number | undefined;
 }
 
