@@ -327,6 +327,7 @@ export class SlamWidget extends HTMLElement {
         this.#looks.drew(canvas);
         this.#sync();
       },
+      rested: () => this.#news.rested(),
       leaving: () => {
         this.#looks.drawPicture();
         this.#shownOutcome();

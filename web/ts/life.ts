@@ -39,6 +39,8 @@ export interface LifeHost {
   live(milliseconds: number): void;
   /** A frame was drawn; the canvas holds it until the end of this task. */
   drew(canvas: HTMLCanvasElement): void;
+  /** What filled in over many frames is done. */
+  rested(): void;
   /** The instance is about to go: the last moment to keep a picture. */
   leaving(): void;
   /** Nothing runs any more until the host calls `restart`. */
@@ -58,6 +60,7 @@ export class Life implements Visibility, Drawer {
   #isFar = false;
   #isInView = false;
   #hasFailed = false;
+  #isBusy = false;
   /** Rises with every end: what started before it knows that it comes too late. */
   #generation = 0;
 
@@ -268,8 +271,11 @@ export class Life implements Visibility, Drawer {
     if (!fits && height > 0) canvas.style.height = `${height}px`;
     else if (!this.#parts.stage.classList.contains('live')) this.#showLive(startedAt);
     this.#host.drew(canvas);
+    const wasBusy = this.#isBusy;
+    this.#isBusy = instance.use((widget) => widget.wantsFrame());
+    if (wasBusy && !this.#isBusy) this.#host.rested();
     // A new height asks for a frame at that height, however slow the machine is.
-    return !fits || instance.use((widget) => widget.wantsFrame());
+    return !fits || this.#isBusy;
   }
 
   #showLive(startedAt: number): void {

@@ -40,6 +40,11 @@ export class News {
     this.#emit('slam-ready', { value: this.#source.value, ms: milliseconds });
   }
 
+  /** What the widget went on computing is done: the summary is that of the whole picture. */
+  rested(): void {
+    this.#describe();
+  }
+
   /** Values changed; the outcome is that of the picture so far. The result follows once they rest. */
   changed(changes: Iterable<[string, string]>, outcome: Outcome | undefined): void {
     for (const [parameter, text] of changes) {
