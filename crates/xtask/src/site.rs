@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use crate::linting;
 use crate::run::{Failure, program, root, step};
 use crate::tools;
 
@@ -24,13 +25,31 @@ impl Speed {
     }
 }
 
+/// Whether the build checks our own crates on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lints {
+    /// It only compiles.
+    Skipped,
+    /// A warning of the compiler or of clippy ends it.
+    Errors,
+}
+
+impl Lints {
+    fn join(self, build: &mut Command) -> Result<(), Failure> {
+        match self {
+            Self::Skipped => Ok(()),
+            Self::Errors => linting::lint_on_the_way(build),
+        }
+    }
+}
+
 /// Builds `dist/`.
 ///
 /// # Errors
 /// The first step that fails, in one line.
-pub fn build(speed: Speed) -> Result<(), Failure> {
+pub fn build(speed: Speed, lints: Lints) -> Result<(), Failure> {
     tools::ensure_build_tools()?;
-    compile_wasm(speed)?;
+    compile_wasm(speed, lints)?;
     let dist = root().join("dist");
     step(
         "Bundling the element and drawing the static pictures",
@@ -47,15 +66,16 @@ pub fn build(speed: Speed) -> Result<(), Failure> {
     Ok(())
 }
 
-fn compile_wasm(speed: Speed) -> Result<(), Failure> {
+fn compile_wasm(speed: Speed, lints: Lints) -> Result<(), Failure> {
+    let mut command = wasm_build("pkg", speed);
+    lints.join(&mut command)?;
     step(
         "Compiling the widgets to WebAssembly (the first time takes minutes)",
-        &mut wasm_build("pkg", speed),
+        &mut command,
     )?;
-    step(
-        "Compiling the worker that maps logs",
-        &mut robot_build(speed),
-    )
+    let mut command = robot_build(speed);
+    lints.join(&mut command)?;
+    step("Compiling the worker that maps logs", &mut command)
 }
 
 /// The build of the second module, which a reader's log is mapped in, into `web/pkg-robot`.

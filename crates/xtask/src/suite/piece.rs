@@ -9,11 +9,9 @@ pub enum Piece {
     Licences,
     /// Everything native: compiled and linted in one pass, then tested.
     Native,
-    /// Lints of what only WebAssembly compiles.
-    Lints,
     /// Counted instructions against the recorded ones.
     Counts,
-    /// The site as it is published, and the types of its element.
+    /// The site as it is published, linted as WebAssembly, and the types of its element.
     Site,
     /// The module in Node.
     Node,
@@ -23,11 +21,10 @@ pub enum Piece {
 
 impl Piece {
     /// All of them, in the order in which they run.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 7] = [
         Self::Format,
         Self::Licences,
         Self::Native,
-        Self::Lints,
         Self::Counts,
         Self::Site,
         Self::Node,
@@ -35,7 +32,7 @@ impl Piece {
     ];
 
     /// What `--quick` runs: nothing that builds the site.
-    pub const QUICK: [Self; 4] = [Self::Format, Self::Licences, Self::Native, Self::Lints];
+    pub const QUICK: [Self; 3] = [Self::Format, Self::Licences, Self::Native];
 
     /// Its name on the command line.
     pub const fn name(self) -> &'static str {
@@ -43,7 +40,6 @@ impl Piece {
             Self::Format => "format",
             Self::Licences => "licences",
             Self::Native => "native",
-            Self::Lints => "lints",
             Self::Counts => "counts",
             Self::Site => "site",
             Self::Node => "node",
@@ -60,7 +56,7 @@ impl Piece {
     pub fn needs_the_site(self) -> bool {
         matches!(
             self,
-            Self::Licences | Self::Lints | Self::Site | Self::Node | Self::Browser
+            Self::Licences | Self::Site | Self::Node | Self::Browser
         )
     }
 }
