@@ -100,7 +100,10 @@ fn with_reduced_motion_play_shows_the_end_at_once() {
     window.set_motion(Motion::Reduced);
     window.press("play").unwrap();
     assert_eq!(window.advance(0.1), Activity::Idle);
-    assert_eq!(window.values().get("progress"), window.timeline().unwrap().last);
+    assert_eq!(
+        window.values().get("progress"),
+        window.timeline().unwrap().last
+    );
 }
 
 #[test]
