@@ -11,10 +11,12 @@ use serde_json::Value;
 use crate::page::document::source;
 
 /// What was swept, each with both frames of information. Point to point closes nothing on the ring.
-const TRIALS: [(BuiltInWorld, LapMatcher); 3] = [
+const TRIALS: [(BuiltInWorld, LapMatcher); 5] = [
     (BuiltInWorld::Apartment, LapMatcher::PointToPoint),
     (BuiltInWorld::Apartment, LapMatcher::PointToPlane),
+    (BuiltInWorld::Apartment, LapMatcher::Ndt),
     (BuiltInWorld::Ring, LapMatcher::PointToPlane),
+    (BuiltInWorld::Ring, LapMatcher::Ndt),
 ];
 
 /// Height of the page's picture of errors along the way, m, and of its panels, px.
