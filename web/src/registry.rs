@@ -7,7 +7,7 @@ use kit::spec::WidgetSpec;
 pub type Maker = fn() -> Shell;
 
 /// The widgets with their names.
-pub const WIDGETS: [(&str, Maker); 9] = [
+pub const WIDGETS: [(&str, Maker); 11] = [
     ("w16.1", w16_1_basin_explorer::widget),
     ("w16.2", w16_2_full_lap::widget),
     ("w16.3", w16_3_cost_terraces::widget),
@@ -17,6 +17,8 @@ pub const WIDGETS: [(&str, Maker); 9] = [
     ("w16.7", w16_7_been_here::widget),
     ("w16.8", w16_8_moving_box::widget),
     ("w16.10", w16_10_own_robot::widget),
+    ("w16.11", w16_11_procrustes::widget),
+    ("w16.12", w16_12_jacobians::widget),
 ];
 
 /// What never changes about them, in the same order.
@@ -30,6 +32,8 @@ const SPECS: [&WidgetSpec; WIDGETS.len()] = [
     &w16_7_been_here::spec::SPEC,
     &w16_8_moving_box::spec::SPEC,
     &w16_10_own_robot::spec::SPEC,
+    &w16_11_procrustes::spec::SPEC,
+    &w16_12_jacobians::spec::SPEC,
 ];
 
 /// What never changes about the widget of that name; nothing is computed for it.

@@ -4,10 +4,12 @@
 pub mod ancestor;
 pub mod basin;
 pub mod buildings;
+pub mod jacobians;
 pub mod lap;
 pub mod moving_box;
 pub mod nudge;
 pub mod places;
+pub mod procrustes;
 pub mod results;
 pub mod samples;
 mod scenes;

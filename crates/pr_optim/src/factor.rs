@@ -20,6 +20,10 @@ use pr_geom::{Rotation, SE2, math, wrap_angle};
 
 use crate::kernel::RobustKernel;
 
+mod jacobians;
+
+pub use jacobians::Jacobians;
+
 /// Which derivative of the residual the solver uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum JacobianModel {

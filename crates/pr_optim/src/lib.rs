@@ -14,6 +14,7 @@
 
 mod best;
 pub mod block_cholesky;
+mod custom;
 mod damping;
 mod dense_kernel;
 mod elimination;
@@ -37,8 +38,9 @@ pub mod structure;
 pub mod supernodes;
 pub mod system;
 
+pub use custom::CustomGaussNewton;
 pub use error::OptimizeError;
-pub use factor::{Between, JacobianModel, Linearization, PreparedFactor, PreparedPose};
+pub use factor::{Between, JacobianModel, Jacobians, Linearization, PreparedFactor, PreparedPose};
 pub use kernel::RobustKernel;
 pub use linear::{Factorization, LinearSolver};
 pub use marginals::JointCovariance;

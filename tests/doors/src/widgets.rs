@@ -13,12 +13,14 @@ use w16_6_whole_window::model::WholeWindow;
 use w16_7_been_here::model::BeenHere;
 use w16_8_moving_box::model::MovingBox;
 use w16_10_own_robot::model::OwnRobot;
+use w16_11_procrustes::model::ProcrustesTrace;
+use w16_12_jacobians::model::WrongJacobians;
 
 /// How a model is made.
 pub type Maker = fn() -> Box<dyn Model>;
 
 /// A fresh model of every widget.
-pub const MODELS: [Maker; 9] = [
+pub const MODELS: [Maker; 11] = [
     || Box::new(BasinExplorer::new()),
     || Box::new(FullLap::new()),
     || Box::new(CostTerraces::new()),
@@ -28,12 +30,14 @@ pub const MODELS: [Maker; 9] = [
     || Box::new(BeenHere::new()),
     || Box::new(MovingBox::new()),
     || Box::new(OwnRobot::new()),
+    || Box::new(ProcrustesTrace::new()),
+    || Box::new(WrongJacobians::new()),
 ];
 
 /// What never changes about each widget, in the order of [`MODELS`].
 ///
 /// Written out, so that a program which only reads texts holds no estimator.
-pub static SPECS: [&WidgetSpec; 9] = [
+pub static SPECS: [&WidgetSpec; 11] = [
     &w16_1_basin_explorer::spec::SPEC,
     &w16_2_full_lap::spec::SPEC,
     &w16_3_cost_terraces::spec::SPEC,
@@ -43,6 +47,8 @@ pub static SPECS: [&WidgetSpec; 9] = [
     &w16_7_been_here::spec::SPEC,
     &w16_8_moving_box::spec::SPEC,
     &w16_10_own_robot::spec::SPEC,
+    &w16_11_procrustes::spec::SPEC,
+    &w16_12_jacobians::spec::SPEC,
 ];
 
 /// A widget that takes values and presses by the rules of another, and computes nothing.

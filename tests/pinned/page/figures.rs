@@ -9,11 +9,13 @@ mod ball;
 pub mod basin;
 mod drops;
 mod graph;
+mod jacobians;
 mod lap;
 mod loops;
 mod moving_box;
 mod ndt;
 mod places;
+mod procrustes;
 mod robots;
 mod search;
 mod setup;
@@ -52,6 +54,8 @@ impl Figures {
             ["example", "poses", what] => graph::value(what),
             ["basin", what @ ..] => basin::value(self.basin.get_or_init(BasinScene::new), what),
             ["ndt", start, what] => ndt::value(start, what),
+            ["procrustes", what @ ..] => procrustes::value(what),
+            ["jacobians", what @ ..] => jacobians::value(what),
             ["box", what @ ..] => moving_box::value(what),
             ["places", "setup", what] => places::setup(what),
             ["places", world, what @ ..] => self.places(world)?.value(what),

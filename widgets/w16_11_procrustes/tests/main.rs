@@ -1,0 +1,4 @@
+//! The trace's rules and its view.
+
+mod model;
+mod view;

@@ -1,0 +1,53 @@
+//! The tables: the four ends beside the picture, every step for the export.
+
+use kit::model::{Table, TablePlace};
+
+use super::{NAMES, WrongJacobians};
+
+/// All tables, the shown one first.
+pub fn all(widget: &WrongJacobians) -> Vec<Table> {
+    vec![ends(widget), every_step(widget)]
+}
+
+fn columns<const N: usize>(names: [&str; N]) -> Vec<String> {
+    names.map(str::to_owned).to_vec()
+}
+
+fn ends(widget: &WrongJacobians) -> Table {
+    let rows = widget.solved.runs.iter().zip(NAMES).map(|(run, name)| {
+        vec![
+            name.to_owned(),
+            run.steps().to_string(),
+            format!("{:.4}", run.end().off_m),
+            format!("{:.2}", run.end().chi2),
+        ]
+    });
+    Table {
+        id: "ends",
+        title: "The four ends".to_owned(),
+        columns: columns(["solver", "steps", "off (m)", "χ²"]),
+        rows: rows.collect(),
+        place: TablePlace::Shown,
+    }
+}
+
+fn every_step(widget: &WrongJacobians) -> Table {
+    let runs = widget.solved.runs.iter().zip(NAMES);
+    let rows = runs.flat_map(|(run, name)| {
+        run.moments.iter().enumerate().map(move |(step, moment)| {
+            vec![
+                name.to_owned(),
+                step.to_string(),
+                moment.off_m.to_string(),
+                moment.chi2.to_string(),
+            ]
+        })
+    });
+    Table {
+        id: "steps",
+        title: "Every step".to_owned(),
+        columns: columns(["solver", "step", "off (m)", "χ²"]),
+        rows: rows.collect(),
+        place: TablePlace::ExportOnly,
+    }
+}

@@ -1,0 +1,122 @@
+//! The result in words and numbers.
+
+use ch16_lab::jacobians::EDGE_STD;
+use kit::model::{Fact, Outcome, Standing};
+
+use super::{NAMES, WrongJacobians};
+
+/// Nearer ends count as the same, m: the standard deviation of one edge.
+const SAME_END_M: f64 = EDGE_STD.0;
+
+/// The solver whose residual is wrong.
+const RESIDUAL: usize = 3;
+
+fn ends_at_the_optimum(widget: &WrongJacobians, solver: usize) -> bool {
+    let run = &widget.solved.runs[solver];
+    run.rests && run.end().off_m < SAME_END_M
+}
+
+/// Good is an end at the optimum.
+pub fn standing_of(widget: &WrongJacobians, solver: usize) -> Standing {
+    if ends_at_the_optimum(widget, solver) {
+        Standing::Good
+    } else {
+        Standing::Bad
+    }
+}
+
+fn verdict(widget: &WrongJacobians) -> &'static str {
+    let runs = &widget.solved.runs;
+    let at_home = |solver| ends_at_the_optimum(widget, solver);
+    if runs.iter().any(|run| !run.rests) {
+        "not all come to rest"
+    } else if (0..RESIDUAL).all(at_home) {
+        if at_home(RESIDUAL) {
+            "all four end alike"
+        } else {
+            "the wrong residual ends elsewhere"
+        }
+    } else {
+        "a Jacobian ends elsewhere"
+    }
+}
+
+fn steps(count: usize) -> String {
+    match count {
+        1 => "1 step".to_owned(),
+        count => format!("{count} steps"),
+    }
+}
+
+pub fn outcome(widget: &WrongJacobians) -> Outcome {
+    let told = widget.solved.runs.iter().zip(NAMES).map(|(run, name)| {
+        let ends = if run.rests {
+            format!("{name} {:.3} m off after", run.end().off_m)
+        } else {
+            format!("{name} still {:.3} m off after", run.end().off_m)
+        };
+        format!("{ends} {}", steps(run.steps()))
+    });
+    let told: Vec<_> = told.collect();
+    let good = (0..NAMES.len()).all(|solver| ends_at_the_optimum(widget, solver));
+    Outcome {
+        standing: if good { Standing::Good } else { Standing::Bad },
+        verdict: verdict(widget).to_owned(),
+        sentence: format!(
+            "from the same start the four end where χ² is least, or beside it: {}",
+            told.join(", ")
+        ),
+        facts: facts(widget),
+    }
+}
+
+fn facts(widget: &WrongJacobians) -> Vec<Fact> {
+    let ids = [
+        ["exact_steps", "exact_off_m", "exact_chi2"],
+        ["approximate_steps", "approximate_off_m", "approximate_chi2"],
+        ["jacobian_steps", "jacobian_off_m", "jacobian_chi2"],
+        ["residual_steps", "residual_off_m", "residual_chi2"],
+    ];
+    let labels = [
+        ["exact: steps", "exact: off by", "exact: χ²"],
+        [
+            "approximate: steps",
+            "approximate: off by",
+            "approximate: χ²",
+        ],
+        [
+            "wrong Jacobian: steps",
+            "wrong Jacobian: off by",
+            "wrong Jacobian: χ²",
+        ],
+        [
+            "wrong residual: steps",
+            "wrong residual: off by",
+            "wrong residual: χ²",
+        ],
+    ];
+    let runs = widget.solved.runs.iter().zip(ids).zip(labels);
+    runs.flat_map(|((run, [steps_id, off_id, chi2_id]), [steps, off, chi2])| {
+        [
+            Fact::count(steps_id, steps, run.steps() as f64),
+            Fact::new(off_id, off, run.end().off_m, "m", 4),
+            Fact::new(chi2_id, chi2, run.end().chi2, "", 2),
+        ]
+    })
+    .collect()
+}
+
+pub fn summary(widget: &WrongJacobians) -> String {
+    let now = NAMES.iter().enumerate().map(|(solver, name)| {
+        let shown = widget.shown(solver);
+        format!("{name} {:.3} m off with χ² {:.2}", shown.off_m, shown.chi2)
+    });
+    let now: Vec<_> = now.collect();
+    format!(
+        "A pose graph of eight poses around a ring, solved in four ways, step {} of {}: {}. In the end, {}.",
+        widget.step(),
+        widget.last(),
+        now.join(", "),
+        outcome(widget).sentence
+    )
+}

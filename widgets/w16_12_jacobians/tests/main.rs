@@ -1,0 +1,4 @@
+//! The rules of the four solvers and their view.
+
+mod model;
+mod view;
