@@ -13,12 +13,15 @@
 //!
 //! Source: Grisetti, Kümmerle, Stachniss, Burgard, "A tutorial on graph-based SLAM", 2010.
 
+mod marginalize;
+
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::{
     Between, JacobianModel, Method, OptimizeError, Optimizer, Problem, Report, Settings,
 };
 
+pub use marginalize::{MarginalizeError, Marginalized};
 pub use pr_optim::{RobustKernel, StopReason};
 
 /// Handle of a node. Nodes are numbered from 0 in the order in which they were added.
@@ -34,6 +37,12 @@ impl NodeId {
     #[must_use]
     pub fn index(self) -> usize {
         self.0
+    }
+}
+
+impl From<usize> for EdgeId {
+    fn from(number: usize) -> Self {
+        Self(number)
     }
 }
 
@@ -54,7 +63,8 @@ impl EdgeId {
 /// Where a measurement comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EdgeKind {
-    /// From one keyframe to the next, by scan matching or wheels.
+    /// From one keyframe to the next, by scan matching or wheels; and what nodes that were taken out
+    /// have told of those around them.
     Odometry,
     /// Between keyframes far apart in time, by recognizing a place.
     Loop,
@@ -148,6 +158,29 @@ impl PoseGraph {
                 ..Settings::default()
             }),
         }
+    }
+
+    /// A graph of these nodes and edges, solved with the chapter's Jacobians; handles follow the order.
+    ///
+    /// # Panics
+    /// Where an edge's end does not exist, or both are the same.
+    #[must_use]
+    pub fn of<'a>(
+        nodes: impl IntoIterator<Item = &'a PoseNode>,
+        edges: impl IntoIterator<Item = &'a EdgeView>,
+    ) -> Self {
+        let mut graph = Self::new();
+        for node in nodes {
+            if node.fixed {
+                graph.add_fixed_node(node.pose);
+            } else {
+                graph.add_node(node.pose);
+            }
+        }
+        for EdgeView { from, to, edge, .. } in edges {
+            graph.add_edge(*from, *to, edge.measurement, edge.information, edge.kind);
+        }
+        graph
     }
 
     /// Adds a node that the solver may move.

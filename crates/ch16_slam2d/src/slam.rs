@@ -23,13 +23,17 @@ mod refinement;
 mod report;
 mod robots;
 mod scales;
+mod snapshot;
 mod submap_loops;
 #[cfg(test)]
-mod test_room;
+pub(crate) mod test_room;
+mod upkeep;
 
 use std::sync::Arc;
 
 use pr_geom::SE2;
+
+pub(crate) use fusion::fuse;
 
 pub use config::{ContradictionConfig, LoopClosure, PredictionUse, SlamConfig, ThresholdConfig};
 pub use front_end::{FrontEnd, Registration, WindowSweep};
@@ -38,6 +42,8 @@ pub use parts::SlamParts;
 pub use pending::PendingFrame;
 pub use refinement::{Refinement, RefinementConfig};
 pub use report::{Change, Keyframe, LoopAttempt, LoopEffect, SlamReport};
+pub use snapshot::{FrontEndSnapshot, SlamSnapshot, SnapshotError};
+pub use upkeep::{Upkeep, UpkeepConfig};
 
 use crate::graph::{EdgeKind, PoseGraph};
 use crate::loops::{HeldLoop, LoopDetector, LoopWorkspace};

@@ -43,6 +43,22 @@ impl AdaptiveThreshold {
         3.0 * math::sqrt(self.sum_of_squares_m2 / self.samples as f64)
     }
 
+    /// Sum of the squared deviations so far (m²), and their number.
+    #[must_use]
+    pub fn seen(&self) -> (f64, usize) {
+        (self.sum_of_squares_m2, self.samples)
+    }
+
+    /// The same threshold once it has seen these deviations; see [`seen`](Self::seen).
+    #[must_use]
+    pub fn having_seen(self, sum_of_squares_m2: f64, samples: usize) -> Self {
+        Self {
+            sum_of_squares_m2,
+            samples,
+            ..self
+        }
+    }
+
     /// Takes in one registration: what was predicted and what was found, in the same frame.
     pub fn update(&mut self, predicted: &SE2, registered: &SE2) {
         let deviation = predicted.between(registered);

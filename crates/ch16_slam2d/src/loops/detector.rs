@@ -72,6 +72,10 @@ impl<'a> LoopQuery<'a> {
 pub trait LoopDetector: CloneDetector + Send {
     /// Candidates for the newest keyframe, best first.
     fn detect(&mut self, query: &mut LoopQuery<'_>) -> Vec<LoopCandidate>;
+
+    /// A keyframe is no longer there, and later ones have the number before theirs; a detector that
+    /// remembers keyframes by their number forgets it.
+    fn forget(&mut self, _node: usize) {}
 }
 
 /// A detector that can be copied behind its trait; every `Clone` detector is one.

@@ -174,6 +174,12 @@ impl LoopDetector for PlaceDetector {
         };
         alike.into_iter().map(candidate).collect()
     }
+
+    fn forget(&mut self, node: usize) {
+        if node < self.looks.len() {
+            self.looks.remove(node);
+        }
+    }
 }
 
 #[cfg(test)]

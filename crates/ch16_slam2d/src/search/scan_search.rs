@@ -32,6 +32,8 @@ pub struct ScanSearch {
     parts: Vec<OpenBox>,
     /// What the best pose has to score at least.
     floor: u32,
+    /// The runner-up is of interest only if it is behind by no more than this.
+    margin: u32,
     best: Option<OpenBox>,
     runner_up: Option<OpenBox>,
     counts: SearchCounts,
@@ -89,6 +91,7 @@ impl ScanSearch {
             set_aside: Vec::new(),
             parts: Vec::new(),
             floor: 0,
+            margin: u32::MAX,
             best: None,
             runner_up: None,
         };
@@ -106,6 +109,14 @@ impl ScanSearch {
     #[must_use]
     pub fn with_min_score(mut self, min_score: f64) -> Self {
         self.floor = (min_score * f64::from(self.scan.full_score())).ceil() as u32;
+        self
+    }
+
+    /// The same search without a runner-up that is behind by more than `margin`, 0 to 1: whoever asks
+    /// only whether another place is that close need not know which one is farther behind.
+    #[must_use]
+    pub fn with_margin(mut self, margin: f64) -> Self {
+        self.margin = (margin * f64::from(self.scan.full_score())).ceil() as u32;
         self
     }
 
@@ -275,7 +286,7 @@ impl ScanSearch {
     }
 
     fn judge_for_runner_up(&mut self, taken: OpenBox) -> BoxFate {
-        if !taken.challenges(self.runner_up.as_ref()) {
+        if !taken.challenges(self.runner_up.as_ref()) || taken.bound < self.runner_up_floor() {
             return BoxFate::Pruned;
         }
         if self
@@ -297,19 +308,26 @@ impl ScanSearch {
         let Some(best) = self.best else { return };
         for aside in &self.set_aside {
             if self.shapes[aside.shape].is_pose()
+                && aside.bound >= self.runner_up_floor()
                 && aside.challenges(self.runner_up.as_ref())
                 && !self.is_same_place(&best, aside)
             {
                 self.runner_up = Some(*aside);
             }
         }
-        let runner_up = self.runner_up;
+        let (runner_up, floor) = (self.runner_up, self.runner_up_floor());
         let set_aside = core::mem::take(&mut self.set_aside);
         let worth = set_aside
             .into_iter()
-            .filter(|aside| aside.challenges(runner_up.as_ref()));
+            .filter(|aside| aside.bound >= floor && aside.challenges(runner_up.as_ref()));
         self.open.extend(worth);
         self.open.sort_by(OpenBox::promise);
+    }
+
+    /// What the runner-up has to score at least.
+    fn runner_up_floor(&self) -> u32 {
+        let best = self.best.map_or(0, |best| best.bound);
+        best.saturating_sub(self.margin)
     }
 
     /// Puts the parts of a box among the open ones, the most promising one on top.

@@ -268,3 +268,29 @@ fn a_scan_that_fits_nowhere_is_given_up_at_a_fraction_of_the_cost() {
     let whole = search.run().unwrap();
     assert!(3 * above.counts().scored() < whole.counts.scored());
 }
+
+#[test]
+fn a_runner_up_that_is_too_far_behind_is_left_out_and_any_other_is_the_same() {
+    let mut numbers = Numbers(40);
+    let (mut kept, mut left_out) = (0, 0);
+    for number in 0..300 {
+        let search = case(&mut numbers);
+        let all = search.clone().run().unwrap();
+        let near = search.with_margin(0.1).run().unwrap();
+        assert_eq!(near.best, all.best, "case {number}");
+        assert!(near.counts.scored() <= all.counts.scored(), "case {number}");
+        // 0.005: scores are whole numbers, 255 for each of a few points.
+        match all.margin() {
+            Some(margin) if margin < 0.095 => {
+                kept += 1;
+                assert_eq!(near.runner_up, all.runner_up, "case {number}");
+            }
+            Some(margin) if margin > 0.105 => {
+                left_out += 1;
+                assert_eq!(near.runner_up, None, "case {number}");
+            }
+            _ => {}
+        }
+    }
+    assert!(kept > 30 && left_out > 30, "{kept} {left_out}");
+}

@@ -199,7 +199,7 @@ impl SlamConfig {
     }
 
     /// How far a motion is trusted that the wheels measured, or that nobody did.
-    pub(super) fn motion_noise(&self, is_measured: bool) -> &MotionNoise {
+    pub(crate) fn motion_noise(&self, is_measured: bool) -> &MotionNoise {
         if is_measured {
             &self.odometry_noise
         } else {

@@ -7,6 +7,7 @@ use pr_geom::SE2;
 
 use super::config::{ContradictionConfig, PredictionUse, SlamConfig};
 use super::fusion::fuse;
+use super::snapshot::FrontEndSnapshot;
 use crate::cloud::PointCloud;
 use crate::icp::{AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
 use crate::matching::{
@@ -134,8 +135,38 @@ impl FrontEnd {
         self.submaps.as_ref()
     }
 
+    /// What it is between two frames.
+    pub(crate) fn snapshot(&self) -> FrontEndSnapshot {
+        let (deviations_m2, deviations) = self.threshold.seen();
+        FrontEndSnapshot {
+            estimate: self.estimate,
+            velocity: self.velocity,
+            last_dt_s: self.last_dt_s,
+            window: self.window.clone(),
+            scans: self.scans.clone(),
+            deviations_m2,
+            deviations,
+            driven: self.driven,
+            unregistered: self.unregistered,
+        }
+    }
+
+    /// Goes on from a snapshot; the matcher has a new target before it is asked.
+    pub(crate) fn restore(&mut self, snapshot: &FrontEndSnapshot) {
+        self.estimate = snapshot.estimate;
+        self.velocity = snapshot.velocity;
+        self.last_dt_s = snapshot.last_dt_s;
+        self.window.clone_from(&snapshot.window);
+        self.scans.clone_from(&snapshot.scans);
+        self.threshold = self
+            .threshold
+            .having_seen(snapshot.deviations_m2, snapshot.deviations);
+        self.driven = snapshot.driven;
+        self.unregistered = snapshot.unregistered;
+    }
+
     /// Takes the first scan into the window, or begins the first submap.
-    pub(super) fn start(&mut self, scan: Arc<PointCloud>) {
+    pub(crate) fn start(&mut self, scan: Arc<PointCloud>) {
         if let Some(submaps) = &mut self.submaps {
             submaps.tie(0, &scan, &self.estimate);
             return;
@@ -148,7 +179,7 @@ impl FrontEnd {
     }
 
     /// Registers the scan of a frame that is `dt_s` seconds after the last one, and moves on.
-    pub(super) fn register(
+    pub(crate) fn register(
         &mut self,
         frame: &PreparedFrame,
         dt_s: f64,

@@ -10,7 +10,7 @@ const FLOOR: f64 = 0.1;
 
 /// A registration and a prediction together.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Fusion {
+pub(crate) struct Fusion {
     /// The pose between them, `world_from_body`.
     pub pose: SE2,
     /// By how much they disagree: `dᵀ(Λ⁻¹ + Π⁻¹)⁻¹ d`, of three degrees of freedom.
@@ -22,7 +22,7 @@ pub(super) struct Fusion {
 /// With `d = log(R⁻¹ P)` it is `R exp((Λ + Π)⁻¹ Π d)`: Λ is the information of the registration R and Π
 /// that of the prediction P, both 3×3, translation first, about the body. None where either is no
 /// information.
-pub(super) fn fuse(
+pub(crate) fn fuse(
     registered: &SE2,
     information: &Matrix3<f64>,
     predicted: &SE2,

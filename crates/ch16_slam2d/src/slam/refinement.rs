@@ -8,7 +8,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{LoopClosure, Slam};
-use crate::graph::{EdgeKind, PoseGraph};
+use crate::graph::{EdgeKind, EdgeView, PoseGraph, PoseNode};
 use crate::loops::{
     Detection, KeyframeView, LoopConfig, LoopVerification, LoopWorkspace, detect_visits,
     verify_loop,
@@ -161,28 +161,13 @@ impl Slam {
 
     /// The graph with its odometry and these links, optimized.
     fn replace_loops(&mut self, links: &[LoopVerification]) {
-        let mut graph = PoseGraph::new();
-        for (_, node) in self.graph.nodes() {
-            if node.fixed {
-                graph.add_fixed_node(node.pose);
-            } else {
-                graph.add_node(node.pose);
-            }
-        }
-        let odometry = self
+        let nodes: Vec<PoseNode> = self.graph.nodes().map(|(_, node)| node).collect();
+        let odometry: Vec<EdgeView> = self
             .graph
             .edges()
-            .filter(|view| view.edge.kind == EdgeKind::Odometry);
-        for view in odometry {
-            let edge = view.edge;
-            graph.add_edge(
-                view.from,
-                view.to,
-                edge.measurement,
-                edge.information,
-                edge.kind,
-            );
-        }
+            .filter(|view| view.edge.kind == EdgeKind::Odometry)
+            .collect();
+        let mut graph = PoseGraph::of(&nodes, &odometry);
         for link in links.iter().filter(|link| link.accepted()) {
             graph.add_edge(
                 link.candidate.node,

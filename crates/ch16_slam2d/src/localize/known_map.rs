@@ -1,0 +1,186 @@
+//! The map that a robot is looked for on.
+
+use std::sync::Arc;
+
+use pr_geom::{SE2, math};
+
+use super::LocalizeConfig;
+use crate::cloud::PointCloud;
+use crate::metrics::position_error_m;
+use crate::places::{ContextConfig, ScanContext};
+use crate::search::{
+    LikelihoodConfig, ScanSearch, SearchError, SearchMap, SearchNeighborhood, SearchWindow,
+};
+use crate::slam::Keyframe;
+
+/// So many times a grid's cells are doubled until the map fits; then it is beyond all places.
+const DOUBLINGS: usize = 8;
+
+/// A keyframe that looks like a scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaceGuess {
+    /// Its number.
+    pub keyframe: usize,
+    /// How different both look, 0 to 1.
+    pub distance: f64,
+    /// Its place at the heading at which both look most alike, `map_from_body`.
+    pub pose: SE2,
+}
+
+/// Keyframes at their poses: registered on where the place is known, searched where it is not.
+#[derive(Clone, Debug)]
+pub struct KnownMap {
+    keyframes: Vec<Keyframe>,
+    poses: Vec<SE2>,
+    contexts: Vec<ScanContext>,
+    looks: ContextConfig,
+    points: PointCloud,
+    search: Arc<SearchMap>,
+}
+
+impl KnownMap {
+    /// The map of these keyframes, `map_from_body` each.
+    ///
+    /// # Errors
+    /// Where they have no point, or lie farther apart than any grid reaches.
+    pub fn new(
+        keyframes: Vec<Keyframe>,
+        poses: Vec<SE2>,
+        config: &LocalizeConfig,
+    ) -> Result<Self, SearchError> {
+        let mut points = PointCloud::default();
+        let mut farthest_m: f64 = 1.0;
+        for (keyframe, pose) in keyframes.iter().zip(&poses) {
+            points.extend_transformed(&keyframe.scan, pose);
+            let ranges = keyframe
+                .scan
+                .iter()
+                .map(|point| math::norm2(point.x, point.y));
+            farthest_m = ranges.fold(farthest_m, math::max);
+        }
+        let points = points.downsample(config.grid.cell_m);
+        let mut grid = config.grid;
+        let mut search = SearchMap::build(&points, grid);
+        for _ in 0..DOUBLINGS {
+            if !matches!(search, Err(SearchError::MapTooLarge { .. })) {
+                break;
+            }
+            grid = LikelihoodConfig {
+                cell_m: 2.0 * grid.cell_m,
+                sigma_m: 2.0 * grid.sigma_m,
+            };
+            search = SearchMap::build(&points, grid);
+        }
+        let looks = ContextConfig {
+            max_range_m: math::min(farthest_m, 20.0),
+            ..ContextConfig::default()
+        };
+        let contexts = keyframes.iter();
+        Ok(Self {
+            contexts: contexts
+                .map(|keyframe| ScanContext::new(&keyframe.scan, &looks))
+                .collect(),
+            search: Arc::new(search?),
+            keyframes,
+            poses,
+            looks,
+            points,
+        })
+    }
+
+    /// The keyframes in order.
+    #[must_use]
+    pub fn keyframes(&self) -> &[Keyframe] {
+        &self.keyframes
+    }
+
+    /// Their poses, `map_from_body`.
+    #[must_use]
+    pub fn poses(&self) -> &[SE2] {
+        &self.poses
+    }
+
+    /// All points, thinned to a cell of the grid each.
+    #[must_use]
+    pub fn points(&self) -> &PointCloud {
+        &self.points
+    }
+
+    /// The grid of the whole map, for searches.
+    #[must_use]
+    pub fn search_map(&self) -> &Arc<SearchMap> {
+        &self.search
+    }
+
+    /// A search for a scan, or for a trail of scans, that has not begun.
+    ///
+    /// # Errors
+    /// Where the scan has no finite point or the window cannot be numbered.
+    pub fn search(
+        &self,
+        scan: &PointCloud,
+        window: &SearchWindow,
+        neighborhood: &SearchNeighborhood,
+    ) -> Result<ScanSearch, SearchError> {
+        ScanSearch::new(Arc::clone(&self.search), scan, window, neighborhood)
+    }
+
+    /// The window of the whole map at every heading.
+    #[must_use]
+    pub fn whole(&self) -> SearchWindow {
+        SearchWindow::whole(self.search.grid())
+    }
+
+    /// The keyframes that look most like a scan, the best first.
+    #[must_use]
+    pub fn alike(&self, scan: &PointCloud, most: usize) -> Vec<PlaceGuess> {
+        let here = ScanContext::new(scan, &self.looks);
+        let mut keyed: Vec<(f64, usize)> = self
+            .contexts
+            .iter()
+            .enumerate()
+            .map(|(keyframe, context)| (context.key_distance(&here), keyframe))
+            .collect();
+        keyed.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        keyed.truncate(8 * most);
+        let guesses = keyed.into_iter().map(|(_, keyframe)| {
+            let found = self.contexts[keyframe].compare(&here);
+            PlaceGuess {
+                keyframe,
+                distance: found.distance,
+                pose: self.poses[keyframe] * SE2::new(0.0, 0.0, found.turn_rad),
+            }
+        });
+        let mut guesses: Vec<PlaceGuess> = guesses.collect();
+        guesses.sort_by(|a, b| {
+            let by_looks = a.distance.total_cmp(&b.distance);
+            by_looks.then(a.keyframe.cmp(&b.keyframe))
+        });
+        guesses.truncate(most);
+        guesses
+    }
+
+    /// The keyframes within `near_m` (m) of a pose, at most so many, the nearest, by number.
+    #[must_use]
+    pub fn near(&self, pose: &SE2, near_m: f64, most: usize) -> Vec<usize> {
+        let distances = self.poses.iter().map(|at| position_error_m(at, pose));
+        let mut near: Vec<(f64, usize)> = distances
+            .zip(0..)
+            .filter(|(distance_m, _)| *distance_m <= near_m)
+            .collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        near.truncate(most);
+        let mut near: Vec<usize> = near.into_iter().map(|(_, keyframe)| keyframe).collect();
+        near.sort_unstable();
+        near
+    }
+
+    /// The points of some keyframes with their normals, map frame, into `cloud`.
+    pub fn points_of(&self, keyframes: &[usize], cloud: &mut PointCloud) {
+        cloud.clear();
+        for &keyframe in keyframes {
+            let scan = &self.keyframes[keyframe].scan;
+            cloud.extend_transformed(scan, &self.poses[keyframe]);
+        }
+    }
+}

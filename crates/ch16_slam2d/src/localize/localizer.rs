@@ -1,0 +1,411 @@
+//! One frame at a time: follow the pose, or look for it.
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix3, Vector3};
+use pr_geom::{SE2, math};
+
+use super::trail::Trail;
+use super::{KnownMap, LocalizeConfig, LocalizeReport, MapSearch, StartPose, Verdict};
+use crate::cloud::PointCloud;
+use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, regularize};
+use crate::loops::chi_squared_gate;
+use crate::matching::{MatchRequest, MatchSummary, Matcher, without_aperture};
+use crate::metrics::position_error_m;
+use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer};
+use crate::search::{SearchResult, SearchWindow};
+use crate::slam::{SlamConfig, fuse};
+
+/// Disagreement of scan and prediction that both allow: 99 of 100 lie below.
+const BELIEVED_CHI2: f64 = 11.34;
+/// A place that a search finds again is so near to the one before, m and rad.
+const AGAIN: f64 = 0.4;
+/// A search is made at least once in so many frames while the robot is lost.
+const SEARCH_EVERY: usize = 20;
+/// After searches that found nothing so many sweeps of the trail are awaited at most.
+const MOST_AWAITED: usize = 4;
+/// By so much the usual score follows each scan.
+const USUAL_RATE: f64 = 0.1;
+/// Standard deviations of a given start within which it is looked for.
+const START_SIGMAS: f64 = 3.0;
+
+/// What is believed of the pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Belief {
+    pose: SE2,
+    covariance: Matrix3<f64>,
+    /// Scans in a row that do not fit.
+    misses: usize,
+    /// Share of a scan that fits, where nothing is doubted.
+    usual_score: f64,
+    /// Scans in a row that fit clearly worse than usual; it stays once there are too many.
+    drops: usize,
+}
+
+/// A frame between its parts; see [`Localizer::begin`].
+#[derive(Clone, Debug)]
+pub struct PendingFix {
+    scan: Arc<PointCloud>,
+    /// Whether the sweep joined the trail.
+    joined: bool,
+    /// The given start around which is looked; none where it is everywhere.
+    start: Option<SE2>,
+    search: Option<MapSearch>,
+    report: LocalizeReport,
+}
+
+impl PendingFix {
+    /// The search under way; none where none is needed, or where it has ended.
+    #[must_use]
+    pub fn search(&self) -> Option<&MapSearch> {
+        self.search.as_ref()
+    }
+
+    /// What the frame says so far, or in the end.
+    #[must_use]
+    pub fn report(&self) -> &LocalizeReport {
+        &self.report
+    }
+}
+
+/// Follows a robot on a map that stays as it is, and finds it where it is lost.
+#[derive(Clone)]
+pub struct Localizer {
+    map: Arc<KnownMap>,
+    config: LocalizeConfig,
+    slam: SlamConfig,
+    preparer: ScanPreparer,
+    matcher: Box<dyn Matcher>,
+    /// The keyframes that the matcher's target is made of.
+    target: Vec<usize>,
+    cloud: PointCloud,
+    trail: Trail,
+    frames: usize,
+    last_stamp_s: f64,
+    start: StartPose,
+    belief: Option<Belief>,
+    /// The place that the last search found, moved on since, while it is not believed.
+    candidate: Option<SE2>,
+    searched_ago: usize,
+    /// Sweeps that still have to join the trail before the next search, and how many it was told to
+    /// await: where the map knows nothing, every search is as long as it is vain.
+    awaited: usize,
+    patience: usize,
+}
+
+impl Localizer {
+    /// A localizer that has seen nothing; `slam` says how scans become clouds and how far wheels are
+    /// trusted, as in the session of the map.
+    #[must_use]
+    pub fn new(
+        map: Arc<KnownMap>,
+        slam: SlamConfig,
+        config: LocalizeConfig,
+        start: StartPose,
+    ) -> Self {
+        Self {
+            map,
+            matcher: config.matcher.build(&config.map),
+            target: Vec::new(),
+            cloud: PointCloud::default(),
+            trail: Trail::new(slam.clone()),
+            preparer: ScanPreparer::new(),
+            frames: 0,
+            last_stamp_s: f64::NEG_INFINITY,
+            start,
+            belief: None,
+            candidate: None,
+            searched_ago: 0,
+            awaited: 0,
+            patience: 1,
+            slam,
+            config,
+        }
+    }
+
+    /// The map.
+    #[must_use]
+    pub fn map(&self) -> &Arc<KnownMap> {
+        &self.map
+    }
+
+    /// Takes one frame.
+    ///
+    /// # Errors
+    /// Where the frame cannot be used; the localizer stays as it was.
+    pub fn step(&mut self, frame: &Frame) -> Result<LocalizeReport, FrameError> {
+        let velocity = self.trail.velocity();
+        let prepared =
+            self.preparer
+                .prepare_frame(frame, self.last_stamp_s, velocity, &self.slam.scan)?;
+        self.step_prepared(&prepared)
+    }
+
+    /// [`Localizer::step`] with a scan that is already a cloud.
+    ///
+    /// # Errors
+    /// Where the frame cannot be used; the localizer stays as it was.
+    pub fn step_prepared(&mut self, frame: &PreparedFrame) -> Result<LocalizeReport, FrameError> {
+        let mut pending = self.begin(frame)?;
+        while self.search_step(&mut pending) {}
+        Ok(pending.report)
+    }
+
+    /// First part of a frame: the pose is followed, or a search for it is begun.
+    ///
+    /// The parts are for callers that look in between; [`Localizer::step`] does all of them in order.
+    ///
+    /// # Errors
+    /// Where the frame cannot be used; the localizer stays as it was.
+    pub fn begin(&mut self, frame: &PreparedFrame) -> Result<PendingFix, FrameError> {
+        let here = self.belief.map_or_else(SE2::identity, |belief| belief.pose);
+        let dt_s = frame.seconds_after(self.last_stamp_s, &here)?;
+        self.last_stamp_s = frame.stamp_s;
+        self.frames += 1;
+        let moved = self.trail.step(frame, dt_s, &self.config);
+        let motion = moved
+            .motion
+            .or(frame.odometry)
+            .unwrap_or_else(SE2::identity);
+        self.candidate = match moved.motion {
+            Some(motion) => self.candidate.map(|pose| pose * motion),
+            None => None,
+        };
+        let mut pending = PendingFix {
+            scan: Arc::clone(&frame.cloud),
+            joined: moved.joined,
+            start: None,
+            search: None,
+            report: LocalizeReport {
+                frame: self.frames - 1,
+                stamp_s: frame.stamp_s,
+                verdict: Verdict::Lost,
+                pose: None,
+                covariance: None,
+                score: None,
+                search: None,
+            },
+        };
+        if let StartPose::Near(start) = self.start {
+            self.start = StartPose::Anywhere;
+            let (sigma_m, sigma_rad) = (self.config.start_sigma_m, self.config.start_sigma_rad);
+            let window =
+                SearchWindow::around(start, START_SIGMAS * sigma_m, START_SIGMAS * sigma_rad);
+            let around = self.trail.cloud(&frame.cloud, &self.config);
+            pending.start = Some(start);
+            pending.search = Some(MapSearch::within(around, window, self.config.min_score));
+            return Ok(pending);
+        }
+        if self.belief.is_some() {
+            self.follow(&motion, frame, &mut pending.report);
+        }
+        self.plan_search(&mut pending);
+        Ok(pending)
+    }
+
+    /// Second part, until it is false: one box of the search, or what the search found is judged.
+    pub fn search_step(&mut self, pending: &mut PendingFix) -> bool {
+        let Some(search) = &mut pending.search else {
+            return false;
+        };
+        if search.step(&self.map, &self.config) {
+            return true;
+        }
+        let result = search.result();
+        pending.search = None;
+        match pending.start.take() {
+            Some(start) => {
+                self.judge_near(&start, result, pending);
+                self.plan_search(pending);
+            }
+            None => self.judge_everywhere(result, pending),
+        }
+        pending.search.is_some()
+    }
+
+    /// Registers the scan around the prediction and weighs both.
+    fn follow(&mut self, motion: &SE2, frame: &PreparedFrame, report: &mut LocalizeReport) {
+        let Some(belief) = self.belief else { return };
+        let noise = self.slam.motion_noise(frame.odometry.is_some());
+        let prediction = belief.pose * *motion;
+        let covariance = noise.then(&belief.covariance, motion);
+        let found = self.register(&frame.cloud, prediction);
+        let score = found.score.unwrap_or(0.0);
+        let mut next = Belief {
+            pose: prediction,
+            covariance,
+            misses: if score < self.config.good_score {
+                belief.misses + 1
+            } else {
+                0
+            },
+            ..belief
+        };
+        if next.misses >= self.config.lost_after {
+            self.belief = None;
+            return;
+        }
+        if score < belief.usual_score - self.config.score_drop {
+            if belief.drops == 0 {
+                // What was seen before it may have been seen elsewhere.
+                self.trail.restart(frame, self.frames - 1);
+            }
+            next.drops += 1;
+        } else if !self.is_suspect(&belief) {
+            next.drops = 0;
+            next.usual_score += USUAL_RATE * (score - belief.usual_score);
+        }
+        let mut is_sure = next.misses == 0 && next.drops == 0;
+        if score >= self.config.poor_score {
+            let known = self.known(&found, score);
+            if let Some(fusion) = fuse(&found.pose, &known, &prediction, &covariance) {
+                is_sure &= fusion.chi2 <= BELIEVED_CHI2;
+                // A scan that fits is believed where the wheels say something else.
+                let is_scan = fusion.chi2 > BELIEVED_CHI2 && next.misses == 0;
+                next.pose = if is_scan { found.pose } else { fusion.pose };
+                let before = covariance.try_inverse().unwrap_or_default();
+                let joint = regularize(known + before, INFORMATION_RIDGE, INFORMATION_CAP);
+                next.covariance = joint.try_inverse().unwrap_or(covariance);
+            }
+        }
+        let sigma_m = math::sqrt(math::max(next.covariance[(0, 0)], next.covariance[(1, 1)]));
+        is_sure &= sigma_m <= self.config.doubt_m;
+        self.belief = Some(next);
+        report.verdict = if is_sure {
+            Verdict::Tracking
+        } else {
+            Verdict::Doubtful
+        };
+        report.pose = Some(next.pose);
+        report.covariance = Some(next.covariance);
+        report.score = Some(score);
+    }
+
+    /// Whether scans have fitted so much worse than before, and so often, that the robot may be elsewhere.
+    fn is_suspect(&self, belief: &Belief) -> bool {
+        belief.drops >= self.config.lost_after
+    }
+
+    /// Holds what was found around a given start against it.
+    fn judge_near(&mut self, start: &SE2, result: Option<SearchResult>, pending: &mut PendingFix) {
+        let Some(result) = result else { return };
+        let square = |sigma: f64| 1.0 / (sigma * sigma);
+        let xy = square(self.config.start_sigma_m);
+        let theta = square(self.config.start_sigma_rad);
+        let believed = Matrix3::from_diagonal(&Vector3::new(xy, xy, theta));
+        let found = self.register(&pending.scan, result.best.pose);
+        let innovation = start.between(&found.pose).log();
+        let gate = chi_squared_gate(&innovation, &believed, self.config.gate_chi2);
+        if gate.passes() {
+            self.take(&found, Some(believed), &mut pending.report);
+        }
+        pending.report.search = Some(result);
+    }
+
+    /// Begins to search the whole map for the trail, where the place is not known and it is time.
+    fn plan_search(&mut self, pending: &mut PendingFix) {
+        if self.belief.is_some_and(|belief| !self.is_suspect(&belief)) {
+            return;
+        }
+        self.searched_ago += 1;
+        self.awaited = self.awaited.saturating_sub(usize::from(pending.joined));
+        let has_moved = pending.joined && self.awaited == 0;
+        let is_due = has_moved || self.searched_ago >= SEARCH_EVERY || self.frames == 1;
+        if !is_due || pending.scan.is_empty() {
+            return;
+        }
+        self.searched_ago = 0;
+        let trail = self.trail.cloud(&pending.scan, &self.config);
+        let search = MapSearch::whole(&self.map, trail, &pending.scan, &self.config);
+        pending.search = Some(search);
+    }
+
+    /// Believes the best place of the whole map, or not.
+    fn judge_everywhere(&mut self, result: Option<SearchResult>, pending: &mut PendingFix) {
+        let Some(result) = result else {
+            self.candidate = None;
+            self.patience = (2 * self.patience).min(MOST_AWAITED);
+            self.awaited = self.patience;
+            return;
+        };
+        self.patience = 1;
+        let report = &mut pending.report;
+        report.search = Some(result);
+        let margin = result.margin().unwrap_or(1.0);
+        let best = result.best.pose;
+        let is_best = |pose: &SE2| {
+            position_error_m(pose, &best) < AGAIN && pose.between(&best).theta().abs() < AGAIN
+        };
+        if let Some(belief) = self.belief.as_mut().filter(|belief| is_best(&belief.pose)) {
+            // It is here after all: what is seen here has changed.
+            belief.drops = 0;
+            belief.usual_score = report.score.unwrap_or_default();
+            return;
+        }
+        let is_again = self.candidate.as_ref().is_some_and(is_best);
+        self.candidate = Some(best);
+        let is_believed =
+            margin >= self.config.sure_margin || (margin >= self.config.min_margin && is_again);
+        let found = self.register(&pending.scan, best);
+        if (is_believed && self.take(&found, None, report)) || self.belief.is_some() {
+            return;
+        }
+        report.verdict = Verdict::Doubtful;
+        report.pose = Some(best);
+        report.score = found.score;
+    }
+
+    /// Believes a registration that fits; whether it did.
+    fn take(
+        &mut self,
+        found: &MatchSummary,
+        prior: Option<Matrix3<f64>>,
+        report: &mut LocalizeReport,
+    ) -> bool {
+        let score = found.score.unwrap_or(0.0);
+        if score < self.config.good_score {
+            return false;
+        }
+        let known = self.known(found, score) + prior.unwrap_or_default();
+        let known = regularize(known, INFORMATION_RIDGE, INFORMATION_CAP);
+        let covariance = known.try_inverse().unwrap_or_else(Matrix3::identity);
+        self.belief = Some(Belief {
+            pose: found.pose,
+            covariance,
+            misses: 0,
+            usual_score: score,
+            drops: 0,
+        });
+        self.candidate = None;
+        report.verdict = Verdict::Found;
+        report.pose = Some(found.pose);
+        report.covariance = Some(covariance);
+        report.score = Some(score);
+        true
+    }
+
+    /// How much the last registration knows; what fits in part may fit elsewhere as well.
+    fn known(&self, found: &MatchSummary, score: f64) -> Matrix3<f64> {
+        let trust = &self.slam.loops.trust;
+        let known = self.matcher.information(&found.pose, trust);
+        let known = without_aperture(&known, self.slam.loops.aperture);
+        known * (score * score * score * score)
+    }
+
+    fn register(&mut self, scan: &PointCloud, guess: SE2) -> MatchSummary {
+        let LocalizeConfig {
+            near_m,
+            near_keyframes,
+            max_iterations,
+            ..
+        } = self.config;
+        let near = self.map.near(&guess, near_m, near_keyframes);
+        if near != self.target {
+            self.map.points_of(&near, &mut self.cloud);
+            self.matcher.set_target(&self.cloud);
+            self.target = near;
+        }
+        self.matcher
+            .register(scan, &MatchRequest::new(guess, 0.6, max_iterations))
+    }
+}

@@ -1,0 +1,123 @@
+//! The sweeps of the last metres, held together by the front end alone.
+
+use std::sync::Arc;
+
+use pr_geom::SE2;
+
+use super::LocalizeConfig;
+use crate::cloud::PointCloud;
+use crate::metrics::position_error_m;
+use crate::scan::PreparedFrame;
+use crate::slam::{FrontEnd, SlamConfig, WindowSweep};
+use crate::submaps::FrontEndChoice;
+
+/// A sweep that fits worse on the ones before it was taken elsewhere, 0 to 1.
+const TORN_SCORE: f64 = 0.3;
+
+/// What a sweep did to the trail.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrailStep {
+    /// Motion since the last frame as scans and wheels tell it; none where the trail is torn.
+    pub motion: Option<SE2>,
+    /// Whether the sweep joined the trail.
+    pub joined: bool,
+}
+
+/// A front end without a map, and some of its sweeps.
+#[derive(Clone)]
+pub struct Trail {
+    config: SlamConfig,
+    front_end: FrontEnd,
+    frames: usize,
+    sweeps: Vec<(SE2, Arc<PointCloud>)>,
+}
+
+impl Trail {
+    pub fn new(config: SlamConfig) -> Self {
+        // A trail is a window: the map may have been made on submaps.
+        let config = FrontEndChoice::Window.of(config);
+        Self {
+            front_end: FrontEnd::new(&config, config.matcher.build(&config.local_map)),
+            config,
+            frames: 0,
+            sweeps: Vec::new(),
+        }
+    }
+
+    pub fn velocity(&self) -> nalgebra::Vector3<f64> {
+        self.front_end.velocity()
+    }
+
+    /// Takes a frame that is `dt_s` seconds after the last one.
+    pub fn step(&mut self, frame: &PreparedFrame, dt_s: f64, config: &LocalizeConfig) -> TrailStep {
+        if self.frames == 0 {
+            self.begin(frame);
+            return TrailStep {
+                motion: None,
+                joined: true,
+            };
+        }
+        let before = self.front_end.estimate();
+        let number = self.frames;
+        self.frames += 1;
+        let found = self.front_end.register(frame, dt_s, number, &self.config);
+        let is_torn = found.matched.score.is_some_and(|score| score < TORN_SCORE);
+        if is_torn || !found.accepted {
+            *self = Self::new(self.config.clone());
+            self.begin(frame);
+            return TrailStep {
+                motion: None,
+                joined: true,
+            };
+        }
+        let here = self.front_end.estimate();
+        let joined = self.sweeps.last().is_none_or(|(last, _)| {
+            position_error_m(last, &here) >= config.trail_step_m
+                || last.between(&here).theta().abs() >= config.trail_turn_rad
+        });
+        if joined {
+            self.sweeps.push((here, Arc::clone(&frame.cloud)));
+            let surplus = self.sweeps.len().saturating_sub(config.trail_sweeps);
+            self.sweeps.drain(..surplus);
+        }
+        TrailStep {
+            motion: Some(before.between(&here)),
+            joined,
+        }
+    }
+
+    /// All sweeps in the body's frame now, the newest scan among them, thinned and cut off where the
+    /// search ends.
+    pub fn cloud(&self, newest: &PointCloud, config: &LocalizeConfig) -> PointCloud {
+        let body_from_start = self.front_end.estimate().inverse();
+        let mut all = newest.clone();
+        for (pose, scan) in &self.sweeps {
+            all.extend_transformed(scan, &(body_from_start * *pose));
+        }
+        let reach_m2 = config.search_reach_m * config.search_reach_m;
+        let near = all
+            .iter()
+            .filter(|point| point.coords.norm_squared() <= reach_m2);
+        let near: PointCloud = near.collect();
+        near.downsample(config.search_cell_m)
+    }
+
+    /// Forgets all sweeps before this frame's, which is the newest; the motion goes on.
+    pub fn restart(&mut self, frame: &PreparedFrame, number: usize) {
+        let mut alone = self.front_end.snapshot();
+        let pose = alone.estimate;
+        alone.window = vec![WindowSweep {
+            frame: number,
+            pose,
+        }];
+        alone.scans = vec![Arc::clone(&frame.cloud)];
+        self.front_end.restore(&alone);
+        self.sweeps = vec![(pose, Arc::clone(&frame.cloud))];
+    }
+
+    fn begin(&mut self, frame: &PreparedFrame) {
+        self.front_end.start(Arc::clone(&frame.cloud));
+        self.frames = 1;
+        self.sweeps = vec![(self.front_end.estimate(), Arc::clone(&frame.cloud))];
+    }
+}

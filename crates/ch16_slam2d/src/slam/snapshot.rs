@@ -1,0 +1,378 @@
+//! All that an estimator is between two frames, as plain data: to be kept, and gone on with.
+//!
+//! [`Slam::snapshot`] takes it, [`Slam::restore`] goes on from it. What follows is the same to the
+//! bit as if nothing had been in between: what is left out are buffers that every frame fills anew.
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix3, Vector3};
+use pr_geom::SE2;
+use thiserror::Error;
+
+use super::{Keyframe, Slam, SlamConfig, SlamParts, WindowSweep};
+use crate::cloud::PointCloud;
+use crate::graph::{EdgeView, PoseGraph, PoseNode};
+use crate::loops::HeldLoop;
+use crate::scan::is_finite;
+use crate::submaps::FrontEndKind;
+
+/// No robot takes so many frames.
+const MOST_FRAMES: usize = 1 << 30;
+
+/// An estimator between two frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlamSnapshot {
+    /// The parameters.
+    pub config: SlamConfig,
+    /// Frames taken.
+    pub frames: usize,
+    /// Time of the newest frame, s; minus infinity before the first.
+    pub last_stamp_s: f64,
+    /// The graph's nodes; node k is keyframe k.
+    pub nodes: Vec<PoseNode>,
+    /// The graph's edges, in the order in which they were added.
+    pub edges: Vec<EdgeView>,
+    /// The keyframes in order.
+    pub keyframes: Vec<Keyframe>,
+    /// The newest node at which loops were looked for.
+    pub last_attempt_node: Option<usize>,
+    /// The newest node at which a loop was closed.
+    pub last_loop_node: usize,
+    /// The loops that wait for others, in order.
+    pub held: Vec<HeldLoop>,
+    /// Estimate, window and threshold.
+    pub front_end: FrontEndSnapshot,
+}
+
+/// A front end between two frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrontEndSnapshot {
+    /// The estimated pose, `world_from_body`.
+    pub estimate: SE2,
+    /// Twist of the last motion, in m/s, m/s, rad/s.
+    pub velocity: Vector3<f64>,
+    /// How long the last motion took, s; infinite before the first.
+    pub last_dt_s: f64,
+    /// The sweeps of the next local map, oldest first.
+    pub window: Vec<WindowSweep>,
+    /// Their scans, body frame.
+    pub scans: Vec<Arc<PointCloud>>,
+    /// Sum of the squared deviations that the threshold has seen, m².
+    pub deviations_m2: f64,
+    /// Number of them.
+    pub deviations: usize,
+    /// Covariance of the predicted motions since the last keyframe.
+    pub driven: Matrix3<f64>,
+    /// Covariance of the motions since the last registration that was believed, none after one.
+    pub unregistered: Option<Matrix3<f64>>,
+}
+
+/// Why nothing can go on from a snapshot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum SnapshotError {
+    /// A node without a keyframe, or the other way round.
+    #[error("{nodes} nodes have {keyframes} keyframes; each node needs its own")]
+    Keyframes {
+        /// Nodes of the graph.
+        nodes: usize,
+        /// Keyframes.
+        keyframes: usize,
+    },
+    /// Nothing holds the graph where it is.
+    #[error("no node is fixed; one has to hold the map where it is")]
+    NothingFixed,
+    /// An edge of a node that is not there, or from a node to itself.
+    #[error("edge {edge} ties node {from} to {to}, and nodes are numbered from 0 to {last}")]
+    Ends {
+        /// Number of the edge, counted from 0.
+        edge: usize,
+        /// Its ends.
+        from: usize,
+        /// Its ends.
+        to: usize,
+        /// The last node.
+        last: usize,
+    },
+    /// A number that is none.
+    #[error("{what} {number} holds a number that is not finite")]
+    NotFinite {
+        /// What.
+        what: &'static str,
+        /// Which of them, counted from 0.
+        number: usize,
+    },
+    /// A counter that does not fit to the rest.
+    #[error("the {0} does not fit to the rest")]
+    Counter(&'static str),
+    /// The front end registers on submaps, and a snapshot holds none of their grids.
+    #[error(
+        "it was mapped on submaps, whose grids are not kept, so nothing can go on from it; map with the window's front end to go on another day, or run the whole log again"
+    )]
+    Submaps,
+}
+
+impl SlamSnapshot {
+    /// Whether all numbers are finite and all that is pointed at is there.
+    ///
+    /// # Errors
+    /// The first thing that is not.
+    pub fn check(&self) -> Result<(), SnapshotError> {
+        let nodes = self.nodes.len();
+        if nodes != self.keyframes.len() {
+            return Err(SnapshotError::Keyframes {
+                nodes,
+                keyframes: self.keyframes.len(),
+            });
+        }
+        if nodes > 0 && !self.nodes.iter().any(|node| node.fixed) {
+            return Err(SnapshotError::NothingFixed);
+        }
+        let not_finite = |what, number| SnapshotError::NotFinite { what, number };
+        for (number, node) in self.nodes.iter().enumerate() {
+            let keyframe = &self.keyframes[number];
+            if !is_finite(&node.pose) || !keyframe.stamp_s.is_finite() {
+                return Err(not_finite("node", number));
+            }
+            if keyframe.node != number {
+                return Err(SnapshotError::Counter("number of a keyframe's node"));
+            }
+            if !is_cloud(&keyframe.scan) {
+                return Err(not_finite("the scan of keyframe", number));
+            }
+        }
+        for (number, view) in self.edges.iter().enumerate() {
+            let (from, to) = (view.from.index(), view.to.index());
+            if from >= nodes || to >= nodes || from == to {
+                return Err(SnapshotError::Ends {
+                    edge: number,
+                    from,
+                    to,
+                    last: nodes.saturating_sub(1),
+                });
+            }
+            let known = view.edge.information.iter().all(|value| value.is_finite());
+            if !is_finite(&view.edge.measurement) || !known {
+                return Err(not_finite("edge", number));
+            }
+        }
+        let is_node = |node: usize| node < nodes || (node == 0 && nodes == 0);
+        if self.last_attempt_node.is_some_and(|node| !is_node(node))
+            || !is_node(self.last_loop_node)
+        {
+            return Err(SnapshotError::Counter("newest node with a loop"));
+        }
+        for (number, held) in self.held.iter().enumerate() {
+            let found = &held.verification;
+            if found.from_node >= nodes || found.candidate.node >= found.from_node {
+                return Err(SnapshotError::Counter("node of a loop that waits"));
+            }
+            let poses = [&found.belief, &found.initial, &found.registered];
+            let matrices = [&found.information, &found.gate_information];
+            let known = poses.into_iter().all(is_finite)
+                && found.candidate.proposal.as_ref().is_none_or(is_finite)
+                && matrices.iter().all(|m| m.iter().all(|v| v.is_finite()))
+                && found.innovation.iter().all(|v| v.is_finite())
+                && held.way_m.is_finite();
+            if !known {
+                return Err(not_finite("waiting loop", number));
+            }
+        }
+        let is_counted = (self.frames == 0) == (nodes == 0) && self.frames < MOST_FRAMES;
+        if !is_counted || self.last_stamp_s.is_nan() {
+            return Err(SnapshotError::Counter("number of frames"));
+        }
+        let has_window = nodes > 0 && self.config.front_end == FrontEndKind::Window;
+        self.front_end.check(has_window)
+    }
+}
+
+impl FrontEndSnapshot {
+    fn check(&self, has_window: bool) -> Result<(), SnapshotError> {
+        if self.window.len() != self.scans.len() || self.window.is_empty() == has_window {
+            return Err(SnapshotError::Counter("window of sweeps"));
+        }
+        let sweeps = self.window.iter().zip(&self.scans).enumerate();
+        for (number, (sweep, scan)) in sweeps {
+            if !is_finite(&sweep.pose) || !is_cloud(scan) {
+                return Err(SnapshotError::NotFinite {
+                    what: "sweep",
+                    number,
+                });
+            }
+        }
+        let matrices = [Some(self.driven), self.unregistered];
+        let known = matrices
+            .iter()
+            .flatten()
+            .all(|m| m.iter().all(|v| v.is_finite()))
+            && self.velocity.iter().all(|v| v.is_finite())
+            && self.deviations_m2.is_finite()
+            && self.deviations_m2 >= 0.0
+            && is_finite(&self.estimate)
+            && self.last_dt_s > 0.0;
+        if known {
+            Ok(())
+        } else {
+            Err(SnapshotError::NotFinite {
+                what: "front end",
+                number: 0,
+            })
+        }
+    }
+}
+
+fn is_cloud(cloud: &PointCloud) -> bool {
+    let mut values = cloud.xs().iter().chain(cloud.ys());
+    values.all(|value| value.is_finite())
+}
+
+impl Slam {
+    /// All that the estimator is, between two frames, but for the grids of submaps: a map of those can be
+    /// looked at and localized on, and not gone on with.
+    #[must_use]
+    pub fn snapshot(&self) -> SlamSnapshot {
+        SlamSnapshot {
+            config: self.config.clone(),
+            frames: self.frames,
+            last_stamp_s: self.last_stamp_s,
+            nodes: self.graph.nodes().map(|(_, node)| node).collect(),
+            edges: self.graph.edges().collect(),
+            keyframes: self.keyframes.clone(),
+            last_attempt_node: self.last_attempt_node,
+            last_loop_node: self.last_loop_node,
+            held: self.held.clone(),
+            front_end: self.front_end.snapshot(),
+        }
+    }
+
+    /// An estimator that goes on from a snapshot, with the parts that its parameters name.
+    ///
+    /// # Errors
+    /// Where the snapshot contradicts itself, or its front end registers on submaps.
+    pub fn restore(snapshot: &SlamSnapshot) -> Result<Self, SnapshotError> {
+        let parts = SlamParts::of(&snapshot.config);
+        Self::restore_with_parts(snapshot, parts)
+    }
+
+    /// [`Slam::restore`] with matchers and a loop detector of one's own.
+    ///
+    /// # Errors
+    /// Where the snapshot contradicts itself, or its front end registers on submaps.
+    pub fn restore_with_parts(
+        snapshot: &SlamSnapshot,
+        parts: SlamParts,
+    ) -> Result<Self, SnapshotError> {
+        snapshot.check()?;
+        if snapshot.config.front_end != FrontEndKind::Window {
+            return Err(SnapshotError::Submaps);
+        }
+        let mut slam = Self::with_parts(snapshot.config.clone(), parts);
+        slam.frames = snapshot.frames;
+        slam.last_stamp_s = snapshot.last_stamp_s;
+        slam.graph = PoseGraph::of(&snapshot.nodes, &snapshot.edges);
+        slam.keyframes = snapshot.keyframes.clone();
+        slam.last_attempt_node = snapshot.last_attempt_node;
+        slam.last_loop_node = snapshot.last_loop_node;
+        slam.held = snapshot.held.clone();
+        slam.front_end.restore(&snapshot.front_end);
+        slam.chi2 = slam.graph.chi2();
+        Ok(slam)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::loops::LoopGuard;
+    use crate::slam::test_room::frame;
+
+    fn driven(slam: &mut Slam, steps: core::ops::Range<usize>) {
+        for step in steps {
+            slam.step(&frame(step)).unwrap();
+        }
+    }
+
+    fn configs() -> [SlamConfig; 4] {
+        let scan = frame(0).scan;
+        // A guard that is never sure and never has enough: every loop waits.
+        let mut doubting = SlamConfig::for_robot(&scan);
+        doubting.loops.guard = Some(LoopGuard {
+            sure_m: 0.0,
+            min_margin: 0.0,
+            agreeing: 1000,
+            agreeing_outside: 1000,
+            ..LoopGuard::default()
+        });
+        // A lap has sixteen keyframes.
+        doubting.loops.min_gap_nodes = 10;
+        [
+            doubting,
+            SlamConfig::for_robot(&scan),
+            SlamConfig::for_scan(&scan, 0.02),
+            SlamConfig::chapter(),
+        ]
+    }
+
+    #[test]
+    fn a_run_that_is_interrupted_ends_in_the_same_bits() {
+        let mut waited = 0;
+        for config in configs() {
+            let mut whole = Slam::new(config.clone());
+            driven(&mut whole, 0..140);
+            // Before the first loop, between loops, after the first frame, before it.
+            for stop in [0, 1, 60, 121] {
+                let mut first = Slam::new(config.clone());
+                driven(&mut first, 0..stop);
+                waited += first.snapshot().held.len();
+                let mut second = Slam::restore(&first.snapshot()).unwrap();
+                driven(&mut second, stop..140);
+                assert_eq!(second.snapshot(), whole.snapshot(), "stopped after {stop}");
+                assert_eq!(second.chi2().to_bits(), whole.chi2().to_bits());
+            }
+        }
+        assert!(waited > 0, "no run was interrupted while a loop waited");
+    }
+
+    #[test]
+    fn a_run_on_submaps_is_kept_as_a_map_and_not_gone_on_with() {
+        let mut slam = Slam::new(SlamConfig::for_robot(&frame(0).scan).with_submaps());
+        for frames in [0, 1, 30] {
+            let first = slam.frames();
+            driven(&mut slam, first..frames);
+            let snapshot = slam.snapshot();
+            assert_eq!(snapshot.check(), Ok(()), "after {frames}");
+            assert_eq!(snapshot.keyframes, slam.keyframes());
+            assert_eq!(Slam::restore(&snapshot).err(), Some(SnapshotError::Submaps));
+        }
+    }
+
+    #[test]
+    fn a_snapshot_that_contradicts_itself_is_refused_in_a_sentence() {
+        let mut slam = Slam::new(SlamConfig::default());
+        driven(&mut slam, 0..30);
+        let good = slam.snapshot();
+        assert_eq!(good.check(), Ok(()));
+        type Spoil = fn(&mut SlamSnapshot);
+        let spoils: [(Spoil, &str); 7] = [
+            (|s| drop(s.keyframes.pop()), "nodes have"),
+            (|s| s.nodes[0].fixed = false, "no node is fixed"),
+            (|s| s.edges[0].to = 999.into(), "edge 0 ties node 0 to 999"),
+            (
+                |s| s.nodes[1].pose = SE2::translation(f64::NAN, 0.0),
+                "node 1 holds",
+            ),
+            (|s| s.last_loop_node = 999, "newest node with a loop"),
+            (|s| drop(s.front_end.scans.pop()), "window of sweeps"),
+            (
+                |s| s.front_end.driven[(0, 0)] = f64::INFINITY,
+                "front end 0",
+            ),
+        ];
+        for (spoil, said) in spoils {
+            let mut bad = good.clone();
+            spoil(&mut bad);
+            let error = Slam::restore(&bad).err().unwrap().to_string();
+            assert!(error.contains(said), "{error}");
+        }
+    }
+}

@@ -1,0 +1,377 @@
+//! A map that is driven again and again stays as large as the place, and forgets what is gone.
+//!
+//! At every keyframe, once it is tied to the map: points of older scans around it that newer ones have
+//! looked through are dropped, and keyframes that have enough newer ones around them that see what
+//! they saw are taken out of the graph ([`PoseGraph::marginalize`](crate::graph::PoseGraph::marginalize)).
+//! The oldest keyframes of a place stay: new ones are tied to them, so the map does not wander from
+//! lap to lap. What is gone disappears from their scans as well.
+
+use core::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+use pr_geom::{Point2, SE2, math};
+
+use super::Slam;
+use crate::cloud::PointCloud;
+use crate::metrics::position_error_m;
+
+/// When a keyframe has been replaced, and when a point is gone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UpkeepConfig {
+    /// Keyframes within this distance stand at the same place, m.
+    pub place_m: f64,
+    /// The newest so many of a place stay.
+    pub kept: usize,
+    /// The oldest so many of a place stay.
+    pub anchors: usize,
+    /// One between them goes if so much of its scan is in theirs, 0 to 1.
+    pub covered: f64,
+    /// Keyframes within this distance are looked at with each new one, m.
+    pub reach_m: f64,
+    /// Points of two scans nearer to each other are the same, m.
+    pub same_m: f64,
+    /// A scan has looked through a point where it sees farther by this, m.
+    pub through_m: f64,
+    /// So many newer scans have to have looked through a point, and none to have seen it.
+    pub looks_through: usize,
+    /// Beams are at most so far from one another, rad: between two that are farther apart nothing is
+    /// said.
+    pub beam_gap_rad: f64,
+    /// Nothing is taken out while the last loop is more keyframes ago than this.
+    pub loop_ago_nodes: usize,
+}
+
+impl Default for UpkeepConfig {
+    fn default() -> Self {
+        Self {
+            place_m: 1.0,
+            kept: 4,
+            anchors: 4,
+            covered: 0.9,
+            reach_m: 4.0,
+            same_m: 0.2,
+            through_m: 0.4,
+            looks_through: 2,
+            beam_gap_rad: 0.06,
+            loop_ago_nodes: 12,
+        }
+    }
+}
+
+/// What was done at one keyframe.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Upkeep {
+    /// The keyframes that were taken out, by the numbers that they had, the oldest first.
+    pub removed: Vec<usize>,
+    /// What the graph lost by it, nats: the sum of the Kullback–Leibler divergences.
+    pub divergence: f64,
+    /// Points that were dropped.
+    pub points_gone: usize,
+}
+
+/// A scan by bearing, to be asked what it saw in a direction.
+struct Sight {
+    world_from_body: SE2,
+    /// Bearing (rad) and range (m), by bearing.
+    seen: Vec<(f64, f64)>,
+    points: PointCloud,
+}
+
+/// What a scan says of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Testimony {
+    Seen,
+    LookedThrough,
+    Nothing,
+}
+
+impl Sight {
+    fn of(scan: &PointCloud, world_from_body: SE2) -> Self {
+        let mut seen: Vec<(f64, f64)> = scan
+            .iter()
+            .map(|point| (math::atan2(point.y, point.x), math::norm2(point.x, point.y)))
+            .collect();
+        seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self {
+            world_from_body,
+            seen,
+            points: scan.clone(),
+        }
+    }
+
+    fn testimony(&self, world: Point2<f64>, config: &UpkeepConfig) -> Testimony {
+        let point = self.world_from_body.inverse().transform(world);
+        let near =
+            |seen: Point2<f64>| (seen - point).norm_squared() < config.same_m * config.same_m;
+        if self.points.iter().any(near) {
+            return Testimony::Seen;
+        }
+        if self.seen.len() < 2 {
+            return Testimony::Nothing;
+        }
+        let bearing = math::atan2(point.y, point.x);
+        let range_m = math::norm2(point.x, point.y);
+        let after = self.seen.partition_point(|seen| seen.0 < bearing) % self.seen.len();
+        let before = (after + self.seen.len() - 1) % self.seen.len();
+        let both = [self.seen[before], self.seen[after]];
+        let is_through = both.iter().all(|(at, seen_m)| {
+            let turn = (at - bearing).abs();
+            let turn = if turn > PI { TAU - turn } else { turn };
+            turn <= config.beam_gap_rad && *seen_m > range_m + config.through_m
+        });
+        if is_through {
+            Testimony::LookedThrough
+        } else {
+            Testimony::Nothing
+        }
+    }
+}
+
+impl Slam {
+    /// Drops what is gone and takes out what was replaced around the newest keyframe; call it after a
+    /// frame that became one. A map on submaps stays as it is.
+    pub fn keep_up(&mut self, config: &UpkeepConfig) -> Upkeep {
+        let mut upkeep = Upkeep::default();
+        let Some(newest) = self.keyframes.len().checked_sub(1) else {
+            return upkeep;
+        };
+        let is_far = newest - self.last_loop_node > config.loop_ago_nodes;
+        if is_far || self.submap_loops.is_some() {
+            return upkeep;
+        }
+        let here = self.graph.pose(newest);
+        let near: Vec<usize> = (0..=newest)
+            .filter(|&node| position_error_m(&self.graph.pose(node), &here) <= config.reach_m)
+            .collect();
+        let sights: Vec<Sight> = near
+            .iter()
+            .map(|&node| Sight::of(&self.keyframes[node].scan, self.graph.pose(node)))
+            .collect();
+        for (k, &node) in near.iter().enumerate() {
+            upkeep.points_gone += self.drop_what_is_gone(node, &sights[k + 1..], config);
+        }
+        let replaced: Vec<usize> = near
+            .iter()
+            .enumerate()
+            .filter(|&(k, &node)| {
+                let (older, newer) = (&sights[..k], &sights[k + 1..]);
+                self.is_replaced(node, older, newer, config)
+            })
+            .map(|(_, &node)| node)
+            .collect();
+        for node in replaced.into_iter().rev() {
+            if let Ok(done) = self.graph.marginalize(node) {
+                upkeep.divergence += done.divergence;
+                upkeep.removed.push(node);
+                self.forget(node);
+            }
+        }
+        if !upkeep.removed.is_empty() {
+            self.chi2 = self.graph.chi2();
+        }
+        upkeep.removed.reverse();
+        upkeep
+    }
+
+    /// Drops the points of a keyframe that newer scans have looked through; returns how many.
+    fn drop_what_is_gone(&mut self, node: usize, newer: &[Sight], config: &UpkeepConfig) -> usize {
+        if newer.len() < config.looks_through {
+            return 0;
+        }
+        let (scan, pose) = (&self.keyframes[node].scan, self.graph.pose(node));
+        let is_gone = |point: Point2<f64>| {
+            let world = pose.transform(point);
+            let mut through = 0;
+            for sight in newer {
+                match sight.testimony(world, config) {
+                    Testimony::Seen => return false,
+                    Testimony::LookedThrough => through += 1,
+                    Testimony::Nothing => {}
+                }
+            }
+            through >= config.looks_through
+        };
+        let left: Vec<Point2<f64>> = scan.iter().filter(|&point| !is_gone(point)).collect();
+        let gone = scan.len() - left.len();
+        if gone > 0 {
+            let mut scan = PointCloud::new(left, scan.stamp_s());
+            scan.estimate_normals(self.config.scan.normal_radius_m);
+            self.keyframes[node].scan = Arc::new(scan);
+        }
+        gone
+    }
+
+    /// Whether enough older and newer keyframes stand at the place of this one, and the newer ones see
+    /// what it saw.
+    fn is_replaced(
+        &self,
+        node: usize,
+        older: &[Sight],
+        newer: &[Sight],
+        config: &UpkeepConfig,
+    ) -> bool {
+        let pose = self.graph.pose(node);
+        let is_here =
+            |sight: &&Sight| position_error_m(&sight.world_from_body, &pose) <= config.place_m;
+        let here: Vec<&Sight> = newer.iter().filter(is_here).collect();
+        if here.len() < config.kept || older.iter().filter(is_here).count() < config.anchors {
+            return false;
+        }
+        let scan = &self.keyframes[node].scan;
+        let is_seen = |point: &Point2<f64>| {
+            let world = pose.transform(*point);
+            here.iter()
+                .any(|sight| sight.testimony(world, config) == Testimony::Seen)
+        };
+        let seen = scan.iter().filter(is_seen).count();
+        seen as f64 >= config.covered * scan.len() as f64
+    }
+
+    /// Renumbers what follows a node that is no longer there.
+    fn forget(&mut self, node: usize) {
+        self.keyframes.remove(node);
+        for keyframe in &mut self.keyframes[node..] {
+            keyframe.node -= 1;
+        }
+        let moved_up = |known: usize| known - usize::from(known > node);
+        self.last_attempt_node = self.last_attempt_node.map(moved_up);
+        self.last_loop_node = moved_up(self.last_loop_node);
+        self.held.retain(|held| {
+            let found = &held.verification;
+            found.from_node != node && found.candidate.node != node
+        });
+        let mut held = core::mem::take(&mut self.held);
+        for waiting in &mut held {
+            let found = &mut waiting.verification;
+            found.from_node = moved_up(found.from_node);
+            found.candidate.node = moved_up(found.candidate.node);
+            waiting.way_m = self.way_between_m(0, found.from_node);
+        }
+        self.held = held;
+        self.detector.forget(node);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::loops::LoopGuard;
+    use crate::slam::SlamConfig;
+    use crate::slam::test_room::{frame, truth};
+
+    /// Laps of a circle in a room; in the first two something stands in it.
+    fn laps(laps: usize, is_kept_up: bool) -> (Slam, Vec<usize>) {
+        let mut config = SlamConfig::for_robot(&frame(0).scan);
+        config.start = truth(0);
+        let mut slam = Slam::new(config);
+        let mut nodes = Vec::new();
+        for step in 0..105 * laps {
+            let mut frame = frame(step);
+            if step < 210 {
+                stand_in_the_way(&mut frame.scan, &truth(step));
+            }
+            let report = slam.step(&frame).unwrap();
+            if is_kept_up && report.new_keyframe.is_some() {
+                slam.keep_up(&UpkeepConfig::default());
+            }
+            if step % 105 == 104 {
+                nodes.push(slam.keyframes().len());
+            }
+        }
+        (slam, nodes)
+    }
+
+    /// A round post of 0.3 m in the middle of the circle.
+    fn stand_in_the_way(scan: &mut crate::scan::LaserScan, pose: &SE2) {
+        let post = pose.inverse().transform(POST);
+        let (at, away_m) = (math::atan2(post.y, post.x), math::norm2(post.x, post.y));
+        let bearings: Vec<f64> = (0..scan.ranges_m.len())
+            .map(|beam| scan.bearing_rad(beam))
+            .collect();
+        for (range_m, bearing) in scan.ranges_m.iter_mut().zip(bearings) {
+            let turn = pr_geom::wrap_angle(bearing - at);
+            let side_m = away_m * math::sin(turn);
+            if turn.abs() < 1.0 && side_m.abs() < 0.3 {
+                let front_m = away_m * math::cos(turn) - math::sqrt(0.09 - side_m * side_m);
+                *range_m = math::min(*range_m, front_m);
+            }
+        }
+    }
+
+    const POST: Point2<f64> = Point2::new(4.0, 3.0);
+
+    fn points_of_the_post(slam: &Slam) -> usize {
+        let keyframes = slam.keyframes().iter().zip(slam.graph().poses());
+        keyframes
+            .map(|(keyframe, pose)| {
+                let world = keyframe.scan.iter().map(|point| pose.transform(point));
+                world.filter(|point| (point - POST).norm() < 0.5).count()
+            })
+            .sum()
+    }
+
+    #[test]
+    fn laps_without_end_leave_the_map_as_large_as_the_place_and_as_right() {
+        let (slam, nodes) = laps(8, true);
+        assert!(nodes[7] as f64 <= 1.5 * nodes[2] as f64, "{nodes:?}");
+        let (_, growing) = laps(3, false);
+        assert!(growing[2] > 2 * growing[0], "{growing:?}");
+        let keyframes = slam.keyframes().iter().zip(slam.graph().poses());
+        for (keyframe, pose) in keyframes {
+            let error_m = position_error_m(pose, &truth(keyframe.frame));
+            // 0.1: eight laps at a bearing that the wheels claim too much of.
+            assert!(error_m < 0.1, "{}: {error_m}", keyframe.frame);
+        }
+        assert!(slam.graph().edge_count() < 4 * slam.graph().node_count());
+    }
+
+    #[test]
+    fn loops_that_wait_follow_their_keyframes() {
+        let mut config = SlamConfig::for_robot(&frame(0).scan);
+        config.loops.guard = Some(LoopGuard {
+            sure_m: 0.0,
+            min_margin: 0.0,
+            agreeing: 1000,
+            agreeing_outside: 1000,
+            ..LoopGuard::default()
+        });
+        // A lap has sixteen keyframes.
+        config.loops.min_gap_nodes = 10;
+        let mut slam = Slam::new(config);
+        (0..140).for_each(|step| drop(slam.step(&frame(step)).unwrap()));
+        let ends = |slam: &Slam| -> Vec<(usize, usize)> {
+            let frame = |node: usize| slam.keyframes[node].frame;
+            let found = slam.held.iter().map(|held| &held.verification);
+            found
+                .map(|found| (frame(found.from_node), frame(found.candidate.node)))
+                .collect()
+        };
+        let mut expected = ends(&slam);
+        assert!(!expected.is_empty());
+        // The first node is fixed: it cannot be taken out.
+        let olds = slam
+            .held
+            .iter()
+            .map(|held| held.verification.candidate.node);
+        let old = olds.max().unwrap();
+        assert!(old > 0);
+        // A keyframe that others follow, and then the end of a loop.
+        for node in [old + 2, old] {
+            let gone = slam.keyframes[node].frame;
+            slam.graph.marginalize(node).unwrap();
+            slam.forget(node);
+            expected.retain(|&(new, old)| new != gone && old != gone);
+            assert_eq!(ends(&slam), expected);
+        }
+    }
+
+    #[test]
+    fn what_was_taken_away_disappears_from_the_map() {
+        let (before, _) = laps(2, true);
+        assert!(points_of_the_post(&before) > 100);
+        let (after, _) = laps(4, true);
+        assert_eq!(points_of_the_post(&after), 0);
+        let (never, _) = laps(4, false);
+        assert!(points_of_the_post(&never) > 100);
+    }
+}
