@@ -10,6 +10,8 @@
 //! - [`recorder`] and [`report`]: what a run leaves for a map, and one HTML file with pictures.
 //! - [`info`]: what is in a log.
 //! - [`run`]: a log through [`Slam`](ch16_slam2d::slam::Slam), frame by frame.
+//! - [`session`]: all that a run is, in one file.
+//! - [`localize`]: a log on the map of a session.
 //! - [`quality`]: how far each keyframe and each loop is to be trusted, and what is to be doubted.
 //! - [`trajectory`]: stamped poses, and the TUM format in both directions.
 //! - [`relations`]: reference relations between two times.
@@ -25,6 +27,7 @@ pub mod graph_file;
 pub mod info;
 pub mod json_log;
 pub mod line_log;
+pub mod localize;
 pub mod log;
 pub mod map_image;
 pub mod quality;
@@ -33,6 +36,7 @@ pub mod relations;
 pub mod report;
 pub mod ros;
 pub mod run;
+pub mod session;
 pub mod trajectory;
 
 mod lines;

@@ -19,6 +19,7 @@ use ch16_slam2d::scan::LaserScan;
 
 use crate::json_log::FrameLine;
 use crate::log::LogFrame;
+use crate::session::Session;
 
 /// Above this probability a cell is an obstacle.
 const OCCUPIED: f64 = 0.65;
@@ -72,6 +73,18 @@ pub fn map_of(lines: &[FrameLine], cell_m: f64) -> Result<MapImage, MapError> {
             let frame = LogFrame::from(line.clone());
             map.add(&SE2::new(x, y, theta), &frame.scan)?;
         }
+    }
+    map.finish()
+}
+
+/// The map of a session: its keyframes' thinned scans at the poses of its map, the oldest first.
+///
+/// # Errors
+/// Where no scan has a point, or there would be too many cells.
+pub fn map_of_session(session: &Session, cell_m: f64) -> Result<MapImage, MapError> {
+    let mut map = MapBuilder::new(cell_m);
+    for (pose, scan) in session.placed_scans() {
+        map.add(&pose, &scan)?;
     }
     map.finish()
 }

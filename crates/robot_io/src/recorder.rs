@@ -5,6 +5,7 @@ use ch16_slam2d::slam::SlamReport;
 use crate::json_log::FrameLine;
 use crate::log::LogFrame;
 use crate::run::LogRun;
+use crate::session::Session;
 
 /// Keeps the frames of keyframes, and χ² at each, while a run goes on.
 #[derive(Clone, Debug, Default)]
@@ -14,6 +15,22 @@ pub struct RunRecorder {
 }
 
 impl RunRecorder {
+    /// A recorder for a run that goes on from a session: it has the session's keyframes already.
+    #[must_use]
+    pub fn resume(session: &Session) -> Self {
+        let keyframes = session.driven.keyframes.iter();
+        let scans = session.placed_scans().map(|(_, scan)| scan);
+        let frames = keyframes.zip(scans).map(|(keyframe, scan)| LogFrame {
+            stamp_s: keyframe.stamp_s,
+            odometry: None,
+            scan,
+        });
+        Self {
+            keyframes: frames.collect(),
+            chi2: Vec::new(),
+        }
+    }
+
     /// Takes what a frame did.
     pub fn take(&mut self, frame: &LogFrame, report: &SlamReport) {
         if report.new_keyframe.is_some() {

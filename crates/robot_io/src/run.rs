@@ -1,14 +1,15 @@
 //! A log through the estimator, one scan at a time.
 
 use ch16_slam2d::loops::LoopVerification;
-use ch16_slam2d::scan::{Frame, FrameError};
+use ch16_slam2d::scan::{Frame, FrameError, LaserScan};
 use ch16_slam2d::slam::parameters::Parameter;
-use ch16_slam2d::slam::{Refinement, Slam, SlamConfig, SlamReport};
+use ch16_slam2d::slam::{Refinement, Slam, SlamConfig, SlamReport, SlamSnapshot, SnapshotError};
 use ch16_slam2d::submaps::FrontEndChoice;
 use pr_geom::SE2;
 
 use crate::log::LogFrame;
 use crate::quality::Quality;
+use crate::session::{MappedGraph, ScanPlace, Session, places_kept};
 use crate::trajectory::{StampedPose, Trajectory};
 
 /// Whether the wheels are listened to.
@@ -55,19 +56,17 @@ pub struct LogRun {
     last_odometry: Option<SE2>,
     last_stamp_s: f64,
     scans: Vec<ScanPlace>,
+    /// How many of them are those of a session.
+    resumed: usize,
+    /// Where the beams point, without ranges.
+    sensor: Option<LaserScan>,
+    /// The estimator after the last scan, once its map was linked anew.
+    driven: Option<SlamSnapshot>,
     loops: Vec<TriedLoop>,
     links: Vec<LoopVerification>,
     poor: Vec<PoorFit>,
     late: usize,
     refused: Option<FrameError>,
-}
-
-/// Where a scan was taken.
-#[derive(Clone, Copy, Debug)]
-struct ScanPlace {
-    stamp_s: f64,
-    keyframe: usize,
-    keyframe_from_body: SE2,
 }
 
 impl LogRun {
@@ -83,6 +82,9 @@ impl LogRun {
             last_odometry: None,
             last_stamp_s: f64::NEG_INFINITY,
             scans: Vec::new(),
+            resumed: 0,
+            sensor: None,
+            driven: None,
             loops: Vec::new(),
             links: Vec::new(),
             poor: Vec::new(),
@@ -110,6 +112,35 @@ impl LogRun {
     pub fn with_front_end(mut self, front_end: FrontEndChoice) -> Self {
         self.front_end = front_end;
         self
+    }
+
+    /// A run that goes on where a session ended, in the same odometry's frame: its first scan is the
+    /// one after the session's last.
+    ///
+    /// # Errors
+    /// Where the session contradicts itself, or was mapped on submaps.
+    pub fn resume(session: &Session, odometry_use: OdometryUse) -> Result<Self, SnapshotError> {
+        let driven = &session.driven;
+        let keyframes = driven.keyframes.iter().enumerate();
+        let of_keyframes = keyframes.map(|(number, keyframe)| ScanPlace {
+            stamp_s: keyframe.stamp_s,
+            keyframe: number,
+            keyframe_from_body: SE2::identity(),
+        });
+        let scans = if session.places.is_empty() {
+            of_keyframes.collect()
+        } else {
+            session.places.clone()
+        };
+        Ok(Self {
+            slam: Some(Slam::restore(driven)?),
+            last_odometry: session.last_odometry,
+            last_stamp_s: driven.last_stamp_s,
+            resumed: scans.len(),
+            scans,
+            sensor: session.sensor.clone(),
+            ..Self::new(odometry_use)
+        })
     }
 
     /// Takes the next scan; none where it is left out, because it is not after the one before it or
@@ -154,6 +185,11 @@ impl LogRun {
         };
         self.last_stamp_s = frame.stamp_s;
         self.last_odometry = log.odometry;
+        self.driven = None;
+        self.sensor.get_or_insert_with(|| LaserScan {
+            ranges_m: Vec::new(),
+            ..frame.scan
+        });
         let keyframe = slam.keyframes().len() - 1;
         self.scans.push(ScanPlace {
             stamp_s: frame.stamp_s,
@@ -184,8 +220,10 @@ impl LogRun {
 
     /// What [`finish`](Self::finish) does, piece by piece; none before the first scan.
     #[must_use]
-    pub fn finishing(&self) -> Option<Refinement> {
-        Some(self.slam.as_ref()?.refinement())
+    pub fn finishing(&mut self) -> Option<Refinement> {
+        let slam = self.slam.as_ref()?;
+        self.driven.get_or_insert_with(|| slam.snapshot());
+        Some(slam.refinement())
     }
 
     /// The next piece; false once nothing is left to do.
@@ -205,6 +243,12 @@ impl LogRun {
             if let Some(tried) = self.loops.iter_mut().find(is_it) {
                 tried.verification.rejection = None;
                 tried.accepted = true;
+            } else {
+                // It was found before the session was saved.
+                self.loops.push(TriedLoop {
+                    verification: *found,
+                    accepted: true,
+                });
             }
         }
         false
@@ -226,10 +270,10 @@ impl LogRun {
         self.links = links;
     }
 
-    /// Scans taken.
+    /// Scans taken, without those of a session that it goes on from.
     #[must_use]
     pub fn scans(&self) -> usize {
-        self.scans.len()
+        self.scans.len() - self.resumed
     }
 
     /// The loops that were looked at, in order.
@@ -250,6 +294,23 @@ impl LogRun {
         &self.poor
     }
 
+    /// All that the run is, to be saved; none before the first scan.
+    ///
+    /// To go on from it is to go on from the last scan: what [`finish`](Self::finish) linked anew is
+    /// kept beside it.
+    #[must_use]
+    pub fn session(&self) -> Option<Session> {
+        let slam = self.slam.as_ref()?;
+        let is_finished = self.driven.is_some();
+        Some(Session {
+            driven: self.driven.clone().unwrap_or_else(|| slam.snapshot()),
+            mapped: is_finished.then(|| MappedGraph::of(slam.graph())),
+            places: places_kept(&self.scans),
+            sensor: self.sensor.clone(),
+            last_odometry: self.last_odometry,
+        })
+    }
+
     /// What is known of the map's quality.
     pub fn quality(&mut self) -> Quality {
         Quality::of(self.slam.as_mut(), &self.loops, &self.links, &self.poor)
@@ -267,7 +328,7 @@ impl LogRun {
         self.refused
     }
 
-    /// Where every scan was taken, by the graph as it is now.
+    /// Where every scan was taken, by the graph as it is now; those of a session come first.
     #[must_use]
     pub fn trajectory(&self) -> Trajectory {
         let Some(slam) = &self.slam else {

@@ -1,0 +1,112 @@
+//! A log on the map of a session, one scan at a time: where the robot was, and when it was lost.
+
+use std::sync::Arc;
+
+use ch16_slam2d::localize::{KnownMap, LocalizeConfig, LocalizeReport, Localizer, StartPose};
+use ch16_slam2d::scan::{Frame, FrameError};
+use ch16_slam2d::search::SearchError;
+use pr_geom::SE2;
+
+use crate::log::LogFrame;
+use crate::run::OdometryUse;
+use crate::session::Session;
+use crate::trajectory::{StampedPose, Trajectory};
+
+/// A log under way on a map that stays as it is.
+pub struct LocalizeRun {
+    localizer: Localizer,
+    odometry_use: OdometryUse,
+    last_odometry: Option<SE2>,
+    last_stamp_s: f64,
+    reports: Vec<LocalizeReport>,
+    late: usize,
+    refused: Option<FrameError>,
+}
+
+impl LocalizeRun {
+    /// A run on the map of a session.
+    ///
+    /// # Errors
+    /// Where the session's scans have no point, or lie farther apart than any grid reaches.
+    pub fn new(
+        session: &Session,
+        odometry_use: OdometryUse,
+        start: StartPose,
+    ) -> Result<Self, SearchError> {
+        let config = LocalizeConfig::default();
+        let keyframes = session.driven.keyframes.clone();
+        let map = Arc::new(KnownMap::new(keyframes, session.poses(), &config)?);
+        let slam = session.driven.config.clone();
+        Ok(Self {
+            localizer: Localizer::new(map, slam, config, start),
+            odometry_use,
+            last_odometry: None,
+            last_stamp_s: f64::NEG_INFINITY,
+            reports: Vec::new(),
+            late: 0,
+            refused: None,
+        })
+    }
+
+    /// Takes the next scan; none where it is left out, because it is not after the one before it or
+    /// because its numbers are no scan.
+    pub fn step(&mut self, log: LogFrame) -> Option<&LocalizeReport> {
+        if log.stamp_s <= self.last_stamp_s {
+            self.late += 1;
+            return None;
+        }
+        let odometry = match (self.odometry_use, self.last_odometry, log.odometry) {
+            (OdometryUse::Log, Some(last), Some(now)) => Some(last.between(&now)),
+            _ => None,
+        };
+        let frame = Frame {
+            stamp_s: log.stamp_s,
+            odometry,
+            scan: log.scan,
+        };
+        match self.localizer.step(&frame) {
+            Ok(report) => self.reports.push(report),
+            Err(problem) => {
+                self.refused.get_or_insert(problem);
+                return None;
+            }
+        }
+        self.last_stamp_s = log.stamp_s;
+        self.last_odometry = log.odometry;
+        self.reports.last()
+    }
+
+    /// What became of each scan, in order.
+    #[must_use]
+    pub fn reports(&self) -> &[LocalizeReport] {
+        &self.reports
+    }
+
+    /// Scans left out because their stamp was not after the one before.
+    #[must_use]
+    pub fn late(&self) -> usize {
+        self.late
+    }
+
+    /// Why the first scan was refused whose numbers are no scan.
+    #[must_use]
+    pub fn refused(&self) -> Option<FrameError> {
+        self.refused
+    }
+
+    /// The poses that are believed, in the frame of the session's map.
+    #[must_use]
+    pub fn trajectory(&self) -> Trajectory {
+        let believed = self
+            .reports
+            .iter()
+            .filter(|report| report.verdict.is_believed());
+        let poses = believed.filter_map(|report| {
+            report.pose.map(|pose| StampedPose {
+                stamp_s: report.stamp_s,
+                pose,
+            })
+        });
+        Trajectory::new(poses.collect())
+    }
+}

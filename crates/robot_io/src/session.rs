@@ -1,0 +1,297 @@
+//! Saved sessions: all that a run is, in one file, to go on with, to map, and to be found again in.
+//!
+//! `docs/sessions.md` describes the file byte by byte. What is read was checked: a file that is cut
+//! off, damaged, foreign or of another version ends in one sentence, and no length in it is believed
+//! beyond the bytes that are there. What is written reads back to the same estimator; writing that
+//! again gives the same bytes.
+
+mod bytes;
+mod config_text;
+mod error;
+mod held;
+mod parts;
+mod rays;
+mod scans;
+#[cfg(test)]
+mod tests;
+
+use std::io::Read;
+
+use ch16_slam2d::digest::Digest;
+use ch16_slam2d::graph::{EdgeKind, EdgeView, PoseGraph, PoseNode};
+use ch16_slam2d::scan::LaserScan;
+use ch16_slam2d::slam::SlamSnapshot;
+use pr_geom::SE2;
+
+pub use config_text::config_text;
+pub use error::SessionError;
+pub use rays::rays;
+
+use bytes::{Cursor, Writer};
+
+/// The first bytes of a session.
+pub const MAGIC: [u8; 8] = *b"SLAM2D\r\n";
+/// The version that is written, and the only one there is so far.
+pub const VERSION: u32 = 1;
+/// The usual name of a session in the folder of a run.
+pub const FILE_NAME: &str = "session.slam2d";
+/// Larger files are refused before they are read, bytes: 150,000 keyframes.
+pub const MOST_BYTES: u64 = 1 << 29;
+
+/// Magic, version and length of what follows.
+const HEAD_BYTES: usize = 20;
+/// The checksum at the end.
+const TAIL_BYTES: usize = 8;
+
+/// A saved session.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Session {
+    /// The estimator after its last frame, to go on with.
+    pub driven: SlamSnapshot,
+    /// The map as it was linked once more after the last frame, where that was done.
+    pub mapped: Option<MappedGraph>,
+    /// Where the scans were taken, at most eight for each keyframe but the last; none where nobody kept
+    /// them.
+    pub places: Vec<ScanPlace>,
+    /// Where the beams of the laser point, without ranges.
+    pub sensor: Option<LaserScan>,
+    /// Pose by the wheels at the last frame, in the odometry's frame.
+    pub last_odometry: Option<SE2>,
+}
+
+/// Where a scan was taken: in the frame of the keyframe before it, so that every loop moves it too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScanPlace {
+    /// Its time, s.
+    pub stamp_s: f64,
+    /// The keyframe.
+    pub keyframe: usize,
+    /// Its place in the keyframe's frame.
+    pub keyframe_from_body: SE2,
+}
+
+/// Scans that are kept for a keyframe that has been left.
+const PLACES_KEPT: usize = 8;
+
+/// At most eight places for each keyframe but the last, evenly chosen: a robot that waits for an hour
+/// does not fill the file.
+pub(crate) fn places_kept(places: &[ScanPlace]) -> Vec<ScanPlace> {
+    let mut kept = Vec::new();
+    let last = places.last().map(|place| place.keyframe);
+    for of_one in places.chunk_by(|a, b| a.keyframe == b.keyframe) {
+        let count = of_one.len();
+        if Some(of_one[0].keyframe) == last || count <= PLACES_KEPT {
+            kept.extend_from_slice(of_one);
+        } else {
+            kept.extend((0..PLACES_KEPT).map(|k| of_one[k * count / PLACES_KEPT]));
+        }
+    }
+    kept
+}
+
+/// Poses and loops after the last refinement; what is not a loop is as it was driven.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MappedGraph {
+    /// Poses of all keyframes, `world_from_body`.
+    pub poses: Vec<SE2>,
+    /// The loops.
+    pub loops: Vec<EdgeView>,
+}
+
+impl MappedGraph {
+    /// What refinement changes of a graph; its loops are numbered from 0.
+    #[must_use]
+    pub fn of(graph: &PoseGraph) -> Self {
+        let loops = graph
+            .edges()
+            .filter(|view| view.edge.kind == EdgeKind::Loop);
+        Self {
+            poses: graph.poses().to_vec(),
+            loops: loops
+                .enumerate()
+                .map(|(number, view)| EdgeView {
+                    id: number.into(),
+                    ..view
+                })
+                .collect(),
+        }
+    }
+}
+
+impl Session {
+    /// Whether a file that begins like this is a session.
+    #[must_use]
+    pub fn begins(first_bytes: &[u8]) -> bool {
+        first_bytes.starts_with(&MAGIC)
+    }
+
+    /// Poses of the keyframes on the map, `world_from_body`.
+    #[must_use]
+    pub fn poses(&self) -> Vec<SE2> {
+        match &self.mapped {
+            Some(mapped) => mapped.poses.clone(),
+            None => self.driven.nodes.iter().map(|node| node.pose).collect(),
+        }
+    }
+
+    /// The graph of the map.
+    #[must_use]
+    pub fn graph(&self) -> PoseGraph {
+        let Some(mapped) = &self.mapped else {
+            return PoseGraph::of(&self.driven.nodes, &self.driven.edges);
+        };
+        let poses = self.driven.nodes.iter().zip(&mapped.poses);
+        let nodes: Vec<PoseNode> = poses
+            .map(|(node, &pose)| PoseNode { pose, ..*node })
+            .collect();
+        let edges = self.driven.edges.iter();
+        let driven = edges.filter(|view| view.edge.kind == EdgeKind::Odometry);
+        PoseGraph::of(&nodes, driven.chain(&mapped.loops))
+    }
+
+    /// The scans of the keyframes with their poses, as rays from the sensor to what it saw.
+    pub fn placed_scans(&self) -> impl Iterator<Item = (SE2, LaserScan)> + '_ {
+        let sensor = self.sensor.clone().unwrap_or_default();
+        let cell_m = self.driven.config.scan.cell_m;
+        let keyframes = self.driven.keyframes.iter().zip(self.poses());
+        keyframes.map(move |(keyframe, pose)| (pose, rays(&keyframe.scan, &sensor, cell_m)))
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut body = Writer::default();
+        parts::write(self, &mut body);
+        let body = body.finish();
+        let mut file = Vec::with_capacity(HEAD_BYTES + body.len() + TAIL_BYTES);
+        file.extend_from_slice(&MAGIC);
+        file.extend_from_slice(&VERSION.to_le_bytes());
+        file.extend_from_slice(&(body.len() as u64).to_le_bytes());
+        file.extend_from_slice(&body);
+        let sum = checksum(&file);
+        file.extend_from_slice(&sum.to_le_bytes());
+        file
+    }
+
+    /// Reads a file; `name` is what errors call it.
+    ///
+    /// # Errors
+    /// One sentence where it is no session that can be used.
+    pub fn read(source: impl Read, name: &str) -> Result<Self, SessionError> {
+        let mut file = Vec::new();
+        let told = |source| SessionError::Io {
+            name: name.to_owned(),
+            source,
+        };
+        let mut source = source.take(MOST_BYTES + 1);
+        source.read_to_end(&mut file).map_err(told)?;
+        Self::of_bytes(&file, name)
+    }
+
+    /// The session in these bytes; see [`read`](Self::read).
+    ///
+    /// # Errors
+    /// One sentence where it is no session that can be used.
+    pub fn of_bytes(file: &[u8], name: &str) -> Result<Self, SessionError> {
+        let named = || name.to_owned();
+        if file.is_empty() {
+            return Err(SessionError::Empty { name: named() });
+        }
+        if file.len() as u64 > MOST_BYTES {
+            return Err(SessionError::TooLarge { name: named() });
+        }
+        let known = file.len().min(MAGIC.len());
+        if file[..known] != MAGIC[..known] {
+            return Err(SessionError::Foreign { name: named() });
+        }
+        let cut_off = |needs: usize| SessionError::CutOff {
+            name: named(),
+            has: file.len(),
+            needs: needs as u64,
+        };
+        let Some((head, _)) = file.split_first_chunk::<HEAD_BYTES>() else {
+            return Err(cut_off(HEAD_BYTES));
+        };
+        let version = u32::from_le_bytes(head[8..12].try_into().expect("four bytes"));
+        if version != VERSION {
+            return Err(SessionError::Version {
+                name: named(),
+                version,
+            });
+        }
+        let length = u64::from_le_bytes(head[12..].try_into().expect("eight bytes"));
+        let needs = length.saturating_add((HEAD_BYTES + TAIL_BYTES) as u64);
+        if (file.len() as u64) < needs {
+            return Err(SessionError::CutOff {
+                name: named(),
+                has: file.len(),
+                needs,
+            });
+        }
+        if file.len() as u64 > needs {
+            return Err(SessionError::Longer {
+                name: named(),
+                end: needs,
+            });
+        }
+        let (content, sum) = file.split_at(file.len() - TAIL_BYTES);
+        if checksum(content).to_le_bytes() != sum {
+            return Err(SessionError::Damaged { name: named() });
+        }
+        let mut cursor = Cursor::new(content, HEAD_BYTES);
+        let session = parts::read(&mut cursor).map_err(|broken| SessionError::Content {
+            name: named(),
+            byte: broken.byte,
+            expected: broken.expected,
+        })?;
+        session
+            .check()
+            .map_err(|problem| SessionError::Contradiction {
+                name: named(),
+                problem,
+            })?;
+        Ok(session)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        self.driven.check().map_err(|problem| problem.to_string())?;
+        if let Some(sensor) = &self.sensor {
+            sensor.validate().map_err(|problem| problem.to_string())?;
+        }
+        let keyframes = self.driven.keyframes.len();
+        let mut in_order = self.places.windows(2);
+        let is_in_order = in_order.all(|two| two[0].stamp_s < two[1].stamp_s);
+        if !is_in_order || self.places.iter().any(|place| place.keyframe >= keyframes) {
+            return Err("the places of scans are not in order".to_owned());
+        }
+        let Some(mapped) = &self.mapped else {
+            return Ok(());
+        };
+        // The same rules hold for the map's poses and loops.
+        if mapped.poses.len() != self.driven.nodes.len() {
+            return Err("the map has another number of poses than keyframes".to_owned());
+        }
+        let nodes = self.driven.nodes.iter().zip(&mapped.poses);
+        let as_driven = SlamSnapshot {
+            nodes: nodes
+                .map(|(node, &pose)| PoseNode { pose, ..*node })
+                .collect(),
+            edges: mapped.loops.clone(),
+            ..self.driven.clone()
+        };
+        as_driven
+            .check()
+            .map_err(|problem| format!("of the map, {problem}"))
+    }
+}
+
+/// FNV-1a over the bytes as words of 64 bits, the last one filled with zeros.
+fn checksum(bytes: &[u8]) -> u64 {
+    let mut digest = Digest::new();
+    for word in bytes.chunks(8) {
+        let mut whole = [0; 8];
+        whole[..word.len()].copy_from_slice(word);
+        digest.add_bits(u64::from_le_bytes(whole));
+    }
+    digest.value()
+}

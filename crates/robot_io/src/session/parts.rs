@@ -1,0 +1,292 @@
+//! The sections of the file, in their order.
+
+use std::sync::Arc;
+
+use ch16_slam2d::graph::{EdgeKind, EdgeView, PoseEdge, PoseNode};
+use ch16_slam2d::loops::HeldLoop;
+use ch16_slam2d::scan::LaserScan;
+use ch16_slam2d::slam::{FrontEndSnapshot, Keyframe, SlamSnapshot, WindowSweep};
+use pr_geom::{SE2, Vector3};
+
+use super::bytes::{Broken, Cursor, Writer};
+use super::config_text::{config_text, read_config};
+use super::{MappedGraph, ScanPlace, Session, held, scans};
+
+/// Most bytes of a keyframe's scan, on the mean: with its node, its pose on the map, eight places
+/// of scans and five edges it stays below 3,000.
+pub const SCAN_BYTES: usize = 2110;
+/// Two ends, the kind, the measurement, the information.
+const EDGE_BYTES: usize = 105;
+/// Whether it is fixed, the pose, the frame, the stamp.
+const NODE_BYTES: usize = 41;
+/// Three numbers of 64 bits.
+const POSE_BYTES: usize = 24;
+/// Stamp, keyframe, pose.
+const PLACE_BYTES: usize = 36;
+/// Frame and pose of a sweep, and the least that a scan takes.
+const SWEEP_BYTES: usize = 46;
+
+pub fn write(session: &Session, out: &mut Writer) {
+    let Session {
+        driven,
+        mapped,
+        places,
+        sensor,
+        last_odometry,
+    } = session;
+    let radius_m = driven.config.scan.normal_radius_m;
+    out.section(b"CONF", |out| {
+        out.bytes(config_text(&driven.config).as_bytes())
+    });
+    out.section(b"SENS", |out| {
+        out.maybe(sensor.as_ref(), |out, sensor| {
+            let LaserScan {
+                first_angle_rad,
+                angle_step_rad,
+                range_min_m,
+                range_max_m,
+                body_from_sensor,
+                beam_interval_s,
+                ranges_m: _,
+            } = sensor;
+            for value in [first_angle_rad, angle_step_rad, range_min_m, range_max_m] {
+                out.f64(*value);
+            }
+            out.pose(body_from_sensor);
+            out.f64(*beam_interval_s);
+        });
+        out.maybe(last_odometry.as_ref(), Writer::pose);
+    });
+    out.section(b"STAT", |out| {
+        out.u64(driven.frames as u64);
+        out.f64(driven.last_stamp_s);
+        out.maybe(driven.last_attempt_node, Writer::count);
+        out.count(driven.last_loop_node);
+    });
+    out.section(b"NODE", |out| {
+        out.count(driven.nodes.len());
+        for (node, keyframe) in driven.nodes.iter().zip(&driven.keyframes) {
+            out.u8(u8::from(node.fixed));
+            out.pose(&node.pose);
+            out.u64(keyframe.frame as u64);
+            out.f64(keyframe.stamp_s);
+        }
+    });
+    out.section(b"EDGE", |out| write_edges(&driven.edges, out));
+    out.section(b"HELD", |out| {
+        out.count(driven.held.len());
+        driven.held.iter().for_each(|held| held::write(held, out));
+    });
+    out.section(b"SCAN", |out| {
+        let keyframes = driven.keyframes.iter();
+        let scans = keyframes.map(|keyframe| keyframe.scan.as_ref());
+        scans::write_all(scans, radius_m, SCAN_BYTES, out);
+    });
+    out.section(b"MAPD", |out| {
+        out.maybe(mapped.as_ref(), |out, mapped| {
+            out.count(mapped.poses.len());
+            mapped.poses.iter().for_each(|pose| out.pose(pose));
+            write_edges(&mapped.loops, out);
+        });
+    });
+    out.section(b"WAYS", |out| {
+        out.count(places.len());
+        for place in places {
+            out.f64(place.stamp_s);
+            out.count(place.keyframe);
+            out.pose(&place.keyframe_from_body);
+        }
+    });
+    let front = &driven.front_end;
+    out.section(b"FRNT", |out| {
+        out.pose(&front.estimate);
+        front.velocity.iter().for_each(|value| out.f64(*value));
+        out.f64(front.last_dt_s);
+        out.f64(front.deviations_m2);
+        out.u64(front.deviations as u64);
+        out.matrix(&front.driven);
+        out.maybe(front.unregistered.as_ref(), Writer::matrix);
+        out.count(front.window.len());
+        for (sweep, scan) in front.window.iter().zip(&front.scans) {
+            out.u64(sweep.frame as u64);
+            out.pose(&sweep.pose);
+            scans::write_exactly(scan, radius_m, out);
+        }
+    });
+}
+
+fn write_edges(edges: &[EdgeView], out: &mut Writer) {
+    out.count(edges.len());
+    for EdgeView { from, to, edge, .. } in edges {
+        out.count(from.index());
+        out.count(to.index());
+        out.u8(match edge.kind {
+            EdgeKind::Odometry => 0,
+            EdgeKind::Loop => 1,
+        });
+        out.pose(&edge.measurement);
+        // All nine: the two triangles may differ in a last bit.
+        out.matrix(&edge.information);
+    }
+}
+
+pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
+    let config = from.section(b"CONF", |from| {
+        let text = from.take(from.left())?;
+        let text = core::str::from_utf8(text).map_err(|_| from.broken("text was expected"))?;
+        read_config(text).map_err(|problem| from.broken(problem))
+    })?;
+    let radius_m = config.scan.normal_radius_m;
+    let (sensor, last_odometry) = from.section(b"SENS", |from| {
+        Ok((from.maybe(read_sensor)?, from.maybe(Cursor::pose)?))
+    })?;
+    let (frames, last_stamp_s, last_attempt_node, last_loop_node) =
+        from.section(b"STAT", |from| {
+            Ok((
+                read_number(from)?,
+                from.f64()?,
+                from.maybe(|from| Ok(from.u32()? as usize))?,
+                from.u32()? as usize,
+            ))
+        })?;
+    let places = from.section(b"NODE", |from| {
+        let count = from.count(NODE_BYTES)?;
+        (0..count)
+            .map(|_| read_node(from))
+            .collect::<Result<Vec<_>, _>>()
+    })?;
+    let edges = from.section(b"EDGE", read_edges)?;
+    let held = from.section(b"HELD", |from| {
+        let count = from.count(held::BYTES)?;
+        let loops: Result<Vec<HeldLoop>, Broken> = (0..count).map(|_| held::read(from)).collect();
+        loops
+    })?;
+    let keyframes = from.section(b"SCAN", |from| {
+        let mut keyframes = Vec::new();
+        for (node, (_, frame, stamp_s)) in places.iter().enumerate() {
+            keyframes.push(Keyframe {
+                node,
+                frame: *frame,
+                stamp_s: *stamp_s,
+                scan: Arc::new(scans::read(from, radius_m)?),
+            });
+        }
+        Ok(keyframes)
+    })?;
+    let mapped = from.section(b"MAPD", |from| {
+        from.maybe(|from| {
+            let count = from.count(POSE_BYTES)?;
+            let poses: Result<Vec<SE2>, Broken> = (0..count).map(|_| from.pose()).collect();
+            Ok(MappedGraph {
+                poses: poses?,
+                loops: read_edges(from)?,
+            })
+        })
+    })?;
+    let scan_places = from.section(b"WAYS", |from| {
+        let count = from.count(PLACE_BYTES)?;
+        let place = |_| {
+            Ok(ScanPlace {
+                stamp_s: from.f64()?,
+                keyframe: from.u32()? as usize,
+                keyframe_from_body: from.pose()?,
+            })
+        };
+        (0..count).map(place).collect::<Result<Vec<_>, Broken>>()
+    })?;
+    let front_end = from.section(b"FRNT", |from| {
+        let estimate = from.pose()?;
+        let velocity = Vector3::new(from.f64()?, from.f64()?, from.f64()?);
+        let [last_dt_s, deviations_m2] = [from.f64()?, from.f64()?];
+        let deviations = read_number(from)?;
+        let driven = from.matrix()?;
+        let unregistered = from.maybe(Cursor::matrix)?;
+        let count = from.count(SWEEP_BYTES)?;
+        let (mut window, mut window_scans) = (Vec::new(), Vec::new());
+        for _ in 0..count {
+            window.push(WindowSweep {
+                frame: read_number(from)?,
+                pose: from.pose()?,
+            });
+            window_scans.push(Arc::new(scans::read(from, radius_m)?));
+        }
+        Ok(FrontEndSnapshot {
+            estimate,
+            velocity,
+            last_dt_s,
+            window,
+            scans: window_scans,
+            deviations_m2,
+            deviations,
+            driven,
+            unregistered,
+        })
+    })?;
+    if from.left() > 0 {
+        return Err(from.broken("the end of the file was expected"));
+    }
+    Ok(Session {
+        driven: SlamSnapshot {
+            config,
+            frames,
+            last_stamp_s,
+            nodes: places.into_iter().map(|(node, ..)| node).collect(),
+            edges,
+            keyframes,
+            last_attempt_node,
+            last_loop_node,
+            held,
+            front_end,
+        },
+        mapped,
+        places: scan_places,
+        sensor,
+        last_odometry,
+    })
+}
+
+fn read_number(from: &mut Cursor<'_>) -> Result<usize, Broken> {
+    let value = from.u64()?;
+    usize::try_from(value).map_err(|_| from.broken(format!("{value} is too large a number")))
+}
+
+fn read_sensor(from: &mut Cursor<'_>) -> Result<LaserScan, Broken> {
+    Ok(LaserScan {
+        first_angle_rad: from.f64()?,
+        angle_step_rad: from.f64()?,
+        range_min_m: from.f64()?,
+        range_max_m: from.f64()?,
+        body_from_sensor: from.pose()?,
+        beam_interval_s: from.f64()?,
+        ranges_m: Vec::new(),
+    })
+}
+
+fn read_node(from: &mut Cursor<'_>) -> Result<(PoseNode, usize, f64), Broken> {
+    let fixed = from.flag()?;
+    let pose = from.pose()?;
+    Ok((PoseNode { pose, fixed }, read_number(from)?, from.f64()?))
+}
+
+fn read_edges(from: &mut Cursor<'_>) -> Result<Vec<EdgeView>, Broken> {
+    let count = from.count(EDGE_BYTES)?;
+    let edge = |number: usize| {
+        let (start, end) = (from.u32()? as usize, from.u32()? as usize);
+        let kind = match from.u8()? {
+            0 => EdgeKind::Odometry,
+            1 => EdgeKind::Loop,
+            other => return Err(from.broken(format!("an edge of kind 0 or 1, not {other}"))),
+        };
+        Ok(EdgeView {
+            id: number.into(),
+            from: start.into(),
+            to: end.into(),
+            edge: PoseEdge {
+                measurement: from.pose()?,
+                information: from.matrix()?,
+                kind,
+            },
+        })
+    };
+    (0..count).map(edge).collect()
+}

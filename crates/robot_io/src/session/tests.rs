@@ -1,0 +1,337 @@
+use std::f64::consts::TAU;
+use std::io::Cursor as Bytes;
+
+use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::scan::LaserScan;
+use ch16_slam2d::slam::SlamConfig;
+use ch16_slam2d::slam::parameters::Parameter;
+use pr_geom::{Point2, SE2, Vector3, math};
+
+use super::*;
+use crate::log::LogFrame;
+use crate::run::{LogRun, OdometryUse};
+
+/// A room of 8 m × 6 m seen from a circle in it; the wheels claim a little too much of each turn.
+fn frame(step: usize, beams: usize) -> LogFrame {
+    let way = |scale: f64| SE2::exp(&(Vector3::new(1.5, 0.0, scale) * (0.06 * step as f64)));
+    let pose = SE2::new(4.0, 1.5, 0.0) * way(1.0);
+    let mut scan = LaserScan {
+        first_angle_rad: -TAU / 2.0,
+        angle_step_rad: TAU / beams as f64,
+        range_max_m: 12.0,
+        ..LaserScan::default()
+    };
+    let range_m = |beam: usize| {
+        let (sin, cos) = math::sin_cos(pose.theta() + scan.bearing_rad(beam));
+        let to_wall = |at: f64, step: f64, size: f64| (size * f64::from(step > 0.0) - at) / step;
+        to_wall(pose.x(), cos, 8.0).min(to_wall(pose.y(), sin, 6.0))
+    };
+    scan.ranges_m = (0..beams).map(range_m).collect();
+    LogFrame {
+        stamp_s: 100.0 + 0.25 * step as f64,
+        odometry: Some(way(1.01)),
+        scan,
+    }
+}
+
+fn run(beams: usize, steps: core::ops::Range<usize>) -> LogRun {
+    let mut run = LogRun::new(OdometryUse::Log);
+    go_on(&mut run, beams, steps);
+    run
+}
+
+fn go_on(run: &mut LogRun, beams: usize, steps: core::ops::Range<usize>) {
+    for step in steps {
+        run.step(frame(step, beams)).unwrap();
+    }
+}
+
+fn saved(run: &LogRun) -> Vec<u8> {
+    run.session().unwrap().to_bytes()
+}
+
+#[test]
+fn what_is_saved_loads_to_the_same_and_is_saved_to_the_same_bytes() {
+    for beams in [120, 360, 1440] {
+        let mut run = run(beams, 0..120);
+        for is_finished in [false, true] {
+            if is_finished {
+                run.finish();
+            }
+            let session = run.session().unwrap();
+            assert_eq!(session.mapped.is_some(), is_finished);
+            let bytes = session.to_bytes();
+            let mut loaded = Session::read(Bytes::new(&bytes), "x").unwrap();
+            assert!(loaded.to_bytes() == bytes, "{beams} beams");
+            // Scans of more than 131 points are kept with fewer bits; nothing else is.
+            if beams > 120 {
+                let pairs = loaded.driven.keyframes.iter_mut();
+                for (a, b) in pairs.zip(&session.driven.keyframes) {
+                    a.scan = b.scan.clone();
+                }
+            }
+            assert!(loaded == session, "{beams} beams");
+        }
+    }
+}
+
+#[test]
+fn a_run_that_goes_on_from_a_file_ends_in_the_bits_of_one_that_was_never_interrupted() {
+    let mut whole = run(120, 0..150);
+    let half = saved(&run(120, 0..80));
+    let session = Session::of_bytes(&half, "x").unwrap();
+    let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
+    go_on(&mut second, 120, 80..150);
+    assert_eq!(saved(&second), saved(&whole));
+    // So it is once both have ended, and from there on again.
+    whole.finish();
+    second.finish();
+    assert_eq!(saved(&second), saved(&whole));
+    let session = Session::of_bytes(&saved(&whole), "x").unwrap();
+    let mut third = LogRun::resume(&session, OdometryUse::Log).unwrap();
+    go_on(&mut third, 120, 150..170);
+    assert_eq!(saved(&third), saved(&run(120, 0..170)));
+}
+
+#[test]
+fn loops_that_wait_are_saved_and_wait_on() {
+    // A guard that is never sure and never has enough.
+    let settings = [
+        // A lap has sixteen keyframes.
+        ("loops.min_gap_nodes", 10.0),
+        ("loops.guard.sure_m", 0.0),
+        ("loops.guard.min_margin", 0.0),
+        ("loops.guard.agreeing", 1000.0),
+        ("loops.guard.agreeing_outside", 1000.0),
+    ];
+    let settings = settings.map(|(name, value)| (Parameter::named(name).unwrap(), value));
+    let doubting = |steps: core::ops::Range<usize>| {
+        let new = LogRun::new(OdometryUse::Log);
+        let mut run = settings.iter().fold(new, |run, (parameter, value)| {
+            run.with_parameter(parameter, *value)
+        });
+        go_on(&mut run, 120, steps);
+        run
+    };
+    let (half, mut whole) = (doubting(0..125), doubting(0..140));
+    let session = Session::of_bytes(&saved(&half), "x").unwrap();
+    assert!(!session.driven.held.is_empty());
+    assert_eq!(session, half.session().unwrap());
+    let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
+    go_on(&mut second, 120, 125..140);
+    assert_eq!(saved(&second), saved(&whole));
+    // At the end the loops that wait are closed or dropped, in the same way.
+    whole.finish();
+    second.finish();
+    assert_eq!(saved(&second), saved(&whole));
+    let closed = |run: &LogRun| run.loops().iter().filter(|tried| tried.accepted).count();
+    assert_eq!(closed(&second), closed(&whole));
+}
+
+#[test]
+fn a_keyframe_takes_three_kilobytes_at_most_whatever_the_sensor() {
+    for beams in [180, 720, 2880] {
+        let mut run = run(beams, 0..200);
+        run.finish();
+        let session = run.session().unwrap();
+        let scans_m = session.driven.keyframes.iter().map(|k| k.scan.len());
+        let (points, keyframes) = (scans_m.max().unwrap(), session.driven.keyframes.len());
+        let window = &session.driven.front_end.scans;
+        let fixed: usize = window.iter().map(|scan| 60 + 32 * scan.len()).sum();
+        assert!(session.places.len() <= 8 * keyframes + 40);
+        let each = (session.to_bytes().len() - fixed) / keyframes;
+        assert!(each <= 3000, "{beams} beams, {points} points: {each} bytes");
+        let loaded = Session::of_bytes(&session.to_bytes(), "x").unwrap();
+        for (stored, seen) in loaded
+            .driven
+            .keyframes
+            .iter()
+            .zip(&session.driven.keyframes)
+        {
+            if beams < 2880 {
+                assert_eq!(stored.scan.len(), seen.scan.len());
+            }
+            // More points than fit are thinned, and not to nothing.
+            assert!(stored.scan.len() > 2 * seen.scan.len() / 3);
+            if stored.scan.len() == seen.scan.len() {
+                for (a, b) in stored.scan.iter().zip(seen.scan.iter()) {
+                    // Half a step of 16-bit coordinates within 8 m.
+                    assert!((a - b).abs().max() <= 0.5 / 2048.0);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn scans_of_another_make_keep_their_normals_and_crowded_ones_are_thinned() {
+    let radius_m = 0.5;
+    let spiral = |count: usize| -> PointCloud {
+        let mut cloud = PointCloud::new(Vec::new(), 3.5);
+        for k in 0..count {
+            let (sin, cos) = math::sin_cos(k as f64);
+            let at = 1.0 + 30.0 * k as f64 / count as f64;
+            let normal = (k % 7 != 0).then(|| nalgebra::Vector2::new(sin, cos));
+            cloud.push_with_normal(Point2::new(at * cos, at * sin), normal);
+        }
+        cloud
+    };
+    for (count, exact) in [
+        (60, true),
+        (200, false),
+        (340, false),
+        (5000, false),
+        (0, true),
+    ] {
+        let scan = spiral(count);
+        let mut first = Writer::default();
+        scans::write_all([&scan].into_iter(), radius_m, parts::SCAN_BYTES, &mut first);
+        let first = first.finish();
+        assert!(first.len() <= parts::SCAN_BYTES);
+        let mut cursor = Cursor::new(&first, 0);
+        let back = scans::read(&mut cursor, radius_m).unwrap();
+        assert_eq!(cursor.left(), 0);
+        assert_eq!(back == scan, exact, "{count} points");
+        assert_eq!(back.len() == count, count <= 340);
+        let mut again = Writer::default();
+        scans::write_all([&back].into_iter(), radius_m, parts::SCAN_BYTES, &mut again);
+        assert_eq!(again.finish(), first, "{count} points");
+    }
+}
+
+#[test]
+fn every_byte_counts_and_so_does_every_length() {
+    let bytes = saved(&run(40, 0..12));
+    assert!(bytes.len() < 20_000, "{}", bytes.len());
+    for at in 0..bytes.len() {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 1 << (at % 8);
+        let error = Session::of_bytes(&damaged, "x").unwrap_err().to_string();
+        assert!(is_a_sentence(&error), "{at}: {error}");
+        let error = Session::of_bytes(&bytes[..at], "x")
+            .unwrap_err()
+            .to_string();
+        assert!(is_a_sentence(&error), "{at}: {error}");
+    }
+}
+
+fn is_a_sentence(error: &str) -> bool {
+    error.lines().count() == 1
+        && error.starts_with('x')
+        && (error.contains("again") || error.contains("give ") || error.contains("use the program"))
+}
+
+/// The file with a checksum that fits to what stands in it.
+fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let end = bytes.len() - TAIL_BYTES;
+    let sum = checksum(&bytes[..end]);
+    bytes[end..].copy_from_slice(&sum.to_le_bytes());
+    bytes
+}
+
+#[test]
+fn bytes_that_nobody_wrote_are_a_sentence_or_a_session_that_can_be_used() {
+    let bytes = saved(&run(40, 0..12));
+    let mut accepted = 0;
+    for at in (HEAD_BYTES..bytes.len() - TAIL_BYTES).step_by(3) {
+        for value in [0x00, 0x7f, 0xff] {
+            let mut forged = bytes.clone();
+            forged[at] = value;
+            match Session::of_bytes(&signed(forged), "x") {
+                Err(error) => assert!(is_a_sentence(&error.to_string()), "{at}: {error}"),
+                Ok(session) => {
+                    accepted += 1;
+                    assert!(LogRun::resume(&session, OdometryUse::Log).is_ok());
+                }
+            }
+        }
+    }
+    assert!(accepted > 0);
+}
+
+#[test]
+fn what_is_no_session_is_told_from_what_was_one() {
+    let bytes = saved(&run(40, 0..3));
+    let mut newer = bytes.clone();
+    newer[8] = 7;
+    let mut longer = bytes.clone();
+    longer.push(0);
+    for (file, said) in [
+        (&b""[..], "x is empty; give a session"),
+        (b"FLASER 180", "x is no session"),
+        (b"SLAM2D\r\n", "x ends at byte 8 of 20"),
+        (
+            &newer,
+            "x is a session of version 7, and this program reads version 1",
+        ),
+        (&longer, "x goes on after its end at byte"),
+    ] {
+        let error = Session::of_bytes(file, "x").unwrap_err().to_string();
+        assert!(error.starts_with(said), "{error}");
+    }
+}
+
+#[test]
+fn every_parameter_is_written_and_read() {
+    let scan = frame(0, 180).scan;
+    let robot = SlamConfig::for_robot(&scan);
+    let places = ch16_slam2d::places::PlaceDetectorConfig::histogram(7);
+    let mut other = SlamConfig::chapter();
+    other.loops.detector = ch16_slam2d::loops::DetectorKind::Place(places);
+    let on_submaps = robot.clone().with_submaps();
+    for config in [SlamConfig::default(), other, robot, on_submaps] {
+        let text = config_text(&config);
+        assert_eq!(config_text::read_config(&text), Ok(config));
+        let (name, _) = text.split_once(' ').unwrap();
+        let rest = text.split_once('\n').unwrap().1;
+        let missing = format!("the parameter {name} is missing");
+        assert_eq!(config_text::read_config(rest), Err(missing));
+        let more = format!("{text}warp 9\n");
+        let unknown = "the estimator has no parameter ‘warp’".to_owned();
+        assert_eq!(config_text::read_config(&more), Err(unknown));
+    }
+}
+
+#[test]
+fn rays_to_a_thinned_wall_end_on_it_and_leave_gaps_open() {
+    let wall = (-20..=20).map(|k| Point2::new(2.0, 0.06 * f64::from(k)));
+    let behind = [Point2::new(-3.0, 0.0)];
+    let scan: PointCloud = wall.chain(behind).collect();
+    let sensor = LaserScan {
+        angle_step_rad: 0.5_f64.to_radians(),
+        ..LaserScan::default()
+    };
+    let seen = rays(&scan, &sensor, 0.06);
+    let mut met = 0;
+    for (ray, &range_m) in seen.ranges_m.iter().enumerate() {
+        let (sin, cos) = math::sin_cos(seen.bearing_rad(ray));
+        if range_m.is_nan() {
+            assert!(sin.abs() > 0.45 || cos < 0.0, "{ray}");
+        } else if cos > 0.0 {
+            met += 1;
+            // 0.02: the nearest ray to a point at the wall's end is a quarter degree off.
+            assert!((range_m * cos - 2.0).abs() < 0.02, "{ray}");
+        }
+    }
+    assert!(met > 110, "{met}");
+}
+
+#[test]
+fn a_robot_that_waits_does_not_fill_the_file_with_places() {
+    let place = |number: usize, keyframe: usize| ScanPlace {
+        stamp_s: number as f64,
+        keyframe,
+        keyframe_from_body: SE2::identity(),
+    };
+    let keyframe = |number: usize| match number {
+        0..100 => 0,
+        100..105 => 1,
+        _ => 2,
+    };
+    let places: Vec<ScanPlace> = (0..150).map(|k| place(k, keyframe(k))).collect();
+    let kept = places_kept(&places);
+    // Eight of the first keyframe, all of the second, and all of the last, which may get more.
+    assert_eq!(kept.len(), 8 + 5 + 45);
+    assert_eq!((kept[0], kept[7].stamp_s), (places[0], 87.0));
+    assert_eq!(places_kept(&kept), kept);
+}
