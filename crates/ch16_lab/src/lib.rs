@@ -6,6 +6,7 @@ pub mod basin;
 pub mod buildings;
 pub mod jacobians;
 pub mod lap;
+pub mod laps;
 pub mod moving_box;
 pub mod nudge;
 pub mod places;

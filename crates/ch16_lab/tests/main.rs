@@ -5,6 +5,8 @@ mod any_sensor;
 mod edge_information;
 mod exact_gate;
 mod icp_laws;
+mod laps;
+mod localize;
 mod map;
 mod patience;
 mod plane_step;

@@ -14,11 +14,13 @@ use thiserror::Error;
 
 use crate::log_file::{FileError, TopicArgs, open, open_log};
 use crate::optimize::write_whole;
+use crate::session_file::{SessionFileError, read_session};
 
 /// Write a log, a pose graph or a trajectory in another format; the ends of the names say which.
 ///
 /// Logs (.clf .log .mcap .bag .jsonl) become .clf, .jsonl, or .tum with the odometry. Pose graphs
 /// (.g2o .graph .toro .json) become .g2o, .graph, .toro or .json. Trajectories (.tum) become .json.
+/// Sessions (.slam2d) become .g2o, .graph, .toro or .json, or .tum with the keyframes.
 #[derive(Args, Clone, Debug)]
 pub struct ConvertArgs {
     /// What is read.
@@ -41,6 +43,9 @@ pub enum ConvertError {
     /// The trajectory cannot be read.
     #[error(transparent)]
     Text(#[from] TextError),
+    /// The session cannot be read.
+    #[error(transparent)]
+    Session(#[from] SessionFileError),
     /// One does not become the other.
     #[error("{input} cannot become {output}; {advice}")]
     NoSense {
@@ -62,6 +67,7 @@ enum Kind {
     Log,
     Graph,
     Trajectory,
+    Session,
     Other,
 }
 
@@ -71,6 +77,7 @@ impl Kind {
             "clf" | "log" | "mcap" | "bag" | "jsonl" => Self::Log,
             "g2o" | "graph" | "toro" | "json" => Self::Graph,
             "tum" => Self::Trajectory,
+            "slam2d" => Self::Session,
             _ => Self::Other,
         }
     }
@@ -80,8 +87,11 @@ impl Kind {
             Self::Log => "a log becomes .clf, .jsonl, or .tum with its odometry",
             Self::Graph => "a pose graph becomes .g2o, .graph, .toro or .json",
             Self::Trajectory => "a trajectory becomes .json",
+            Self::Session => {
+                "a session becomes .g2o, .graph, .toro or .json, or .tum with its keyframes"
+            }
             Self::Other => {
-                "name a log (.clf .log .mcap .bag .jsonl), a pose graph (.g2o .graph .toro .json) or a trajectory (.tum)"
+                "name a log (.clf .log .mcap .bag .jsonl), a pose graph (.g2o .graph .toro .json), a trajectory (.tum) or a session (.slam2d)"
             }
         }
     }
@@ -105,6 +115,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), ConvertError> {
         (Kind::Log, "clf" | "log" | "jsonl" | "tum") => convert_log(args, &to),
         (Kind::Graph, "g2o" | "graph" | "toro" | "json") => convert_graph(args, &to),
         (Kind::Trajectory, "json") => convert_trajectory(args),
+        (Kind::Session, "g2o" | "graph" | "toro" | "json" | "tum") => convert_session(args, &to),
         _ => Err(ConvertError::NoSense {
             input: args.input.display().to_string(),
             output: args.output.display().to_string(),
@@ -184,13 +195,33 @@ fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
 fn convert_graph(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
     let bytes = fs::read(&args.input).map_err(told(&args.input))?;
     let graph = GraphFile::read(&bytes, &args.input.display().to_string())?;
+    write_graph(args, &graph, to)
+}
+
+fn write_graph(args: &ConvertArgs, graph: &GraphFile, to: &str) -> Result<(), ConvertError> {
     let text = match to {
         "g2o" => graph.to_g2o(),
-        "json" => json(&graph),
+        "json" => json(graph),
         _ => graph.to_toro(),
     };
     write_whole(&args.output, text.as_bytes()).map_err(told(&args.output))?;
     Ok(())
+}
+
+fn convert_session(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
+    let (session, _) = read_session(&args.input)?;
+    if to != "tum" {
+        return write_graph(args, &GraphFile::of_graph(&session.graph()), to);
+    }
+    let keyframes = session.driven.keyframes.iter().zip(session.poses());
+    let poses = keyframes.map(|(keyframe, pose)| StampedPose {
+        stamp_s: keyframe.stamp_s,
+        pose,
+    });
+    let mut text = Vec::new();
+    let written = Trajectory::new(poses.collect()).write_tum(&mut text);
+    let written = written.and_then(|()| write_whole(&args.output, &text));
+    Ok(written.map_err(told(&args.output))?)
 }
 
 fn convert_trajectory(args: &ConvertArgs) -> Result<(), ConvertError> {

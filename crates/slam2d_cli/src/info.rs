@@ -1,4 +1,6 @@
-//! `slam2d info`: what is in a recorded log.
+//! `slam2d info`: what is in a recorded log, or in a session.
+
+mod session_info;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -6,20 +8,33 @@ use std::path::PathBuf;
 use clap::Args;
 use robot_io::info::LogInfo;
 use serde::Serialize;
+use thiserror::Error;
 
 use crate::log_file::{FileError, TopicArgs, open_log};
 use crate::output::{print_json, say};
+use crate::session_file::{SessionFileError, is_session};
 
-/// Print what is in a recorded log: scans, beams, odometry, times, and what cannot be read.
+/// Print what is in a recorded log or in a session: scans, beams, odometry, times, and what cannot be read.
 #[derive(Args, Clone, Debug)]
 pub struct InfoArgs {
-    /// The log.
+    /// The log, the session, or the folder of a run.
     log: PathBuf,
     #[command(flatten)]
     topics: TopicArgs,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
+}
+
+/// Why nothing can be said.
+#[derive(Debug, Error)]
+pub enum InfoError {
+    /// It is no log.
+    #[error(transparent)]
+    Log(#[from] FileError),
+    /// It is no session.
+    #[error(transparent)]
+    Session(#[from] SessionFileError),
 }
 
 #[derive(Serialize)]
@@ -35,10 +50,13 @@ struct InfoJson<'a> {
 ///
 /// # Errors
 /// Where it cannot be read.
-pub fn run(args: &InfoArgs) -> Result<(), FileError> {
+pub fn run(args: &InfoArgs) -> Result<(), InfoError> {
+    if is_session(&args.log) {
+        return Ok(session_info::run(&args.log, args.json)?);
+    }
     let (mut reader, mut progress) = open_log(&args.log, &args.topics)?;
     let mut info = LogInfo::default();
-    while let Some(frame) = reader.next_frame()? {
+    while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
         info.take(&frame);
         progress.tell(info.scans);
     }

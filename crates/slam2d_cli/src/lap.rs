@@ -1,6 +1,7 @@
 //! `slam2d lap`: a lap at one seed and noise factor, through the Apartment or another world.
 
 mod ancestor;
+mod laps;
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -39,6 +40,8 @@ pub struct LapArgs {
     /// Write what the robot recorded into this file, a line of JSON for each scan: a log.
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
+    #[command(flatten)]
+    laps: laps::LapsArgs,
     /// Print one JSON object with every tick, keyframe and loop event.
     #[arg(long)]
     json: bool,
@@ -116,6 +119,17 @@ pub enum LapError {
         /// The estimator.
         estimator: &'static str,
     },
+    /// The wardrobe has its place in the Apartment.
+    #[error("--wardrobe moves one through the Apartment; leave --world out")]
+    NotTheApartment,
+    /// The session cannot be written.
+    #[error("{}: {source}", path.display())]
+    Written {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
     /// The frames cannot be written.
     #[error("{}: {source}", path.display())]
     Frames {
@@ -131,6 +145,10 @@ pub enum LapError {
 /// # Errors
 /// Where the file of the world cannot be used, or that of the frames cannot be written.
 pub fn run(args: &LapArgs) -> Result<(), LapError> {
+    if let Some(count) = args.laps.laps {
+        let course = args.trial.course()?;
+        return laps::run(&args.laps, count, &course, args.seed, args.noise, args.json);
+    }
     let mut config = args.trial.trial()?.lap(args.seed, args.noise);
     if args.is_without_loops() {
         config = config.without_loops();

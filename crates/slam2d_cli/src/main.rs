@@ -10,6 +10,7 @@ mod evaluate;
 mod grade;
 mod info;
 mod lap;
+mod localize;
 mod log_file;
 mod map;
 mod numbers;
@@ -19,6 +20,7 @@ mod places;
 mod register;
 mod run_log;
 mod run_output;
+mod session_file;
 mod sweep;
 mod table;
 mod terrain;
@@ -53,6 +55,7 @@ enum Command {
     Optimize(optimize::OptimizeArgs),
     Info(info::InfoArgs),
     Run(run_log::RunArgs),
+    Localize(localize::LocalizeArgs),
     Evaluate(evaluate::EvaluateArgs),
     Convert(convert::ConvertArgs),
     Map(map::MapArgs),
@@ -84,6 +87,7 @@ fn main() -> ExitCode {
         Command::Optimize(args) => optimize::run(args).map_err(|e| e.to_string()),
         Command::Info(args) => info::run(args).map_err(|e| e.to_string()),
         Command::Run(args) => run_log::run(args).map_err(|e| e.to_string()),
+        Command::Localize(args) => localize::run(args).map_err(|e| e.to_string()),
         Command::Evaluate(args) => evaluate::run(args).map_err(|e| e.to_string()),
         Command::Convert(args) => convert::run(args).map_err(|e| e.to_string()),
         Command::Map(args) => map::run(args).map_err(|e| e.to_string()),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use robot_io::json_log::FrameLine;
 use robot_io::log::LogError;
-use robot_io::map_image::{MapError, MapMode, map_of};
+use robot_io::map_image::{MapError, MapMode, map_of, map_of_session};
 use thiserror::Error;
 
 use crate::log_file::{FileError, open};
@@ -15,11 +15,13 @@ use crate::numbers;
 use crate::optimize::write_whole;
 use crate::output::say;
 use crate::run_output::KEYFRAMES;
+use crate::session_file::{SessionFileError, read_session};
 
 /// Write the map of a run as an image with a YAML file beside it, for Nav2's map_server.
 #[derive(Args, Clone, Debug)]
 pub struct MapArgs {
-    /// The folder that slam2d run -o DIR wrote.
+    /// A session, or a folder that slam2d run -o DIR wrote.
+    #[arg(value_name = "SESSION|DIR")]
     run: PathBuf,
     /// The YAML file; the image stands beside it.
     #[arg(short = 'o', long, value_name = "MAP.yaml")]
@@ -60,8 +62,11 @@ pub enum MapFailure {
     #[error(transparent)]
     File(#[from] FileError),
     /// The folder is not one of a run.
-    #[error("{} has no {KEYFRAMES}; give a folder that slam2d run -o DIR wrote", .0.display())]
+    #[error("{} has no {KEYFRAMES}; give a session, or a folder that slam2d run -o DIR wrote", .0.display())]
     NoRun(PathBuf),
+    /// The session cannot be used.
+    #[error(transparent)]
+    Session(#[from] SessionFileError),
     /// The name of the output.
     #[error("{} has to end in .yaml", .0.display())]
     NotYaml(PathBuf),
@@ -94,8 +99,13 @@ pub fn run(args: &MapArgs) -> Result<(), MapFailure> {
         (ModeArg::Scale, _) => (MapMode::Scale, ImageArg::Png),
         (ModeArg::Trinary, image) => (MapMode::Trinary, image.unwrap_or(ImageArg::Pgm)),
     };
-    let lines = keyframes(&args.run)?;
-    let map = map_of(&lines, args.resolution).map_err(|source| MapFailure::Map {
+    // A folder's keyframes have all beams, a session has thinned scans.
+    let map = if args.run.is_dir() {
+        map_of(&keyframes(&args.run)?, args.resolution)
+    } else {
+        map_of_session(&read_session(&args.run)?.0, args.resolution)
+    };
+    let map = map.map_err(|source| MapFailure::Map {
         path: args.run.clone(),
         source,
     })?;

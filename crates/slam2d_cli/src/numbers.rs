@@ -37,6 +37,13 @@ pub fn cell_m(text: &str) -> Result<f64, String> {
     within(text, 0.01..=1.0, " m")
 }
 
+/// A number of laps.
+pub fn laps(text: &str) -> Result<usize, String> {
+    let range = 1..=10_000;
+    let count = text.parse().ok().filter(|count| range.contains(count));
+    count.ok_or_else(|| "not within 1 to 10000".to_owned())
+}
+
 /// An offset in metres.
 pub fn offset_m(text: &str) -> Result<f64, String> {
     within(text, -MAX_OFFSET_M..=MAX_OFFSET_M, " m")

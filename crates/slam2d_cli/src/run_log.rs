@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use ch16_slam2d::slam::SnapshotError;
 use ch16_slam2d::slam::parameters::{Parameter, ParameterError};
 use ch16_slam2d::submaps::FrontEndChoice;
 use clap::Args;
@@ -20,6 +21,7 @@ use crate::grade::{Grade, GradeError, ReferenceArgs};
 use crate::log_file::{FileError, TopicArgs, open_log};
 use crate::output::{print_json, say};
 use crate::run_output::write_folder;
+use crate::session_file::{SessionFileError, read_session};
 use crate::trial::choice;
 
 /// Map a recorded log, and grade the trajectory where a reference is given.
@@ -41,6 +43,10 @@ pub struct RunArgs {
     /// Another value of a parameter of the estimator, as docs/robots.md lists them.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
     settings: Vec<(String, f64)>,
+    /// Go on from this session, or from the folder of a run: the log is the rest of its drive, and the
+    /// parameters stay as they are.
+    #[arg(long = "continue", value_name = "SESSION", conflicts_with_all = ["settings", "front_end"])]
+    session: Option<PathBuf>,
     #[command(flatten)]
     reference: ReferenceArgs,
     /// Print one JSON object.
@@ -54,12 +60,31 @@ pub enum RunError {
     /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
+    /// The session cannot be used.
+    #[error(transparent)]
+    Session(#[from] SessionFileError),
+    /// Nothing can go on from the session.
+    #[error("{name}: {problem}")]
+    Snapshot {
+        /// The session.
+        name: String,
+        /// Why.
+        problem: SnapshotError,
+    },
     /// The comparison failed.
     #[error(transparent)]
     Grade(#[from] GradeError),
     /// A parameter cannot be set.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
+    /// The log is not the rest of the session's drive.
+    #[error(
+        "{name}: no scan is after the session's last one; give the rest of that drive, or run the log alone"
+    )]
+    NotLater {
+        /// The log.
+        name: String,
+    },
     /// Every scan was refused.
     #[error("{name}: no scan could be used: {problem}")]
     NoScan {
@@ -104,19 +129,8 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     let flag = Arc::clone(&is_interrupted);
     // Without a handler Ctrl-C ends the process at once, which loses the work and nothing else.
     let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
+    let (mut run, mut recorder) = start(args)?;
     let (mut reader, mut progress) = open_log(&args.log, &args.topics)?;
-    let mut run = LogRun::new(if args.no_odometry {
-        OdometryUse::None
-    } else {
-        OdometryUse::Log
-    })
-    .with_front_end(args.front_end);
-    for (name, value) in &args.settings {
-        let parameter = Parameter::named(name)?;
-        parameter.check(*value)?;
-        run = run.with_parameter(parameter, *value);
-    }
-    let mut recorder = RunRecorder::default();
     let mut broken = None;
     while !is_interrupted.load(Ordering::Relaxed) {
         match reader.next_frame() {
@@ -136,6 +150,9 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     }
     run.finish();
     progress.end();
+    if run.scans() == 0 && run.late() > 0 {
+        return Err(RunError::NotLater { name });
+    }
     let mut remarks = notes(&run, reader.notes().sentences(&name), &name);
     for remark in &remarks {
         eprintln!("slam2d: {remark}");
@@ -184,6 +201,31 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
         print_text(&result);
     }
     Ok(())
+}
+
+/// A run that has seen nothing, or one that goes on from a session.
+fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder), RunError> {
+    let odometry_use = if args.no_odometry {
+        OdometryUse::None
+    } else {
+        OdometryUse::Log
+    };
+    let Some(path) = &args.session else {
+        let mut run = LogRun::new(odometry_use).with_front_end(args.front_end);
+        for (name, value) in &args.settings {
+            let parameter = Parameter::named(name)?;
+            parameter.check(*value)?;
+            run = run.with_parameter(parameter, *value);
+        }
+        return Ok((run, RunRecorder::default()));
+    };
+    let (session, _) = read_session(path)?;
+    let told = |problem| RunError::Snapshot {
+        name: path.display().to_string(),
+        problem,
+    };
+    let run = LogRun::resume(&session, odometry_use).map_err(told)?;
+    Ok((run, RunRecorder::resume(&session)))
 }
 
 /// What the owner of the log should know: of its lines, and of scans that were left out.

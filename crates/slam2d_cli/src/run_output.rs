@@ -2,6 +2,7 @@
 //!
 //! | file | what it holds |
 //! |---|---|
+//! | `session.slam2d` | all of it: what `--continue`, `slam2d localize` and `slam2d map` take |
 //! | `graph.g2o` | the pose graph |
 //! | `keyframes.jsonl` | the keyframes' scans with their poses: what `slam2d map` takes |
 //! | `report.html` | keyframes, loops and doubts with pictures |
@@ -15,6 +16,7 @@ use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
 use robot_io::report::Report;
 use robot_io::run::LogRun;
+use robot_io::session::FILE_NAME;
 
 use crate::log_file::FileError;
 use crate::optimize::write_whole;
@@ -43,6 +45,9 @@ pub fn write_folder(
         let written = write(&mut bytes).and_then(|()| write_whole(&path, &bytes));
         written.map_err(|source| FileError::Io { path, source })
     };
+    if let Some(session) = run.session() {
+        save(FILE_NAME, &|out| out.write_all(&session.to_bytes()))?;
+    }
     if let Some(slam) = run.slam() {
         save("graph.g2o", &|out| {
             out.write_all(GraphFile::of_graph(slam.graph()).to_g2o().as_bytes())

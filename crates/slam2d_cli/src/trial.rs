@@ -59,6 +59,14 @@ impl TrialArgs {
         said.into_iter().find(|(is, _)| *is).map(|(_, name)| name)
     }
 
+    /// What is driven, read.
+    ///
+    /// # Errors
+    /// Where the file of the world cannot be used.
+    pub fn course(&self) -> Result<Course, WorldError> {
+        self.world.course()
+    }
+
     /// The laps, with the world read.
     ///
     /// # Errors

@@ -1,0 +1,216 @@
+//! Lap after lap with one estimator that keeps its map up: what a robot does that stays for years.
+//!
+//! Each lap is a drive of its own that starts where the last one ended; its noise has the seed of the
+//! first lap and the number of the lap added. On the chapter's flat a wardrobe can be moved before a lap.
+
+use ch16_slam2d::metrics::{position_error_m, rms};
+use ch16_slam2d::scan::PreparedFrame;
+use ch16_slam2d::slam::{Slam, SlamConfig, Upkeep, UpkeepConfig};
+use pr_geom::{Point2, SE2};
+use pr_sim::{Course, Wall, World};
+use std::sync::Arc;
+
+use crate::lap::{Drive, DriveConfig};
+
+/// The wardrobe's sides, m.
+const WARDROBE_M: [f64; 2] = [0.7, 0.5];
+/// Its lower left corner before it is moved and after: behind the doors to D and to E.
+const WARDROBE_AT: [[f64; 2]; 2] = [[2.9, 5.7], [7.5, 5.7]];
+
+/// What is driven.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LapsConfig {
+    /// The first lap; the next ones follow its way points from where it ended.
+    pub drive: DriveConfig,
+    /// The estimator.
+    pub slam: SlamConfig,
+    /// How the map is kept up; none lets it grow.
+    pub upkeep: Option<UpkeepConfig>,
+    /// A wardrobe stands in the flat, and is moved before this lap, counted from 1.
+    pub wardrobe: Option<usize>,
+}
+
+impl LapsConfig {
+    /// Laps of a course with the values for robots.
+    #[must_use]
+    pub fn new(course: &Course, seed: u32, noise_factor: f64) -> Self {
+        let drive = DriveConfig {
+            seed,
+            noise_factor,
+            ..DriveConfig::default().on_course(course)
+        };
+        // One tick of it is enough to ask the sensor how far its beams are apart.
+        let first = Drive::simulate(&DriveConfig {
+            max_ticks: 1,
+            ..drive.clone()
+        })
+        .frame(0);
+        let slam = SlamConfig {
+            start: drive.start,
+            ..SlamConfig::for_robot(&first.scan)
+        };
+        Self {
+            drive: DriveConfig {
+                scan: slam.scan,
+                ..drive
+            },
+            slam,
+            upkeep: Some(UpkeepConfig::default()),
+            wardrobe: None,
+        }
+    }
+}
+
+/// What one lap did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LapNumbers {
+    /// Number of the lap, counted from 1.
+    pub lap: usize,
+    /// Ticks of it.
+    pub ticks: usize,
+    /// Nodes of the graph at its end.
+    pub nodes: usize,
+    /// Edges of the graph at its end.
+    pub edges: usize,
+    /// Loops that were closed.
+    pub loops: usize,
+    /// Root mean square error of the estimate over its ticks, m.
+    pub rms_m: f64,
+    /// Root mean square error of the keyframes that are in the map at its end, m.
+    pub map_rms_m: f64,
+    /// Keyframes that were taken out.
+    pub removed: usize,
+    /// Kullback–Leibler divergence of what was taken out, nats.
+    pub divergence: f64,
+    /// Points that were dropped because newer scans looked through them.
+    pub points_gone: usize,
+    /// Points in the map where the wardrobe stood first.
+    pub wardrobe_points: usize,
+}
+
+/// Laps under way.
+pub struct Laps {
+    config: LapsConfig,
+    slam: Slam,
+    lap: usize,
+    truth: SE2,
+    stamp_s: f64,
+    /// True pose of each frame that the estimator was given.
+    truths: Vec<SE2>,
+}
+
+impl Laps {
+    /// Stands at the start.
+    #[must_use]
+    pub fn new(config: LapsConfig) -> Self {
+        Self {
+            slam: Slam::new(config.slam.clone()),
+            truth: config.drive.start,
+            lap: 0,
+            stamp_s: 0.0,
+            truths: Vec::new(),
+            config,
+        }
+    }
+
+    /// The estimator.
+    #[must_use]
+    pub fn slam(&self) -> &Slam {
+        &self.slam
+    }
+
+    /// The drive of the next lap.
+    #[must_use]
+    pub fn simulate(&self) -> Drive {
+        let drive = &self.config.drive;
+        let mut world = Arc::clone(&drive.world);
+        if let Some(moved) = self.config.wardrobe {
+            let at = WARDROBE_AT[usize::from(self.lap + 1 >= moved)];
+            world = Arc::new(with_wardrobe(&world, at));
+        }
+        Drive::simulate(&DriveConfig {
+            seed: drive.seed.wrapping_add(self.lap as u32),
+            start: self.truth,
+            world,
+            ..drive.clone()
+        })
+    }
+
+    /// Estimates a lap that was simulated; a robot that stands at its start has that frame already.
+    ///
+    /// # Panics
+    /// Where the drive is not the one of [`simulate`](Self::simulate).
+    pub fn estimate(&mut self, drive: &Drive) -> LapNumbers {
+        let first = usize::from(self.lap > 0);
+        let (mut loops, mut done) = (0, Upkeep::default());
+        let mut errors_m = Vec::new();
+        for tick in first..=drive.ticks().len() {
+            let frame = drive.prepared(tick);
+            let stamp_s = self.stamp_s + frame.stamp_s;
+            let report = self
+                .slam
+                .step_prepared(&PreparedFrame { stamp_s, ..frame })
+                .expect("a simulated frame is in order");
+            self.truths.push(drive.truth(tick));
+            errors_m.push(position_error_m(&report.estimate, &drive.truth(tick)));
+            loops += usize::from(report.closed_loop().is_some());
+            if let (Some(_), Some(upkeep)) = (report.new_keyframe, &self.config.upkeep) {
+                let step = self.slam.keep_up(upkeep);
+                done.removed.extend(step.removed);
+                done.divergence += step.divergence;
+                done.points_gone += step.points_gone;
+            }
+        }
+        let ticks = drive.ticks().len();
+        self.lap += 1;
+        self.truth = drive.truth(ticks);
+        self.stamp_s += drive.prepared(ticks).stamp_s;
+        let keyframes = self.slam.keyframes().iter().zip(self.slam.graph().poses());
+        let map_m = keyframes
+            .clone()
+            .map(|(keyframe, pose)| position_error_m(pose, &self.truths[keyframe.frame]));
+        LapNumbers {
+            lap: self.lap,
+            ticks,
+            nodes: self.slam.graph().node_count(),
+            edges: self.slam.graph().edge_count(),
+            loops,
+            rms_m: rms(errors_m),
+            map_rms_m: rms(map_m),
+            removed: done.removed.len(),
+            divergence: done.divergence,
+            points_gone: done.points_gone,
+            wardrobe_points: keyframes
+                .map(|(keyframe, pose)| {
+                    let world = keyframe.scan.iter().map(|point| pose.transform(point));
+                    world.filter(is_at_first_wardrobe).count()
+                })
+                .sum(),
+        }
+    }
+}
+
+/// Whether a point is where the wardrobe stood first; two walls of the flat are farther away.
+fn is_at_first_wardrobe(point: &Point2<f64>) -> bool {
+    let [x, y] = WARDROBE_AT[0];
+    let [wide, deep] = WARDROBE_M;
+    let margin_m = 0.2;
+    (x - margin_m..=x + wide + margin_m).contains(&point.x)
+        && (y - margin_m..=y + deep + margin_m).contains(&point.y)
+}
+
+fn with_wardrobe(world: &World, [x, y]: [f64; 2]) -> World {
+    let [wide, deep] = WARDROBE_M;
+    let corners = [
+        Point2::new(x, y),
+        Point2::new(x + wide, y),
+        Point2::new(x + wide, y + deep),
+        Point2::new(x, y + deep),
+    ];
+    let sides = (0..4).map(|k| Wall {
+        start: corners[k],
+        end: corners[(k + 1) % 4],
+    });
+    let walls = world.walls().iter().copied().chain(sides);
+    World::new(world.bounds(), walls.collect())
+}

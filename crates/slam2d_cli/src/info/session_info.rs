@@ -1,0 +1,110 @@
+//! What is in a session.
+
+use std::path::Path;
+
+use ch16_slam2d::graph::EdgeKind;
+use ch16_slam2d::metrics::position_error_m;
+use robot_io::session::{Session, VERSION, config_text};
+use serde::Serialize;
+
+use crate::output::{print_json, say};
+use crate::session_file::{SessionFileError, read_session};
+
+#[derive(Serialize)]
+struct SessionJson {
+    version: u32,
+    bytes: u64,
+    bytes_per_keyframe: Option<f64>,
+    scans: usize,
+    keyframes: usize,
+    points: usize,
+    edges: usize,
+    loops: usize,
+    /// Whether the map was linked once more after the last scan.
+    refined: bool,
+    way_m: f64,
+    first_stamp_s: Option<f64>,
+    last_stamp_s: Option<f64>,
+    last_pose: [f64; 3],
+    parameters: Vec<String>,
+}
+
+impl SessionJson {
+    fn of(session: &Session, bytes: u64) -> Self {
+        let driven = &session.driven;
+        let graph = session.graph();
+        let steps = graph.poses().windows(2);
+        let keyframes = driven.keyframes.len();
+        let loops = graph
+            .edges()
+            .filter(|view| view.edge.kind == EdgeKind::Loop);
+        Self {
+            version: VERSION,
+            bytes,
+            bytes_per_keyframe: (keyframes > 0).then(|| bytes as f64 / keyframes as f64),
+            scans: driven.frames,
+            keyframes,
+            points: driven.keyframes.iter().map(|k| k.scan.len()).sum(),
+            edges: graph.edge_count(),
+            loops: loops.count(),
+            refined: session.mapped.is_some(),
+            way_m: steps.map(|two| position_error_m(&two[0], &two[1])).sum(),
+            first_stamp_s: driven.keyframes.first().map(|keyframe| keyframe.stamp_s),
+            last_stamp_s: driven
+                .last_stamp_s
+                .is_finite()
+                .then_some(driven.last_stamp_s),
+            last_pose: driven.front_end.estimate.to_array(),
+            parameters: config_text(&driven.config)
+                .lines()
+                .map(str::to_owned)
+                .collect(),
+        }
+    }
+}
+
+/// Reads a session and prints what is in it.
+///
+/// # Errors
+/// Where it cannot be used.
+pub fn run(path: &Path, as_json: bool) -> Result<(), SessionFileError> {
+    let (session, bytes) = read_session(path)?;
+    let info = SessionJson::of(&session, bytes);
+    if as_json {
+        print_json(&info);
+        return Ok(());
+    }
+    say!(
+        "session          version {}, {} bytes",
+        info.version,
+        info.bytes
+    );
+    say!("scans            {}", info.scans);
+    say!("keyframes        {}", info.keyframes);
+    if let Some(each) = info.bytes_per_keyframe {
+        say!("bytes            {each:.0} for each keyframe");
+    }
+    say!(
+        "edges            {}, {} of them loops",
+        info.edges,
+        info.loops
+    );
+    say!("way              {:.1} m", info.way_m);
+    if let (Some(first_s), Some(last_s)) = (info.first_stamp_s, info.last_stamp_s) {
+        say!("stamps           {first_s} s to {last_s} s");
+    }
+    let [x, y, heading_rad] = info.last_pose;
+    say!(
+        "ends at          {x:.2} m, {y:.2} m, {:.1}°",
+        heading_rad.to_degrees()
+    );
+    say!(
+        "map              {}",
+        if info.refined {
+            "linked anew at its end"
+        } else {
+            "as it was driven"
+        }
+    );
+    Ok(())
+}

@@ -1,0 +1,279 @@
+//! `slam2d localize`: where the robot of a log was, on the map of a session.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use ch16_slam2d::localize::{LocalizeReport, StartPose, Verdict};
+use ch16_slam2d::search::SearchError;
+use clap::Args;
+use measuring::process;
+use pr_geom::SE2;
+use robot_io::localize::LocalizeRun;
+use robot_io::run::OdometryUse;
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::grade::{Grade, GradeError, ReferenceArgs};
+use crate::log_file::{FileError, TopicArgs, open_log};
+use crate::optimize::write_whole;
+use crate::output::{print_json, say};
+use crate::session_file::{SessionFileError, read_session};
+
+/// Say where the robot of a log was on the map of a session, how sure that is, and when it was lost.
+#[derive(Args, Clone, Debug)]
+pub struct LocalizeArgs {
+    /// The session, or the folder of a run.
+    session: PathBuf,
+    /// The log.
+    log: PathBuf,
+    #[command(flatten)]
+    topics: TopicArgs,
+    /// Where the log begins on the map: x,y,deg in metres and degrees, or anywhere.
+    #[arg(
+        long,
+        value_name = "x,y,deg|anywhere",
+        default_value = "anywhere",
+        allow_hyphen_values = true
+    )]
+    init: Init,
+    /// Leave the wheels out: scans alone.
+    #[arg(long)]
+    no_odometry: bool,
+    /// Write the poses that are believed into this file, in the TUM format.
+    #[arg(short = 'o', long, value_name = "FILE.tum")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    reference: ReferenceArgs,
+    /// Print one JSON object with every scan.
+    #[arg(long)]
+    json: bool,
+}
+
+/// `--init`.
+#[derive(Clone, Copy, Debug)]
+pub struct Init(pub StartPose);
+
+impl FromStr for Init {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "anywhere" {
+            return Ok(Self(StartPose::Anywhere));
+        }
+        let numbers: Option<Vec<f64>> = text
+            .split(',')
+            .map(|number| {
+                number
+                    .trim()
+                    .parse()
+                    .ok()
+                    .filter(|value: &f64| value.is_finite())
+            })
+            .collect();
+        match numbers.as_deref() {
+            Some(&[x, y, deg]) => Ok(Self(StartPose::Near(SE2::new(x, y, deg.to_radians())))),
+            _ => Err("neither x,y,deg nor anywhere".to_owned()),
+        }
+    }
+}
+
+/// Why a log was not localized.
+#[derive(Debug, Error)]
+pub enum LocalizeError {
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The session cannot be used.
+    #[error(transparent)]
+    Session(#[from] SessionFileError),
+    /// The session is no map.
+    #[error("{}: the session is no map to be found on: {source}; map a log first", path.display())]
+    Map {
+        /// The session.
+        path: PathBuf,
+        /// Why not.
+        source: SearchError,
+    },
+    /// The comparison failed.
+    #[error(transparent)]
+    Grade(#[from] GradeError),
+    /// Every scan was refused.
+    #[error("{name}: no scan could be used: {problem}")]
+    NoScan {
+        /// The log.
+        name: String,
+        /// Why the first one was not.
+        problem: String,
+    },
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct LocalizeJson {
+    scans: usize,
+    /// Scans with each verdict.
+    found: usize,
+    tracking: usize,
+    doubtful: usize,
+    lost: usize,
+    /// Time of the first scan whose pose is believed, s.
+    first_found_s: Option<f64>,
+    cpu_s: f64,
+    peak_mb: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    relations: Option<Grade>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    truth: Option<Grade>,
+    poses: Vec<PoseJson>,
+}
+
+/// A scan; numbers that are not known are null.
+#[derive(Serialize)]
+struct PoseJson {
+    stamp_s: f64,
+    verdict: &'static str,
+    pose: Option<[f64; 3]>,
+    covariance: Option<[[f64; 3]; 3]>,
+    score: Option<f64>,
+    margin: Option<f64>,
+}
+
+impl PoseJson {
+    fn of(report: &LocalizeReport) -> Self {
+        let rows = |m: pr_geom::Matrix3<f64>| {
+            core::array::from_fn(|i| core::array::from_fn(|j| m[(i, j)]))
+        };
+        Self {
+            stamp_s: report.stamp_s,
+            verdict: report.verdict.name(),
+            pose: report.pose.map(|pose| pose.to_array()),
+            covariance: report.covariance.map(rows),
+            score: report.score,
+            margin: report.margin(),
+        }
+    }
+}
+
+/// Localizes the log and prints what came of it.
+///
+/// # Errors
+/// Where a file cannot be used.
+pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
+    let name = args.log.display().to_string();
+    let reference = args.reference.read()?;
+    let (session, _) = read_session(&args.session)?;
+    let odometry_use = if args.no_odometry {
+        OdometryUse::None
+    } else {
+        OdometryUse::Log
+    };
+    let mut run = LocalizeRun::new(&session, odometry_use, args.init.0).map_err(|source| {
+        LocalizeError::Map {
+            path: args.session.clone(),
+            source,
+        }
+    })?;
+    let is_interrupted = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&is_interrupted);
+    // Without a handler Ctrl-C ends the process at once, which loses the work and nothing else.
+    let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
+    let (mut reader, mut progress) = open_log(&args.log, &args.topics)?;
+    while !is_interrupted.load(Ordering::Relaxed) {
+        let Some(frame) = reader.next_frame().map_err(FileError::from)? else {
+            break;
+        };
+        run.step(frame);
+        progress.tell(run.reports().len());
+    }
+    progress.end();
+    if run.reports().is_empty() {
+        let problem = run.refused().map(|problem| problem.to_string());
+        let problem =
+            problem.unwrap_or_else(|| "it was interrupted before the first one".to_owned());
+        return Err(LocalizeError::NoScan { name, problem });
+    }
+    for sentence in reader.notes().sentences(&name) {
+        eprintln!("slam2d: {sentence}");
+    }
+    let trajectory = run.trajectory();
+    if let Some(path) = &args.output {
+        let mut text = Vec::new();
+        let written = trajectory.write_tum(&mut text);
+        let written = written.and_then(|()| write_whole(path, &text));
+        written.map_err(|source| FileError::Io {
+            path: path.clone(),
+            source,
+        })?;
+    }
+    let grade = reference
+        .as_ref()
+        .map(|reference| reference.grade(&trajectory))
+        .transpose()?;
+    let of = |wanted: bool| grade.filter(|grade| wanted == matches!(grade, Grade::Relations(_)));
+    let reports = run.reports();
+    let count = |verdict| {
+        reports
+            .iter()
+            .filter(|report| report.verdict == verdict)
+            .count()
+    };
+    let believed = trajectory.poses().first();
+    let result = LocalizeJson {
+        scans: reports.len(),
+        found: count(Verdict::Found),
+        tracking: count(Verdict::Tracking),
+        doubtful: count(Verdict::Doubtful),
+        lost: count(Verdict::Lost),
+        first_found_s: believed.map(|first| first.stamp_s),
+        cpu_s: process::cpu_s(),
+        peak_mb: process::peak_mb(),
+        relations: of(true),
+        truth: of(false),
+        poses: reports.iter().map(PoseJson::of).collect(),
+    };
+    if args.json {
+        print_json(&result);
+    } else {
+        print_text(&result, reports);
+    }
+    Ok(())
+}
+
+/// A line for each change of the verdict, and the numbers.
+fn print_text(result: &LocalizeJson, reports: &[LocalizeReport]) {
+    for run in reports.chunk_by(|a, b| a.verdict == b.verdict) {
+        let (first, scans) = (&run[0], run.len());
+        let at = match first.pose {
+            Some(pose) => {
+                let [x, y, heading_rad] = pose.to_array();
+                let at = format!("{x:.2} m, {y:.2} m, {:.1}°", heading_rad.to_degrees());
+                match first.covariance {
+                    Some(known) => {
+                        let sigma_m = known[(0, 0)].max(known[(1, 1)]).sqrt();
+                        format!(" at {at}, known to {sigma_m:.2} m")
+                    }
+                    None => format!(" about {at}"),
+                }
+            }
+            None => String::new(),
+        };
+        say!(
+            "{:.3} s: {}{at}; {scans} scans",
+            first.stamp_s,
+            first.verdict.name()
+        );
+    }
+    say!("scans            {}", result.scans);
+    say!(
+        "poses            {} believed, {} doubtful, {} lost",
+        result.found + result.tracking,
+        result.doubtful,
+        result.lost
+    );
+    say!("CPU              {:.2} s", result.cpu_s);
+    if let Some(grade) = result.relations.or(result.truth) {
+        grade.print();
+    }
+}

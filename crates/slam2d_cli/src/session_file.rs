@@ -1,0 +1,61 @@
+//! A session as a file, or as the folder of a run that holds one.
+
+use std::fs;
+use std::io::{BufRead, Read};
+use std::path::{Path, PathBuf};
+
+use robot_io::session::{FILE_NAME, MOST_BYTES, Session, SessionError};
+use thiserror::Error;
+
+use crate::log_file::{FileError, open};
+
+/// Why a session was not read.
+#[derive(Debug, Error)]
+pub enum SessionFileError {
+    /// The system could not open it.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// It is no session that can be used.
+    #[error(transparent)]
+    Session(#[from] SessionError),
+    /// A folder without one.
+    #[error("{} holds no {FILE_NAME}; give a session, or a folder that slam2d run LOG -o DIR wrote", .0.display())]
+    NoSession(PathBuf),
+}
+
+/// The session that a path means: the file, or the one in the folder of a run.
+pub fn session_path(path: &Path) -> PathBuf {
+    if path.is_dir() {
+        path.join(FILE_NAME)
+    } else {
+        path.to_owned()
+    }
+}
+
+/// Whether a path means a session and no log, by its name, its folder or its first bytes.
+pub fn is_session(path: &Path) -> bool {
+    if path.is_dir() {
+        return path.join(FILE_NAME).is_file();
+    }
+    let named = path.extension().is_some_and(|end| end == "slam2d");
+    named || open(path).is_ok_and(|mut file| file.fill_buf().is_ok_and(Session::begins))
+}
+
+/// Reads a session, and says how many bytes it has.
+///
+/// # Errors
+/// One sentence where it cannot be used.
+pub fn read_session(path: &Path) -> Result<(Session, u64), SessionFileError> {
+    let file = session_path(path);
+    if path.is_dir() && !file.is_file() {
+        return Err(SessionFileError::NoSession(path.to_owned()));
+    }
+    let name = file.display().to_string();
+    let source = open(&file)?;
+    let bytes = fs::metadata(&file).map_or(0, |about| about.len());
+    if bytes > MOST_BYTES {
+        return Err(SessionError::TooLarge { name }.into());
+    }
+    let session = Session::read(source.take(MOST_BYTES + 1), &name)?;
+    Ok((session, bytes))
+}

@@ -1,0 +1,235 @@
+//! Saved sessions on the command line: gone on with, looked into, mapped and converted.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::support::{assert_refused, json, slam2d};
+use tempfile::TempDir;
+
+/// The simulator's lap as a log, whole and in two halves.
+struct Lap {
+    folder: TempDir,
+}
+
+impl Lap {
+    fn new() -> Self {
+        let folder = TempDir::new().unwrap();
+        let lap = Self { folder };
+        json(&["lap", "--frames", &lap.file("whole.jsonl"), "--json"]);
+        let text = fs::read_to_string(lap.file("whole.jsonl")).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        let (first, second) = lines.split_at(lines.len() / 2);
+        fs::write(lap.file("first.jsonl"), first.join("\n")).unwrap();
+        fs::write(lap.file("second.jsonl"), second.join("\n")).unwrap();
+        lap
+    }
+
+    fn file(&self, name: &str) -> String {
+        self.folder.path().join(name).display().to_string()
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn run(&self, log: &str, out: &str, more: &[&str]) -> serde_json::Value {
+        let (log, out) = (self.file(log), self.file(out));
+        let arguments = ["run", &log, "-o", &out, "--json"];
+        json(&[&arguments[..], more].concat())
+    }
+}
+
+fn lines(path: &Path) -> Vec<String> {
+    let text = fs::read_to_string(path).unwrap();
+    text.lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn a_run_in_two_parts_is_the_run_in_one() {
+    let lap = Lap::new();
+    let whole = lap.run("whole.jsonl", "whole", &[]);
+    let first = lap.run("first.jsonl", "first", &[]);
+    let folder = lap.file("first");
+    let second = lap.run("second.jsonl", "second", &["--continue", &folder]);
+    let scans = |run: &serde_json::Value| run["scans"].as_u64().unwrap();
+    assert_eq!(scans(&whole), scans(&first) + scans(&second));
+    assert_eq!(whole["keyframes"], second["keyframes"]);
+    let session = |run: &str| fs::read(lap.path(run).join("session.slam2d")).unwrap();
+    assert!(
+        session("second") == session("whole"),
+        "not a bit is another"
+    );
+    let poses = |run: &str| lines(&lap.path(run).join("trajectory.tum"));
+    assert_eq!(poses("second"), poses("whole"));
+    assert_eq!(
+        lines(&lap.path("second/keyframes.jsonl")).len() as u64,
+        second["keyframes"].as_u64().unwrap()
+    );
+    let again = lap.file("second.jsonl");
+    assert_refused(
+        &[
+            "run",
+            &again,
+            "--continue",
+            &lap.file("second/session.slam2d"),
+        ],
+        "no scan is after the session's last one",
+    );
+}
+
+#[test]
+fn a_session_is_told_mapped_and_converted() {
+    let lap = Lap::new();
+    let run = lap.run("whole.jsonl", "out", &[]);
+    let session = lap.file("out/session.slam2d");
+    let info = json(&["info", &session, "--json"]);
+    assert_eq!(info, json(&["info", &lap.file("out"), "--json"]));
+    assert_eq!(info["keyframes"], run["keyframes"]);
+    assert_eq!(info["scans"], run["scans"]);
+    assert_eq!(info["refined"], true);
+    assert!(info["bytes_per_keyframe"].as_f64().unwrap() < 3000.0);
+    let (map, of_folder) = (lap.file("map.yaml"), lap.file("folder.yaml"));
+    assert!(slam2d(&["map", &session, "-o", &map]).status.success());
+    assert!(
+        slam2d(&["map", &lap.file("out"), "-o", &of_folder])
+            .status
+            .success()
+    );
+    let occupied = |name: &str| {
+        let pgm = fs::read(lap.path(name)).unwrap();
+        pgm.iter().filter(|pixel| **pixel == 0).count() as f64
+    };
+    let share = occupied("map.pgm") / occupied("folder.pgm");
+    // Thinned scans show the walls that all beams show.
+    assert!((0.6..1.6).contains(&share), "{share}");
+    let (g2o, tum) = (lap.file("out.g2o"), lap.file("out.tum"));
+    assert!(slam2d(&["convert", &session, &g2o]).status.success());
+    assert!(slam2d(&["convert", &session, &tum]).status.success());
+    assert_eq!(
+        fs::read_to_string(&g2o).unwrap(),
+        fs::read_to_string(lap.path("out/graph.g2o")).unwrap()
+    );
+    let keyframes = run["keyframes"].as_u64().unwrap();
+    assert_eq!(lines(Path::new(&tum)).len() as u64, keyframes);
+    assert_refused(
+        &["convert", &session, "x.clf"],
+        "a session becomes .g2o, .graph, .toro or .json, or .tum",
+    );
+}
+
+#[test]
+fn sessions_that_cannot_be_used_end_in_one_line() {
+    let lap = Lap::new();
+    lap.run("first.jsonl", "out", &[]);
+    let good = fs::read(lap.path("out/session.slam2d")).unwrap();
+    let write = |name: &str, bytes: &[u8]| {
+        fs::write(lap.path(name), bytes).unwrap();
+        lap.file(name)
+    };
+    let mut damaged = good.clone();
+    damaged[good.len() / 2] ^= 1;
+    let mut newer = good.clone();
+    newer[8] = 9;
+    fs::create_dir(lap.path("empty_folder")).unwrap();
+    let huge = fs::File::create(lap.path("huge.slam2d")).unwrap();
+    huge.set_len(1 << 31).unwrap();
+    let log = lap.file("second.jsonl");
+    for (file, said) in [
+        (
+            write("empty.slam2d", b""),
+            "empty.slam2d is empty; give a session",
+        ),
+        (write("foreign.slam2d", b"P5 foreign"), "is no session"),
+        (
+            write("cut.slam2d", &good[..good.len() - 9]),
+            "copy it again",
+        ),
+        (
+            write("damaged.slam2d", &damaged),
+            "is damaged: its checksum does not fit",
+        ),
+        (write("newer.slam2d", &newer), "is a session of version 9"),
+        (lap.file("absent.slam2d"), "absent.slam2d: "),
+        (lap.file("empty_folder"), "holds no session.slam2d"),
+        (lap.file("huge.slam2d"), "larger than 512 MB"),
+    ] {
+        assert_refused(&["run", &log, "--continue", &file], said);
+        if !file.ends_with("folder") {
+            assert_refused(&["info", &file], said);
+            assert_refused(&["map", &file, "-o", &lap.file("m.yaml")], said);
+            assert_refused(&["convert", &file, &lap.file("x.g2o")], said);
+        }
+    }
+}
+
+#[test]
+fn a_log_is_found_on_the_map_of_a_session() {
+    let lap = Lap::new();
+    lap.run("whole.jsonl", "out", &[]);
+    let (folder, log) = (lap.file("out"), lap.file("second.jsonl"));
+    let driven = lap.file("out/trajectory.tum");
+    let found = lap.file("found.tum");
+    for init in [&[][..], &["--init", "anywhere"], &["--init", "9,0.1,170"]] {
+        let arguments = [
+            "localize", &folder, &log, "-o", &found, "--truth", &driven, "--json",
+        ];
+        let run = json(&[&arguments[..], init].concat());
+        let count = |name: &str| run[name].as_u64().unwrap();
+        let believed = count("found") + count("tracking");
+        assert_eq!(believed + count("doubtful") + count("lost"), count("scans"));
+        assert!(2 * believed > count("scans"), "{init:?}: {believed}");
+        assert_eq!(lines(Path::new(&found)).len() as u64, believed);
+        // The log is the one that the map was made of. 0.1: between keyframes a scan stands where the front
+        // end put it, and that slides along the corridor by up to 0.2 m.
+        let ate = &run["truth"]["ate"];
+        assert!(ate["median"].as_f64().unwrap() < 0.05, "{ate}");
+        assert!(ate["rmse"].as_f64().unwrap() < 0.1, "{ate}");
+        let poses = run["poses"].as_array().unwrap();
+        assert_eq!(poses.len() as u64, count("scans"));
+        let last = &poses[poses.len() - 1];
+        assert_eq!(last["verdict"], "tracking");
+        assert!(last["covariance"][0][0].as_f64().unwrap() > 0.0);
+    }
+    let said = String::from_utf8(slam2d(&["localize", &folder, &log]).stdout).unwrap();
+    assert!(
+        said.contains("found at ") && said.contains("believed, "),
+        "{said}"
+    );
+    for (arguments, said) in [
+        (
+            vec!["localize", &folder, &log, "--init", "1,2"],
+            "neither x,y,deg nor anywhere",
+        ),
+        (vec!["localize", &log, &log], "is no session"),
+        (vec!["localize", &folder, "/absent"], "/absent: "),
+    ] {
+        assert_refused(&arguments, said);
+    }
+}
+
+#[test]
+fn lap_after_lap_is_told_in_lines_and_left_as_a_session() {
+    let folder = TempDir::new().unwrap();
+    let session = folder.path().join("laps.slam2d").display().to_string();
+    let run = json(&["lap", "--laps", "2", "--session", &session, "--json"]);
+    let laps = run["laps"].as_array().unwrap();
+    assert_eq!(laps.len(), 2);
+    let info = json(&["info", &session, "--json"]);
+    assert_eq!(info["keyframes"], laps[1]["nodes"]);
+    assert_eq!(info["edges"], laps[1]["edges"]);
+    assert_eq!(info["bytes"], laps[1]["bytes"]);
+    for (arguments, said) in [
+        (vec!["lap", "--laps", "0"], "not within 1 to 10000"),
+        (vec!["lap", "--session", "x"], "--laps"),
+        (
+            vec!["lap", "--laps", "2", "--matcher", "ndt"],
+            "cannot be used with",
+        ),
+        (
+            vec!["lap", "--laps", "2", "--wardrobe", "1", "--world", "ring"],
+            "--wardrobe moves one through the Apartment",
+        ),
+    ] {
+        assert_refused(&arguments, said);
+    }
+}
