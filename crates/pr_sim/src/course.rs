@@ -17,16 +17,19 @@ use crate::world::World;
 
 use clearance::{nearest_wall, nearest_wall_to_leg};
 pub use error::{CourseError, Place};
+pub(crate) use file::extent;
 
 /// Walls, way points and coordinates beyond these are refused: a lap has to fit into memory and
 /// into the patience of whoever runs it.
-mod limits {
+pub mod limits {
     /// Walls of a world; a sweep casts every ray against every wall within range.
     pub const WALLS: usize = 2000;
     /// Way points; the robot may have to turn around at each.
     pub const WAY_POINTS: usize = 50;
     /// Largest |coordinate|, m.
     pub const COORDINATE_M: f64 = 100.0;
+    /// The same in centimetres.
+    pub const COORDINATE_CM: u32 = 10_000;
     /// Longest way, m.
     pub const WAY_M: f64 = 200.0;
 }

@@ -8,6 +8,7 @@ pub mod course;
 pub mod driver;
 pub mod lidar;
 pub mod motion;
+pub mod sketch;
 pub mod world;
 
 pub use course::{Course, CourseError};
@@ -15,4 +16,5 @@ pub use driver::{DriveStep, DriverConfig, WaypointDriver};
 pub use lidar::{Lidar, LidarConfig};
 pub use motion::{OdometryNoise, VelocityCommand};
 pub use pr_geom::Rng;
+pub use sketch::{Sketch, SketchError};
 pub use world::{Bounds, Room, Wall, World};

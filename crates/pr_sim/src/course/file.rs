@@ -70,7 +70,7 @@ impl Course {
     }
 }
 
-pub(super) fn extent(walls: &[Wall]) -> Bounds {
+pub(crate) fn extent(walls: &[Wall]) -> Bounds {
     let ends = || walls.iter().flat_map(|wall| [wall.start, wall.end]);
     let lowest = |axis: usize| ends().map(|end| end[axis]).fold(f64::INFINITY, f64::min);
     let highest = |axis: usize| {
