@@ -70,18 +70,20 @@ async function writeIfChanged(path, text) {
   if (old !== text) await writeFile(path, text);
 }
 
-const code = (text) => `\`${text}\``;
+const code = (text) => (text === '' ? '' : `\`${text}\``);
 const row = (cells) => `| ${cells.map((cell) => String(cell).replaceAll('|', '\\|')).join(' | ')} |`;
 const property = (id) => (/^[a-z_]\w*$/i.test(id) ? id : `'${id}'`);
 const stateName = (widget) => `${widget.title.replace(/[^A-Za-z]+(.)?/g, (_, c) => (c ?? '').toUpperCase())}State`;
 
 function type(param) {
   if (param.kind === 'choice') return param.options.map((option) => `'${option.id}'`).join(' | ');
+  if (param.kind === 'text') return 'string';
   return param.kind === 'switch' ? 'boolean' : 'number';
 }
 
 function range(param) {
   if (param.kind === 'choice' || param.kind === 'switch') return '';
+  if (param.kind === 'text') return `At most ${param.max} letters, digits, - and _.`;
   const unit = param.unit === '' ? '' : ` ${param.unit}`;
   return `${param.min} to ${param.max}${unit}.`;
 }
@@ -89,6 +91,7 @@ function range(param) {
 function values(param) {
   if (param.kind === 'choice') return param.options.map((option) => code(option.id)).join(', ');
   if (param.kind === 'switch') return '`on`, `off`';
+  if (param.kind === 'text') return `at most ${param.max} letters, digits, - and _`;
   const step = param.kind === 'slider' ? `, step ${param.step}` : ', whole';
   return `${param.min} … ${param.max}${step}`;
 }
@@ -96,5 +99,5 @@ function values(param) {
 function defaultOf(param) {
   if (param.kind === 'choice') return param.options[param.default].id;
   if (param.kind === 'switch') return param.default === 0 ? 'off' : 'on';
-  return param.default;
+  return param.kind === 'text' ? '' : param.default;
 }

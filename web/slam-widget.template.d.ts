@@ -100,7 +100,7 @@ export declare class SlamWidget extends HTMLElement {
   /** Zooms every map, or moves the part that is seen. */
   look(way: 'in' | 'out' | 'left' | 'right' | 'up' | 'down' | 'whole'): void;
   suspend(): void;
-  /** Hands a file to a widget that takes files: a log, or a reference to grade it with. */
+  /** Hands a file to a widget that takes files: a log, a reference to grade it with, or a world as JSON. */
   openFile(file: File): void;
   addEventListener<K extends keyof SlamWidgetEvents>(
     type: K,
@@ -121,8 +121,9 @@ export interface ParamSpec {
   id: string;
   label: string;
   unit: string;
-  kind: 'slider' | 'timeline' | 'seed' | 'choice' | 'switch';
+  kind: 'slider' | 'timeline' | 'seed' | 'choice' | 'switch' | 'text';
   min: number;
+  /** Of a text, the most characters. */
   max: number;
   step: number;
   decimals: number;
@@ -140,8 +141,10 @@ export interface WidgetSpec {
   params: ParamSpec[];
   buttons: { id: string; label: string; help: string }[];
   presets: { id: string; label: string; help: string }[];
+  /** Keys that press a button while one of these buttons has the focus: `ArrowLeft`, `Control+z`. */
+  keys: { key: string; button: string }[];
   summary: string;
-  /** Whether a reader may hand it a file. */
+  /** Whether a reader may hand it a log. A widget with a text takes that text's file. */
   takesFiles: boolean;
 }
 

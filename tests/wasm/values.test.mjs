@@ -32,7 +32,8 @@ it('a text is taken or refused by both sides alike', () => {
   let taken = 0;
   for (const widget of schema) {
     for (const param of widget.params) {
-      const own = [...param.options.map((option) => option.id), `${param.min}`, `${param.max}`,
+      const texts = param.kind === 'text' ? ['Aa0-_', 'a b', 'a+b', 'A'.repeat(param.max), 'A'.repeat(param.max + 1)] : [];
+      const own = [...texts, ...param.options.map((option) => option.id), `${param.min}`, `${param.max}`,
         `${param.min - param.step}`, `${param.max + param.step}`];
       for (const text of [...TEXTS, ...own]) {
         const [ok, answer] = JSON.parse(wasm.parseParam(widget.id, param.id, text));
@@ -56,6 +57,8 @@ it('a link written for a state reads back to that state', () => {
     const values = new Map(widget.params.map((param) => [param.id, defaultText(param)]));
     assert.equal(writeQuery(widget, values), `?w=${widget.id.slice(1)}`);
     for (const param of widget.params) {
+      if (param.kind === 'text') values.set(param.id, 'Aa0-_');
+      if (param.kind === 'text') continue;
       const last = param.options.at(-1)?.id ?? (param.kind === 'switch' ? 'off' : `${param.max}`);
       values.set(param.id, last);
     }

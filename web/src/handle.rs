@@ -3,10 +3,10 @@
 use std::cell::{Cell, OnceCell, RefCell};
 use std::rc::Rc;
 
-use kit::model::{Activity, Motion, read_text};
+use kit::model::{Activity, Motion};
 use kit::outside::Delivery;
 use kit::palette::Theme;
-use kit::param::{ParamError, ParamSpec};
+use kit::param::{ParamError, ParamKind, ParamSpec};
 use kit::shell::Shell;
 use kit::zoom::Look;
 use serde_json::{Value, json};
@@ -80,6 +80,7 @@ pub fn parse_param(name: &str, id: &str, text: &str) -> Result<String, JsError> 
         .find(|param| param.id == id)
         .ok_or_else(|| JsError::new("no such parameter"))?;
     let answer = match spec.parse(text) {
+        Ok(_) if matches!(spec.kind, ParamKind::Text { .. }) => json!([true, text.trim()]),
         Ok(value) => json!([true, spec.to_text(value)]),
         Err(problem) => json!([false, problem.to_string()]),
     };
@@ -183,8 +184,8 @@ impl Widget {
     /// # Errors
     /// Where the widget has no such parameter.
     pub fn text(&self, id: &str) -> Result<String, JsError> {
-        let (spec, value) = self.find(id)?;
-        Ok(spec.to_text(value))
+        let (spec, _) = self.find(id)?;
+        Ok(self.shared.shell.borrow().model().values().to_text(spec.id))
     }
 
     /// Sets a parameter from what a link or an attribute says.
@@ -192,8 +193,11 @@ impl Widget {
     /// # Errors
     /// A sentence that names what would be right; the old value stands.
     pub fn set(&self, id: &str, text: &str) -> Result<(), JsError> {
-        let value = read_text(self.shared.shell.borrow().model(), id, text)?;
-        self.shared.shell.borrow_mut().model_mut().set(id, value)?;
+        self.shared
+            .shell
+            .borrow_mut()
+            .model_mut()
+            .set_text(id, text)?;
         self.shared.request_repaint();
         Ok(())
     }
@@ -239,13 +243,12 @@ impl Widget {
         let shell = self.shared.shell.borrow();
         let now = current_values(&shell);
         let told = self.told.replace(now);
-        let changed: Vec<_> = shell
-            .model()
-            .values()
+        let values = shell.model().values();
+        let changed: Vec<_> = values
             .iter()
             .zip(&told)
             .filter(|((_, value), old)| value.to_bits() != old.to_bits())
-            .map(|((spec, value), _)| json!([spec.id, spec.to_text(value)]))
+            .map(|((spec, _), _)| json!([spec.id, values.to_text(spec.id)]))
             .collect();
         Value::Array(changed).to_string()
     }

@@ -15,6 +15,10 @@ pub fn widget(model: &dyn Model) -> Value {
         .buttons
         .iter()
         .map(|button| json!({ "id": button.id, "label": button.label, "help": button.help }));
+    let keys = model
+        .keys()
+        .iter()
+        .map(|(key, button)| json!({ "key": key, "button": button }));
     let presets = spec
         .presets
         .iter()
@@ -27,6 +31,7 @@ pub fn widget(model: &dyn Model) -> Value {
         "params": spec.params.iter().map(param).collect::<Vec<_>>(),
         "buttons": buttons.collect::<Vec<_>>(),
         "presets": presets.collect::<Vec<_>>(),
+        "keys": keys.collect::<Vec<_>>(),
         "summary": model.summary(),
         "takesFiles": model.takes_files(),
     })
@@ -40,6 +45,12 @@ fn param(spec: &ParamSpec) -> Value {
         ParamKind::Seed { .. } => ("seed", None),
         ParamKind::Choice { options } => ("choice", Some(options)),
         ParamKind::Switch => ("switch", None),
+        ParamKind::Text { .. } => ("text", None),
+    };
+    // For a text, the most characters stand in the place of the largest value.
+    let max = match spec.kind {
+        ParamKind::Text { most } => most as f64,
+        _ => max,
     };
     let options = options.unwrap_or_default().iter();
     let options: Vec<_> = options

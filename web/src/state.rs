@@ -6,12 +6,12 @@ use serde_json::{Map, Value, json};
 /// Every parameter as a link writes it: `{"heading": "60", "variant": "point-to-plane"}`.
 #[must_use]
 pub fn values(model: &dyn Model) -> Value {
-    let pairs = model.values().iter();
-    Value::Object(
-        pairs
-            .map(|(spec, value)| (spec.id.to_owned(), Value::String(spec.to_text(value))))
-            .collect(),
-    )
+    let values = model.values();
+    let texts = values.iter().map(|(spec, _)| {
+        let text = values.to_text(spec.id);
+        (spec.id.to_owned(), Value::String(text))
+    });
+    Value::Object(texts.collect())
 }
 
 /// All of it after each preset, a line each: what native code and wasm must agree on to the bit.

@@ -26,14 +26,20 @@ export class Controls {
   readonly #ranges = new Map<string, HTMLInputElement>();
   readonly #buttons = new Map<string, HTMLButtonElement>();
   readonly #host: ControlHost;
+  /** What a key presses, while one of these buttons has the focus. */
+  readonly #keys: ReadonlyMap<string, string>;
+  readonly #keyed: ReadonlySet<string>;
 
   constructor(widget: WidgetSpec, host: ControlHost) {
     this.#host = host;
+    this.#keys = new Map(widget.keys.map(({ key, button }) => [key, button]));
+    this.#keyed = new Set(this.#keys.values());
     this.element = create('div', { class: 'controls', role: 'group' });
     this.element.setAttribute('aria-label', `${widget.title}: controls`);
     for (const button of widget.presets) this.element.append(this.#button(button, 'try'));
     for (const param of widget.params) this.element.append(this.#param(param));
     for (const button of widget.buttons) this.element.append(this.#button(button, 'do'));
+    this.element.addEventListener('keydown', (event) => this.#keyDown(event));
     this.element.addEventListener('focusin', (event) => {
       host.focus((event.target as HTMLElement).dataset['control']);
     });
@@ -41,6 +47,18 @@ export class Controls {
       const next = event.relatedTarget;
       if (!(next instanceof Node) || !this.element.contains(next)) host.focus(undefined);
     });
+  }
+
+  /** A key of a button that is beside the one with the focus. */
+  #keyDown(event: KeyboardEvent): void {
+    const { target } = event;
+    if (event.altKey || !(target instanceof HTMLButtonElement)) return;
+    const isKeyed = this.#keyed.has(target.dataset['control'] ?? '');
+    const chord = event.ctrlKey || event.metaKey ? `Control+${event.key.toLowerCase()}` : event.key;
+    const button = this.#keys.get(chord);
+    if (!isKeyed || button === undefined) return;
+    event.preventDefault();
+    this.#host.press(button);
   }
 
   /** Shows values that changed elsewhere. */
@@ -103,6 +121,14 @@ export class Controls {
         box.addEventListener('change', () => this.#host.set(spec.id, box.checked ? 'on' : 'off'));
         return [[box], (text) => (box.checked = text === 'on')];
       }
+      case 'text': {
+        const field = create('input', { type: 'text', maxlength: `${spec.max}`, spellcheck: 'false' });
+        field.addEventListener('change', () => {
+          const problem = this.#host.set(spec.id, field.value);
+          field.setAttribute('aria-invalid', String(problem !== undefined));
+        });
+        return [[field], (text) => showUnlessTyping(field, text)];
+      }
       case 'seed': {
         const field = this.#numberField(spec);
         return [[field], (text) => showUnlessTyping(field, text)];
@@ -163,6 +189,8 @@ export class Controls {
     help.textContent = spec.help;
     button.setAttribute('aria-describedby', help.id);
     if (spec.id === 'play') button.setAttribute('aria-pressed', 'false');
+    const keys = [...this.#keys].filter(([, id]) => id === spec.id).map(([key]) => key);
+    if (keys.length > 0) button.setAttribute('aria-keyshortcuts', keys.join(' '));
     button.addEventListener('click', () => this.#host.press(spec.id));
     this.#buttons.set(spec.id, button);
     row.append(button, help);
@@ -205,7 +233,8 @@ function tidy(value: number): string {
 function showUnlessTyping(field: HTMLInputElement, text: string): void {
   // A value that comes in while the reader types would take the text away.
   const root = field.getRootNode() as ShadowRoot | Document;
-  if (root.activeElement === field && Number(field.value) === Number(text)) return;
+  const isTyped = field.value === text || (field.type === 'number' && Number(field.value) === Number(text));
+  if (root.activeElement === field && isTyped) return;
   field.value = text;
   field.setAttribute('aria-invalid', 'false');
 }

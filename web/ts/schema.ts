@@ -12,8 +12,9 @@ export interface ParamSpec {
   id: string;
   label: string;
   unit: string;
-  kind: 'slider' | 'timeline' | 'seed' | 'choice' | 'switch';
+  kind: 'slider' | 'timeline' | 'seed' | 'choice' | 'switch' | 'text';
   min: number;
+  /** Of a text, the most characters. */
   max: number;
   step: number;
   decimals: number;
@@ -28,6 +29,12 @@ export interface ButtonSpec {
   help: string;
 }
 
+/** `ArrowLeft`, `Control+z`. */
+export interface KeySpec {
+  key: string;
+  button: string;
+}
+
 export interface WidgetSpec {
   id: string;
   title: string;
@@ -36,8 +43,10 @@ export interface WidgetSpec {
   params: ParamSpec[];
   buttons: ButtonSpec[];
   presets: ButtonSpec[];
+  /** Keys that press a button while one of these buttons has the focus. */
+  keys: KeySpec[];
   summary: string;
-  /** Whether a reader may hand it a file. */
+  /** Whether a reader may hand it a log. A widget with a text takes that text's file. */
   takesFiles: boolean;
   heights: Heights;
 }

@@ -4,11 +4,12 @@
 
 import type { ParamSpec } from './schema';
 
-/** A value for JavaScript: a number, the name of an option, or on and off. */
+/** A value for JavaScript: a number, a text or the name of an option, or on and off. */
 export type Value = number | string | boolean;
 
 export type Parsed = { ok: true; text: string } | { ok: false; problem: string };
 
+const WORD = /^[\w-]*$/;
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
 /** Checks what a reader, a link or a program gave. */
@@ -27,6 +28,11 @@ export function parseValue(spec: ParamSpec, given: unknown): Parsed {
       if (['on', '1', 'true'].includes(text)) return { ok: true, text: 'on' };
       if (['off', '0', 'false'].includes(text)) return { ok: true, text: 'off' };
       return refuse('on or off');
+    case 'text':
+      // What the text says is checked by the core, once it runs.
+      return text.length <= spec.max && WORD.test(text)
+        ? { ok: true, text }
+        : refuse(`at most ${spec.max} letters, digits, - and _`);
     default: {
       if (!NUMBER.test(text)) return refuse('a number');
       const value = Number(text);
@@ -44,12 +50,12 @@ export function parseValue(spec: ParamSpec, given: unknown): Parsed {
 export function defaultText(spec: ParamSpec): string {
   if (spec.kind === 'choice') return spec.options[spec.default]?.id ?? '';
   if (spec.kind === 'switch') return spec.default === 0 ? 'off' : 'on';
-  return String(spec.default);
+  return spec.kind === 'text' ? '' : String(spec.default);
 }
 
 /** The value for JavaScript. */
 export function toValue(spec: ParamSpec, text: string): Value {
-  if (spec.kind === 'choice') return text;
+  if (spec.kind === 'choice' || spec.kind === 'text') return text;
   if (spec.kind === 'switch') return text === 'on';
   return Number(text);
 }
@@ -60,6 +66,8 @@ export function toLabel(spec: ParamSpec, text: string): string {
     return spec.options.find((option) => option.id === text)?.label ?? text;
   }
   if (spec.kind === 'switch') return text;
+  // Nobody reads it.
+  if (spec.kind === 'text') return text === '' ? 'none' : 'what it was';
   const value = Number(text);
   const onStep = Math.abs(value - Number(value.toFixed(spec.decimals))) < 1e-9;
   const number = value.toFixed(onStep ? spec.decimals : spec.decimals + 1);

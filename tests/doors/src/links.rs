@@ -17,6 +17,11 @@ pub fn door(data: &[u8]) {
     let spec = SPECS[usize::from(*widget) % SPECS.len()];
     let param = &spec.params[usize::from(*param) % spec.params.len()];
     match param.parse(text) {
+        Ok(_) if matches!(param.kind, ParamKind::Text { .. }) => {
+            let mut values = Values::defaults(spec.params);
+            assert!(values.set_text(spec.id, param.id, text).is_ok());
+            assert_eq!(values.to_text(param.id), text.trim());
+        }
         Ok(value) => taken(spec.id, param, value, &mut Values::defaults(spec.params)),
         Err(refusal) => {
             let sentence = refusal.to_string();

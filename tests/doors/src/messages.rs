@@ -3,7 +3,7 @@
 //! The first byte names the widget, the rest is the message: `{"type": "set", "values": {…}}` or
 //! `{"type": "press", "button": "…"}`. What `embed.ts` refuses by itself ends there and here alike.
 
-use kit::model::{Model, read_text};
+use kit::model::Model;
 use serde_json::Value;
 
 use crate::widgets::{Listener, SPECS};
@@ -37,15 +37,17 @@ pub fn door(data: &[u8]) {
 
 fn set(listener: &mut Listener, id: &str, text: &str) {
     let before = listener.values().clone();
-    let answer =
-        read_text(listener, id, text).and_then(|value| listener.set(id, value).map(|()| value));
+    let answer = listener.set_text(id, text);
     let pairs = before.iter().zip(listener.values().iter());
     for ((param, old), (_, new)) in pairs {
         let may_change = answer.is_ok() && param.id == id;
         assert!(may_change || old.to_bits() == new.to_bits(), "{}", param.id);
     }
     match answer {
-        Ok(value) => assert_eq!(listener.values().get(id).to_bits(), value.to_bits()),
+        Ok(()) => {
+            let (param, value) = listener.values().find(id).expect("it was set");
+            assert_eq!(param.parse(text).map(f64::to_bits), Ok(value.to_bits()));
+        }
         Err(refusal) => assert!(refusal.to_string().len() < 600, "{refusal}"),
     }
 }

@@ -84,6 +84,8 @@ def _default(widget, parameter):
     spec = _spec(widget, parameter)
     if spec["kind"] == "choice":
         return spec["options"][int(spec["default"])]["id"]
+    if spec["kind"] == "text":
+        return ""
     return bool(spec["default"]) if spec["kind"] == "switch" else spec["default"]
 
 
@@ -92,6 +94,8 @@ def _range(spec):
         return " or ".join(repr(option["id"]) for option in spec["options"])
     if spec["kind"] == "switch":
         return "True or False"
+    if spec["kind"] == "text":
+        return f"at most {spec['max']} letters, digits, - and _"
     return f"{spec['min']} to {spec['max']} {spec['unit']}".rstrip()
 
 

@@ -19,6 +19,8 @@ pub fn params(ui: &mut Ui, model: &mut dyn Model, hot: &mut Hot) {
         .values()
         .iter()
         .filter(|(spec, _)| !on_transport_bar(spec) && spec.id != MORE.id)
+        // A text is what the picture shows: the reader draws it, and does not type it.
+        .filter(|(spec, _)| !matches!(spec.kind, ParamKind::Text { .. }))
         .filter(|(spec, _)| layer.has_param(spec.id))
         .collect();
     if ui.available_width() < TWO_COLUMNS {
@@ -50,7 +52,7 @@ fn param(ui: &mut Ui, model: &mut dyn Model, spec: &'static ParamSpec, value: f6
             choice(ui, spec, options, value, hot)
         }
         ParamKind::Switch => switch(ui, spec, value, hot),
-        ParamKind::Timeline { .. } => None,
+        ParamKind::Timeline { .. } | ParamKind::Text { .. } => None,
     };
     if let Some(new) = new {
         // egui keeps to the range; where rounding leaves it, the old value stands.

@@ -42,6 +42,8 @@ pub enum Layer {
     First(Opening),
     /// Everything.
     All,
+    /// Everything but the controls of something that the reader is not at.
+    AllBut(&'static [&'static str]),
 }
 
 impl Layer {
@@ -57,7 +59,7 @@ impl Layer {
     /// Whether everything is shown.
     #[must_use]
     pub fn is_all(&self) -> bool {
-        *self == Self::All
+        matches!(self, Self::All | Self::AllBut(_))
     }
 
     /// Whether a panel is shown.
@@ -82,6 +84,7 @@ impl Layer {
         match self {
             Self::First(opening) => of(opening).contains(&id),
             Self::All => true,
+            Self::AllBut(hidden) => !hidden.contains(&id),
         }
     }
 }

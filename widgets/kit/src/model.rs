@@ -28,6 +28,16 @@ pub trait Model {
     /// [`ParamError`] for an unknown name or a value out of range; nothing changes then.
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError>;
 
+    /// Sets one parameter to what a link, an attribute or a message says.
+    ///
+    /// # Errors
+    /// [`ParamError`] for an unknown name or a text that is no value; nothing changes then.
+    fn set_text(&mut self, id: &str, text: &str) -> Result<(), ParamError> {
+        let (param, _) = self.values().find_for(self.spec().id, id)?;
+        let value = param.parse(text)?;
+        self.set(id, value)
+    }
+
     /// Presses a button or a preset.
     ///
     /// # Errors
@@ -84,6 +94,9 @@ pub trait Model {
     /// Moves what was grabbed so that the grabbed spot lies at that point.
     fn drag(&mut self, _handle: Handle, _at: [f64; 2]) {}
 
+    /// What was grabbed was let go.
+    fn release(&mut self) {}
+
     /// A click or a tap at that point of a panel; `reach` is that of [`Model::grab`].
     fn tap(&mut self, _panel: &str, _at: [f64; 2], _reach: [f64; 2]) {}
 
@@ -97,6 +110,12 @@ pub trait Model {
 
     /// Takes what the host brings from outside; what a widget does not know leaves it as it is.
     fn receive(&mut self, _delivery: &Delivery<'_>) {}
+
+    /// Keys that press a button while one of these buttons has the focus, as browsers name them:
+    /// `("ArrowLeft", "west")`.
+    fn keys(&self) -> &'static [(&'static str, &'static str)] {
+        &[]
+    }
 
     /// What the widget asks of its host, in words, each once and in order: `open`, `look 12`.
     fn take_orders(&mut self) -> Vec<String> {
@@ -263,15 +282,6 @@ pub enum TablePlace {
     Shown,
     /// In the CSV export alone.
     ExportOnly,
-}
-
-/// The value that a link, an attribute or a message gives for a parameter, checked for [`Model::set`].
-///
-/// # Errors
-/// A sentence that names what would be right.
-pub fn read_text(model: &dyn Model, id: &str, text: &str) -> Result<f64, ParamError> {
-    let (param, _) = model.values().find_for(model.spec().id, id)?;
-    param.parse(text)
 }
 
 /// Puts a model into the state that a preset names.

@@ -2,7 +2,8 @@
 //! JavaScript interface and the tables of the docs.
 //!
 //! Every value is an `f64`: a choice is the index of its option, a switch is 0 or 1, a seed is a
-//! whole number below 2³². A link writes choices and switches by name.
+//! whole number below 2³². A link writes choices and switches by name. A text is kept beside its
+//! value, which is a whole number that tells texts apart.
 
 use thiserror::Error;
 
@@ -47,6 +48,11 @@ pub enum ParamKind {
     },
     /// On (1) or off (0).
     Switch,
+    /// Letters, digits, `-` and `_`, such as a world: set by [`crate::model::Model::set_text`].
+    Text {
+        /// Most characters.
+        most: usize,
+    },
 }
 
 /// One parameter of a widget.
@@ -111,6 +117,14 @@ pub enum ParamError {
         /// What would have been right.
         expected: String,
     },
+    /// Text whose letters are right, and what it says is not.
+    #[error("`{id}` cannot be taken: {problem}")]
+    Refused {
+        /// Parameter.
+        id: &'static str,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
 }
 
 impl ParamKind {
@@ -129,6 +143,8 @@ impl ParamSpec {
             ParamKind::Timeline { max } | ParamKind::Seed { max } => (0.0, max),
             ParamKind::Choice { options } => (0.0, options.len() as f64 - 1.0),
             ParamKind::Switch => (0.0, 1.0),
+            // No number is a text; 0 is none.
+            ParamKind::Text { .. } => (0.0, 0.0),
         }
     }
 
@@ -146,6 +162,9 @@ impl ParamSpec {
     /// # Errors
     /// [`ParamError::OutOfRange`] where the value is not a number of the range.
     pub fn check(&self, value: f64) -> Result<f64, ParamError> {
+        if matches!(self.kind, ParamKind::Text { .. }) && is_fingerprint(value) {
+            return Ok(value);
+        }
         let (min, max) = self.range();
         // A sum of steps may end a few last bits beyond the range.
         let slack = 1e-6 * self.step();
@@ -189,6 +208,8 @@ impl ParamSpec {
                 .get(value as usize)
                 .map_or_else(|| value.to_string(), |choice| choice.id.to_owned()),
             ParamKind::Switch => if value == 0.0 { "off" } else { "on" }.to_owned(),
+            // The number tells texts apart, but not what they are: see `Values::to_text`.
+            ParamKind::Text { .. } => String::new(),
             // Display of an f64 is the shortest text that reads back to the same bits.
             _ => format!("{value}"),
         }
@@ -219,6 +240,14 @@ impl ParamSpec {
                 "off" | "0" | "false" => Ok(0.0),
                 _ => Err(unreadable("on or off".to_owned())),
             },
+            ParamKind::Text { most } => {
+                let fits = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_';
+                if text.len() > most || !text.bytes().all(fits) {
+                    let expected = format!("at most {most} letters, digits, - and _");
+                    return Err(unreadable(expected));
+                }
+                Ok(fingerprint(text))
+            }
             _ => {
                 let value = text
                     .parse()
@@ -234,6 +263,8 @@ impl ParamSpec {
 pub struct Values {
     specs: &'static [ParamSpec],
     values: Vec<f64>,
+    /// Of the same index; empty where the parameter is no text.
+    texts: Vec<String>,
 }
 
 impl Values {
@@ -243,6 +274,7 @@ impl Values {
         Self {
             specs,
             values: specs.iter().map(|spec| spec.default).collect(),
+            texts: vec![String::new(); specs.len()],
         }
     }
 
@@ -254,6 +286,7 @@ impl Values {
                 *value = spec.default;
             }
         }
+        self.texts.fill(String::new());
     }
 
     /// The list these values belong to.
@@ -315,18 +348,91 @@ impl Values {
         let Some(index) = self.specs.iter().position(|spec| spec.id == id) else {
             return Err(self.unknown(widget, id));
         };
-        let value = self.specs[index].check(value)?;
+        let spec = &self.specs[index];
+        let value = spec.check(value)?;
         if value.to_bits() == self.values[index].to_bits() {
             return Ok(Changed::No);
         }
+        if matches!(spec.kind, ParamKind::Text { .. }) {
+            // A number can only take a text away.
+            if value != 0.0 {
+                return Err(ParamError::OutOfRange {
+                    id: spec.id,
+                    value,
+                    min: 0.0,
+                    max: 0.0,
+                });
+            }
+            self.texts[index].clear();
+        }
         self.values[index] = value;
         Ok(Changed::Yes)
+    }
+
+    /// Sets a parameter to what [`Values::to_text`] writes; says whether it changed.
+    ///
+    /// # Errors
+    /// [`ParamError`]; nothing changes then.
+    pub fn set_text(
+        &mut self,
+        widget: &'static str,
+        id: &str,
+        text: &str,
+    ) -> Result<Changed, ParamError> {
+        let Some(index) = self.specs.iter().position(|spec| spec.id == id) else {
+            return Err(self.unknown(widget, id));
+        };
+        let value = self.specs[index].parse(text)?;
+        if !matches!(self.specs[index].kind, ParamKind::Text { .. }) {
+            return self.set(widget, id, value);
+        }
+        let text = text.trim();
+        if self.texts[index] == text {
+            return Ok(Changed::No);
+        }
+        text.clone_into(&mut self.texts[index]);
+        self.values[index] = value;
+        Ok(Changed::Yes)
+    }
+
+    /// The value of a parameter as a link writes it.
+    ///
+    /// # Panics
+    /// Where the list has no such parameter: a bug of the widget.
+    #[must_use]
+    pub fn to_text(&self, id: &str) -> String {
+        let index = self.specs.iter().position(|spec| spec.id == id);
+        let Some(index) = index else {
+            panic!("no parameter `{id}` in the list");
+        };
+        match self.specs[index].kind {
+            ParamKind::Text { .. } => self.texts[index].clone(),
+            _ => self.specs[index].to_text(self.values[index]),
+        }
     }
 
     /// Every parameter with its value, in the list's order.
     pub fn iter(&self) -> impl Iterator<Item = (&'static ParamSpec, f64)> {
         self.specs.iter().zip(self.values.iter().copied())
     }
+}
+
+/// The number that stands for a text: 0 for none, else FNV-1a, folded to what an `f64` holds.
+fn fingerprint(text: &str) -> f64 {
+    if text.is_empty() {
+        return 0.0;
+    }
+    let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    ((hash >> 12 ^ hash) % MOST_FINGERPRINT + 1) as f64
+}
+
+/// Below 2⁵³ every whole number is an `f64`.
+const MOST_FINGERPRINT: u64 = 1 << 52;
+
+fn is_fingerprint(value: f64) -> bool {
+    (0.0..=MOST_FINGERPRINT as f64).contains(&value) && value.fract() == 0.0
 }
 
 /// Most characters of a text from outside that a message repeats.
@@ -434,6 +540,35 @@ mod tests {
             error.to_string(),
             "`variant` takes point-to-point or point-to-plane, not `plane`"
         );
+    }
+
+    #[test]
+    fn a_text_is_kept_beside_a_number_that_tells_texts_apart() {
+        const TEXTS: &[ParamSpec] = &[ParamSpec {
+            id: "flat",
+            label: "flat",
+            unit: "",
+            kind: ParamKind::Text { most: 8 },
+            default: 0.0,
+            help: "",
+        }];
+        let mut values = Values::defaults(TEXTS);
+        assert_eq!(values.set_text("w", "flat", " Aa0-_ "), Ok(Changed::Yes));
+        assert_eq!(values.to_text("flat"), "Aa0-_");
+        let before = values.clone();
+        for bad in ["123456789", "a b", "é", "a+b"] {
+            let error = values.set_text("w", "flat", bad).unwrap_err().to_string();
+            assert!(
+                error.starts_with("`flat` takes at most 8 letters"),
+                "{error}"
+            );
+        }
+        assert!(values.set("w", "flat", 1.0).is_err());
+        assert_eq!(values, before);
+        assert_eq!(values.set_text("w", "flat", "Aa0-A"), Ok(Changed::Yes));
+        assert_ne!(values.get("flat"), before.get("flat"));
+        assert_eq!(values.set("w", "flat", 0.0), Ok(Changed::Yes));
+        assert_eq!(values, Values::defaults(TEXTS));
     }
 
     #[test]

@@ -45,8 +45,10 @@ pub enum Touched {
 
 impl Pointer {
     /// Lets go of everything.
-    pub fn release(&mut self) {
-        self.held = None;
+    pub fn release(&mut self, model: &mut dyn Model) {
+        if let Some(Held::Thing(_)) = self.held.take() {
+            model.release();
+        }
     }
 
     /// Handles the pointer over one panel.
@@ -87,10 +89,11 @@ impl Pointer {
         model: &mut dyn Model,
     ) -> Touched {
         if !response.is_pointer_button_down_on() {
-            if self.panel_held() == Some(panel.id) {
-                self.held = None;
+            if self.panel_held() != Some(panel.id) {
+                return Touched::No;
             }
-            return Touched::No;
+            self.release(model);
+            return Touched::Yes;
         }
         let Some(at) = response
             .interact_pointer_pos()

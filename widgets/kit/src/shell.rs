@@ -206,7 +206,8 @@ impl Shell {
 
     /// Lets go of what is dragged: the touch was cancelled.
     pub fn release_drags(&mut self) {
-        self.pointer.release();
+        self.pointer.release(self.model.as_mut());
+        self.touch();
     }
 
     /// Parameters changed by the pointer since the last call.

@@ -63,6 +63,7 @@ fn every_control_of_the_list_is_on_screen_under_its_name() {
                     format!("{}: {}", spec.label, options[0].label),
                 ),
                 ParamKind::Switch => (Role::CheckBox, spec.label.to_owned()),
+                ParamKind::Text { .. } => unreachable!("no text here"),
             };
             let rect = harness.get_by_role_and_label(role, &name).rect();
             assert!(
