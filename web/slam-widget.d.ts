@@ -38,7 +38,15 @@ export interface BasinExplorerState {
 /** The full lap: every parameter. */
 export interface TheFullLapState {
   /** What is driven through. The Apartment by the chapter's estimator, every other world by the default one. */
-  world: 'apartment' | 'ring' | 'twins' | 'corridor' | 'hall';
+  world: 'apartment' | 'ring' | 'twins' | 'corridor' | 'hall' | 'own';
+  /** What a press on the map does: moves a wall, an end, a way point or the start; draws a wall; places a way point behind the chosen one; removes what it meets. All on a grid of 5 cm. */
+  edit: 'off' | 'move' | 'wall' | 'way' | 'remove';
+  /** What of the flat the arrows move and Remove takes away. On the map, a press chooses it. */
+  piece: 'nothing' | 'wall' | 'first-end' | 'second-end' | 'way-point' | 'start' | 'heading';
+  /** The number of the wall or of the way point, from 1. 0 to 2000. */
+  'piece-number': number;
+  /** Walls, start and way points of your own flat to the centimetre, as links carry them. It makes the world your own flat. At most 33000 letters, digits, - and _. */
+  flat: string;
   /** Multiplies the variances of the wheel odometry: 1 is the chapter's robot. 0.25 to 4. */
   noise: number;
   /** Whether a keyframe near an old one is matched against it. */
@@ -347,7 +355,7 @@ export interface WidgetStates {
 /** The buttons and presets of each widget, for `press`. */
 export interface WidgetButtons {
   'w16.1': 'play' | 'step' | 'reset' | 'defaults' | 'near' | 'quarter-turn' | 'between' | 'between-plane' | 'half-turn' | 'fence' | 'short-sighted';
-  'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'one-back' | 'one-on' | 'tie' | 'undo' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'wrong-loop' | 'tamed-loop' | 'true-loop' | 'ring' | 'twins' | 'corridor' | 'hall' | 'bells' | 'sliding';
+  'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'one-back' | 'one-on' | 'tie' | 'undo' | 'edit-flat' | 'piece-back' | 'piece-on' | 'west' | 'east' | 'north' | 'south' | 'remove' | 'add-wall' | 'add-way-point' | 'turn-here' | 'take-back' | 'do-again' | 'open-flat' | 'save-flat' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'wrong-loop' | 'tamed-loop' | 'true-loop' | 'ring' | 'twins' | 'corridor' | 'hall' | 'own-flat' | 'bells' | 'sliding';
   'w16.3': 'drop' | 'drop-100' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'bowl' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'own-corridor' | 'drop-room' | 'drop-corridor' | 'turned';
   'w16.4': 'play' | 'step' | 'reset' | 'next-event' | 'defaults' | 'watch' | 'blurred' | 'rebuilt' | 'noisy' | 'wrong-loop' | 'open';
   'w16.5': 'play' | 'step' | 'reset' | 'defaults' | 'three-poses' | 'stiff' | 'unpinned' | 'square' | 'tangled';
@@ -425,7 +433,12 @@ export interface SlamWidgetProperties {
   iteration: number | undefined;
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold' | undefined;
   more: boolean | undefined;
-  world: 'apartment' | 'ring' | 'twins' | 'corridor' | 'hall' | 'apartment' | 'ring' | undefined;
+  world: 'apartment' | 'ring' | 'twins' | 'corridor' | 'hall' | 'own' | 'apartment' | 'ring' | undefined;
+  edit: 'off' | 'move' | 'wall' | 'way' | 'remove' | undefined;
+  piece: 'nothing' | 'wall' | 'first-end' | 'second-end' | 'way-point' | 'start' | 'heading' | undefined;
+  'piece-number': number | undefined;
+  pieceNumber: number | undefined;
+  flat: string | undefined;
   noise: number | undefined;
   loops: boolean | undefined;
   gate: number | undefined;
@@ -536,7 +549,7 @@ export declare class SlamWidget extends HTMLElement {
   /** Zooms every map, or moves the part that is seen. */
   look(way: 'in' | 'out' | 'left' | 'right' | 'up' | 'down' | 'whole'): void;
   suspend(): void;
-  /** Hands a file to a widget that takes files: a log, or a reference to grade it with. */
+  /** Hands a file to a widget that takes files: a log, a reference to grade it with, or a world as JSON. */
   openFile(file: File): void;
   addEventListener<K extends keyof SlamWidgetEvents>(
     type: K,
@@ -557,8 +570,9 @@ export interface ParamSpec {
   id: string;
   label: string;
   unit: string;
-  kind: 'slider' | 'timeline' | 'seed' | 'choice' | 'switch';
+  kind: 'slider' | 'timeline' | 'seed' | 'choice' | 'switch' | 'text';
   min: number;
+  /** Of a text, the most characters. */
   max: number;
   step: number;
   decimals: number;
@@ -576,8 +590,10 @@ export interface WidgetSpec {
   params: ParamSpec[];
   buttons: { id: string; label: string; help: string }[];
   presets: { id: string; label: string; help: string }[];
+  /** Keys that press a button while one of these buttons has the focus: `ArrowLeft`, `Control+z`. */
+  keys: { key: string; button: string }[];
   summary: string;
-  /** Whether a reader may hand it a file. */
+  /** Whether a reader may hand it a log. A widget with a text takes that text's file. */
   takesFiles: boolean;
 }
 

@@ -106,6 +106,16 @@ for (const widget of h.schema) {
         } else if (param.kind === 'seed') {
           await type(tab, '11');
           assert.equal(await value(tab, param.id), 11);
+        } else if (param.kind === 'text') {
+          // A text that the widget itself writes: that of its own flat.
+          const text = await tab.evaluate(async (id) => {
+            const other = document.createElement('slam-widget');
+            other.name = document.querySelector('slam-widget').name;
+            await other.press('add-wall');
+            return other.get(id);
+          }, param.id);
+          await type(tab, text);
+          assert.equal(await value(tab, param.id), text);
         } else {
           await tab.keyboard.press('Home');
           assert.equal(await value(tab, param.id), param.min, `${param.id} at its start`);
@@ -193,7 +203,7 @@ for (const widget of h.schema) {
         }));
       const find = (role, name) => named.find((node) => node.role === role && node.name === name);
       for (const param of widget.params) {
-        const role = { slider: 'slider', timeline: 'slider', seed: 'spinbutton', choice: 'combobox', switch: 'switch' }[param.kind];
+        const role = { slider: 'slider', timeline: 'slider', seed: 'spinbutton', choice: 'combobox', switch: 'switch', text: 'textbox' }[param.kind];
         const node = find(role, param.label);
         assert.ok(node, `no ${role} named ${param.label}`);
         assert.equal(node.description, param.help);

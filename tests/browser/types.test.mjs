@@ -31,7 +31,7 @@ function complaints(program) {
 it('name every parameter and button of every widget', () => {
   const lines = h.schema.flatMap((widget) => [
     ...widget.params.map((param, i) => {
-      const value = { choice: `'${param.options[param.default]?.id}'`, switch: 'true' }[param.kind] ?? param.default;
+      const value = { choice: `'${param.options[param.default]?.id}'`, switch: 'true', text: "''" }[param.kind] ?? param.default;
       return `const p${widget.id.replace('.', '_')}_${i}: WidgetStates['${widget.id}']['${param.id}'] = ${value};`;
     }),
     ...[...widget.buttons, ...widget.presets].map((button, i) =>

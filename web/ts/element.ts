@@ -7,7 +7,8 @@ import { linkTo, readAddress } from './address';
 import { Controls } from './controls';
 import { listen, upgradeProperties } from './dom';
 import { takeAwayBar } from './export';
-import type { CsvFile, Outcome, Timeline } from './instance';
+import type { Widget } from '../pkg/glue.js';
+import { CrashError, type CsvFile, type Outcome, type Timeline } from './instance';
 import { Life, TakenAwayError, type LifeHost } from './life';
 import { LoadError } from './module';
 import { lookBar, type Way } from './look';
@@ -23,6 +24,7 @@ import { defaultText, shorten, type Value } from './values';
 import { unwatchVisibility, watchVisibility } from './visibility';
 import { Desk, hand } from './robot/desk';
 import { chooseFile, takeDrops } from './robot/files';
+import { carryTextOrder, takeTextFile, type TextFileHost } from './text-files';
 import type { Delivery } from './robot/protocol';
 
 export class SlamWidget extends HTMLElement {
@@ -40,6 +42,7 @@ export class SlamWidget extends HTMLElement {
   #controls: Controls | undefined;
   #lastOutcome: Outcome | undefined;
   #unwatch: (() => void)[] = [];
+  readonly #textFiles: TextFileHost;
   /** Where a reader's own file is worked on, once there is one. */
   #desk: Desk | undefined;
 
@@ -47,6 +50,11 @@ export class SlamWidget extends HTMLElement {
     super();
     this.#parts = build(this.attachShadow({ mode: 'open' }));
     this.#notes = new Notes(this.#parts.note);
+    this.#textFiles = {
+      frame: this.#parts.frame,
+      act: (deed) => void this.#act(deed),
+      refuse: (problem) => this.#news.wrong('value', problem),
+    };
     this.#news = new News(this, this.#parts, this.#notes, () => this.#showTimeline());
     this.#pictures = new Pictures(this.#parts.picture);
     this.#place = new Place(this.#parts.stage);
@@ -67,8 +75,8 @@ export class SlamWidget extends HTMLElement {
       listen(this, 'pointerenter', () => this.#life.askAgain()),
       listen(this, 'focusin', () => this.#life.askAgain()),
     ];
-    if (this.#state?.spec.takesFiles === true) {
-      this.#unwatch.push(takeDrops(this.#parts.frame, (files) => this.#openDesk().take(files)));
+    if (this.#takesFiles) {
+      this.#unwatch.push(takeDrops(this.#parts.frame, (files) => this.#takeFiles(files)));
     }
     this.#place.fit();
     watchVisibility(this, this.#life);
@@ -238,11 +246,11 @@ export class SlamWidget extends HTMLElement {
     else this.#life.ask((widget) => widget.crashForTest());
   }
 
-  /** Hands a file to a widget that takes files: a log, or a reference to grade it with. */
+  /** Hands a file to a widget that takes files: a log or a reference to grade it with, or a world. */
   openFile(file: File): void {
     if (!this.#isSetUp) this.#setUp();
-    if (this.#state?.spec.takesFiles !== true) throw new TypeError(`${this.name} takes no files`);
-    this.#openDesk().take([file]);
+    if (!this.#takesFiles) throw new TypeError(`${this.name} takes no files`);
+    this.#takeFiles([file]);
   }
 
   /** Gives context and memory back; the values stay, and the picture shows them. */
@@ -311,7 +319,10 @@ export class SlamWidget extends HTMLElement {
       prepare: (widget) => {
         const state = this.#state;
         this.#desk?.restore(widget);
-        for (const [id, text] of state?.texts ?? []) widget.set(id, text);
+        for (const [id, text] of state?.texts ?? []) {
+          const problem = refusal(() => widget.set(id, text));
+          if (problem !== undefined) this.#news.wrong('value', `${problem}. The default stands.`, id);
+        }
         // The model may keep less than was asked for: no moment after the end of its run.
         for (const id of state?.texts.keys() ?? []) state?.keep(id, widget.text(id));
         this.#controls?.show(state?.texts ?? []);
@@ -362,13 +373,27 @@ export class SlamWidget extends HTMLElement {
   /** What the widget asks of its host: a file, its mapping, a file to save. */
   #carryOrders(): void {
     const orders = this.#life.ask((widget) => widget.takeOrders()) ?? [];
-    for (const order of orders) this.#openDesk().order(order);
+    for (const order of orders) {
+      if (!carryTextOrder(order, this.#textFiles)) this.#openDesk().order(order);
+    }
+  }
+
+  /** Whether a file means something to the widget: a log, or a world that a text holds as well. */
+  get #takesFiles(): boolean {
+    const spec = this.#state?.spec;
+    return spec?.takesFiles === true || spec?.params.some(({ kind }) => kind === 'text') === true;
+  }
+
+  #takeFiles(files: File[]): void {
+    const [first] = files;
+    if (this.#state?.spec.takesFiles === true) this.#openDesk().take(files);
+    else if (first !== undefined) void takeTextFile(first, this.#textFiles);
   }
 
   #openDesk(): Desk {
     this.#desk ??= new Desk({
       deliver: (deliveries) => this.#deliver(deliveries),
-      choose: (accept, chosen) => chooseFile(this.#parts.frame, accept, chosen),
+      choose: (accept, chosen) => chooseFile(this.#parts.frame, accept, 'A log, or a reference for it', chosen),
     });
     return this.#desk;
   }
@@ -380,6 +405,20 @@ export class SlamWidget extends HTMLElement {
 
   #deliver(deliveries: readonly Delivery[]): void {
     this.#life.ask((widget) => deliveries.forEach((delivery) => hand(widget, delivery)));
+    this.#told(this.#takeChanges());
+    this.#carryOrders();
+    this.#life.wake();
+  }
+
+  /** Lets the widget act where it runs, else once it does. */
+  async #act(deed: (widget: Widget) => void): Promise<void> {
+    try {
+      await this.#ensureInstance();
+    } catch (error) {
+      this.#pressFailed(error);
+      return;
+    }
+    this.#life.ask(deed);
     this.#told(this.#takeChanges());
     this.#carryOrders();
     this.#life.wake();
@@ -427,10 +466,12 @@ export class SlamWidget extends HTMLElement {
     const parsed = state.parse(id, given);
     if (!parsed.ok) return parsed.problem;
     if (state.text(id) === parsed.text) return undefined;
+    let problem: string | undefined;
     const kept = this.#life.ask((running) => {
-      running.set(id, parsed.text);
+      problem = refusal(() => running.set(id, parsed.text));
       return running.text(id);
     });
+    if (problem !== undefined) return problem;
     this.#told(new Map([[id, kept ?? parsed.text], ...this.#takeChanges()]));
     this.#carryOrders();
     this.#life.wake();
@@ -448,5 +489,16 @@ export class SlamWidget extends HTMLElement {
     const stands = label === undefined ? '' : ` It stays at ${label}.`;
     this.#news.wrong('value', `${problem}.${stands}`, id);
     return problem;
+  }
+}
+
+/** Why the core does not take a value whose letters are right; a panic goes on its way. */
+function refusal(deed: () => void): string | undefined {
+  try {
+    deed();
+    return undefined;
+  } catch (error) {
+    if (error instanceof WebAssembly.RuntimeError || error instanceof CrashError) throw error;
+    return (error as Error).message;
   }
 }

@@ -33,9 +33,9 @@ export function takeDrops(frame: HTMLElement, take: (files: File[]) => void): ()
 }
 
 /** Opens the system's dialog; the field for it stays until a file is chosen, or the next dialog. */
-export function chooseFile(frame: HTMLElement, accept: string, chosen: (file: File) => void): void {
+export function chooseFile(frame: HTMLElement, accept: string, label: string, chosen: (file: File) => void): void {
   frame.querySelector('input[type=file]')?.remove();
-  const field = create('input', { type: 'file', accept, hidden: '', 'aria-label': 'A log, or a reference for it' });
+  const field = create('input', { type: 'file', accept, hidden: '', 'aria-label': label });
   field.addEventListener('change', () => {
     const [file] = field.files ?? [];
     if (file !== undefined) chosen(file);

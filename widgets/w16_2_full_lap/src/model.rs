@@ -3,12 +3,15 @@
 //! A parameter that changes the lap asks for a new one. It is computed in pieces, the newest that was
 //! asked for first; the old one stays until the new one is whole, and the moment shown stays.
 
+mod drawing;
+mod flat;
 mod gates;
 mod hands;
 mod moment;
 mod own;
 mod pick;
 mod picture;
+mod piece;
 mod runs;
 mod settings;
 mod tables;
@@ -18,15 +21,19 @@ mod words;
 
 use ch16_lab::lap::{LapRecord, LoopAttempt, NewestLap, NewestStep, OwnLoopError};
 use kit::chart::{dragged_to, grab_now};
+use kit::layers::Layer;
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
+use kit::outside::Delivery;
 use kit::param::{Changed, ParamError, Values};
 use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
+use pr_sim::{Course, Sketch};
 
-use crate::spec::{LOOP_BUTTONS, SPEC};
+use crate::spec::{EDITING, FLAT_CONTROLS, FLAT_KEYS, LOOP_BUTTONS, SPEC};
+use flat::{Flat, Tool};
 use moment::Moment;
 use own::Own;
 use pick::{Part, Step};
@@ -51,6 +58,7 @@ pub struct FullLap {
     playback: Playback,
     transition: Option<Transition>,
     own: Own,
+    flat: Flat,
     hovered: Option<Part>,
 }
 
@@ -69,7 +77,8 @@ impl FullLap {
     pub fn new() -> Self {
         let values = Values::defaults(SPEC.params);
         let mut laps = NewestLap::new();
-        laps.ask(LapSettings::read(&values).config());
+        let config = LapSettings::read(&values).config(None);
+        laps.ask(config.expect("the Apartment can be driven"));
         let runs = Runs::new(*laps.finish().expect("a lap was asked for"));
         Self {
             canonical: runs.results_over_time(),
@@ -80,6 +89,7 @@ impl FullLap {
             playback: Playback::default(),
             transition: None,
             own: Own::default(),
+            flat: Flat::new(Sketch::of(&Course::apartment())),
             hovered: None,
         }
     }
@@ -202,7 +212,13 @@ impl FullLap {
     }
 
     fn back_to_defaults(&mut self) {
+        let before = self.values.get("world");
         self.values.reset();
+        if before != self.values.get("world") {
+            self.world_chosen(before);
+        }
+        self.end_stroke();
+        self.flat.follows = false;
         self.playback.pause();
         self.transition = None;
         self.pressed.clear();
@@ -211,9 +227,12 @@ impl FullLap {
         self.recompute();
     }
 
-    /// Asks for the lap of the settings, where it is not the one that is shown.
+    /// Asks for the lap of the settings, where it is not the one that is shown; an own flat that cannot be
+    /// driven asks for none.
     fn recompute(&mut self) {
-        self.laps.ask(LapSettings::read(&self.values).config());
+        if let Some(config) = LapSettings::read(&self.values).config(self.own_course()) {
+            self.laps.ask(config);
+        }
     }
 
     /// Shows a lap that is whole, and does what waited for it.
@@ -221,6 +240,10 @@ impl FullLap {
         self.runs = Runs::new(record);
         self.hovered = None;
         if self.values.get("t") > self.last() && !self.laps.is_running() {
+            self.go_to(self.runs.ticks());
+        }
+        if self.flat.follows && !self.laps.is_running() {
+            self.flat.follows = false;
             self.go_to(self.runs.ticks());
         }
         self.own.refresh(&self.values, &self.runs, self.tick());
@@ -284,6 +307,7 @@ impl FullLap {
             picked: Part::chosen(&self.values),
             hovered: self.hovered,
             tied: self.own.tied,
+            drawn: drawing::drawn(self),
             ..Moment::new(&self.runs, self.tick(), share, seen_until, own)
         }
     }
@@ -302,7 +326,21 @@ impl Model for FullLap {
         &self.values
     }
 
+    fn layer(&self) -> Layer {
+        match (
+            Layer::of(SPEC.opening, &self.values),
+            Tool::chosen(&self.values),
+        ) {
+            (Layer::First(_), Some(_)) => Layer::First(EDITING),
+            (Layer::All, None) => Layer::AllBut(FLAT_CONTROLS),
+            (layer, _) => layer,
+        }
+    }
+
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        if id == "flat" && value == 0.0 {
+            return self.set_flat("");
+        }
         let before = self.values.clone();
         if self.values.set(SPEC.id, id, value)? == Changed::No {
             return Ok(());
@@ -312,6 +350,11 @@ impl Model for FullLap {
             "t" if self.laps.is_running() && value > self.last() => self.refresh_own(),
             "t" => self.go_to(self.tick()),
             "speed" | "more" | "future" | "pick" | "number" => {}
+            "world" => self.world_chosen(before.get("world")),
+            "edit" | "piece" | "piece-number" => {
+                self.end_stroke();
+                self.flat.note = None;
+            }
             _ if own::PARAMS.contains(&id) => {
                 self.own.keep(&before);
                 self.refresh_own();
@@ -319,6 +362,15 @@ impl Model for FullLap {
             _ => self.recompute(),
         }
         Ok(())
+    }
+
+    fn set_text(&mut self, id: &str, text: &str) -> Result<(), ParamError> {
+        if id == "flat" {
+            return self.set_flat(text);
+        }
+        let (param, _) = self.values.find_for(SPEC.id, id)?;
+        let value = param.parse(text)?;
+        self.set(id, value)
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
@@ -329,7 +381,7 @@ impl Model for FullLap {
             }
             return Ok(());
         }
-        if self.press_loop(id) {
+        if self.press_loop(id) || self.press_flat(id) {
             return Ok(());
         }
         match id {
@@ -421,6 +473,9 @@ impl Model for FullLap {
     /// The line at the moment shown, in every plot over time; on the map, the keyframe that is looked
     /// at.
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        if let Some(tool) = self.tool_on(panel) {
+            return self.grab_flat(tool, at, reach);
+        }
         if let Some(handle) = hands::grab(&self.moment(), panel, at, reach) {
             return Some(handle);
         }
@@ -429,6 +484,9 @@ impl Model for FullLap {
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        if self.stroke(handle, at) {
+            return;
+        }
         if handle.panel == picture::panel::MAP {
             let ends = hands::dragged_ends(&self.moment(), handle, at);
             if let Some(ends) = ends.filter(|ends| !self.own.is_between(&self.values, *ends)) {
@@ -447,8 +505,16 @@ impl Model for FullLap {
         }
     }
 
+    fn release(&mut self) {
+        self.end_stroke();
+    }
+
     /// What is tapped is looked at; beside everything, nothing is. A second keyframe ends a loop.
     fn tap(&mut self, panel: &str, at: [f64; 2], reach: [f64; 2]) {
+        if let Some(tool) = self.tool_on(panel) {
+            self.tap_flat(tool, at, reach);
+            return;
+        }
         self.own.let_go();
         if ![
             picture::panel::MAP,
@@ -468,7 +534,25 @@ impl Model for FullLap {
 
     fn hover(&mut self, panel: &str, at: Option<[f64; 2]>) {
         self.own.let_go();
+        if self.tool_on(panel).is_some() {
+            self.hovered = None;
+            return;
+        }
         self.hovered = at.and_then(|at| hands::hovered(&self.moment(), panel, at));
+    }
+
+    fn receive(&mut self, delivery: &Delivery<'_>) {
+        if delivery.kind == "text-file" {
+            self.open_flat(delivery.text, delivery.bytes);
+        }
+    }
+
+    fn keys(&self) -> &'static [(&'static str, &'static str)] {
+        FLAT_KEYS
+    }
+
+    fn take_orders(&mut self) -> Vec<String> {
+        core::mem::take(&mut self.flat.orders)
     }
 
     fn set_motion(&mut self, motion: Motion) {

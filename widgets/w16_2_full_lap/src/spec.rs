@@ -7,6 +7,7 @@ use kit::param::{Choice, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::run::{LOOPS, NOISE, seed};
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use pr_sim::sketch::limits;
 
 /// Ticks of a lap of the Apartment.
 pub const LAP_TICKS: f64 = lap::LAP_TICKS as f64;
@@ -25,6 +26,15 @@ const MOST_NODES: f64 = 999.0;
 
 /// Where the widget starts: the tick of the canonical run's first loop.
 const FIRST_LOOP_TICK: f64 = 92.0;
+
+/// The value of `world` for the reader's own flat, after those that are built in.
+pub const OWN_WORLD: f64 = 5.0;
+
+/// Most characters of a flat in a link: four digits of base 64 for each number of the largest.
+const MOST_FLAT: usize = 33_000;
+
+/// Largest number of a wall, counted from 1.
+const MOST_PIECES: f64 = limits::WALLS as f64;
 
 /// What the reader can change.
 pub const PARAMS: &[ParamSpec] = &[
@@ -54,10 +64,100 @@ pub const PARAMS: &[ParamSpec] = &[
                     id: "hall",
                     label: "a round hall",
                 },
+                Choice {
+                    id: "own",
+                    label: "your own flat",
+                },
             ],
         },
         default: 0.0,
         help: "What is driven through. The Apartment by the chapter's estimator, every other world by the default one.",
+    },
+    ParamSpec {
+        id: "edit",
+        label: "tool on the map",
+        unit: "",
+        kind: ParamKind::Choice {
+            options: &[
+                Choice {
+                    id: "off",
+                    label: "off",
+                },
+                Choice {
+                    id: "move",
+                    label: "move",
+                },
+                Choice {
+                    id: "wall",
+                    label: "draw walls",
+                },
+                Choice {
+                    id: "way",
+                    label: "way points",
+                },
+                Choice {
+                    id: "remove",
+                    label: "remove",
+                },
+            ],
+        },
+        default: 0.0,
+        help: "What a press on the map does: moves a wall, an end, a way point or the start; draws a wall; places a way point behind the chosen one; removes what it meets. All on a grid of 5 cm.",
+    },
+    ParamSpec {
+        id: "piece",
+        label: "piece of the flat",
+        unit: "",
+        kind: ParamKind::Choice {
+            options: &[
+                Choice {
+                    id: "nothing",
+                    label: "nothing",
+                },
+                Choice {
+                    id: "wall",
+                    label: "a wall",
+                },
+                Choice {
+                    id: "first-end",
+                    label: "its first end",
+                },
+                Choice {
+                    id: "second-end",
+                    label: "its second end",
+                },
+                Choice {
+                    id: "way-point",
+                    label: "a way point",
+                },
+                Choice {
+                    id: "start",
+                    label: "the start",
+                },
+                Choice {
+                    id: "heading",
+                    label: "its heading",
+                },
+            ],
+        },
+        default: 0.0,
+        help: "What of the flat the arrows move and Remove takes away. On the map, a press chooses it.",
+    },
+    ParamSpec {
+        id: "piece-number",
+        label: "number of the piece",
+        unit: "",
+        kind: ParamKind::Seed { max: MOST_PIECES },
+        default: 1.0,
+        help: "The number of the wall or of the way point, from 1.",
+    },
+    ParamSpec {
+        id: "flat",
+        label: "your flat as text",
+        unit: "",
+        kind: ParamKind::Text { most: MOST_FLAT },
+        default: 0.0,
+        help: "Walls, start and way points of your own flat to the centimetre, as links carry them. It makes the world your own flat.",
     },
     NOISE,
     LOOPS,
@@ -323,6 +423,148 @@ const UNDO: ButtonSpec = ButtonSpec {
     help: "Takes the last change of your own loop back.",
 };
 
+const fn flat_button(id: &'static str, label: &'static str, help: &'static str) -> ButtonSpec {
+    ButtonSpec { id, label, help }
+}
+
+/// Begins and ends the editing of the flat.
+const EDIT: ButtonSpec = flat_button(
+    "edit-flat",
+    "Edit the flat",
+    "Puts a pencil into your hand, with which a drag on the map draws a wall, or puts it away.",
+);
+
+/// What edits the flat.
+const FLAT_BUTTONS: [ButtonSpec; 14] = [
+    flat_button(
+        "piece-back",
+        "Piece back",
+        "Chooses the wall, the end or the way point before; also Page Up.",
+    ),
+    flat_button(
+        "piece-on",
+        "Piece on",
+        "Chooses the next wall, end or way point; also Page Down.",
+    ),
+    flat_button(
+        "west",
+        "Left",
+        "Moves what is chosen 5 cm to the left, or turns the start back; also the arrow key.",
+    ),
+    flat_button(
+        "east",
+        "Right",
+        "Moves what is chosen 5 cm to the right, or turns the start on; also the arrow key.",
+    ),
+    flat_button(
+        "north",
+        "Up",
+        "Moves what is chosen 5 cm up, or turns the start on; also the arrow key.",
+    ),
+    flat_button(
+        "south",
+        "Down",
+        "Moves what is chosen 5 cm down, or turns the start back; also the arrow key.",
+    ),
+    flat_button(
+        "remove",
+        "Remove",
+        "Takes away the wall or the way point that is chosen; also Delete.",
+    ),
+    flat_button(
+        "add-wall",
+        "Add a wall",
+        "Puts a wall of a metre into the middle and chooses it.",
+    ),
+    flat_button(
+        "add-way-point",
+        "Add a way point",
+        "Puts a way point behind the chosen one, or at the end, and chooses it.",
+    ),
+    flat_button(
+        "turn-here",
+        "Seen again from here",
+        "From the chosen way point on, places are seen again: the map from there is compared with the one before.",
+    ),
+    flat_button(
+        "take-back",
+        "Take back",
+        "Takes the last change of the flat back; also Ctrl+Z.",
+    ),
+    flat_button(
+        "do-again",
+        "Do again",
+        "Makes the change again that was taken back; also Ctrl+Y.",
+    ),
+    flat_button(
+        "open-flat",
+        "Open a flat",
+        "Opens a world from a JSON file, as slam2d --world reads it.",
+    ),
+    flat_button(
+        "save-flat",
+        "Save the flat",
+        "Saves the world as a JSON file that slam2d --world reads.",
+    ),
+];
+
+/// Keys of those buttons.
+pub const FLAT_KEYS: &[(&str, &str)] = &[
+    ("ArrowLeft", "west"),
+    ("ArrowRight", "east"),
+    ("ArrowUp", "north"),
+    ("ArrowDown", "south"),
+    ("Delete", "remove"),
+    ("PageUp", "piece-back"),
+    ("PageDown", "piece-on"),
+    ("Control+z", "take-back"),
+    ("Control+y", "do-again"),
+];
+
+/// What waits until the flat is edited.
+pub const FLAT_CONTROLS: &[&str] = &[
+    "piece",
+    "piece-number",
+    "piece-back",
+    "piece-on",
+    "west",
+    "east",
+    "north",
+    "south",
+    "remove",
+    "add-wall",
+    "add-way-point",
+    "turn-here",
+    "take-back",
+    "do-again",
+    "open-flat",
+    "save-flat",
+];
+
+/// What the widget shows while the flat is edited.
+pub const EDITING: Opening = Opening {
+    panels: &["map", "loop"],
+    params: &["edit", "piece", "piece-number"],
+    buttons: &[
+        "play",
+        "edit-flat",
+        "piece-back",
+        "piece-on",
+        "west",
+        "east",
+        "north",
+        "south",
+        "remove",
+        "add-wall",
+        "add-way-point",
+        "turn-here",
+        "take-back",
+        "do-again",
+        "open-flat",
+        "save-flat",
+    ],
+};
+
 /// What never changes.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.2",
@@ -339,11 +581,37 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     opening: Opening {
         panels: &["map", "loop"],
         params: &["loops"],
-        buttons: &["play"],
+        buttons: &["play", "edit-flat"],
     },
     params: PARAMS,
     buttons: &[
-        PLAY, STEP, RESET, BEFORE, AT, AFTER, NEXT, ONE_BACK, ONE_ON, TIE, UNDO, DEFAULTS,
+        PLAY,
+        STEP,
+        RESET,
+        BEFORE,
+        AT,
+        AFTER,
+        NEXT,
+        ONE_BACK,
+        ONE_ON,
+        TIE,
+        UNDO,
+        EDIT,
+        FLAT_BUTTONS[0],
+        FLAT_BUTTONS[1],
+        FLAT_BUTTONS[2],
+        FLAT_BUTTONS[3],
+        FLAT_BUTTONS[4],
+        FLAT_BUTTONS[5],
+        FLAT_BUTTONS[6],
+        FLAT_BUTTONS[7],
+        FLAT_BUTTONS[8],
+        FLAT_BUTTONS[9],
+        FLAT_BUTTONS[10],
+        FLAT_BUTTONS[11],
+        FLAT_BUTTONS[12],
+        FLAT_BUTTONS[13],
+        DEFAULTS,
     ],
     presets: &[
         Preset {
@@ -476,6 +744,13 @@ pub const SPEC: WidgetSpec = WidgetSpec {
                 ("information", 1.0),
                 ("t", HALL_TICKS),
             ],
+            then: &[],
+        },
+        Preset {
+            id: "own-flat",
+            label: "Draw your own flat",
+            help: "The Apartment with a pencil in your hand: each wall that you draw is there at once, and the lap follows.",
+            set: &[("edit", 2.0)],
             then: &[],
         },
         Preset {

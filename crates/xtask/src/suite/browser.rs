@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::native::Tools;
 use super::skipped::SkipList;
 use crate::run::{Failure, program, show};
 
@@ -13,6 +14,11 @@ use crate::run::{Failure, program, show};
 pub fn run(chromium: &Path, only: &[String], skipped: Option<&SkipList>) -> Result<(), Failure> {
     let mut node = program("node");
     node.arg("tests/browser/run.mjs").env("CHROMIUM", chromium);
+    let tools = Tools::BesideTests;
+    // The pieces before have compiled it; without them the test that needs it does.
+    if tools.path("slam2d").exists() {
+        node.env("SLAM_NATIVE", tools.folder());
+    }
     if !only.is_empty() {
         node.args(["--only", &only.join(",")]);
     }

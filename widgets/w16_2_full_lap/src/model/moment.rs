@@ -2,10 +2,31 @@
 //! animation runs.
 
 use ch16_lab::lap::{LoopAttempt, OwnLoop, RecordedEdge};
+use kit::scene::Bounds;
 use pr_geom::SE2;
+use pr_sim::{CourseError, Sketch};
 
+use super::flat::Tool;
 use super::pick::Part;
+use super::piece::Piece;
 use super::runs::Runs;
+
+/// What is drawn of the reader's own flat, or of a world that is about to become one.
+#[derive(Clone, Copy)]
+pub struct Drawn<'a> {
+    /// Walls, start and way points.
+    pub sketch: &'a Sketch,
+    /// The tool in the reader's hand.
+    pub tool: Option<Tool>,
+    /// What is chosen.
+    pub piece: Option<Piece>,
+    /// Why it cannot be driven: the laps are of another world then.
+    pub problem: Option<&'a CourseError>,
+    /// Why the last change was none.
+    pub note: Option<&'a str>,
+    /// What the map shows while a stroke is under way.
+    pub frame: Option<Bounds>,
+}
 
 /// The state at one tick.
 pub struct Moment<'a> {
@@ -31,6 +52,8 @@ pub struct Moment<'a> {
     pub hovered: Option<Part>,
     /// The keyframe at which a loop of the reader's own begins that has no end yet.
     pub tied: Option<usize>,
+    /// What is drawn of the reader's own flat.
+    pub drawn: Option<Drawn<'a>>,
 }
 
 impl<'a> Moment<'a> {
@@ -81,6 +104,7 @@ impl<'a> Moment<'a> {
             picked: None,
             hovered: None,
             tied: None,
+            drawn: None,
         }
     }
 

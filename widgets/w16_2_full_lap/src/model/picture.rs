@@ -1,6 +1,7 @@
 //! The panels: the map, the loop from near, the plots over time, the strain of each edge.
 
 mod closeup;
+mod flat;
 mod map;
 mod parts;
 mod plots;
@@ -11,7 +12,7 @@ use kit::scene::{LegendEntry, Mark, Scene, Stroke, Tone};
 
 use super::moment::Moment;
 
-pub use map::loop_mark;
+pub use map::{loop_mark, shown_bounds as map_bounds};
 pub use plots::{OVER_TIME, gate_mark};
 pub use strain::{part_of, strain_mark};
 

@@ -16,7 +16,7 @@ use super::track::Track;
 /// A drive with both estimators that ran over it, and the errors over time.
 pub struct Runs {
     config: LapConfig,
-    place: BuiltInWorld,
+    place: Option<BuiltInWorld>,
     drive: Arc<Drive>,
     /// Of each attempt of `graph`, in order.
     gates: Vec<Gates>,
@@ -71,9 +71,14 @@ impl Runs {
         &self.config.drive.world
     }
 
-    /// Which of the built-in worlds it is.
-    pub fn place(&self) -> BuiltInWorld {
+    /// Which of the built-in worlds it is; none where it is the reader's own.
+    pub fn place(&self) -> Option<BuiltInWorld> {
         self.place
+    }
+
+    /// `the Apartment`.
+    pub fn place_label(&self) -> &'static str {
+        self.place.map_or("your own flat", |world| world.label())
     }
 
     /// Ticks of the lap.
@@ -168,8 +173,7 @@ impl Runs {
 }
 
 /// The built-in world with these walls.
-fn place(config: &LapConfig) -> BuiltInWorld {
-    let all = BuiltInWorld::ALL.iter().copied();
-    let mut found = all.filter(|place| place.course().world() == &*config.drive.world);
-    found.next().unwrap_or_default()
+fn place(config: &LapConfig) -> Option<BuiltInWorld> {
+    let mut all = BuiltInWorld::ALL.iter().copied();
+    all.find(|place| place.course().world() == &*config.drive.world)
 }

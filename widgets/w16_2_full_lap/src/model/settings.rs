@@ -5,12 +5,15 @@ use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::matching::InformationFrame;
 use kit::param::Values;
+use pr_sim::Course;
+
+use crate::spec::OWN_WORLD;
 
 /// What a lap depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LapSettings {
-    /// What is driven through.
-    pub world: BuiltInWorld,
+    /// What is driven through; none is the reader's own.
+    pub world: Option<BuiltInWorld>,
     /// Seed of all noise.
     pub seed: u32,
     /// Multiplies the variances of the wheels.
@@ -31,7 +34,10 @@ impl LapSettings {
     /// Reads the list.
     pub fn read(values: &Values) -> Self {
         Self {
-            world: BuiltInWorld::ALL[values.get("world") as usize],
+            world: match values.get("world") {
+                OWN_WORLD => None,
+                world => Some(BuiltInWorld::ALL[world as usize]),
+            },
             seed: values.get("seed") as u32,
             noise_factor: values.get("noise"),
             loop_closure: if values.get("loops") == 0.0 {
@@ -50,14 +56,16 @@ impl LapSettings {
         }
     }
 
-    /// What the core runs with.
-    pub fn config(&self) -> LapConfig {
-        let mut config = LapConfig::in_world(self.world, self.seed, self.noise_factor);
+    /// What the core runs with; `own` is the reader's own course. None where that cannot be driven.
+    pub fn config(&self, own: Option<&Course>) -> Option<LapConfig> {
+        let mut config = match self.world {
+            Some(world) => LapConfig::in_world(world, self.seed, self.noise_factor),
+            None => LapConfig::with_seed_and_noise(self.seed, self.noise_factor).elsewhere(own?),
+        };
         config.slam.loop_closure = self.loop_closure;
         config.slam.loops.gate_chi2 = self.gate_chi2;
         config.slam.loops.gate_model = self.gate_model;
-        config
-            .with_matcher(self.matcher)
-            .with_information(self.information_frame)
+        let config = config.with_matcher(self.matcher);
+        Some(config.with_information(self.information_frame))
     }
 }

@@ -1,6 +1,7 @@
 //! The widget without its picture, against the reference laps and the words it says of itself.
 
 mod both_gates;
+mod flat;
 mod own;
 mod parts;
 mod playing;

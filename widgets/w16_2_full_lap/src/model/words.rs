@@ -1,14 +1,13 @@
 //! The result in words and numbers.
 
-use ch16_lab::lap::{
-    BuiltInWorld, Choice as _, LoopAttempt, LoopEffect, LoopJudgement, OwnLoopError,
-};
+use ch16_lab::lap::{BuiltInWorld, LoopAttempt, LoopEffect, LoopJudgement, OwnLoopError};
 use ch16_slam2d::loops::GateModel;
 use kit::model::{Fact, Outcome, Standing};
 
 use super::moment::Moment;
 use super::runs::Runs;
 
+pub mod flat;
 pub mod parts;
 
 pub use parts::part_label;
@@ -53,7 +52,10 @@ pub fn outcome(moment: &Moment, refused: Option<&OwnLoopError>) -> Outcome {
         standing,
         verdict,
         sentence,
-    } = said(moment, refused);
+    } = match &moment.drawn {
+        Some(drawn) => flat::said(drawn, said(moment, refused)),
+        None => said(moment, refused),
+    };
     let (runs, tick) = (moment.runs, moment.tick);
     let mut facts = moment_facts(runs, tick);
     facts.extend(loop_facts(runs, tick));
@@ -244,6 +246,9 @@ pub fn summary(moment: &Moment, refused: Option<&OwnLoopError>) -> String {
     } else if let Some(refused) = refused {
         rest += &format!(" Your own loop: {refused}.");
     }
+    if let Some(drawn) = &moment.drawn {
+        rest += &flat::summary(drawn);
+    }
     if let Some(part) = moment.picked {
         rest += &format!(" Looked at: {}.", parts::part_said(moment, part).sentence);
     }
@@ -263,12 +268,13 @@ fn place_words(runs: &Runs) -> String {
     let bounds = runs.world().bounds();
     let [width, height] = [bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y];
     let looks = match runs.place() {
-        BuiltInWorld::Apartment => ", with a corridor along its middle",
-        BuiltInWorld::Ring => " around a block of rooms",
-        BuiltInWorld::TwinRooms => " on a corridor, side by side",
-        BuiltInWorld::Corridor => " without a door or a pillar",
-        BuiltInWorld::Hall => " without a corner",
+        Some(BuiltInWorld::Apartment) => ", with a corridor along its middle",
+        Some(BuiltInWorld::Ring) => " around a block of rooms",
+        Some(BuiltInWorld::TwinRooms) => " on a corridor, side by side",
+        Some(BuiltInWorld::Corridor) => " without a door or a pillar",
+        Some(BuiltInWorld::Hall) => " without a corner",
+        None => "",
     };
-    let label = runs.place().label();
+    let label = runs.place_label();
     format!("Map of {label}, {width:.1} m by {height:.1} m{looks}")
 }

@@ -1,15 +1,19 @@
 //! The map panel: the world, the three estimates, the graph and its map.
 
-use ch16_lab::lap::{BuiltInWorld, Choice as _, LoopAttempt, OwnLoop};
+use ch16_lab::lap::{BuiltInWorld, LoopAttempt, OwnLoop};
 use kit::scene::{Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::{SE2, math};
-use pr_sim::World;
+use pr_sim::{Wall, World};
 
-use super::{LoopLook, panel, parts};
-use crate::model::moment::Moment;
+use super::{LoopLook, flat, panel, parts};
+use crate::model::flat::extent;
+use crate::model::moment::{Drawn, Moment};
 
 /// Room around the world, m.
 const MARGIN_M: f64 = 0.4;
+
+/// The same while it is edited: so far out a stroke may lead.
+const EDIT_MARGIN_M: f64 = 1.0;
 
 /// Lowest and highest arc of a loop, m; in between it is as high as its ends are apart.
 const ARC_HEIGHT_M: [f64; 2] = [0.7, 1.2];
@@ -22,17 +26,16 @@ const ARC_STEPS: u32 = 24;
 
 /// The world at a moment.
 pub fn map(moment: &Moment) -> Panel {
-    let world = moment.runs.world();
     let bounds = shown_bounds(moment);
-    let mut layers = vec![walls(world)];
-    layers.extend(map_points(moment));
-    layers.extend(paths(moment));
-    layers.extend(history(moment));
-    layers.extend(graph(moment));
-    layers.extend(robots(moment));
-    layers.extend(parts::looked_at(moment));
-    layers.extend(attempt_now(moment));
-    if moment.runs.place() == BuiltInWorld::Apartment {
+    let mut layers = vec![walls(moment)];
+    // A lap of another world has nothing to say in this one.
+    if moment.drawn.is_none_or(|drawn| drawn.problem.is_none()) {
+        layers.extend(lap(moment));
+    }
+    if let Some(drawn) = moment.drawn.filter(is_planned) {
+        layers.extend(flat::layers(&drawn));
+    }
+    if moment.runs.place() == Some(BuiltInWorld::Apartment) && moment.drawn.is_none() {
         layers.extend(rooms());
     }
     Panel {
@@ -48,20 +51,51 @@ pub fn map(moment: &Moment) -> Panel {
     }
 }
 
+/// All that is estimated, and the truth.
+fn lap(moment: &Moment) -> Vec<Layer> {
+    let mut layers = Vec::from(map_points(moment));
+    layers.extend(paths(moment));
+    layers.extend(history(moment));
+    layers.extend(graph(moment));
+    layers.extend(robots(moment));
+    layers.extend(parts::looked_at(moment));
+    layers.extend(attempt_now(moment));
+    layers
+}
+
+/// Whether the plan is shown: while it is edited, and where nothing else can be.
+fn is_planned(drawn: &Drawn) -> bool {
+    drawn.tool.is_some() || drawn.problem.is_some()
+}
+
 /// `The Apartment after tick 92`.
 fn title(moment: &Moment) -> String {
-    let mut words = moment.runs.place().label().to_owned();
+    if let Some(drawn) = moment.drawn.filter(is_planned) {
+        return flat::title(&drawn);
+    }
+    let mut words = moment.runs.place_label().to_owned();
     words[..1].make_ascii_uppercase();
     format!("{words} after tick {}", moment.tick)
 }
 
 /// The world with some room around it, and all that the estimates make of it outside of the Apartment,
 /// whose axes never move.
-fn shown_bounds(moment: &Moment) -> Bounds {
-    let walls = moment.runs.world().bounds();
-    let mut min = [walls.min.x, walls.min.y];
-    let mut max = [walls.max.x, walls.max.y];
-    if moment.runs.place() != BuiltInWorld::Apartment {
+pub fn shown_bounds(moment: &Moment) -> Bounds {
+    if let Some(frame) = moment.drawn.and_then(|drawn| drawn.frame) {
+        return frame;
+    }
+    let Bounds { mut min, mut max } = match &moment.drawn {
+        Some(drawn) => extent(drawn.sketch),
+        None => {
+            let walls = moment.runs.world().bounds();
+            Bounds {
+                min: [walls.min.x, walls.min.y],
+                max: [walls.max.x, walls.max.y],
+            }
+        }
+    };
+    let is_shown = moment.drawn.is_none_or(|drawn| drawn.problem.is_none());
+    if moment.runs.place() != Some(BuiltInWorld::Apartment) && is_shown {
         let ends = moment.runs.graph.poses_at(moment.runs.ticks());
         for pose in ends.iter().chain(&moment.nodes).map(xy) {
             for i in 0..2 {
@@ -70,17 +104,24 @@ fn shown_bounds(moment: &Moment) -> Bounds {
             }
         }
     }
+    let margin = match moment.drawn.and_then(|drawn| drawn.tool) {
+        Some(_) => EDIT_MARGIN_M,
+        None => MARGIN_M,
+    };
     Bounds {
-        min: min.map(|least| least - MARGIN_M),
-        max: max.map(|most| most + MARGIN_M),
+        min: min.map(|least| least - margin),
+        max: max.map(|most| most + margin),
     }
 }
 
-fn walls(world: &World) -> Layer {
-    let walls = world.walls().iter();
-    let walls = walls.map(|wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]]);
+/// The walls as they are drawn, also before the lap has followed.
+fn walls(moment: &Moment) -> Layer {
+    let ends = |wall: &Wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]];
     Layer::Segments {
-        segments: walls.collect(),
+        segments: match &moment.drawn {
+            Some(drawn) => flat::walls(drawn),
+            None => moment.runs.world().walls().iter().map(ends).collect(),
+        },
         stroke: Stroke::Solid,
         tone: Tone::Ink,
         width_px: 1.0,
@@ -280,6 +321,9 @@ fn legend(moment: &Moment) -> Vec<LegendEntry> {
         LoopLook::ACCEPTED.entry("loop accepted"),
         LoopLook::REFUSED.entry("loop refused"),
     ];
+    if moment.drawn.as_ref().is_some_and(is_planned) {
+        legend.push(flat::legend());
+    }
     if moment.own.is_some_and(OwnLoop::is_closed) {
         let wide = "wide: strained by your loop";
         legend.push(LegendEntry::line(wide, Tone::Posterior, Stroke::Solid));

@@ -6,6 +6,7 @@ use ch16_slam2d::matching::InformationFrame;
 use kit::param::ParamKind;
 
 use super::*;
+use crate::spec::OWN_WORLD;
 
 /// The help of a preset says so.
 fn assert_promised(preset: &str, words: &str) {
@@ -187,7 +188,10 @@ fn named<T: Choice>() -> Vec<(&'static str, &'static str)> {
 
 #[test]
 fn matchers_and_frames_are_called_as_on_the_command_line_and_drive_the_same_lap() {
-    assert_eq!(options("world"), named::<BuiltInWorld>());
+    let mut worlds = named::<BuiltInWorld>();
+    assert_eq!(worlds.len() as f64, OWN_WORLD);
+    worlds.push(("own", "your own flat"));
+    assert_eq!(options("world"), worlds);
     assert_eq!(options("matcher"), named::<LapMatcher>());
     assert_eq!(options("information"), named::<InformationFrame>());
     let mut model = at(&[("seed", 7.0), ("noise", 2.0)]);

@@ -19,7 +19,7 @@ fn every_world_is_driven_as_on_the_command_line_and_says_where_it_is() {
         let record = LapRunner::new().run(&config);
         assert_eq!(results(&model).graph, record.lap.summary, "{world:?}");
         assert_eq!(model.tick(), record.ticks());
-        assert_eq!(model.runs.place(), *world);
+        assert_eq!(model.runs.place(), Some(*world));
         assert!(
             model
                 .summary()

@@ -1,0 +1,205 @@
+// The reader's own flat in w16.2: drawn by mouse, finger and keys, carried by links, history and files.
+
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { describe, it } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import * as h from './harness.mjs';
+
+const visit = h.visitor();
+const BODY = '<slam-widget name="w16.2" linked></slam-widget>';
+const ROOT = fileURLToPath(new URL('../../', import.meta.url));
+
+/** What the command prints; the suite says in which folder it has compiled it, else cargo does. */
+function slam2d(...words) {
+  const options = { cwd: ROOT, encoding: 'utf8', maxBuffer: 1 << 28 };
+  const compiled = process.env.SLAM_NATIVE;
+  if (compiled !== undefined) return execFileSync(join(compiled, 'slam2d'), words, options);
+  return execFileSync('cargo', ['run', '--quiet', '--package', 'slam2d_cli', '--bin', 'slam2d', '--', ...words], options);
+}
+
+const on = (test, { query = '?w=16.2&edit=wall', ...options } = {}) => visit(BODY, async (tab, server) => {
+  await h.ready(tab);
+  await test(tab, server);
+}, { path: `/t.html${query}`, options });
+
+const outcome = (tab) => tab.evaluate(() => document.querySelector('slam-widget').outcome);
+const get = (tab, id) => tab.evaluate((name) => document.querySelector('slam-widget').get(name), id);
+const press = (tab, id) => tab.evaluate((name) => document.querySelector('slam-widget').press(name), id);
+const changed = (tab, flat) => tab.waitForFunction((old) => document.querySelector('slam-widget').get('flat') !== old, flat);
+const walls = async (tab) => Number(/(\d+) walls?,/.exec(await tab.evaluate(() => document.querySelector('slam-widget').summary))[1]);
+
+/** Draws on the map with the mouse, from one place in metres to another. */
+async function drag(tab, from, to) {
+  const [start, end] = [await h.pointOf(tab, 'map', ...from), await h.pointOf(tab, 'map', ...to)];
+  await tab.mouse.move(...start);
+  await tab.mouse.down();
+  await h.moreFrames(tab, 1);
+  await tab.mouse.move(...end, { steps: 3 });
+  await h.moreFrames(tab, 1);
+  await tab.mouse.up();
+  await h.moreFrames(tab, 1);
+}
+
+/** The file that the widget saves. */
+async function saved(tab) {
+  const download = tab.waitForEvent('download');
+  await press(tab, 'save-flat');
+  return (await h.bytesOf(await download)).toString('utf8');
+}
+
+describe('a flat of one’s own', () => {
+  it('follows the mouse: a wall is there at once, and the lap after it', async () => {
+    await on(async (tab) => {
+      const before = await outcome(tab);
+      await drag(tab, [5, 3.8], [5, 4.1]);
+      await changed(tab, '');
+      assert.equal(await get(tab, 'world'), 'own');
+      assert.equal(await walls(tab), 19);
+      const after = await outcome(tab);
+      assert.match(after.sentence, /^wall 19 of 19, from \(5, 3\.8\) to \(5, 4\.1\) m; /);
+      assert.notDeepEqual(after.facts, before.facts);
+      // Two walls from one corner are two.
+      await drag(tab, [1, 1], [2, 1]);
+      await drag(tab, [1, 1], [1, 2]);
+      assert.equal(await walls(tab), 21);
+      await press(tab, 'take-back');
+      assert.equal(await walls(tab), 20);
+    });
+  });
+
+  it('follows a finger that draws across, and the page stays where it is', async () => {
+    await on(async (tab) => {
+      const scrolled = () => tab.evaluate(() => scrollY);
+      const before = await scrolled();
+      const session = await tab.context().newCDPSession(tab);
+      const touch = async (type, at) => session.send('Input.dispatchTouchEvent', {
+        type, touchPoints: at === undefined ? [] : [{ x: at[0], y: at[1] }],
+      });
+      const from = await h.pointOf(tab, 'map', 1, 1);
+      const to = await h.pointOf(tab, 'map', 3, 1.3);
+      const between = [0, 1].map((axis) => (from[axis] + to[axis]) / 2);
+      await touch('touchStart', from);
+      await touch('touchMove', between);
+      await touch('touchMove', to);
+      await changed(tab, '');
+      await touch('touchEnd');
+      await h.moreFrames(tab, 1);
+      assert.equal(await walls(tab), 19);
+      assert.equal(await scrolled(), before);
+    }, { hasTouch: true });
+  });
+
+  it('is edited by keys alone, and a screen reader hears it', async () => {
+    await on(async (tab) => {
+      await tab.evaluate(() => document.querySelector('slam-widget').shadowRoot.querySelector('[data-control="piece-on"]').focus());
+      await tab.keyboard.press('PageDown');
+      await tab.waitForFunction(() => document.querySelector('slam-widget').get('piece') === 'wall');
+      await tab.keyboard.press('PageUp');
+      assert.equal(await get(tab, 'piece-number'), 18);
+      await tab.keyboard.press('ArrowLeft');
+      await changed(tab, '');
+      assert.match((await outcome(tab)).sentence, /^wall 18 of 18, from \(9\.55, 7\.4\)/);
+      const said = () => tab.waitForFunction(() => /^wall 18 of 18, from \(9\.55/
+        .test(document.querySelector('slam-widget').shadowRoot.querySelector('[aria-live]').textContent));
+      await said();
+      const flat = await get(tab, 'flat');
+      await tab.keyboard.press('Delete');
+      await changed(tab, flat);
+      assert.equal(await walls(tab), 17);
+      await tab.keyboard.press('Control+z');
+      assert.equal(await walls(tab), 18);
+      assert.equal(await get(tab, 'flat'), flat);
+      await tab.keyboard.press('Control+y');
+      assert.equal(await walls(tab), 17);
+      const shortcuts = await tab.evaluate(() => document.querySelector('slam-widget').shadowRoot
+        .querySelector('[data-control="remove"]').getAttribute('aria-keyshortcuts'));
+      assert.equal(shortcuts, 'Delete');
+    });
+  });
+
+  it('travels in a link of less than 2 kB, and Back in the history finds it', async () => {
+    await on(async (tab, server) => {
+      await drag(tab, [1, 1], [2, 1]);
+      await changed(tab, '');
+      await tab.waitForFunction(() => location.search.includes('flat='));
+      const link = await tab.evaluate(() => document.querySelector('slam-widget').link);
+      assert.ok(link.length < 2000, `${link.length} characters`);
+      const flat = await get(tab, 'flat');
+      await tab.evaluate(() => {
+        const a = Object.assign(document.createElement('a'), { className: 'slam-link', href: '?w=16.2&world=ring', textContent: 'ring' });
+        document.body.prepend(a);
+        a.click();
+      });
+      await tab.waitForFunction(() => document.querySelector('slam-widget').get('world') === 'ring');
+      assert.equal(await get(tab, 'flat'), '');
+      await tab.goBack();
+      await changed(tab, '');
+      assert.equal(await get(tab, 'flat'), flat);
+      assert.equal(await get(tab, 'world'), 'own');
+      const shown = await outcome(tab);
+      await tab.goto(new URL(link, server.url).href);
+      await h.ready(tab);
+      assert.equal(await get(tab, 'flat'), flat);
+      assert.deepEqual((await outcome(tab)).facts, shown.facts);
+    });
+  });
+
+  it('that is damaged leaves the widget with its world and one sentence', async () => {
+    const note = (tab, pattern) => tab.waitForFunction((source) => new RegExp(source)
+      .test(document.querySelector('slam-widget').shadowRoot.querySelector('.note').textContent), pattern);
+    await on(async (tab) => {
+      await note(tab, 'flat is damaged or cut off');
+      assert.equal(await get(tab, 'world'), 'apartment');
+      assert.equal(await get(tab, 'flat'), '');
+      for (const [flat, why] of [['AAAAA', /damaged or cut off/], ['%%%', /letters, digits, - and _/], ['A'.repeat(50_000), /at most 33000/]]) {
+        const error = await tab.evaluate((text) => {
+          try {
+            document.querySelector('slam-widget').set('flat', text);
+            return '';
+          } catch (thrown) {
+            return `${thrown.name}: ${thrown.message}`;
+          }
+        }, flat);
+        assert.match(error, why);
+        assert.match(error, /^RangeError: /);
+        assert.ok(error.length < 300, error);
+      }
+      assert.equal(await get(tab, 'world'), 'apartment');
+    }, { query: '?w=16.2&flat=BAAAAAAAAAAA' });
+  });
+
+  it('goes out as a file that the command line drives to the same end, and comes in again', async () => {
+    await on(async (tab) => {
+      await drag(tab, [5, 3.8], [5, 4.1]);
+      await changed(tab, '');
+      const { facts } = await outcome(tab);
+      const flat = await get(tab, 'flat');
+      const json = await saved(tab);
+      assert.equal(JSON.parse(json).walls_m.length, 19);
+      await press(tab, 'defaults');
+      assert.equal(await get(tab, 'world'), 'apartment');
+      const chosen = tab.waitForEvent('filechooser');
+      await press(tab, 'open-flat');
+      await (await chosen).setFiles({ name: 'flat.json', mimeType: 'application/json', buffer: Buffer.from(json) });
+      await changed(tab, '');
+      assert.equal(await get(tab, 'flat'), flat);
+      await tab.evaluate(() => document.querySelector('slam-widget').openFile(new File(['{"walls_m": []'], 'broken.json')));
+      await tab.waitForFunction(() => /^broken\.json cannot be driven: line 1/.test(document.querySelector('slam-widget').outcome.sentence));
+      assert.equal(await get(tab, 'flat'), flat);
+      const folder = mkdtempSync(join(tmpdir(), 'flat-'));
+      try {
+        writeFileSync(join(folder, 'flat.json'), json);
+        const lap = JSON.parse(slam2d('lap', '--world', join(folder, 'flat.json'), '--information', 'chapter', '--json'));
+        assert.equal(lap.keyframes, facts.keyframes);
+        assert.equal(lap.keyframe_rms, facts.keyframe_rms_m);
+        assert.equal(lap.odometry_end_error, facts.odometry_error_m);
+      } finally {
+        rmSync(folder, { recursive: true });
+      }
+    });
+  });
+});

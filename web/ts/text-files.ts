@@ -1,0 +1,44 @@
+// Texts that a widget takes from a file of the reader's, and gives as one: a world as JSON.
+
+import type { Widget } from '../pkg/glue.js';
+import { saveBlob } from './export';
+import { chooseFile } from './robot/files';
+
+/** Larger files are no world, bytes: two thousand walls take a tenth of it. */
+const MOST_BYTES = 1 << 20;
+
+export interface TextFileHost {
+  readonly frame: HTMLElement;
+  /** Lets the widget act, once it runs. */
+  act(deed: (widget: Widget) => void): void;
+  /** Says what is wrong with a file. */
+  refuse(problem: string): void;
+}
+
+/** Does an order of the widget that is about text files; false where it is about something else. */
+export function carryTextOrder(order: string, host: TextFileHost): boolean {
+  const [head = '', ...lines] = order.split('\n');
+  const [name, given = ''] = head.split(' ');
+  if (name === 'open-text') {
+    chooseFile(host.frame, given, 'A world as JSON', (file) => void takeTextFile(file, host));
+  } else if (name === 'save-text') {
+    saveBlob(new Blob([lines.join('\n')], { type: 'application/json' }), given);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/** Hands the widget a file of the reader's. */
+export async function takeTextFile(file: File, host: TextFileHost): Promise<void> {
+  if (file.size > MOST_BYTES) {
+    host.refuse(`\`${file.name.slice(0, 60)}\` is larger than a world of 1 MB.`);
+    return;
+  }
+  try {
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    host.act((widget) => widget.deliver('text-file', file.name, new Float64Array(), bytes));
+  } catch {
+    host.refuse(`\`${file.name.slice(0, 60)}\` cannot be read any more; it may have moved or changed.`);
+  }
+}
