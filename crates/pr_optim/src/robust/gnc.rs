@@ -11,9 +11,6 @@ use crate::problem::Problem;
 use crate::report::{Report, StopReason};
 use crate::settings::Settings;
 
-/// Weights closer to 0 or 1 than this have decided.
-const DECIDED: f64 = 1e-4;
-
 /// A measurement with at least this weight was believed.
 const BELIEVED: f64 = 0.5;
 
@@ -173,7 +170,8 @@ impl Gnc {
             };
         }
         self.solve(problem, self.settings.steps_in_round)?;
-        let is_undecided = |w: &&f64| **w > DECIDED && **w < 1.0 - DECIDED;
+        // Exactly: far from the optimum every weight is small at first, and grows with μ.
+        let is_undecided = |w: &&f64| **w > 0.0 && **w < 1.0;
         let round = GncRound {
             mu,
             believed: self.weights.iter().filter(|w| **w >= BELIEVED).count(),
