@@ -100,7 +100,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
     title: "Wrong Jacobians, wrong residual",
     misconception: "A wrong Jacobian costs steps. A wrong residual costs the answer, and converges as if all were well.",
     notice: &[
-        "The exact Jacobian falls off a cliff: each step squares the distance. The others walk down a slope, a factor a step.",
+        "With the exact Jacobian each step takes the distance down by some two powers of ten, until only rounding is left.",
         "The Jacobian that is twice too long goes half the way each time, and still ends at the optimum.",
         "The approximate one ends beside it by the square of the contradiction: a centimetre, where the wrong residual is two decimetres off.",
         "Without a contradiction all four end at the same place. A test on clean data does not find a wrong residual.",

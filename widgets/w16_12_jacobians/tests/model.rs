@@ -70,7 +70,7 @@ fn each_curve_ends_where_the_table_says() {
         assert_eq!(end[0], fact(&widget, &format!("{id}_steps")));
         let off_m = fact(&widget, &format!("{id}_off_m"));
         // Powers of ten, not below the floor of the picture.
-        assert!((end[1] - off_m.max(1e-10).log10()).abs() < 1e-9, "{id}");
+        assert!((end[1] - off_m.max(1e-9).log10()).abs() < 1e-9, "{id}");
     }
     let by_chi2 = with(&[("curve", 1.0)]).scene().panels;
     assert_eq!(by_chi2.last().unwrap().title, "χ² above the optimum");

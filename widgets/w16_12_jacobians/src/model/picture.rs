@@ -17,7 +17,7 @@ const MARKS: [Mark; 4] = [Mark::Square, Mark::Circle, Mark::Triangle, Mark::Cros
 /// Room around the poses, m.
 const MARGIN_M: f64 = 0.4;
 /// The curves end at this power of ten: what is less is rounding.
-const LOWEST_POWER: f64 = -10.0;
+const LOWEST_POWER: f64 = -9.0;
 
 pub fn scene(widget: &WrongJacobians) -> Scene {
     let mut panels: Vec<Panel> = (0..NAMES.len()).map(|k| map(widget, k)).collect();
@@ -101,7 +101,7 @@ fn capital(name: &str) -> String {
     first.chain(letters).collect()
 }
 
-/// Powers of ten over the steps: a factor a step is a straight line, squaring falls off a cliff.
+/// Powers of ten over the steps: a factor a step is a straight line.
 fn curve(widget: &WrongJacobians) -> Panel {
     let is_distance = widget.values.get("curve") == 0.0;
     let best_chi2 = widget.solved.least_chi2;
