@@ -32,9 +32,9 @@ await writeNotices(await bundleScript()).catch(endWithOneSentence);
 
 async function renderPage() {
   const source = await readFile(path.join(root, 'index.html'), 'utf8');
+  const sketches = await drawStills(outDir);
   const drawn = addStills(addPictures(renderFormulas(source), await widgetSpecs()));
-  const page = await addListings(drawn, root);
-  await drawStills(outDir);
+  const page = await addListings(addSketches(drawn, sketches), root);
   await writeFile(path.join(outDir, 'index.html'), page);
 }
 
@@ -70,6 +70,17 @@ function addStills(html) {
       <source media="(prefers-color-scheme: dark)" srcset="pictures/${name}-dark.svg">
       <img src="pictures/${name}-light.svg"${rest}>
     </picture>`);
+}
+
+/** The small figures at their first place: `<figure class="drawing sketch" data-sketch="gate">`. */
+function addSketches(html, sketches) {
+  return html.replace(/<figure [^>]*data-sketch="([a-z]+)"[^>]*>/g, (open, name) => {
+    const sketch = sketches.get(name);
+    if (sketch === undefined) {
+      throw new Error(`index.html has a figure ${name}, which does not exist: the figures are ${[...sketches.keys()].join(', ')}`);
+    }
+    return `${open}\n    ${sketch}`;
+  });
 }
 
 /** `<tex>…</tex>` in the line and `<tex display>…</tex>` on lines of its own. */

@@ -9,6 +9,7 @@ import { addCopyButtons } from './copy';
 import { LapPlayer } from './lap/player';
 import type { Story } from './lap/story';
 import { LapsFigure } from './laps/laps';
+import { SketchFigure, type SketchSchema } from './sketch';
 
 /** The run that the page calls canonical. */
 const CANONICAL = { seed: 12648430, noise: 1 };
@@ -21,6 +22,7 @@ letKeyboardScroll(document.querySelectorAll<HTMLElement>('.math, .scroll'));
 addCopyButtons(document.querySelectorAll<HTMLElement>('figure.listing'));
 void replayLap();
 driveLaps();
+void moveSketches();
 
 /** The still picture stays where the core cannot be had; the widgets say why. */
 async function replayLap(): Promise<void> {
@@ -29,6 +31,16 @@ async function replayLap(): Promise<void> {
   if (figure === null || glue === undefined) return;
   const { seed, noise } = CANONICAL;
   new LapPlayer(figure, JSON.parse(glue.lapStory(seed, noise)) as Story);
+}
+
+/** The sliders of the small figures wait for the core. */
+async function moveSketches(): Promise<void> {
+  const glue = await (core as () => Promise<Glue>)().catch(() => undefined);
+  if (glue === undefined) return;
+  for (const schema of JSON.parse(glue.sketchSchemas()) as SketchSchema[]) {
+    const figure = document.querySelector<HTMLElement>(`[data-sketch="${schema.name}"]`);
+    if (figure !== null) new SketchFigure(figure, schema, glue);
+  }
 }
 
 /** A thousand laps, once one comes to look at them. */

@@ -11,15 +11,52 @@ const PKG = path.join(here, '..', 'pkg');
 /** The run that the page calls canonical. */
 const CANONICAL_SEED = 12648430;
 
-/** Writes `pictures/lap-light.svg` and its dark sister. */
+/** Writes `pictures/lap-light.svg` and its dark sister, and those of the small figures, which it returns. */
 export async function drawStills(outDir) {
-  const { still } = await load('lap/still.ts');
   const core = await instantiate();
+  await drawLap(core, outDir);
+  return drawSketches(core, outDir);
+}
+
+async function drawLap(core, outDir) {
+  const { still } = await load('lap/still.ts');
   const story = JSON.parse(core.lapStory(CANONICAL_SEED, 1));
   const style = await readFile(path.join(here, 'page.css'), 'utf8');
   for (const theme of ['light', 'dark']) {
     await writeFile(path.join(outDir, 'pictures', `lap-${theme}.svg`), still(story, inksOf(style, theme)));
   }
+}
+
+/** Each small figure at its slider's first place, for both themes and both widths: its HTML, by its name. */
+async function drawSketches(core, outDir) {
+  const { NARROW, WIDTHS, sayValue } = await load('sketch.ts');
+  const html = new Map();
+  for (const sketch of JSON.parse(core.sketchSchemas())) {
+    const sizes = {};
+    let says = '';
+    for (const [width, pixels] of Object.entries(WIDTHS)) {
+      for (const theme of ['light', 'dark']) {
+        const { svg, sentence } = JSON.parse(core.drawSketch(sketch.name, sketch.default, pixels, theme));
+        await writeFile(path.join(outDir, 'pictures', `${sketch.name}-${width}-${theme}.svg`), svg);
+        sizes[width] = svg.match(/ width="\d+" height="\d+"/)[0];
+        says = sentence;
+      }
+    }
+    const source = (width, theme, media) =>
+      `<source media="${media}" srcset="pictures/${sketch.name}-${width}-${theme}.svg"${sizes[width]}>`;
+    const value = sayValue(sketch, sketch.default);
+    html.set(sketch.name, `<div class="sketch-picture"><picture>
+      ${source('narrow', 'dark', `${NARROW} and (prefers-color-scheme: dark)`)}
+      ${source('narrow', 'light', NARROW)}
+      ${source('wide', 'dark', '(prefers-color-scheme: dark)')}
+      <img src="pictures/${sketch.name}-wide-light.svg"${sizes.wide} alt="${sketch.title}. ${says}" loading="lazy">
+    </picture></div>
+    <label class="sketch-slider"><span>${sketch.label}</span>
+      <input type="range" disabled min="${sketch.min}" max="${sketch.max}" step="${sketch.step}" value="${sketch.default}"
+        aria-valuetext="${value}"><output>${value}</output></label>
+    <p class="sketch-says" role="status">${says}</p>`);
+  }
+  return html;
 }
 
 /** A module of the page in TypeScript, for Node. */

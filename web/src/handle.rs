@@ -14,7 +14,7 @@ use wasm_bindgen::prelude::*;
 
 use crate::app::{Shared, WidgetApp, apply_theme, web_options};
 use crate::outcomes::Outcomes;
-use crate::{app, registry, schema, state, story};
+use crate::{app, registry, schema, sketches, state, story};
 
 /// The schema of every widget, a JSON array.
 #[wasm_bindgen(js_name = widgetSchemas)]
@@ -44,6 +44,24 @@ pub fn lap_digest(seed: u32, noise_factor: f64) -> String {
 #[wasm_bindgen(js_name = lapStory)]
 pub fn lap_story(seed: u32, noise_factor: f64) -> String {
     story::story(seed, noise_factor).to_string()
+}
+
+/// Title and slider of each small figure of the page, a JSON array; see [`sketches`].
+#[wasm_bindgen(js_name = sketchSchemas)]
+pub fn sketch_schemas() -> String {
+    let figures = sketches::SKETCHES.iter().map(sketches::Sketch::schema);
+    Value::from(figures.collect::<Vec<_>>()).to_string()
+}
+
+/// A small figure of the page with its slider at `value`: `{"svg", "sentence"}`.
+///
+/// # Errors
+/// Where there is no such figure.
+#[wasm_bindgen(js_name = drawSketch)]
+pub fn draw_sketch(name: &str, value: f64, width_px: f32, theme: &str) -> Result<String, JsError> {
+    let sketch = sketches::find(name)
+        .ok_or_else(|| JsError::new(&format!("there is no figure `{name}`")))?;
+    Ok(sketch.drawn(value, width_px, theme_of(theme)).to_string())
 }
 
 /// Drives one lap after the other.

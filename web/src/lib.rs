@@ -2,12 +2,13 @@
 //!
 //! [`registry`] lists the widgets, [`schema`] and [`state`] write as JSON what the host page needs
 //! to know of them; [`story`] and [`outcomes`] drive laps for the pictures that the page draws by
-//! itself. All of it is plain Rust and tested natively. The browser half adapts a widget to
+//! itself, and [`sketches`] are its small figures. All of it is plain Rust and tested natively. The browser half adapts a widget to
 //! eframe and to JavaScript; what the host page does with it is in `web/ts`.
 
 pub mod outcomes;
 pub mod registry;
 pub mod schema;
+pub mod sketches;
 pub mod state;
 pub mod story;
 

@@ -2,8 +2,8 @@
 
 use crate::model::Model;
 use crate::palette::{Rgb, Theme};
-use crate::picture::picture;
-use crate::scene::Raster;
+use crate::picture::{picture, scene_picture};
+use crate::scene::{Raster, Scene};
 use crate::surface::{Align, Haloed, Measure, Pen, Px, PxRect, Surface, TextSize};
 use crate::svg::SvgSurface;
 use crate::view::View;
@@ -21,26 +21,15 @@ const SLACK: f32 = 1.0;
 pub fn text_faults(model: &dyn Model, view: &dyn View, width_px: f32) -> Vec<String> {
     let mut recorder = Recorder::new();
     let height = picture(&mut recorder, model, view, width_px, Theme::Light);
-    let mut faults = Vec::new();
-    for (index, (text, rect)) in recorder.texts.iter().enumerate() {
-        let inside = rect.left >= -SLACK
-            && rect.right() <= width_px + SLACK
-            && rect.top >= 0.0
-            && rect.bottom() <= height;
-        if !inside {
-            faults.push(format!(
-                "`{text}` leaves the picture of {width_px} × {height}: {rect:?}"
-            ));
-        }
-        for (other, place) in &recorder.texts[index + 1..] {
-            if overlap(rect, place) {
-                faults.push(format!(
-                    "`{text}` lies on `{other}` at a width of {width_px}"
-                ));
-            }
-        }
-    }
-    faults
+    recorder.faults(width_px, height)
+}
+
+/// [`text_faults`] of the panels of a scene alone.
+#[must_use]
+pub fn scene_text_faults(scene: &Scene, width_px: f32) -> Vec<String> {
+    let mut recorder = Recorder::new();
+    let height = scene_picture(&mut recorder, scene, width_px, Theme::Light);
+    recorder.faults(width_px, height)
 }
 
 /// A sentence for every two texts over the data of one panel that lie on each other, at that width.
@@ -84,6 +73,29 @@ impl Recorder {
             labels: Vec::new(),
             in_layers: false,
         }
+    }
+
+    fn faults(&self, width_px: f32, height: f32) -> Vec<String> {
+        let mut faults = Vec::new();
+        for (index, (text, rect)) in self.texts.iter().enumerate() {
+            let inside = rect.left >= -SLACK
+                && rect.right() <= width_px + SLACK
+                && rect.top >= 0.0
+                && rect.bottom() <= height;
+            if !inside {
+                faults.push(format!(
+                    "`{text}` leaves the picture of {width_px} × {height}: {rect:?}"
+                ));
+            }
+            for (other, place) in &self.texts[index + 1..] {
+                if overlap(rect, place) {
+                    faults.push(format!(
+                        "`{text}` lies on `{other}` at a width of {width_px}"
+                    ));
+                }
+            }
+        }
+        faults
     }
 }
 

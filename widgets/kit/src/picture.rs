@@ -5,9 +5,9 @@ use crate::layout::wrap;
 use crate::model::Model;
 use crate::palette::{self, Rgb, Theme, tone};
 use crate::readout::fact_text;
-use crate::scene::Tone;
-use crate::surface::{Align, Surface, TextSize};
-use crate::view::{View, place};
+use crate::scene::{Scene, Tone};
+use crate::surface::{Align, Px, Surface, TextSize};
+use crate::view::{Arrangement, Row, View, place};
 
 /// Space around the picture.
 const MARGIN: f32 = 12.0;
@@ -51,15 +51,7 @@ pub fn picture(
     let layer = model.layer();
     let arrangement = view.arrange(&scene, width).of_layer(&layer);
     for rows in [&arrangement.stage, &arrangement.below] {
-        let (placed, height) = place(&scene, rows, width, surface);
-        for placed in &placed {
-            let panels = scene.panels.iter();
-            for panel in panels.filter(|panel| panel.id == placed.panel) {
-                let origin = [MARGIN + placed.origin[0], y + placed.origin[1]];
-                let window = panel.bounds();
-                draw::panel(surface, panel, &placed.layout, origin, &window, theme);
-            }
-        }
+        let height = panels(surface, &scene, rows, [MARGIN, y], width, theme);
         if height > 0.0 {
             y += height + GAP;
         }
@@ -76,4 +68,32 @@ pub fn picture(
         .map(|fact| format!("{} {}", fact.label, fact_text(fact)))
         .collect();
     paragraph(surface, y, &facts.join(" · "), TextSize::Body, ink) + MARGIN
+}
+
+/// Draws the panels of a scene alone, as the kit arranges them; returns the height that they take.
+pub fn scene_picture(surface: &mut dyn Surface, scene: &Scene, width_px: f32, theme: Theme) -> f32 {
+    let width = width_px - 2.0 * MARGIN;
+    let Arrangement { mut stage, below } = Arrangement::by_weight(scene, width);
+    stage.extend(below);
+    panels(surface, scene, &stage, [MARGIN, 0.0], width, theme)
+}
+
+fn panels(
+    surface: &mut dyn Surface,
+    scene: &Scene,
+    rows: &[Row],
+    [left, top]: Px,
+    width: f32,
+    theme: Theme,
+) -> f32 {
+    let (placed, height) = place(scene, rows, width, surface);
+    for placed in &placed {
+        let panels = scene.panels.iter();
+        for panel in panels.filter(|panel| panel.id == placed.panel) {
+            let origin = [left + placed.origin[0], top + placed.origin[1]];
+            let window = panel.bounds();
+            draw::panel(surface, panel, &placed.layout, origin, &window, theme);
+        }
+    }
+    height
 }

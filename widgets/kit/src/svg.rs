@@ -6,8 +6,8 @@ use core::fmt::Write as _;
 
 use crate::model::Model;
 use crate::palette::{self, Rgb, Theme, tone};
-use crate::picture::picture;
-use crate::scene::{Raster, Tone};
+use crate::picture::{picture, scene_picture};
+use crate::scene::{Raster, Scene, Tone};
 use crate::surface::{Align, HALO_WIDTH, Haloed, Measure, Pen, Px, PxRect, Surface, TextSize};
 use crate::view::View;
 
@@ -20,6 +20,16 @@ pub fn picture_svg(model: &dyn Model, view: &dyn View, width_px: f32, theme: The
     svg.finish(width_px, height, &format!("{} {}", spec.id, spec.title))
 }
 
+/// The panels of a scene, and nothing around them, to stand among others in one page: what has a name
+/// in it has one that begins with `prefix`.
+#[must_use]
+pub fn scene_svg(scene: &Scene, title: &str, prefix: &str, width_px: f32, theme: Theme) -> String {
+    let mut svg = SvgSurface::new(theme);
+    prefix.clone_into(&mut svg.prefix);
+    let height = scene_picture(&mut svg, scene, width_px, theme);
+    svg.finish(width_px, height, title)
+}
+
 /// Writes SVG elements.
 ///
 /// Neighbouring shapes of the same look share one `path` element: thousands of points would
@@ -29,6 +39,8 @@ pub struct SvgSurface {
     body: String,
     /// Look and outline of the path that is still open.
     path: (String, String),
+    /// What the names in this picture begin with: several pictures may stand in one page.
+    prefix: String,
     clips: usize,
     clipped: bool,
 }
@@ -41,6 +53,7 @@ impl SvgSurface {
             theme,
             body: String::new(),
             path: Default::default(),
+            prefix: String::new(),
             clips: 0,
             clipped: false,
         }
@@ -136,10 +149,10 @@ impl Surface for SvgSurface {
         }) = rect
         {
             self.clips += 1;
-            let id = self.clips;
+            let id = format!("{}c{}", self.prefix, self.clips);
             self.element(format_args!(
-                "<clipPath id=\"c{id}\"><rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" \
-                 height=\"{height:.1}\"/></clipPath><g clip-path=\"url(#c{id})\">"
+                "<clipPath id=\"{id}\"><rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" \
+                 height=\"{height:.1}\"/></clipPath><g clip-path=\"url(#{id})\">"
             ));
         }
     }

@@ -1,0 +1,188 @@
+//! The small figures beside the text: one slider, one picture and one sentence each.
+//!
+//! They show one idea where no widget stands. Each is computed by the core for every place of its slider,
+//! and drawn by the kit as the widgets are.
+
+mod bells;
+mod ellipse;
+mod gate;
+mod slide;
+
+use kit::palette::Theme;
+use kit::scene::Scene;
+use kit::svg::scene_svg;
+use serde_json::{Value, json};
+
+/// What a reader moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slider {
+    /// Its name on the page.
+    pub label: &'static str,
+    /// Unit of its values, with the space before it.
+    pub unit: &'static str,
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+    /// Distance of two values.
+    pub step: f64,
+    /// Where it stands at first.
+    pub default: f64,
+    /// Decimals of a value in words.
+    pub decimals: usize,
+}
+
+/// A figure at one place of its slider.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    /// The picture.
+    pub scene: Scene,
+    /// What it comes to, in words and numbers.
+    pub sentence: String,
+}
+
+/// A figure with its slider.
+#[derive(Clone, Copy, Debug)]
+pub struct Sketch {
+    /// Its name in the page: `slide`.
+    pub name: &'static str,
+    /// What it is about.
+    pub title: &'static str,
+    /// What a reader moves.
+    pub slider: Slider,
+    at: fn(f64) -> Shown,
+}
+
+/// All figures, in the order of the page.
+pub const SKETCHES: [Sketch; 4] = [slide::SKETCH, bells::SKETCH, ellipse::SKETCH, gate::SKETCH];
+
+/// The figure of that name.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static Sketch> {
+    SKETCHES.iter().find(|sketch| sketch.name == name)
+}
+
+impl Sketch {
+    /// The figure with its slider at `value`; what is no value of the slider becomes the nearest one.
+    #[must_use]
+    pub fn at(&self, value: f64) -> Shown {
+        let Slider {
+            min, max, default, ..
+        } = self.slider;
+        let value = if value.is_finite() { value } else { default };
+        (self.at)(value.clamp(min, max))
+    }
+
+    /// Title and slider, as the page needs them.
+    #[must_use]
+    pub fn schema(&self) -> Value {
+        let Slider {
+            label,
+            unit,
+            min,
+            max,
+            step,
+            default,
+            decimals,
+        } = self.slider;
+        json!({
+            "name": self.name, "title": self.title, "label": label, "unit": unit, "min": min,
+            "max": max, "step": step, "default": default, "decimals": decimals,
+        })
+    }
+
+    /// The picture as SVG, and the sentence.
+    #[must_use]
+    pub fn drawn(&self, value: f64, width_px: f32, theme: Theme) -> Value {
+        let Shown { scene, sentence } = self.at(value);
+        let svg = scene_svg(&scene, self.title, self.name, width_px, theme);
+        json!({ "svg": svg, "sentence": sentence })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kit::audit::scene_text_faults;
+
+    fn places(slider: &Slider) -> Vec<f64> {
+        let count = 8;
+        (0..=count)
+            .map(|k| slider.min + (slider.max - slider.min) * f64::from(k) / f64::from(count))
+            .collect()
+    }
+
+    #[test]
+    fn no_text_of_a_figure_overlaps_or_is_cut_off() {
+        for sketch in &SKETCHES {
+            for place in places(&sketch.slider) {
+                for width in [320.0, 360.0, 600.0] {
+                    let faults = scene_text_faults(&sketch.at(place).scene, width);
+                    assert!(faults.is_empty(), "{} at {place}: {faults:#?}", sketch.name);
+                }
+            }
+        }
+    }
+
+    /// All of them stand in one page.
+    #[test]
+    fn no_two_figures_share_a_name_within_their_pictures() {
+        let mut seen = std::collections::BTreeSet::new();
+        for sketch in &SKETCHES {
+            let drawn = sketch.drawn(sketch.slider.default, 600.0, Theme::Light);
+            let svg = drawn["svg"].as_str().unwrap();
+            let ids: Vec<_> = svg
+                .split(" id=\"")
+                .skip(1)
+                .map(|rest| rest.split('"').next().unwrap())
+                .collect();
+            assert!(!ids.is_empty(), "{}", sketch.name);
+            for id in ids {
+                assert!(seen.insert(id.to_owned()), "{id} of {}", sketch.name);
+            }
+        }
+    }
+
+    #[test]
+    fn every_place_of_a_slider_has_its_own_picture_and_sentence() {
+        for sketch in &SKETCHES {
+            let shown: Vec<_> = places(&sketch.slider)
+                .iter()
+                .map(|&place| sketch.at(place))
+                .collect();
+            for pair in shown.windows(2) {
+                assert_ne!(pair[0].scene, pair[1].scene, "{}", sketch.name);
+                assert_ne!(pair[0].sentence, pair[1].sentence, "{}", sketch.name);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_value_of_a_slider_is_drawn_as_the_nearest_one() {
+        for sketch in &SKETCHES {
+            let Slider {
+                min, max, default, ..
+            } = sketch.slider;
+            assert_eq!(sketch.at(f64::NAN), sketch.at(default));
+            assert_eq!(sketch.at(-1e9), sketch.at(min));
+            assert_eq!(sketch.at(1e9), sketch.at(max));
+        }
+    }
+
+    #[test]
+    fn pictures_keep_their_height_while_a_slider_moves() {
+        for sketch in &SKETCHES {
+            let height = |place: f64| {
+                let drawn = sketch.drawn(place, 390.0, Theme::Light);
+                let svg = drawn["svg"].as_str().unwrap();
+                let from = svg.find("viewBox").unwrap();
+                svg[from..].split('"').nth(1).unwrap().to_owned()
+            };
+            let heights: Vec<_> = places(&sketch.slider).into_iter().map(height).collect();
+            assert!(
+                heights.windows(2).all(|pair| pair[0] == pair[1]),
+                "{heights:?}"
+            );
+        }
+    }
+}

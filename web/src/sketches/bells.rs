@@ -1,0 +1,170 @@
+//! A room as bells: what the size of the cells does to NDT's map and to its score.
+
+use ch16_lab::samples;
+use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::ndt::NdtMap;
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
+use pr_geom::{Rng, SE2};
+
+use super::{Shown, Sketch, Slider};
+
+/// Beams of each of the two sweeps.
+const BEAMS: usize = 180;
+/// Fewest points of a cell.
+const MIN_POINTS: usize = 3;
+/// The farthest shift that is scored, m.
+const FARTHEST_M: f64 = 1.5;
+/// How many standard deviations a bell is drawn wide.
+const DRAWN_SIGMAS: f64 = 2.0;
+
+pub(super) const SKETCH: Sketch = Sketch {
+    name: "bells",
+    title: "A room as bells",
+    slider: Slider {
+        label: "cell",
+        unit: " m",
+        min: 0.2,
+        max: 1.6,
+        step: 0.1,
+        default: 0.6,
+        decimals: 1,
+    },
+    at,
+};
+
+/// Two sweeps from one place in room A, with a noise of their own each.
+fn sweeps() -> [PointCloud; 2] {
+    let mut rng = Rng::new(16);
+    let room = SE2::new(1.9, 1.8, 0.0);
+    core::array::from_fn(|_| samples::sweep(&room, BEAMS, &mut rng))
+}
+
+/// The score of the second sweep where it is shifted along x.
+fn score(map: &NdtMap, sweep: &PointCloud, shift_m: f64) -> f64 {
+    map.score(sweep, &SE2::translation(shift_m, 0.0))
+}
+
+/// The shifts at which the curve is computed, m.
+fn shifts() -> impl Iterator<Item = f64> {
+    (-25..=25).map(|k| FARTHEST_M * f64::from(k) / 25.0)
+}
+
+/// Where the score has fallen to half of that without a shift, m: the first such shift to the right.
+fn half_width_m(map: &NdtMap, sweep: &PointCloud) -> f64 {
+    let half = 0.5 * score(map, sweep, 0.0);
+    let mut right = shifts().filter(|&shift| shift > 0.0);
+    right
+        .find(|&shift| score(map, sweep, shift) < half)
+        .unwrap_or(FARTHEST_M)
+}
+
+fn at(cell_m: f64) -> Shown {
+    let [target, sweep] = sweeps();
+    let map = NdtMap::build(&target, cell_m, MIN_POINTS);
+    let bells = map.cells().len();
+    let width = half_width_m(&map, &sweep);
+    Shown {
+        scene: Scene {
+            panels: vec![picture(&target, &map), curve(&map, &sweep)],
+        },
+        sentence: format!(
+            "With cells of {cell_m:.1} m the room is {bells} bells, and half the score is gone {width:.2} m beside the \
+             truth."
+        ),
+    }
+}
+
+fn picture(target: &PointCloud, map: &NdtMap) -> Panel {
+    let mut layers = vec![Layer::points(
+        target.iter().map(|point| [point.x, point.y]).collect(),
+        Mark::Dot,
+        Tone::Measurement,
+        1.5,
+    )];
+    layers.extend(map.cells().iter().filter_map(|cell| {
+        // Any root of the covariance spans the ellipse.
+        let root = cell.covariance.cholesky()?.l() * DRAWN_SIGMAS;
+        Some(Layer::Ellipse {
+            center: [cell.mean.x, cell.mean.y],
+            half_axes: [[root[(0, 0)], root[(1, 0)]], [root[(0, 1)], root[(1, 1)]]],
+            stroke: Stroke::Solid,
+            tone: Tone::Posterior,
+        })
+    }));
+    Panel {
+        id: "bells",
+        title: "The map: a bell a cell".to_owned(),
+        weight: Weight::Half,
+        aspect: Aspect::Equal,
+        x: Axis::new("x (m)", -2.4, 2.6),
+        y: Axis::new("y (m)", -2.1, 2.4),
+        layers,
+        legend: vec![
+            LegendEntry::mark("points of the sweep", Tone::Measurement, Mark::Dot),
+            LegendEntry::line(
+                "a bell, two standard deviations",
+                Tone::Posterior,
+                Stroke::Solid,
+            ),
+        ],
+        color_bar: None,
+    }
+}
+
+fn curve(map: &NdtMap, sweep: &PointCloud) -> Panel {
+    let points = shifts().map(|shift| [shift, score(map, sweep, shift) / BEAMS as f64]);
+    Panel {
+        id: "score",
+        title: "The score of a second sweep".to_owned(),
+        weight: Weight::Half,
+        aspect: Aspect::Free,
+        x: Axis::new("shift along x (m)", -FARTHEST_M, FARTHEST_M),
+        y: Axis::new("score a beam", 0.0, 1.4),
+        layers: vec![Layer::Line {
+            points: points.collect(),
+            stroke: Stroke::Solid,
+            tone: Tone::Posterior,
+            width_px: 2.0,
+        }],
+        legend: Vec::new(),
+        color_bar: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The claim of the section: the cell size is a smoothing length.
+    #[test]
+    fn large_cells_make_a_wide_hill_and_small_ones_a_narrow_one() {
+        let [target, sweep] = sweeps();
+        let width = |cell_m: f64| half_width_m(&NdtMap::build(&target, cell_m, MIN_POINTS), &sweep);
+        assert!(
+            width(1.6) > 2.0 * width(0.2),
+            "{} and {}",
+            width(1.6),
+            width(0.2)
+        );
+    }
+
+    #[test]
+    fn every_bell_keeps_a_width_across_its_wall() {
+        let [target, _] = sweeps();
+        for cell in NdtMap::build(&target, 0.6, MIN_POINTS).cells() {
+            assert!(cell.covariance.cholesky().is_some(), "{cell:?}");
+        }
+    }
+
+    #[test]
+    fn the_curve_stays_in_its_picture() {
+        let [target, sweep] = sweeps();
+        for tenth in 2..=16 {
+            let map = NdtMap::build(&target, f64::from(tenth) / 10.0, MIN_POINTS);
+            let highest = shifts()
+                .map(|shift| score(&map, &sweep, shift))
+                .fold(0.0, f64::max);
+            assert!(highest / (BEAMS as f64) < 1.4, "{tenth}: {highest}");
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! A loop at the gate: the longer the way, the farther a robot could have drifted.
+
+use std::sync::OnceLock;
+
+use ch16_lab::lap::{LapConfig, LapRunner};
+use ch16_slam2d::loops::{LoopConfig, chi_squared_gate, path_information};
+use ch16_slam2d::prelude::Vector3;
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
+use pr_geom::{Rng, math};
+
+use super::{Shown, Sketch, Slider};
+
+/// Drifts that are drawn.
+const DRIFTS: usize = 200;
+/// Half the picture's side, m.
+const REACH_M: f64 = 1.2;
+
+pub(super) const SKETCH: Sketch = Sketch {
+    name: "gate",
+    title: "A gate that grows with the way",
+    slider: Slider {
+        label: "nodes since the place was seen",
+        unit: "",
+        min: 1.0,
+        max: 60.0,
+        step: 1.0,
+        default: 8.0,
+        decimals: 0,
+    },
+    at,
+};
+
+/// How far the first loop of the canonical lap lies off what the graph believed, m, m, rad.
+fn innovation() -> &'static Vector3<f64> {
+    static FOUND: OnceLock<Vector3<f64>> = OnceLock::new();
+    FOUND.get_or_init(|| {
+        let record = LapRunner::new().run(&LapConfig::default());
+        let first = record.lap.loop_attempts().next();
+        first
+            .expect("the canonical lap has loops")
+            .verification
+            .innovation
+    })
+}
+
+fn at(nodes: f64) -> Shown {
+    let config = LapConfig::default().slam.loops;
+    let gap = nodes as usize;
+    let information = path_information(gap, &config);
+    let gate =
+        |innovation: &Vector3<f64>| chi_squared_gate(innovation, &information, config.gate_chi2);
+    let tested = gate(innovation());
+    let word = if tested.passes() {
+        "accepted"
+    } else {
+        "refused"
+    };
+    let reach_m = math::sqrt(config.gate_chi2 / information[(0, 0)]);
+    Shown {
+        scene: Scene {
+            panels: vec![picture(gap, &config, reach_m)],
+        },
+        sentence: format!(
+            "After {gap} nodes the gate reaches {reach_m:.2} m. The loop’s χ² is {:.2}, and {:.3} may be: {word}.",
+            tested.chi2, tested.gate_chi2
+        ),
+    }
+}
+
+fn picture(gap: usize, config: &LoopConfig, reach_m: f64) -> Panel {
+    let information = path_information(gap, config);
+    let found = innovation();
+    let passes = |innovation: &Vector3<f64>| {
+        chi_squared_gate(innovation, &information, config.gate_chi2).passes()
+    };
+    let (within, beyond): (Vec<_>, Vec<_>) = drifts(gap, config).into_iter().partition(passes);
+    let places = |drifts: &[Vector3<f64>]| drifts.iter().map(|drift| [drift.x, drift.y]).collect();
+    let (mark, tone) = if passes(found) {
+        (Mark::Square, Tone::Posterior)
+    } else {
+        (Mark::Circle, Tone::Truth)
+    };
+    Panel {
+        id: "gate",
+        title: format!("What {gap} nodes of drift may come to"),
+        weight: Weight::Main,
+        aspect: Aspect::Equal,
+        x: Axis::new("off the belief along x (m)", -1.5 * REACH_M, 1.5 * REACH_M),
+        y: Axis::new("along y (m)", -REACH_M, REACH_M),
+        layers: vec![
+            Layer::points(places(&within), Mark::Dot, Tone::Prior, 2.0),
+            Layer::points(places(&beyond), Mark::Triangle, Tone::Prediction, 3.0),
+            Layer::Ellipse {
+                center: [0.0; 2],
+                half_axes: [[reach_m, 0.0], [0.0, reach_m]],
+                stroke: Stroke::Dotted,
+                tone: Tone::Ink,
+            },
+            Layer::points(vec![[0.0; 2]], Mark::Plus, Tone::Prior, 6.0),
+            Layer::points(vec![[found.x, found.y]], mark, tone, 7.0),
+        ],
+        legend: vec![
+            LegendEntry::mark("belief", Tone::Prior, Mark::Plus),
+            LegendEntry::mark("true drifts that pass", Tone::Prior, Mark::Dot),
+            LegendEntry::mark("that do not", Tone::Prediction, Mark::Triangle),
+            LegendEntry::line("gate", Tone::Ink, Stroke::Dotted),
+            LegendEntry::mark("loop accepted", Tone::Posterior, Mark::Square),
+            LegendEntry::mark("refused", Tone::Truth, Mark::Circle),
+        ],
+        color_bar: None,
+    }
+}
+
+/// Sums of so many random steps, as the gate assumes them, m, m, rad; the same throws for every way.
+fn drifts(gap: usize, config: &LoopConfig) -> Vec<Vector3<f64>> {
+    let mut rng = Rng::new(16);
+    let steps = math::sqrt(gap as f64);
+    let sigmas = [
+        config.drift_sigma_m,
+        config.drift_sigma_m,
+        config.drift_sigma_rad,
+    ];
+    (0..DRIFTS)
+        .map(|_| Vector3::from(sigmas.map(|sigma| steps * rng.normal(0.0, sigma))))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn accepted(nodes: f64) -> bool {
+        at(nodes).sentence.ends_with("accepted.")
+    }
+
+    /// The canonical lap tests this loop over 22 nodes, and takes it (chapter, canonical run).
+    #[test]
+    fn the_loop_is_refused_after_a_short_way_and_accepted_after_its_own() {
+        assert!(!accepted(1.0));
+        assert!(accepted(22.0));
+        assert!(
+            at(22.0).sentence.contains("χ² is 4.24, and 7.815 may be"),
+            "{}",
+            at(22.0).sentence
+        );
+    }
+
+    #[test]
+    fn a_wider_gate_never_refuses_what_a_narrower_one_took() {
+        let verdicts: Vec<bool> = (1..=60).map(|nodes| accepted(f64::from(nodes))).collect();
+        assert!(verdicts.windows(2).all(|pair| pair[0] <= pair[1]));
+    }
+
+    /// One in twenty, on purpose: of 200 throws 10, and 3 standard deviations of a count of 200 are 9.2.
+    #[test]
+    fn about_one_true_drift_in_twenty_stays_outside() {
+        let config = LapConfig::default().slam.loops;
+        let information = path_information(30, &config);
+        let outside = drifts(30, &config)
+            .iter()
+            .filter(|drift| !chi_squared_gate(drift, &information, config.gate_chi2).passes())
+            .count();
+        assert!((1..=19).contains(&outside), "{outside}");
+    }
+}
