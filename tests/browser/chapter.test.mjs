@@ -29,7 +29,7 @@ const background = (tab) => tab.evaluate(() => getComputedStyle(document.body).b
 describe('the chapter', () => {
   it('holds its widgets, starts each when it comes near, and paints it', async () => {
     await reading(async (tab) => {
-      const order = ['w16.1', 'w16.3', 'w16.5', 'w16.2', 'w16.4', 'w16.6', 'w16.7', 'w16.8', 'w16.10', 'w16.11', 'w16.12'];
+      const order = ['w16.1', 'w16.3', 'w16.5', 'w16.2', 'w16.4', 'w16.6', 'w16.7', 'w16.8', 'w16.9', 'w16.10', 'w16.11', 'w16.12'];
       const states = () => tab.evaluate(
         (ids) => ids.map((id) => document.querySelector(`slam-widget[name="${id}"]`).state), order);
       for (const [place, id] of order.entries()) {
@@ -172,7 +172,7 @@ describe('the chapter', () => {
 
   it('fits a phone: nothing is wider than the screen', async () => {
     await reading(async (tab) => {
-      for (const id of ['w16.1', 'w16.3', 'w16.5', 'w16.2', 'w16.4', 'w16.6', 'w16.7', 'w16.8', 'w16.10', 'w16.11', 'w16.12']) {
+      for (const id of ['w16.1', 'w16.3', 'w16.5', 'w16.2', 'w16.4', 'w16.6', 'w16.7', 'w16.8', 'w16.9', 'w16.10', 'w16.11', 'w16.12']) {
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
         await h.ready(tab, widget(id));
       }
@@ -195,7 +195,7 @@ describe('the chapter', () => {
 
   it('shows pictures and says why where scripts do not run', async () => {
     await reading(async (tab, server) => {
-      for (const id of ['w16.1', 'w16.2', 'w16.3', 'w16.4', 'w16.5', 'w16.6', 'w16.7', 'w16.8', 'w16.10', 'w16.11', 'w16.12']) {
+      for (const id of ['w16.1', 'w16.2', 'w16.3', 'w16.4', 'w16.5', 'w16.6', 'w16.7', 'w16.8', 'w16.9', 'w16.10', 'w16.11', 'w16.12']) {
         const picture = tab.locator(`${widget(id)} img`);
         await picture.scrollIntoViewIfNeeded();
         assert.ok(await picture.evaluate((image) => image.decode().then(() => image.naturalWidth > 100)), id);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::page::document::source;
 
 /// Every package with its layer; a package may use only packages of lower layers.
-const LAYERS: [(&str, u8); 25] = [
+const LAYERS: [(&str, u8); 26] = [
     ("crates/pr_geom", 0),
     ("crates/pr_sim", 1),
     ("crates/pr_grid", 1),
@@ -27,6 +27,7 @@ const LAYERS: [(&str, u8); 25] = [
     ("widgets/w16_6_whole_window", 4),
     ("widgets/w16_7_been_here", 4),
     ("widgets/w16_8_moving_box", 4),
+    ("widgets/w16_9_come_back", 4),
     ("widgets/w16_10_own_robot", 4),
     ("widgets/w16_11_procrustes", 4),
     ("widgets/w16_12_jacobians", 4),

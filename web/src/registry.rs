@@ -7,7 +7,7 @@ use kit::spec::WidgetSpec;
 pub type Maker = fn() -> Shell;
 
 /// The widgets with their names.
-pub const WIDGETS: [(&str, Maker); 11] = [
+pub const WIDGETS: [(&str, Maker); 12] = [
     ("w16.1", w16_1_basin_explorer::widget),
     ("w16.2", w16_2_full_lap::widget),
     ("w16.3", w16_3_cost_terraces::widget),
@@ -16,6 +16,7 @@ pub const WIDGETS: [(&str, Maker); 11] = [
     ("w16.6", w16_6_whole_window::widget),
     ("w16.7", w16_7_been_here::widget),
     ("w16.8", w16_8_moving_box::widget),
+    ("w16.9", w16_9_come_back::widget),
     ("w16.10", w16_10_own_robot::widget),
     ("w16.11", w16_11_procrustes::widget),
     ("w16.12", w16_12_jacobians::widget),
@@ -31,6 +32,7 @@ const SPECS: [&WidgetSpec; WIDGETS.len()] = [
     &w16_6_whole_window::spec::SPEC,
     &w16_7_been_here::spec::SPEC,
     &w16_8_moving_box::spec::SPEC,
+    &w16_9_come_back::spec::SPEC,
     &w16_10_own_robot::spec::SPEC,
     &w16_11_procrustes::spec::SPEC,
     &w16_12_jacobians::spec::SPEC,

@@ -88,6 +88,14 @@ pub struct LapNumbers {
     pub wardrobe_points: usize,
 }
 
+/// A lap between two of its ticks.
+pub struct LapUnderWay {
+    tick: usize,
+    loops: usize,
+    done: Upkeep,
+    errors_m: Vec<f64>,
+}
+
 /// Laps under way.
 pub struct Laps {
     config: LapsConfig,
@@ -119,48 +127,82 @@ impl Laps {
         &self.slam
     }
 
-    /// The drive of the next lap.
+    /// What the next lap drives.
     #[must_use]
-    pub fn simulate(&self) -> Drive {
+    pub fn drive_config(&self) -> DriveConfig {
         let drive = &self.config.drive;
         let mut world = Arc::clone(&drive.world);
         if let Some(moved) = self.config.wardrobe {
             let at = WARDROBE_AT[usize::from(self.lap + 1 >= moved)];
             world = Arc::new(with_wardrobe(&world, at));
         }
-        Drive::simulate(&DriveConfig {
+        DriveConfig {
             seed: drive.seed.wrapping_add(self.lap as u32),
             start: self.truth,
             world,
             ..drive.clone()
-        })
+        }
     }
 
-    /// Estimates a lap that was simulated; a robot that stands at its start has that frame already.
+    /// The drive of the next lap.
+    #[must_use]
+    pub fn simulate(&self) -> Drive {
+        Drive::simulate(&self.drive_config())
+    }
+
+    /// Estimates a lap that was simulated.
     ///
     /// # Panics
     /// Where the drive is not the one of [`simulate`](Self::simulate).
     pub fn estimate(&mut self, drive: &Drive) -> LapNumbers {
-        let first = usize::from(self.lap > 0);
-        let (mut loops, mut done) = (0, Upkeep::default());
-        let mut errors_m = Vec::new();
-        for tick in first..=drive.ticks().len() {
-            let frame = drive.prepared(tick);
-            let stamp_s = self.stamp_s + frame.stamp_s;
-            let report = self
-                .slam
-                .step_prepared(&PreparedFrame { stamp_s, ..frame })
-                .expect("a simulated frame is in order");
-            self.truths.push(drive.truth(tick));
-            errors_m.push(position_error_m(&report.estimate, &drive.truth(tick)));
-            loops += usize::from(report.closed_loop().is_some());
-            if let (Some(_), Some(upkeep)) = (report.new_keyframe, &self.config.upkeep) {
-                let step = self.slam.keep_up(upkeep);
-                done.removed.extend(step.removed);
-                done.divergence += step.divergence;
-                done.points_gone += step.points_gone;
+        let mut under_way = self.begin();
+        loop {
+            if let Some(numbers) = self.step(&mut under_way, drive) {
+                return numbers;
             }
         }
+    }
+
+    /// The next lap, before its first tick; a robot that stands at its start has that frame already.
+    #[must_use]
+    pub fn begin(&self) -> LapUnderWay {
+        LapUnderWay {
+            tick: usize::from(self.lap > 0),
+            loops: 0,
+            done: Upkeep::default(),
+            errors_m: Vec::new(),
+        }
+    }
+
+    /// Estimates one tick of a lap that was simulated; its numbers after the last one.
+    ///
+    /// # Panics
+    /// Where the drive is not the one of [`simulate`](Self::simulate).
+    pub fn step(&mut self, lap: &mut LapUnderWay, drive: &Drive) -> Option<LapNumbers> {
+        let tick = lap.tick;
+        let frame = drive.prepared(tick);
+        let stamp_s = self.stamp_s + frame.stamp_s;
+        let report = self
+            .slam
+            .step_prepared(&PreparedFrame { stamp_s, ..frame })
+            .expect("a simulated frame is in order");
+        self.truths.push(drive.truth(tick));
+        lap.errors_m
+            .push(position_error_m(&report.estimate, &drive.truth(tick)));
+        lap.loops += usize::from(report.closed_loop().is_some());
+        if let (Some(_), Some(upkeep)) = (report.new_keyframe, &self.config.upkeep) {
+            let step = self.slam.keep_up(upkeep);
+            lap.done.removed.extend(step.removed);
+            lap.done.divergence += step.divergence;
+            lap.done.points_gone += step.points_gone;
+        }
+        lap.tick += 1;
+        (tick >= drive.ticks().len()).then(|| self.end(lap, drive))
+    }
+
+    fn end(&mut self, lap: &mut LapUnderWay, drive: &Drive) -> LapNumbers {
+        let errors_m = core::mem::take(&mut lap.errors_m);
+        let (loops, done) = (lap.loops, core::mem::take(&mut lap.done));
         let ticks = drive.ticks().len();
         self.lap += 1;
         self.truth = drive.truth(ticks);

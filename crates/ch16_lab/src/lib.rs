@@ -4,6 +4,7 @@
 pub mod ancestor;
 pub mod basin;
 pub mod buildings;
+pub mod come_back;
 pub mod jacobians;
 pub mod lap;
 pub mod laps;

@@ -65,6 +65,7 @@ pub const TARGETS: [Target; 7] = [
             "widgets/w16_6_whole_window/src/model",
             "widgets/w16_7_been_here/src/model",
             "widgets/w16_8_moving_box/src/model",
+            "widgets/w16_9_come_back/src/model",
             "widgets/w16_10_own_robot/src/model",
             "widgets/w16_11_procrustes/src/model",
             "widgets/w16_12_jacobians/src/model",

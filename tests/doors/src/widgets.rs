@@ -12,6 +12,7 @@ use w16_5_pose_graph_toy::model::PoseGraphToy;
 use w16_6_whole_window::model::WholeWindow;
 use w16_7_been_here::model::BeenHere;
 use w16_8_moving_box::model::MovingBox;
+use w16_9_come_back::model::ComeBack;
 use w16_10_own_robot::model::OwnRobot;
 use w16_11_procrustes::model::ProcrustesTrace;
 use w16_12_jacobians::model::WrongJacobians;
@@ -20,7 +21,7 @@ use w16_12_jacobians::model::WrongJacobians;
 pub type Maker = fn() -> Box<dyn Model>;
 
 /// A fresh model of every widget.
-pub const MODELS: [Maker; 11] = [
+pub const MODELS: [Maker; 12] = [
     || Box::new(BasinExplorer::new()),
     || Box::new(FullLap::new()),
     || Box::new(CostTerraces::new()),
@@ -29,6 +30,7 @@ pub const MODELS: [Maker; 11] = [
     || Box::new(WholeWindow::new()),
     || Box::new(BeenHere::new()),
     || Box::new(MovingBox::new()),
+    || Box::new(ComeBack::new()),
     || Box::new(OwnRobot::new()),
     || Box::new(ProcrustesTrace::new()),
     || Box::new(WrongJacobians::new()),
@@ -37,7 +39,7 @@ pub const MODELS: [Maker; 11] = [
 /// What never changes about each widget, in the order of [`MODELS`].
 ///
 /// Written out, so that a program which only reads texts holds no estimator.
-pub static SPECS: [&WidgetSpec; 11] = [
+pub static SPECS: [&WidgetSpec; 12] = [
     &w16_1_basin_explorer::spec::SPEC,
     &w16_2_full_lap::spec::SPEC,
     &w16_3_cost_terraces::spec::SPEC,
@@ -46,6 +48,7 @@ pub static SPECS: [&WidgetSpec; 11] = [
     &w16_6_whole_window::spec::SPEC,
     &w16_7_been_here::spec::SPEC,
     &w16_8_moving_box::spec::SPEC,
+    &w16_9_come_back::spec::SPEC,
     &w16_10_own_robot::spec::SPEC,
     &w16_11_procrustes::spec::SPEC,
     &w16_12_jacobians::spec::SPEC,

@@ -1,0 +1,139 @@
+//! The saved map and the morning on it, computed in pieces between frames.
+
+use std::sync::Arc;
+
+use ch16_lab::come_back::{Morning, switched_on};
+use ch16_lab::lap::{Drive, DriveConfig, DriveSimulation};
+use ch16_lab::laps::{LapNumbers, LapUnderWay, Laps, LapsConfig};
+use ch16_slam2d::localize::{KnownMap, LocalizeConfig, Localizer, StartPose};
+use ch16_slam2d::slam::SlamConfig;
+use kit::param::Values;
+
+use super::settings;
+
+/// Ticks of a morning: ten seconds.
+const MORNING_TICKS: usize = 40;
+
+/// The noise of the morning is not that of the laps.
+const ANOTHER_DAY: u32 = 1000;
+
+/// A map as it was saved, and what is known of it.
+pub struct Known {
+    config: LapsConfig,
+    laps: usize,
+    /// The keyframes at their poses.
+    pub map: Arc<KnownMap>,
+    /// The drive of the day after, but for where it begins.
+    pub tomorrow: DriveConfig,
+    /// The estimator's parameters.
+    slam: SlamConfig,
+    /// The last lap in numbers.
+    pub numbers: LapNumbers,
+}
+
+impl Known {
+    /// Whether it is the map that the values ask for.
+    pub fn is_of(&self, values: &Values) -> bool {
+        self.laps == settings::laps(values) && self.config == settings::laps_config(values)
+    }
+}
+
+/// What is being computed.
+pub enum Work {
+    /// A lap is driven.
+    Driving(Box<Laps>, Box<DriveSimulation>),
+    /// A lap is mapped.
+    Mapping(Box<Laps>, LapUnderWay, Box<Drive>),
+    /// The robot of the morning is driven.
+    Waking(Box<(Arc<KnownMap>, SlamConfig)>, Box<DriveSimulation>),
+    /// It looks for its place, and follows it.
+    Looking(Box<Morning>),
+}
+
+/// What one piece of work came to.
+pub enum Step {
+    /// There is more to do.
+    GoesOn(Work),
+    /// The map is there.
+    Saved(Box<Known>),
+    /// The morning is over.
+    Over(Box<Morning>),
+}
+
+impl Work {
+    /// A map that has not begun.
+    pub fn map(values: &Values) -> Self {
+        Self::next_lap(Box::new(Laps::new(settings::laps_config(values))))
+    }
+
+    /// A morning on a map, from where the values put the robot.
+    pub fn morning(known: &Known, values: &Values) -> Self {
+        let start = settings::start(values);
+        let drive = switched_on(&known.tomorrow, start, MORNING_TICKS);
+        Self::Waking(
+            Box::new((Arc::clone(&known.map), known.slam.clone())),
+            Box::new(DriveSimulation::new(drive)),
+        )
+    }
+
+    fn next_lap(laps: Box<Laps>) -> Self {
+        let drive = DriveSimulation::new(laps.drive_config());
+        Self::Driving(laps, Box::new(drive))
+    }
+
+    /// One piece.
+    pub fn step(self, values: &Values) -> Step {
+        Step::GoesOn(match self {
+            Self::Driving(laps, mut simulation) => match simulation.step() {
+                None => Self::Driving(laps, simulation),
+                Some(drive) => {
+                    let under_way = laps.begin();
+                    Self::Mapping(laps, under_way, Box::new(drive))
+                }
+            },
+            Self::Mapping(mut laps, mut under_way, drive) => {
+                match laps.step(&mut under_way, &drive) {
+                    None => Self::Mapping(laps, under_way, drive),
+                    Some(numbers) if numbers.lap < settings::laps(values) => Self::next_lap(laps),
+                    Some(numbers) => return Step::Saved(Box::new(saved(&laps, numbers, values))),
+                }
+            }
+            Self::Waking(known, mut simulation) => match simulation.step() {
+                None => Self::Waking(known, simulation),
+                Some(drive) => {
+                    let (map, slam) = *known;
+                    let config = LocalizeConfig::default();
+                    let localizer = Localizer::new(map, slam, config, StartPose::Anywhere);
+                    Self::Looking(Box::new(Morning::new(localizer, Arc::new(drive))))
+                }
+            },
+            Self::Looking(mut morning) => {
+                if !morning.step() {
+                    return Step::Over(morning);
+                }
+                Self::Looking(morning)
+            }
+        })
+    }
+}
+
+fn saved(laps: &Laps, numbers: LapNumbers, values: &Values) -> Known {
+    let slam = laps.slam();
+    let keyframes = slam.keyframes().to_vec();
+    let poses = slam.graph().poses().to_vec();
+    let map = KnownMap::new(keyframes, poses, &LocalizeConfig::default());
+    let config = settings::laps_config(values);
+    let lap = laps.drive_config();
+    Known {
+        laps: numbers.lap,
+        map: Arc::new(map.expect("a lap leaves a map")),
+        tomorrow: DriveConfig {
+            seed: lap.seed.wrapping_add(ANOTHER_DAY),
+            start: config.drive.start,
+            ..lap
+        },
+        slam: config.slam.clone(),
+        numbers,
+        config,
+    }
+}

@@ -1,0 +1,227 @@
+//! The result in words and numbers.
+
+use ch16_lab::come_back::{Moment, Morning};
+use ch16_slam2d::localize::Verdict;
+use kit::model::{Fact, Outcome, Standing};
+
+use super::ComeBack;
+
+/// A pose farther off than this is another place, m.
+const ELSEWHERE_M: f64 = 0.5;
+
+/// How a morning ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ending {
+    Computing,
+    Found,
+    Elsewhere,
+    Ambiguous,
+    Lost,
+}
+
+fn ending(back: &ComeBack) -> Ending {
+    let Some((_, morning)) = back.told() else {
+        return Ending::Computing;
+    };
+    let ticks = 0..morning.reports().len();
+    let is_believed = |tick: &usize| morning.reports()[*tick].verdict.is_believed();
+    let is_off = |tick: usize| morning.error_m(tick).is_some_and(|m| m > ELSEWHERE_M);
+    if ticks.clone().filter(is_believed).any(is_off) {
+        return Ending::Elsewhere;
+    }
+    match morning.found() {
+        Some(_) => Ending::Found,
+        None if morning
+            .reports()
+            .iter()
+            .any(|report| report.search.is_some()) =>
+        {
+            Ending::Ambiguous
+        }
+        None => Ending::Lost,
+    }
+}
+
+/// Good is a robot that knows where it is.
+pub fn standing(back: &ComeBack) -> Standing {
+    match ending(back) {
+        Ending::Computing | Ending::Ambiguous | Ending::Lost => Standing::Neutral,
+        Ending::Found => Standing::Good,
+        Ending::Elsewhere => Standing::Bad,
+    }
+}
+
+/// The morning in a few words.
+pub fn verdict(back: &ComeBack) -> &'static str {
+    match ending(back) {
+        Ending::Computing => "a lap is driven",
+        Ending::Found => "found",
+        Ending::Elsewhere => "in the wrong place",
+        Ending::Ambiguous => "places look alike",
+        Ending::Lost => "lost",
+    }
+}
+
+pub fn outcome(back: &ComeBack) -> Outcome {
+    let sentence = match (ending(back), back.told()) {
+        (Ending::Found, Some((_, morning))) => found_words(morning),
+        (Ending::Elsewhere, _) => "The robot believes that it is somewhere else, and drives on so. A place that looks the same, and no other scan that says otherwise, is enough for that.".to_owned(),
+        (Ending::Ambiguous, Some((_, morning))) => format!(
+            "After {} scans the best place of the map and the next one still fit about equally well. The robot says that it does not know: another way, or another heading, would tell.",
+            morning.reports().len()
+        ),
+        (Ending::Lost, Some((_, morning))) => format!(
+            "After {} scans no place of the map fits well enough. The robot says that it is lost: what it sees is not on the map that was saved.",
+            morning.reports().len()
+        ),
+        // As long as what comes: the page below stays where it is.
+        _ => "A lap is driven and its map is saved. Then the robot is switched on where you put it, on another day: it looks for its place on the whole map, box by box.".to_owned(),
+    };
+    Outcome {
+        standing: standing(back),
+        verdict: verdict(back).to_owned(),
+        sentence,
+        facts: facts(back),
+    }
+}
+
+fn found_words(morning: &Morning) -> String {
+    let found = morning.found().unwrap_or_default();
+    let report = &morning.reports()[found];
+    let margin = match report.margin() {
+        Some(margin) => format!("the next place was {margin:.2} behind"),
+        None => "no other place came near".to_owned(),
+    };
+    let scans = match found {
+        0 => "at the first scan".to_owned(),
+        more => format!("after {} scans", more + 1),
+    };
+    format!(
+        "Found {scans}, {:.2} m off the truth: {margin}. From there on {} of {} scans follow it, each registered on the map around it.",
+        morning.error_m(found).unwrap_or(f64::NAN),
+        believed_after(morning, found),
+        morning.reports().len() - found - 1
+    )
+}
+
+fn believed_after(morning: &Morning, found: usize) -> usize {
+    let after = morning.reports()[found + 1..].iter();
+    after.filter(|report| report.verdict.is_believed()).count()
+}
+
+fn facts(back: &ComeBack) -> Vec<Fact> {
+    let told = back.told();
+    let morning = told.map(|(_, morning)| morning);
+    let known = told.map(|(known, _)| known);
+    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let found = morning.and_then(Morning::found);
+    let searches = morning.into_iter().flat_map(Morning::reports);
+    let first = searches.filter_map(|report| report.search).next();
+    let error_at = |tick: Option<usize>| number(morning.zip(tick).and_then(|(m, k)| m.error_m(k)));
+    let last = morning.and_then(|morning| morning.reports().len().checked_sub(1));
+    vec![
+        Fact::count(
+            "scans",
+            "scans until found",
+            number(found.map(|k| k as f64 + 1.0)),
+        ),
+        Fact::metres(
+            "found_error_m",
+            "position error when found",
+            error_at(found),
+        ),
+        Fact::metres("end_error_m", "position error at the end", error_at(last)),
+        Fact::new(
+            "first_score",
+            "best place's score, first search",
+            number(first.map(|f| f.best.score)),
+            "",
+            3,
+        ),
+        Fact::new(
+            "first_margin",
+            "the next place was behind by",
+            number(first.and_then(|f| f.margin())),
+            "",
+            3,
+        ),
+        Fact::count(
+            "scored",
+            "sums over the points, first search",
+            number(first.map(|f| f.counts.scored() as f64)),
+        ),
+        Fact::count(
+            "window",
+            "poses of the whole map",
+            number(first.map(|f| f.counts.window as f64)),
+        ),
+        Fact::count(
+            "keyframes",
+            "keyframes of the map",
+            number(known.map(|k| k.map.keyframes().len() as f64)),
+        ),
+        Fact::metres(
+            "map_rms_m",
+            "the map's own error",
+            number(known.map(|k| k.numbers.map_rms_m)),
+        ),
+        Fact::count(
+            "wardrobe_points",
+            "points where the wardrobe stood",
+            number(known.map(|k| k.numbers.wardrobe_points as f64)),
+        ),
+    ]
+}
+
+pub fn summary(back: &ComeBack) -> String {
+    let Some((known, _)) = back.told() else {
+        return outcome(back).sentence;
+    };
+    let start = back.start();
+    format!(
+        "A saved map of {} keyframes, and a robot that is switched on at {:.1} m, {:.1} m. {}. {} The map has {} points where the wardrobe stood before.",
+        known.map.keyframes().len(),
+        start.x(),
+        start.y(),
+        now(back),
+        outcome(back).sentence,
+        known.numbers.wardrobe_points
+    )
+}
+
+/// What the moment that is shown is about.
+pub fn now(back: &ComeBack) -> String {
+    let Some(moment) = back.moment() else {
+        let is_saved = back.known.is_some();
+        let said = if is_saved {
+            "The robot is switched on"
+        } else {
+            "The map is driven and saved"
+        };
+        return said.to_owned();
+    };
+    let Moment {
+        tick,
+        counts,
+        report,
+        ..
+    } = moment;
+    match (report, counts) {
+        (Some(report), _) => {
+            let said = match report.verdict {
+                Verdict::Found => "found",
+                Verdict::Tracking => "follows its place",
+                Verdict::Doubtful => "in doubt",
+                Verdict::Lost => "lost",
+            };
+            format!("Scan {}: {said}", tick + 1)
+        }
+        (None, Some(counts)) => format!(
+            "Scan {}: {} boxes wait, {} sums made",
+            tick + 1,
+            moment.boxes.len(),
+            counts.scored()
+        ),
+        (None, None) => format!("Scan {}", tick + 1),
+    }
+}

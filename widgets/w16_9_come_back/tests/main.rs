@@ -1,0 +1,4 @@
+//! The morning's rules and its view.
+
+mod model;
+mod view;
