@@ -133,7 +133,7 @@ fn the_widget_of_every_link_says_what_the_sentence_of_the_link_says() {
 #[test]
 fn every_question_has_an_answer_in_its_widget() {
     let page = page();
-    assert_eq!(page.predictions.len(), 9);
+    assert_eq!(page.predictions.len(), 11);
     let mut widgets = Widgets::new();
     for question in &page.predictions {
         let model = widgets.set(&question.widget, &question.state);

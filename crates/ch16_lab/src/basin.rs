@@ -5,11 +5,13 @@
 //! A row of equal posts is the other place with false minima by its shape: one at each spacing.
 //! [`BasinScene::register_from`] runs one start, [`BasinMap`] a picture of many, filled bit by bit.
 
+mod edge;
 mod fence;
 mod map;
 mod outcome;
 mod scene;
 
+pub use edge::EdgeSearch;
 pub use fence::FENCE_SPACING_M;
 pub use map::{BasinMap, BasinMapAxes, OffsetAxis};
 pub use outcome::{BasinOutcome, HOME_HEADING_DEG, Minimum};

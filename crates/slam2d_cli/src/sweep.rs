@@ -81,7 +81,7 @@ pub struct SweepArgs {
         num_args = 1..,
         conflicts_with_all = [
             "seeds", "noise", "rows", "shard", "nudge", "random", "threads", "world", "matcher",
-            "loop_matcher", "detector", "information", "estimator",
+            "loop_matcher", "detector", "gate", "information", "estimator",
         ]
     )]
     merge: Vec<PathBuf>,

@@ -1,7 +1,8 @@
 //! What `lap` and `sweep` drive, and with which estimator: `--world`, `--matcher`,
-//! `--loop-matcher`, `--detector`, `--information`.
+//! `--loop-matcher`, `--detector`, `--gate`, `--information`.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapDetector, LapMatcher, LoopMatcher};
+use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::matching::InformationFrame;
 use ch16_slam2d::submaps::FrontEndChoice;
 use clap::Args;
@@ -26,6 +27,9 @@ pub struct TrialArgs {
     /// What proposes loops; what is near in the graph without it.
     #[arg(long, value_parser = choice::<LapDetector>())]
     detector: Option<LapDetector>,
+    /// What the gate of loops takes for the drift since the place was seen.
+    #[arg(long, value_parser = choice::<GateModel>())]
+    gate: Option<GateModel>,
     /// What is driven: apartment, ring, twins, corridor, hall, or a file that ends in .json.
     #[arg(long, default_value = "apartment")]
     world: WorldArg,
@@ -43,6 +47,7 @@ pub struct Trial {
     front_end: FrontEndChoice,
     loop_matcher: Option<LoopMatcher>,
     detector: LapDetector,
+    gate: Option<GateModel>,
     information: Option<InformationFrame>,
 }
 
@@ -54,6 +59,7 @@ impl TrialArgs {
             (self.front_end.is_some(), "--front-end"),
             (self.loop_matcher.is_some(), "--loop-matcher"),
             (self.detector.is_some(), "--detector"),
+            (self.gate.is_some(), "--gate"),
             (self.information.is_some(), "--information"),
         ];
         said.into_iter().find(|(is, _)| *is).map(|(_, name)| name)
@@ -80,6 +86,7 @@ impl TrialArgs {
             front_end: self.front_end.unwrap_or_default(),
             loop_matcher: self.loop_matcher,
             detector: self.detector.unwrap_or_default(),
+            gate: self.gate,
             information: self.information,
         })
     }
@@ -97,6 +104,10 @@ impl Trial {
         let lap = lap.with_matcher(self.matcher).with_detector(self.detector);
         let lap = match self.loop_matcher {
             Some(matcher) => lap.with_loop_matcher(matcher),
+            None => lap,
+        };
+        let lap = match self.gate {
+            Some(gate) => lap.with_gate(gate),
             None => lap,
         };
         let lap = match self.information {

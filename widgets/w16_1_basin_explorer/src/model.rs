@@ -1,6 +1,7 @@
 //! The state of the basin explorer and every rule that changes it.
 
 mod basins;
+mod edge;
 mod hands;
 mod letters;
 mod paths;
@@ -11,7 +12,7 @@ mod words;
 
 use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart};
 use ch16_slam2d::icp::{IcpTrace, IcpWorkspace, Pair, correspondences};
-use kit::layers::MORE;
+use kit::layers::{Layer, MORE};
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
 };
@@ -20,8 +21,9 @@ use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::{DEFAULTS, WidgetSpec};
 
-use crate::spec::{OFFSET_SPAN_M, PARAMS, SPEC};
+use crate::spec::{EDGES, OFFSET_SPAN_M, PARAMS, SPEC, SWEEP};
 use basins::Basins;
+use edge::{Edges, Phase};
 use paths::Paths;
 use settings::{config, other_variant, start, variant};
 
@@ -55,6 +57,8 @@ pub struct BasinExplorer {
     basins: Basins,
     /// Ways of other starts over the map of the variant that is chosen.
     paths: Paths,
+    /// Where the right basin ends along pure rotations, for whom it is asked.
+    edges: Edges,
     preview: Preview,
 }
 
@@ -91,6 +95,7 @@ impl BasinExplorer {
         let basins = Basins::new(&values);
         let mut explorer = Self {
             paths: Paths::new(&values),
+            edges: Edges::new(&values),
             preview: Preview::Hidden,
             run: Run {
                 trace: workspace.trace().to_vec(),
@@ -176,6 +181,7 @@ impl BasinExplorer {
     fn follow(&mut self) {
         self.basins.follow(&self.values);
         self.paths.follow(&self.values);
+        self.edges.follow(&self.values);
     }
 
     /// Keeps a value that lies in its range by construction.
@@ -196,16 +202,26 @@ impl Model for BasinExplorer {
         &self.values
     }
 
+    fn layer(&self) -> Layer {
+        let opening = match Phase::of(&self.values) {
+            Phase::Off => SPEC.opening,
+            Phase::Marking | Phase::Swept => edge::OPENING,
+        };
+        Layer::of(opening, &self.values)
+    }
+
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         if self.values.set(SPEC.id, id, value)? == Changed::No {
             return Ok(());
         }
         match id {
-            "iteration" | "speed" | "more" => {}
+            "iteration" | "speed" | "more" | "edge" => {}
+            _ if EDGES.contains(&id) => {}
             "seed" | "scene" => {
                 self.scene = settings::scene(&self.values);
                 self.basins.restart(&self.values);
                 self.paths.restart(&self.values);
+                self.edges = Edges::new(&self.values);
                 self.register();
             }
             _ => {
@@ -226,7 +242,9 @@ impl Model for BasinExplorer {
             self.store("iteration", position);
             return Ok(());
         }
-        if id != DEFAULTS.id {
+        if id == SWEEP.id {
+            self.store("edge", 2.0);
+        } else if id != DEFAULTS.id {
             press_preset(self, id)?;
         } else {
             self.playback.pause();
@@ -250,10 +268,25 @@ impl Model for BasinExplorer {
     }
 
     fn work(&mut self) -> Activity {
+        if Phase::of(&self.values) == Phase::Swept
+            && self.edges.work(&self.scene, &mut self.workspace) == Activity::Busy
+        {
+            return Activity::Busy;
+        }
         if self.paths.work(&self.scene, &mut self.workspace) == Activity::Busy {
             return Activity::Busy;
         }
         self.basins.work(&self.scene, &mut self.workspace)
+    }
+
+    fn settle(&mut self) -> Activity {
+        let mut done = Activity::Idle;
+        while Phase::of(&self.values) == Phase::Swept
+            && self.edges.work(&self.scene, &mut self.workspace) == Activity::Busy
+        {
+            done = Activity::Busy;
+        }
+        done
     }
 
     fn scene(&self) -> Scene {

@@ -4,7 +4,7 @@ use ch16_lab::basin::BasinScene;
 use kit::layers::{MORE, Opening};
 use kit::param::{Choice, ParamKind, ParamSpec};
 use kit::playback::SPEED;
-use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Largest offset of a start, m.
 pub const OFFSET_SPAN_M: f64 = 1.5;
@@ -14,6 +14,16 @@ pub const HUBER_OFF_M: f64 = 1.6;
 
 /// Iterations at which a registration ends in any case.
 pub const MAX_ITERS: f64 = BasinScene::MAX_ITERS as f64;
+
+/// The parameters that hold the reader's marks of the edge: point to point, then point to plane.
+pub const EDGES: [&str; 2] = ["edge-p2p", "edge-p2l"];
+
+/// Sweeps the edge and compares it with the marks.
+pub const SWEEP: ButtonSpec = ButtonSpec {
+    id: "sweep",
+    label: "Sweep the edge",
+    help: "Register from every heading outwards from the truth, and compare the edge with your marks.",
+};
 
 /// What the reader can change.
 pub const PARAMS: &[ParamSpec] = &[
@@ -133,6 +143,31 @@ pub const PARAMS: &[ParamSpec] = &[
         help: "Draws over the basin map which way starts all over it go, iteration by iteration.",
     },
     ParamSpec {
+        id: "edge",
+        label: "the basin's edge",
+        unit: "",
+        kind: ParamKind::Choice {
+            options: &[
+                Choice {
+                    id: "off",
+                    label: "is not asked for",
+                },
+                Choice {
+                    id: "mark",
+                    label: "is for you to mark",
+                },
+                Choice {
+                    id: "swept",
+                    label: "is swept",
+                },
+            ],
+        },
+        default: 0.0,
+        help: "Asks from how far a guess at the right place may be turned and still comes home; while you mark it, the maps are covered.",
+    },
+    edge(EDGES[0], "your edge, point to point"),
+    edge(EDGES[1], "your edge, point to plane"),
+    ParamSpec {
         id: "seed",
         label: "seed of the sweeps",
         unit: "",
@@ -151,6 +186,21 @@ pub const PARAMS: &[ParamSpec] = &[
     SPEED,
     MORE,
 ];
+
+const fn edge(id: &'static str, label: &'static str) -> ParamSpec {
+    ParamSpec {
+        id,
+        label,
+        unit: "°",
+        kind: ParamKind::Slider {
+            min: 0.0,
+            max: 180.0,
+            step: 1.0,
+        },
+        default: 0.0,
+        help: "Your mark of the edge, to either side of the truth; 0 is none.",
+    }
+}
 
 const fn offset(id: &'static str, label: &'static str, default: f64) -> ParamSpec {
     ParamSpec {
@@ -186,7 +236,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         buttons: &["play"],
     },
     params: PARAMS,
-    buttons: &[PLAY, STEP, RESET, DEFAULTS],
+    buttons: &[PLAY, STEP, RESET, SWEEP, DEFAULTS],
     presets: &[
         Preset {
             id: "near",
@@ -256,6 +306,19 @@ pub const SPEC: WidgetSpec = WidgetSpec {
                 ("iteration", 0.0),
             ],
             then: &["play"],
+        },
+        Preset {
+            id: "mark-edge",
+            label: "Where is the edge?",
+            help: "The maps are covered: mark on each how far a guess may be turned and still comes home, then sweep the edge.",
+            set: &[
+                ("heading", 0.0),
+                ("dx", 0.0),
+                ("dy", 0.0),
+                ("iteration", 0.0),
+                ("edge", 1.0),
+            ],
+            then: &[],
         },
         Preset {
             id: "short-sighted",

@@ -1,6 +1,7 @@
 //! The widget from outside: its model, its words, its view. One binary, one module for each.
 
 mod common;
+mod edge;
 mod fence;
 mod model;
 mod view;

@@ -1,8 +1,8 @@
-//! What a lap can be made of, by name: worlds, matchers, frames of information.
+//! What a lap can be made of, by name: worlds, matchers, gates, frames of information.
 //!
 //! The command line and the widgets choose from these lists, so that a name means the same everywhere.
 
-use ch16_slam2d::loops::DetectorKind;
+use ch16_slam2d::loops::{DetectorKind, GateModel};
 use ch16_slam2d::matching::{InformationFrame, MatcherKind, NdtMatcherConfig, SearchMatcherConfig};
 use ch16_slam2d::places::PlaceDetectorConfig;
 use ch16_slam2d::slam::SlamConfig;
@@ -292,6 +292,24 @@ impl Choice for InformationFrame {
     }
 }
 
+impl Choice for GateModel {
+    const ALL: &'static [Self] = &[Self::PathApproximation, Self::ExactMarginal];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::PathApproximation => "path",
+            Self::ExactMarginal => "exact",
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::PathApproximation => "a drift that grows with the path",
+            Self::ExactMarginal => "the graph's own covariance",
+        }
+    }
+}
+
 impl LapConfig {
     /// The lap at this seed and noise factor in a built-in world: the chapter's estimator in its own
     /// Apartment, the default one elsewhere.
@@ -351,6 +369,13 @@ impl LapConfig {
         self
     }
 
+    /// The same lap with another drift in the gate of its loops.
+    #[must_use]
+    pub fn with_gate(mut self, gate: GateModel) -> Self {
+        self.slam.loops.gate_model = gate;
+        self
+    }
+
     /// The same lap with the information of its edges in another frame.
     #[must_use]
     pub fn with_information(mut self, frame: InformationFrame) -> Self {
@@ -385,12 +410,14 @@ mod tests {
         check::<LapEstimator>();
         check::<FrontEndChoice>();
         check::<InformationFrame>();
+        check::<GateModel>();
     }
 
     #[test]
     fn the_first_of_each_list_is_the_chapters_lap() {
         let first = LapConfig::in_world(BuiltInWorld::ALL[0], super::super::CANONICAL_SEED, 1.0)
             .with_matcher(LapMatcher::ALL[0])
+            .with_gate(GateModel::ALL[0])
             .with_information(InformationFrame::ALL[0]);
         assert_eq!(first, LapConfig::default());
     }

@@ -1,7 +1,7 @@
 //! Registrations of w16.1 from a wrong heading: where they end, and how wide the basin is.
 
 use ch16_lab::basin::{
-    BasinOutcome, BasinScene, BasinStart, HOME_HEADING_DEG, Minimum, SUCCESS_RADIUS_M,
+    BasinOutcome, BasinScene, BasinStart, EdgeSearch, HOME_HEADING_DEG, Minimum, SUCCESS_RADIUS_M,
 };
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace, correspondences, icp_information};
 
@@ -17,6 +17,8 @@ pub fn value(scene: &BasinScene, path: &[&str]) -> Option<f64> {
         ["points"] => Some(scene.source().len() as f64),
         ["success_m"] => Some(SUCCESS_RADIUS_M),
         ["home_deg"] => Some(HOME_HEADING_DEG),
+        [name, "edge_deg"] => edge_deg(scene, name, TAU_M),
+        [name, "wide", "edge_deg"] => edge_deg(scene, name, WIDE_TAU_M),
         [variant, "from_deg"] => basin_edge(scene, variant, TAU_M, -1),
         [variant, "to_deg"] => basin_edge(scene, variant, TAU_M, 1),
         [variant, "wide", "from_deg"] => basin_edge(scene, variant, WIDE_TAU_M, -1),
@@ -106,4 +108,12 @@ fn basin_edge(scene: &BasinScene, name: &str, tau: f64, side: i32) -> Option<f64
     variant(name)?;
     let first_failure = (0..=180).find(|&degrees| !comes_home(degrees))?;
     Some(f64::from(side * (first_failure - 1)))
+}
+
+/// How far a guess at the right place may be turned, to either side, and still comes home.
+fn edge_deg(scene: &BasinScene, name: &str, tau: f64) -> Option<f64> {
+    let mut search = EdgeSearch::new(BasinScene::config(variant(name)?, tau));
+    let mut workspace = IcpWorkspace::new();
+    while !search.step(scene, &mut workspace) {}
+    search.reached_deg()
 }

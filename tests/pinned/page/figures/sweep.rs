@@ -8,6 +8,7 @@ use std::thread;
 use ch16_lab::lap::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LapConfig, LapRunner, LapSummary};
 use ch16_lab::nudge::{CHANGED_M, NUDGE, NudgeStatistics, farthest_keyframe_m, nudged};
 use ch16_lab::results::{Column, LapOutcome, LapStatistics, Row};
+use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::metrics::position_error_m;
 
 const SEEDS: RangeInclusive<u32> = 1..=1000;
@@ -15,6 +16,8 @@ const SEEDS: RangeInclusive<u32> = 1..=1000;
 const NUDGED_SEEDS: RangeInclusive<u32> = 1..=300;
 /// The level of [`NOISE`] of the canonical run.
 const ONCE: usize = 1;
+/// The level with the greatest noise.
+const NOISIEST: usize = 3;
 /// Factors of the wheels' noise, by the names that the page gives them.
 const NOISE: [(&str, f64); 4] = [
     ("quarter", 0.25),
@@ -26,6 +29,8 @@ const NOISE: [(&str, f64); 4] = [
 /// The laps of all seeds at all noise factors.
 pub struct Sweep {
     levels: [LapStatistics; 4],
+    /// The noisiest level with the graph's own covariance in the gate.
+    exact_gate: LapStatistics,
     nudged: NudgeStatistics,
     canonical: LapOutcome,
 }
@@ -48,6 +53,9 @@ impl Sweep {
         };
         Self {
             levels: [0, 1, 2, 3].map(level),
+            exact_gate: LapStatistics {
+                outcomes: by_seed.iter().map(|laps| laps.exact_gate).collect(),
+            },
             nudged: NudgeStatistics {
                 moved_m: by_seed.iter().filter_map(|laps| laps.moved_m).collect(),
             },
@@ -59,7 +67,13 @@ impl Sweep {
     pub fn value(&self, path: &[&str]) -> Option<f64> {
         let (&name, rest) = path.split_first()?;
         if let Some(level) = NOISE.iter().position(|&(known, _)| known == name) {
-            return self.of_level(level, rest);
+            return match *rest {
+                ["noise"] => Some(NOISE[level].1),
+                _ => of_laps(&self.levels[level], rest, &self.canonical),
+            };
+        }
+        if name == "exact_gate" {
+            return of_laps(&self.exact_gate, rest, &self.canonical);
         }
         let [_, once, ..] = &self.levels;
         let end_error = |lap: &LapOutcome| lap.entry(Column::WithLoops, Row::EndError);
@@ -83,40 +97,39 @@ impl Sweep {
             _ => None,
         }
     }
+}
 
-    fn of_level(&self, level: usize, path: &[&str]) -> Option<f64> {
-        let laps = &self.levels[level];
-        let percent = |is_true: fn(&LapOutcome) -> bool| 100.0 * laps.share(is_true);
-        Some(match *path {
-            ["noise"] => NOISE[level].1,
-            ["loops", count] => 100.0 * laps.loop_shares().get(count.parse::<usize>().ok()?)?,
-            ["accepted"] => laps.accepted_loops() as f64,
-            ["false"] => laps.false_acceptances() as f64,
-            ["false_runs_percent"] => 100.0 * laps.false_run_share(),
-            ["rms_grew_percent"] => percent(|lap| grew(lap, |lap| lap.keyframe_rms_m)),
-            ["rms_grew_false_percent"] => {
-                let grown = |lap: &&LapOutcome| grew(lap, |lap| lap.keyframe_rms_m);
-                let outcomes: Vec<_> = laps.outcomes.iter().filter(grown).copied().collect();
-                100.0 * LapStatistics { outcomes }.false_run_share()
+/// What laps have in common, by name.
+fn of_laps(laps: &LapStatistics, path: &[&str], canonical: &LapOutcome) -> Option<f64> {
+    let percent = |is_true: fn(&LapOutcome) -> bool| 100.0 * laps.share(is_true);
+    Some(match *path {
+        ["loops", count] => 100.0 * laps.loop_shares().get(count.parse::<usize>().ok()?)?,
+        ["accepted"] => laps.accepted_loops() as f64,
+        ["false"] => laps.false_acceptances() as f64,
+        ["false_runs_percent"] => 100.0 * laps.false_run_share(),
+        ["rms_grew_percent"] => percent(|lap| grew(lap, |lap| lap.keyframe_rms_m)),
+        ["rms_grew_false_percent"] => {
+            let grown = |lap: &&LapOutcome| grew(lap, |lap| lap.keyframe_rms_m);
+            let outcomes: Vec<_> = laps.outcomes.iter().filter(grown).copied().collect();
+            100.0 * LapStatistics { outcomes }.false_run_share()
+        }
+        ["max_grew_percent"] => percent(|lap| grew(lap, |lap| lap.keyframe_max_m)),
+        [column, row, "below_canonical_percent"] => {
+            let (column, row) = (column_of(column)?, row_of(row)?);
+            let canonical = canonical.entry(column, row)?;
+            100.0 * laps.share(|lap| lap.entry(column, row) < Some(canonical))
+        }
+        [column, row, quantile] => {
+            let spread = laps.spread(column_of(column)?, row_of(row)?)?;
+            match quantile {
+                "low" => spread.p05,
+                "median" => spread.median,
+                "high" => spread.p95,
+                _ => return None,
             }
-            ["max_grew_percent"] => percent(|lap| grew(lap, |lap| lap.keyframe_max_m)),
-            [column, row, "below_canonical_percent"] => {
-                let (column, row) = (column_of(column)?, row_of(row)?);
-                let canonical = self.canonical.entry(column, row)?;
-                100.0 * laps.share(|lap| lap.entry(column, row) < Some(canonical))
-            }
-            [column, row, quantile] => {
-                let spread = laps.spread(column_of(column)?, row_of(row)?)?;
-                match quantile {
-                    "low" => spread.p05,
-                    "median" => spread.median,
-                    "high" => spread.p95,
-                    _ => return None,
-                }
-            }
-            _ => return None,
-        })
-    }
+        }
+        _ => return None,
+    })
 }
 
 /// The laps of one seed.
@@ -125,6 +138,8 @@ struct OfSeed {
     outcomes: [LapOutcome; 4],
     /// How far the lap at noise ×1 moved with its start, where that was tried, m.
     moved_m: Option<f64>,
+    /// The noisiest lap with the graph's own covariance in the gate.
+    exact_gate: LapOutcome,
 }
 
 /// One runner for all: it keeps what a seed simulates over the noise factors.
@@ -137,9 +152,13 @@ fn laps(seeds: &[u32]) -> Vec<OfSeed> {
             let twin = runner.run(&nudged(&configs[ONCE], NUDGE));
             farthest_keyframe_m(&records[ONCE], &twin)
         });
+        let exact = configs[NOISIEST]
+            .clone()
+            .with_gate(GateModel::ExactMarginal);
         OfSeed {
             outcomes: records.each_ref().map(LapOutcome::of),
             moved_m,
+            exact_gate: LapOutcome::of(&runner.run(&exact)),
         }
     };
     seeds.iter().map(of_seed).collect()

@@ -4,7 +4,9 @@ use kit::model::Handle;
 use pr_geom::{Point2, SE2, math};
 
 use super::basins::start_at;
+use super::edge::Phase;
 use super::{BasinExplorer, panel};
+use crate::spec::EDGES;
 
 /// Distance of the turning handle from the sensor, m.
 const TURN_ARM_M: f64 = 1.0;
@@ -14,6 +16,7 @@ mod thing {
     pub const SOURCE: &str = "source";
     pub const TURN: &str = "turn";
     pub const START: &str = "start";
+    pub const EDGE: &str = "edge";
 }
 
 /// Where the handle that turns the source stands, at the iteration that is shown.
@@ -32,12 +35,16 @@ pub fn grab(
     if panel == panel::SWEEPS {
         return grab_source(explorer, at, reach);
     }
-    // Every spot of a basin map is a start.
+    // Every spot of a basin map is a start, or while the edge is asked for, a mark.
     let maps = [panel::POINT, panel::PLANE];
     let panel = maps.into_iter().find(|id| *id == panel)?;
     Some(Handle {
         panel,
-        id: thing::START,
+        id: if Phase::of(&explorer.values) == Phase::Marking {
+            thing::EDGE
+        } else {
+            thing::START
+        },
         offset: [0.0, 0.0],
     })
 }
@@ -65,6 +72,13 @@ fn grab_source(explorer: &BasinExplorer, at: [f64; 2], reach: [f64; 2]) -> Optio
 
 /// Moves what is held; what the reader moves becomes the start.
 pub fn drag(explorer: &mut BasinExplorer, handle: Handle, at: [f64; 2]) {
+    if handle.id == thing::EDGE {
+        if at[0].is_finite() {
+            let id = EDGES[usize::from(handle.panel == panel::PLANE)];
+            explorer.store(id, at[0].abs().round().min(180.0));
+        }
+        return;
+    }
     let pose = explorer.shown().pose;
     let spot = [at[0] - handle.offset[0], at[1] - handle.offset[1]];
     let start = match handle.id {

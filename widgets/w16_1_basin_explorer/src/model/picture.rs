@@ -8,6 +8,7 @@ use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, T
 use pr_geom::{Point2, SE2};
 
 use super::basins::{class, spot_of, start_spot};
+use super::edge::{self, Phase};
 use super::hands::turn_handle;
 use super::paths::broken;
 use super::settings::{axis, start, variant, variant_name};
@@ -257,27 +258,23 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
     } else {
         String::new()
     };
-    let mut layers = vec![Layer::Raster(explorer.basins.raster(of))];
-    layers.extend(
-        explorer
-            .basins
-            .letters(of, &explorer.values)
-            .into_iter()
-            .map(|(at, minimum)| Layer::Text {
-                at,
-                text: minimum.letter().to_string(),
-                tone: Tone::Class(class(minimum)),
-            }),
-    );
+    let mut layers = Vec::new();
+    let covered = Phase::of(&explorer.values) == Phase::Marking;
+    if !covered {
+        layers.push(Layer::Raster(explorer.basins.raster(of)));
+        layers.extend(letters(explorer, of));
+    }
+    layers.extend(edge::layers(explorer, of));
     let spot = spot_of(&explorer.values);
-    if chosen {
+    // While the maps are covered the reader looks for the edge, not for a start.
+    if chosen && !covered {
         layers.extend(ways(explorer));
         layers.push(Layer::Handle {
             at: spot,
             tone: Tone::Prior,
             label: "the current start; press anywhere to start there",
         });
-    } else {
+    } else if !covered {
         layers.push(Layer::Points {
             points: vec![spot],
             mark: Mark::Plus,
@@ -285,15 +282,24 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
             radius_px: 7.0,
         });
     }
-    let legend = Minimum::of(explorer.scene.place()).map(|minimum| LegendEntry {
-        label: format!("{} {}", minimum.letter(), minimum.name()),
-        tone: Tone::Class(class(minimum)),
-        mark: None,
-        stroke: None,
-    });
+    let mut legend = edge::legend(&explorer.values);
+    if !covered {
+        let minima = Minimum::of(explorer.scene.place());
+        legend.extend(minima.map(|minimum| LegendEntry {
+            label: format!("{} {}", minimum.letter(), minimum.name()),
+            tone: Tone::Class(class(minimum)),
+            mark: None,
+            stroke: None,
+        }));
+    }
+    let title = if covered {
+        format!("Where is the edge, {}?", variant_name(of))
+    } else {
+        format!("Basins, {}, {other}{state}", variant_name(of))
+    };
     Panel {
         id,
-        title: format!("Basins, {}, {other}{state}", variant_name(of)),
+        title,
         weight: Weight::Half,
         aspect: Aspect::Free,
         x: Axis {
@@ -309,12 +315,22 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
         layers,
         // One legend for both maps, below the second.
         legend: if of == IcpVariant::PointToPlane {
-            legend.to_vec()
+            legend
         } else {
             Vec::new()
         },
         color_bar: None,
     }
+}
+
+/// The letters of the minima over the map of a variant.
+fn letters(explorer: &BasinExplorer, of: IcpVariant) -> impl Iterator<Item = Layer> {
+    let letters = explorer.basins.letters(of, &explorer.values);
+    letters.into_iter().map(|(at, minimum)| Layer::Text {
+        at,
+        text: minimum.letter().to_string(),
+        tone: Tone::Class(class(minimum)),
+    })
 }
 
 /// The ways of other starts over the map, each with a dot where it ends, and that of the own start

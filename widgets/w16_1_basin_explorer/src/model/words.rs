@@ -6,6 +6,7 @@ use kit::model::{Fact, Outcome, Standing};
 use pr_geom::{SE2, math};
 
 use super::BasinExplorer;
+use super::edge::{self, Phase};
 use super::settings::{variant, variant_name};
 
 /// How the minimum is judged that a run reached: the same that colours its cell of a basin map.
@@ -26,6 +27,9 @@ fn caveat(end: &BasinOutcome) -> &'static str {
 }
 
 pub fn outcome(explorer: &BasinExplorer) -> Outcome {
+    if let Some(asked) = edge::outcome(explorer) {
+        return asked;
+    }
     let end = &explorer.run.outcome;
     Outcome {
         standing: standing(end.ending),
@@ -55,6 +59,12 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
 }
 
 pub fn summary(explorer: &BasinExplorer) -> String {
+    if Phase::of(&explorer.values) == Phase::Marking {
+        return format!(
+            "Two basin maps of headings and offsets, covered until the edge of the right basin is marked. {}",
+            outcome(explorer).sentence
+        );
+    }
     let shown = explorer.shown();
     let truth = explorer.scene.truth();
     let place = match explorer.scene.place() {
