@@ -66,7 +66,7 @@ pub struct SweepArgs {
     nudge: bool,
     /// Draw the configuration of each lap from the documented ranges, noise included, and check
     /// that every figure is finite.
-    #[arg(long, conflicts_with_all = ["nudge", "noise", "world", "matcher", "front_end", "information", "estimator"])]
+    #[arg(long, conflicts_with_all = ["nudge", "noise", "world", "matcher", "front_end", "gate", "information", "estimator"])]
     random: bool,
     /// Keep what each lap came to in this file, a line each. Laps that are in it are not driven again.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["nudge", "random"])]

@@ -1,5 +1,7 @@
 //! Other estimators on the command line.
 
+use serde_json::Value;
+
 use crate::support::{assert_refused, json};
 
 #[test]
@@ -88,4 +90,27 @@ fn the_front_end_of_submaps_is_another_lap_and_no_matter_of_the_ancestor() {
     assert!(ends[0] < 0.7 * ends[1], "{ends:?}");
     let refused = ["lap", "--estimator", "ml", "--front-end", "submaps"];
     assert_refused(&refused, "--front-end says nothing to the estimator ml");
+}
+
+#[test]
+fn the_gate_with_the_graphs_own_covariance_lets_pass_what_the_path_gate_turns_away() {
+    // A lap that drifts farther than the path's gate allows for.
+    let lap = |gate: &[&str]| {
+        let asked = [&["lap", "--seed", "2", "--noise", "3", "--json"][..], gate].concat();
+        json(&asked)
+    };
+    let accepted = |lap: &Value| {
+        let events = lap["events"].as_array().unwrap();
+        events
+            .iter()
+            .filter(|event| event["accepted"] == true)
+            .count()
+    };
+    let default = lap(&[]);
+    let (path, exact) = (lap(&["--gate", "path"]), lap(&["--gate", "exact"]));
+    assert_eq!(default["digest"], path["digest"]);
+    assert_eq!((accepted(&path), accepted(&exact)), (0, 3));
+    assert_refused(&["lap", "--gate", "wide"], "wide");
+    let refused = ["lap", "--estimator", "ml", "--gate", "exact"];
+    assert_refused(&refused, "--gate says nothing to the estimator ml");
 }

@@ -20,7 +20,7 @@ use crate::output::{print_json, say};
 pub struct LapsArgs {
     /// Drive so many laps one after the other, with the values for robots, and keep the map up.
     #[arg(long, value_name = "N", value_parser = numbers::laps,
-          conflicts_with_all = ["matcher", "loop_matcher", "detector", "information", "frames", "no_loops", "estimator"])]
+          conflicts_with_all = ["matcher", "loop_matcher", "detector", "gate", "information", "frames", "no_loops", "estimator"])]
     pub laps: Option<usize>,
     /// After the last lap write the session into this file.
     #[arg(long, value_name = "FILE", requires = "laps")]
