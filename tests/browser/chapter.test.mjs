@@ -211,14 +211,14 @@ describe('the chapter', () => {
 
   it('says right or wrong in words, and of the number that was asked for', async () => {
     await reading(async (tab) => {
-      const question = tab.locator('#exercise-5 slam-predict');
+      const question = tab.locator('#exercise-5 slam-predict[fact="map_disagreement_m"]');
       await question.scrollIntoViewIfNeeded();
       await tab.waitForFunction(() => customElements.get('slam-predict') !== undefined);
-      await question.locator('input').fill('0.05');
+      await question.locator('input').fill('0.1');
       await question.locator('button').first().click();
       await question.locator('[data-why]').waitFor({ state: 'visible' });
       const said = await question.evaluate((element) => element.shadowRoot.querySelector('.answer p').textContent);
-      assert.match(said, /^Right\. It is 0\.026 m\. You said 0\.05 m and are off by 0\.024 m\.$/);
+      assert.match(said, /^Right\. It is 0\.090 m\. You said 0\.1 m and are off by 0\.0099 m\.$/);
     });
   });
 
