@@ -25,6 +25,12 @@ export interface BasinExplorerState {
   axis: 'dx' | 'dy';
   /** Draws over the basin map which way starts all over it go, iteration by iteration. */
   paths: boolean;
+  /** Asks from how far a guess at the right place may be turned and still comes home; while you mark it, the maps are covered. */
+  edge: 'off' | 'mark' | 'swept';
+  /** Your mark of the edge, to either side of the truth; 0 is none. 0 to 180 °. */
+  'edge-p2p': number;
+  /** Your mark of the edge, to either side of the truth; 0 is none. 0 to 180 °. */
+  'edge-p2l': number;
   /** Where the range noise of both sweeps starts; 457 is the chapter's. 0 to 4294967295. */
   seed: number;
   /** Which iteration is shown; 0 is the first guess, and past the last one is the end. 0 to 30. */
@@ -377,7 +383,7 @@ export interface WidgetStates {
 
 /** The buttons and presets of each widget, for `press`. */
 export interface WidgetButtons {
-  'w16.1': 'play' | 'step' | 'reset' | 'defaults' | 'near' | 'quarter-turn' | 'between' | 'between-plane' | 'half-turn' | 'fence' | 'short-sighted';
+  'w16.1': 'play' | 'step' | 'reset' | 'sweep' | 'defaults' | 'near' | 'quarter-turn' | 'between' | 'between-plane' | 'half-turn' | 'fence' | 'mark-edge' | 'short-sighted';
   'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'one-back' | 'one-on' | 'tie' | 'undo' | 'edit-flat' | 'piece-back' | 'piece-on' | 'west' | 'east' | 'north' | 'south' | 'remove' | 'add-wall' | 'add-way-point' | 'turn-here' | 'take-back' | 'do-again' | 'open-flat' | 'save-flat' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'wrong-loop' | 'tamed-loop' | 'true-loop' | 'ring' | 'twins' | 'corridor' | 'hall' | 'own-flat' | 'bells' | 'sliding';
   'w16.3': 'drop' | 'drop-100' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'bowl' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'own-corridor' | 'drop-room' | 'drop-corridor' | 'turned';
   'w16.4': 'play' | 'step' | 'reset' | 'next-event' | 'defaults' | 'watch' | 'blurred' | 'rebuilt' | 'noisy' | 'wrong-loop' | 'open';
@@ -453,6 +459,11 @@ export interface SlamWidgetProperties {
   huber: number | undefined;
   axis: 'dx' | 'dy' | undefined;
   paths: boolean | undefined;
+  edge: 'off' | 'mark' | 'swept' | undefined;
+  'edge-p2p': number | undefined;
+  edgeP2p: number | undefined;
+  'edge-p2l': number | undefined;
+  edgeP2l: number | undefined;
   seed: number | undefined;
   iteration: number | undefined;
   speed: 'quarter' | 'half' | 'normal' | 'double' | 'fourfold' | undefined;

@@ -20,6 +20,7 @@ mod dense_kernel;
 mod elimination;
 mod error;
 mod factor;
+#[cfg(feature = "faer_cholesky")]
 pub mod faer_cholesky;
 pub mod g2o;
 pub mod init;

@@ -4,6 +4,7 @@ use nalgebra::Matrix3;
 
 use crate::block_cholesky::BlockCholesky;
 use crate::error::OptimizeError;
+#[cfg(feature = "faer_cholesky")]
 use crate::faer_cholesky::FaerCholesky;
 use crate::marginals::{JointCovariance, all_marginals, all_measured, joint_covariance};
 use crate::ordering::minimum_degree;
@@ -17,7 +18,8 @@ pub enum Factorization {
     /// This crate's multifrontal factorization of 3×3 blocks.
     #[default]
     Block,
-    /// `faer`'s simplicial factorization of scalars.
+    /// `faer`'s simplicial factorization of scalars, of the feature `faer_cholesky`.
+    #[cfg(feature = "faer_cholesky")]
     Faer,
 }
 
@@ -31,6 +33,7 @@ pub struct LinearSolver {
 #[derive(Debug)]
 enum Cholesky {
     Block(Box<BlockCholesky>),
+    #[cfg(feature = "faer_cholesky")]
     Faer(Box<FaerCholesky>),
 }
 
@@ -43,6 +46,7 @@ impl LinearSolver {
         let structure = Structure::new(problem, order);
         let cholesky = match factorization {
             Factorization::Block => Cholesky::Block(Box::new(BlockCholesky::new(&structure))),
+            #[cfg(feature = "faer_cholesky")]
             Factorization::Faer => Cholesky::Faer(Box::new(FaerCholesky::new(&structure))),
         };
         Self {
@@ -62,6 +66,7 @@ impl LinearSolver {
     pub fn fits(&self, problem: &Problem, factorization: Factorization) -> bool {
         let kind = match self.cholesky {
             Cholesky::Block(_) => Factorization::Block,
+            #[cfg(feature = "faer_cholesky")]
             Cholesky::Faer(_) => Factorization::Faer,
         };
         kind == factorization && self.structure.fits(problem)
@@ -78,6 +83,7 @@ impl LinearSolver {
     ) -> Result<(), OptimizeError> {
         match &mut self.cholesky {
             Cholesky::Block(cholesky) => cholesky.factorize(&self.structure, equations, damping),
+            #[cfg(feature = "faer_cholesky")]
             Cholesky::Faer(cholesky) => cholesky.factorize(&self.structure, equations, damping),
         }
     }
@@ -99,6 +105,7 @@ impl LinearSolver {
                 cholesky,
                 [first, second],
             )),
+            #[cfg(feature = "faer_cholesky")]
             Cholesky::Faer(_) => None,
         }
     }
@@ -112,6 +119,7 @@ impl LinearSolver {
             Cholesky::Block(cholesky) => {
                 Some(all_marginals(&self.structure, problem.fixed(), cholesky))
             }
+            #[cfg(feature = "faer_cholesky")]
             Cholesky::Faer(_) => None,
         }
     }
@@ -123,6 +131,7 @@ impl LinearSolver {
     pub fn measured_covariances(&self, problem: &Problem) -> Option<Vec<JointCovariance>> {
         match &self.cholesky {
             Cholesky::Block(cholesky) => Some(all_measured(&self.structure, problem, cholesky)),
+            #[cfg(feature = "faer_cholesky")]
             Cholesky::Faer(_) => None,
         }
     }
@@ -131,6 +140,7 @@ impl LinearSolver {
     pub fn solve(&mut self, rhs: &mut [f64]) {
         match &mut self.cholesky {
             Cholesky::Block(cholesky) => cholesky.solve(rhs),
+            #[cfg(feature = "faer_cholesky")]
             Cholesky::Faer(cholesky) => cholesky.solve(rhs),
         }
     }
