@@ -1,6 +1,7 @@
 // Where to put the pointer on a widget: it is asked what drags where, nobody counts pixels.
 
 import assert from 'node:assert/strict';
+import { moreFrames } from './harness.mjs';
 
 /** The place of the canvas on the screen. */
 export function canvasBox(tab, css = 'slam-widget') {
@@ -50,21 +51,28 @@ export async function sliderRail(tab, parameter, css = 'slam-widget') {
   return found;
 }
 
-/** A point of the picture of w16.1 where the cloud can be taken. */
+/** A point of the picture of w16.1 where the mouse can take the cloud: there its pointer becomes a hand. */
 export async function cloudSpot(tab, css = 'slam-widget') {
-  const at = await tab.evaluate((name) => {
+  const spots = await tab.evaluate((name) => {
     const widget = document.querySelector(name);
     const box = widget.shadowRoot.querySelector('canvas').getBoundingClientRect();
-    // Over the picture, which lies left of the controls and right under the presets.
-    for (let y = 120; y < 600; y += 5) {
-      for (let x = 40; x < box.width * 0.35; x += 5) {
-        // A finger reaches further than the mouse: take a spot from its middle.
-        const around = [[0, 0], [12, 0], [-12, 0], [0, 12], [0, -12]];
-        if (around.every(([dx, dy]) => widget.dragsAt(x + dx, y + dy))) return [box.left + x, box.top + y];
+    // Well within the picture: what else drags lies around it.
+    const [left, bottom] = widget.panelToScreen('sweeps', -2, -2);
+    const [right, top] = widget.panelToScreen('sweeps', 2, 2);
+    const found = [];
+    for (let y = Math.ceil(top); y < bottom; y += 7) {
+      for (let x = Math.ceil(left); x < right; x += 7) {
+        if (widget.dragsAt(x, y)) found.push([box.left + x, box.top + y]);
       }
     }
-    return null;
+    return found;
   }, css);
-  assert.ok(at !== null, 'nothing in the picture drags');
-  return at;
+  // A finger reaches further than the mouse, so not all of them will do.
+  for (const [x, y] of spots) {
+    await tab.mouse.move(x, y);
+    await moreFrames(tab, 2, css);
+    const cursor = await tab.evaluate((name) => document.querySelector(name).shadowRoot.querySelector('canvas').style.cursor, css);
+    if (cursor === 'grab') return [x, y];
+  }
+  assert.fail('nothing in the picture drags');
 }
