@@ -32,9 +32,8 @@ await writeNotices(await bundleScript()).catch(endWithOneSentence);
 
 async function renderPage() {
   const source = await readFile(path.join(root, 'index.html'), 'utf8');
-  const sketches = await drawStills(outDir);
   const drawn = addStills(addPictures(renderFormulas(source), await widgetSpecs()));
-  const page = await addListings(addSketches(drawn, sketches), root);
+  const page = await addListings(addSketches(drawn, await drawStills(outDir)), root);
   await writeFile(path.join(outDir, 'index.html'), page);
 }
 
