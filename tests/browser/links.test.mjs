@@ -156,6 +156,8 @@ describe('on a narrow screen', () => {
       await tab.mouse.move(...at);
       await tab.mouse.down();
       await isPinned(true);
+      // The copy takes the next picture of the canvas.
+      await h.moreFrames(tab, 2, css);
       const shown = await pinned();
       assert.ok(shown.top === 0 && shown.bottom < at[1] - 20 && shown.colors > 3, JSON.stringify(shown));
       assert.ok(shown.left >= 0 && shown.right <= 390);

@@ -178,8 +178,8 @@ mod tests {
 
     #[test]
     fn an_unknown_name_gives_none() {
-        assert!(make("w16.9").is_none());
-        assert!(spec("w16.9").is_none());
+        assert!(make("w17.1").is_none());
+        assert!(spec("w17.1").is_none());
         assert!(names().contains("w16.4"));
     }
 }
