@@ -13,7 +13,7 @@ cargo xtask build                             build the finished static site int
 cargo xtask package                           build what people install into target/packages/: npm and Python
 cargo xtask test                              every check: format, lints, native, wasm, browser
 cargo xtask test --quick                      format, licences, lints and native tests
-cargo xtask test PIECE...                     of: format licences native counts site node browser
+cargo xtask test PIECE...                     of: format native lints counts site node browser
 cargo xtask peers                             lints and tests of what times other people's solvers
 cargo xtask soak N [--go-on] [--only a,b]     the browser tests N times on a busy machine
 cargo xtask record-counts                     accept the instruction counts of the workloads

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::chromium;
 use crate::run::{Failure, program, root, show, step};
-use crate::site::{self, Lints, Speed};
+use crate::site::{self, Speed};
 use crate::suite::native::Tools;
 use crate::tools;
 
@@ -87,7 +87,7 @@ pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
             .arg(Tools::AsShipped.path("slam2d"))
             .arg(PAGE),
     )?;
-    site::build(Speed::SmallAndFast, Lints::Skipped)?;
+    site::build(Speed::SmallAndFast)?;
     show(
         "The first frame of each widget",
         program("node")

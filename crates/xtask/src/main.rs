@@ -12,7 +12,6 @@ mod committed;
 mod fuzz;
 mod http;
 mod ledger;
-mod linting;
 mod load;
 mod package;
 mod run;
@@ -28,9 +27,6 @@ use std::process::ExitCode;
 use args::Command;
 
 fn main() -> ExitCode {
-    if let Some(compiled) = linting::compile() {
-        return compiled;
-    }
     let command = match args::parse(std::env::args().skip(1)) {
         Ok(command) => command,
         Err(message) => {
@@ -43,7 +39,7 @@ fn main() -> ExitCode {
             println!("{}", args::USAGE);
             Ok(())
         }
-        Command::Build => site::build(site::Speed::SmallAndFast, site::Lints::Skipped),
+        Command::Build => site::build(site::Speed::SmallAndFast),
         Command::Package => package::package(),
         Command::Serve { port, speed } => serve::serve(port, speed),
         Command::Test(pieces) => suite::test(&pieces),

@@ -5,7 +5,7 @@
 use std::process::Command;
 
 use crate::run::{Failure, program, root, step};
-use crate::site::{self, Lints, Speed};
+use crate::site::{self, Speed};
 use crate::tools;
 
 /// Builds the site and packs it.
@@ -20,7 +20,7 @@ pub fn package() -> Result<(), Failure> {
             missing.with_way_out("install Python 3.10 or later with pip, or name one by PYTHON")
         );
     }
-    site::build(Speed::SmallAndFast, Lints::Skipped)?;
+    site::build(Speed::SmallAndFast)?;
     let packages = root().join("target").join("packages");
     step(
         "Packing the npm archive and the Python wheel",

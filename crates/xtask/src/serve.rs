@@ -15,7 +15,7 @@ use crate::site::{self, Speed};
 pub fn serve(port: u16, speed: Speed) -> Result<(), Failure> {
     // A taken port is better known before minutes of building.
     let listener = listen(port)?;
-    site::build(speed, site::Lints::Skipped)?;
+    site::build(speed)?;
     println!("\nServing on http://localhost:{port}/   (stop with Ctrl+C)");
     let dist = Arc::new(root().join("dist"));
     for stream in listener.incoming() {

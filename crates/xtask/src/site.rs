@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::linting;
 use crate::run::{Failure, program, root, step};
 use crate::tools;
 
@@ -25,31 +24,13 @@ impl Speed {
     }
 }
 
-/// Whether the build checks our own crates on its way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lints {
-    /// It only compiles.
-    Skipped,
-    /// A warning of the compiler or of clippy ends it.
-    Errors,
-}
-
-impl Lints {
-    fn join(self, build: &mut Command) -> Result<(), Failure> {
-        match self {
-            Self::Skipped => Ok(()),
-            Self::Errors => linting::lint_on_the_way(build),
-        }
-    }
-}
-
 /// Builds `dist/`.
 ///
 /// # Errors
 /// The first step that fails, in one line.
-pub fn build(speed: Speed, lints: Lints) -> Result<(), Failure> {
+pub fn build(speed: Speed) -> Result<(), Failure> {
     tools::ensure_build_tools()?;
-    compile_wasm(speed, lints)?;
+    compile_wasm(speed)?;
     let dist = root().join("dist");
     step(
         "Bundling the element and drawing the static pictures",
@@ -66,16 +47,15 @@ pub fn build(speed: Speed, lints: Lints) -> Result<(), Failure> {
     Ok(())
 }
 
-fn compile_wasm(speed: Speed, lints: Lints) -> Result<(), Failure> {
-    let mut command = wasm_build("pkg", speed);
-    lints.join(&mut command)?;
+fn compile_wasm(speed: Speed) -> Result<(), Failure> {
     step(
         "Compiling the widgets to WebAssembly (the first time takes minutes)",
-        &mut command,
+        &mut wasm_build("pkg", speed),
     )?;
-    let mut command = robot_build(speed);
-    lints.join(&mut command)?;
-    step("Compiling the worker that maps logs", &mut command)
+    step(
+        "Compiling the worker that maps logs",
+        &mut robot_build(speed),
+    )
 }
 
 /// The build of the second module, which a reader's log is mapped in, into `web/pkg-robot`.

@@ -68,6 +68,7 @@ fn run(
             program("node").arg("web/licences/check.mjs"),
         ),
         Piece::Native => native::test(skipped, ledger),
+        Piece::Lints => wasm::lints(ledger),
         Piece::Counts => native::counts(skipped, ledger),
         Piece::Site => wasm::site(ledger),
         Piece::Node => wasm::node(skipped, ledger),

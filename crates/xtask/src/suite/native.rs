@@ -6,7 +6,6 @@ use std::process::Command;
 use super::skipped::SkipList;
 use super::timed;
 use crate::ledger::Ledger;
-use crate::linting::DENY_WARNINGS;
 use crate::run::{Failure, cargo, program, root, show};
 use crate::tools;
 
@@ -127,10 +126,13 @@ pub fn peers() -> Result<(), Failure> {
 /// Makes clippy the compiler of the workspace's crates and every warning an error.
 fn linting(command: &mut Command) -> Result<&mut Command, Failure> {
     let driver = tools::clippy_driver()?;
-    let (name, value) = DENY_WARNINGS;
     Ok(unincremental(command)
         .env("RUSTC_WORKSPACE_WRAPPER", driver)
-        .env(name, value))
+        // As `cargo clippy -- -D warnings` says it to its driver.
+        .env(
+            "CLIPPY_ARGS",
+            ["-D", "warnings", ""].join("__CLIPPY_HACKERY__"),
+        ))
 }
 
 /// What is kept for the next compilation of a crate costs the first one a tenth more.

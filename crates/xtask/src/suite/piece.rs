@@ -9,9 +9,11 @@ pub enum Piece {
     Licences,
     /// Everything native: compiled and linted in one pass, then tested.
     Native,
+    /// Lints of what only WebAssembly compiles.
+    Lints,
     /// Counted instructions against the recorded ones.
     Counts,
-    /// The site as it is published, linted as WebAssembly, and the types of its element.
+    /// The site as it is published, and the types of its element.
     Site,
     /// The module in Node.
     Node,
@@ -21,10 +23,11 @@ pub enum Piece {
 
 impl Piece {
     /// All of them, in the order in which they run.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Format,
         Self::Licences,
         Self::Native,
+        Self::Lints,
         Self::Counts,
         Self::Site,
         Self::Node,
@@ -32,7 +35,7 @@ impl Piece {
     ];
 
     /// What `--quick` runs: nothing that builds the site.
-    pub const QUICK: [Self; 3] = [Self::Format, Self::Licences, Self::Native];
+    pub const QUICK: [Self; 4] = [Self::Format, Self::Licences, Self::Native, Self::Lints];
 
     /// Its name on the command line.
     pub const fn name(self) -> &'static str {
@@ -40,6 +43,7 @@ impl Piece {
             Self::Format => "format",
             Self::Licences => "licences",
             Self::Native => "native",
+            Self::Lints => "lints",
             Self::Counts => "counts",
             Self::Site => "site",
             Self::Node => "node",
@@ -56,7 +60,7 @@ impl Piece {
     pub fn needs_the_site(self) -> bool {
         matches!(
             self,
-            Self::Licences | Self::Site | Self::Node | Self::Browser
+            Self::Licences | Self::Lints | Self::Site | Self::Node | Self::Browser
         )
     }
 }

@@ -1,24 +1,37 @@
-//! What becomes of the workspace as WebAssembly: the site with its lints, the module in Node.
+//! What becomes of the workspace as WebAssembly: its lints, the site, the module in Node.
 
 use super::native::Tools;
 use super::skipped::SkipList;
 use super::{test_files, timed};
 use crate::committed::{Committed, Strictness};
 use crate::ledger::Ledger;
-use crate::run::{Failure, program, root};
-use crate::site::{self, Lints, Speed};
+use crate::run::{Failure, cargo, program, root};
+use crate::site::{self, Speed};
 use crate::tools;
 
-/// Builds the site, linting what only WebAssembly compiles on the way, and checks what the build writes
-/// into the repository, and the types.
+/// Lints of what only WebAssembly compiles.
+///
+/// # Errors
+/// Where clippy has something to say.
+pub fn lints(ledger: &mut Ledger) -> Result<(), Failure> {
+    timed(
+        ledger,
+        "wasm: lint",
+        cargo()
+            .args(["clippy", "--quiet"])
+            .args(["--package", "slam_web", "--package", "slam_robot"])
+            .args(["--target", tools::TARGET, "--", "-D", "warnings"])
+            .env("CARGO_INCREMENTAL", "0"),
+    )
+}
+
+/// Builds the site and checks what the build writes into the repository, and the types.
 ///
 /// # Errors
 /// The step that failed.
 pub fn site(ledger: &mut Ledger) -> Result<(), Failure> {
     let committed = Committed::read();
-    ledger.time("site: build", || {
-        site::build(Speed::SmallAndFast, Lints::Errors)
-    })?;
+    ledger.time("site: build", || site::build(Speed::SmallAndFast))?;
     committed.compare(Strictness::of_this_run())?;
     timed(
         ledger,
