@@ -13,6 +13,7 @@
 mod candidates;
 mod config;
 mod detector;
+mod elsewhere;
 mod gate;
 mod guard;
 mod verify;
@@ -20,6 +21,7 @@ mod verify;
 pub use candidates::{LoopCandidate, detect_loop_candidates, detect_visits};
 pub use config::{Detection, DetectorKind, GateModel, LoopConfig, WideSearch};
 pub use detector::{CloneDetector, LoopDetector, LoopQuery, NearbyDetector};
+pub(crate) use elsewhere::{AllowedPlaces, Surroundings};
 pub use gate::{GateTest, chi_squared_gate, marginal_information, path_information};
 pub(crate) use guard::widest_variance;
 pub use guard::{HeldLoop, LoopGuard};

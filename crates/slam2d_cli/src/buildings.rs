@@ -86,6 +86,10 @@ struct Row {
     nees_95: f64,
     /// Share of the keyframes within their 95 % ellipsoid.
     within_95: f64,
+    /// Normalized errors squared by shares: 5, 25, 50, 75, 95 % lie below; of keyframes, steps, links.
+    keyframe_nees: [f64; 5],
+    step_nees: [f64; 5],
+    link_nees: [f64; 5],
 }
 
 /// `NAME=VALUE`.
@@ -154,6 +158,20 @@ fn row(args: &BuildingsArgs, seed: u32) -> Result<Row, ParameterError> {
                 .unwrap_or_default()
         },
         within_95: trial.within_95(),
+        keyframe_nees: shares(&trial.nees),
+        step_nees: shares(&trial.step_nees),
+        link_nees: shares(&trial.link_nees),
+    })
+}
+
+fn shares(values: &[f64]) -> [f64; 5] {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    [5, 25, 50, 75, 95].map(|share| {
+        sorted
+            .get(sorted.len() * share / 100)
+            .copied()
+            .unwrap_or_default()
     })
 }
 

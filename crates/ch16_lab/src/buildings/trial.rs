@@ -43,6 +43,10 @@ pub struct Trial {
     pub worst_m: f64,
     /// Normalized error squared of every keyframe but the first, of three degrees of freedom.
     pub nees: Vec<f64>,
+    /// The same of every step from keyframe to keyframe, by its own information.
+    pub step_nees: Vec<f64>,
+    /// The same of every right loop of the final graph.
+    pub link_nees: Vec<f64>,
 }
 
 impl Trial {
@@ -74,11 +78,16 @@ impl Trial {
         }
         slam.refine();
         let mut links = TrialLoops::default();
+        let (mut step_nees, mut link_nees) = (Vec::new(), Vec::new());
         for view in slam.graph().edges() {
-            if view.edge.kind == EdgeKind::Loop {
-                let (old, new) = (view.from.index(), view.to.index());
-                let truth = truth_between(&slam, recording, old, new);
-                links.add(&truth, &view.edge.measurement);
+            let (old, new) = (view.from.index(), view.to.index());
+            let truth = truth_between(&slam, recording, old, new);
+            let error = view.edge.measurement.between(&truth).log();
+            let nees = error.dot(&(view.edge.information * error));
+            match view.edge.kind {
+                EdgeKind::Odometry => step_nees.push(nees),
+                EdgeKind::Loop if links.add(&truth, &view.edge.measurement) => link_nees.push(nees),
+                EdgeKind::Loop => {}
             }
         }
         let truths: Vec<SE2> = slam
@@ -99,6 +108,8 @@ impl Trial {
                 .map(|(a, b)| position_error_m(a, b))
                 .fold(0.0, f64::max),
             nees: nees(&mut slam, &truths),
+            step_nees,
+            link_nees,
         }
     }
 
@@ -111,14 +122,17 @@ impl Trial {
 }
 
 impl TrialLoops {
-    fn add(&mut self, truth: &SE2, measured: &SE2) {
+    /// Counts a loop; whether it is right.
+    fn add(&mut self, truth: &SE2, measured: &SE2) -> bool {
         let error = truth.between(measured);
         let off_m = position_error_m(&error, &SE2::identity());
-        if off_m > FALSE_LOOP_DISTANCE_M || error.theta().abs().to_degrees() > FALSE_LOOP_TURN_DEG {
-            self.wrong += 1;
-        } else {
-            self.right += 1;
+        let is_right = off_m <= FALSE_LOOP_DISTANCE_M
+            && error.theta().abs().to_degrees() <= FALSE_LOOP_TURN_DEG;
+        match is_right {
+            true => self.right += 1,
+            false => self.wrong += 1,
         }
+        is_right
     }
 }
 

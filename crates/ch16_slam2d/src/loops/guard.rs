@@ -25,6 +25,11 @@ pub struct LoopGuard {
     pub sure_m: f64,
     /// Else the best place of the window has to be ahead of the best other one by so much.
     pub min_margin: f64,
+    /// And by so much ahead of any place that the graph allows, where points of the scan that fall on
+    /// what nobody has seen are no misses; 0 does not ask.
+    pub seen_margin: f64,
+    /// Such a point counts as those of the place that was found, less this.
+    pub unseen: f64,
     /// And so many loops have to agree, itself among them.
     pub agreeing: usize,
     /// So many have to where they contradict the gate.
@@ -43,6 +48,8 @@ impl Default for LoopGuard {
             gate_chi2: 11.345,
             sure_m: 1.2,
             min_margin: 0.05,
+            seen_margin: 0.0,
+            unseen: 0.08,
             agreeing: 2,
             agreeing_outside: 3,
             apart_m: 1.0,

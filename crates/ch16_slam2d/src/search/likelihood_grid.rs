@@ -178,7 +178,7 @@ impl LikelihoodGrid {
     }
 
     /// The cell of the grid that holds a point, counted from its lower left corner; may lie outside.
-    pub(super) fn cell(&self, x_m: f64, y_m: f64) -> (i64, i64) {
+    pub(crate) fn cell(&self, x_m: f64, y_m: f64) -> (i64, i64) {
         let cell_m = self.config.cell_m;
         (
             i64::from(cell_index(x_m, cell_m)) - i64::from(self.first_column),

@@ -7,8 +7,9 @@ use pr_optim::OptimizeError;
 use super::Slam;
 use crate::graph::EdgeKind;
 use crate::loops::{
-    Detection, HeldLoop, KeyframeView, LoopConfig, LoopGuard, LoopRejection, LoopVerification,
-    LoopWorkspace, WideSearch, chi_squared_gate, verify_loop, widest_variance,
+    AllowedPlaces, Detection, HeldLoop, KeyframeView, LoopConfig, LoopGuard, LoopRejection,
+    LoopVerification, LoopWorkspace, Surroundings, WideSearch, chi_squared_gate, verify_loop,
+    widest_variance,
 };
 use crate::matching::{MatcherKind, SearchMatcherConfig};
 use crate::metrics::position_error_m;
@@ -65,7 +66,44 @@ impl Slam {
             let min_margin = guard.min_margin;
             return rejected(found, LoopRejection::Ambiguous { margin, min_margin });
         }
+        if guard.seen_margin > 0.0 {
+            let half_width_m = math::min(reach_m, self.config.loops.max_radius_m);
+            let margin = self.seen_lead(&found, &expected, half_width_m, &guard);
+            if margin < guard.seen_margin {
+                let min_margin = guard.seen_margin;
+                return rejected(found, LoopRejection::Ambiguous { margin, min_margin });
+            }
+        }
         self.hold(found, &guard)
+    }
+
+    /// By how much the registered place is ahead of any other that the graph allows, on what was seen.
+    fn seen_lead(
+        &self,
+        found: &LoopVerification,
+        expected: &Matrix3<f64>,
+        half_width_m: f64,
+        guard: &LoopGuard,
+    ) -> f64 {
+        let (old, node) = (found.candidate.node, found.from_node);
+        let view = KeyframeView {
+            poses: self.graph.poses(),
+            keyframes: &self.keyframes,
+        };
+        let last = node.saturating_sub(self.config.loops.min_gap_nodes);
+        let Some(around) = Surroundings::new(view, old, last, half_width_m) else {
+            return f64::INFINITY;
+        };
+        let allowed = AllowedPlaces {
+            belief: found.belief,
+            covariance: *expected,
+            gate_chi2: guard.gate_chi2,
+            half_width_m,
+            apart_m: SAME_PLACE.0,
+            unseen: guard.unseen,
+            margin: guard.seen_margin,
+        };
+        around.lead(&self.keyframes[node].scan, &found.registered, &allowed)
     }
 
     /// What a loop between two keyframes is tested against that somebody asks for: the information of their

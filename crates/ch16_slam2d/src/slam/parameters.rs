@@ -521,6 +521,18 @@ pub const PARAMETERS: &[Parameter] = &[
         |c| guard(c).map(|g| Slot::from(&mut g.min_margin))
     ),
     part!(
+        "loops.guard.seen_margin",
+        "",
+        "and this lead where points on what nobody has seen are no misses; 0 does not ask",
+        |c| guard(c).map(|g| Slot::from(&mut g.seen_margin))
+    ),
+    part!(
+        "loops.guard.unseen",
+        "",
+        "such a point counts as those of the found place, less this",
+        |c| guard(c).map(|g| Slot::from(&mut g.unseen))
+    ),
+    part!(
         "loops.guard.agreeing",
         "",
         "loops that have to agree within the gate",
