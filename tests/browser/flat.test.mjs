@@ -1,25 +1,15 @@
 // The reader's own flat in w16.2: drawn by mouse, finger and keys, carried by links, history and files.
 
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { describe, it } from 'node:test';
-import { fileURLToPath } from 'node:url';
+import { native } from '../native.mjs';
 import * as h from './harness.mjs';
 
 const visit = h.visitor();
 const BODY = '<slam-widget name="w16.2" linked></slam-widget>';
-const ROOT = fileURLToPath(new URL('../../', import.meta.url));
-
-/** What the command prints; the suite says in which folder it has compiled it, else cargo does. */
-function slam2d(...words) {
-  const options = { cwd: ROOT, encoding: 'utf8', maxBuffer: 1 << 28 };
-  const compiled = process.env.SLAM_NATIVE;
-  if (compiled !== undefined) return execFileSync(join(compiled, 'slam2d'), words, options);
-  return execFileSync('cargo', ['run', '--quiet', '--package', 'slam2d_cli', '--bin', 'slam2d', '--', ...words], options);
-}
 
 const on = (test, { query = '?w=16.2&edit=wall', ...options } = {}) => visit(BODY, async (tab, server) => {
   await h.ready(tab);
@@ -193,7 +183,7 @@ describe('a flat of one’s own', () => {
       const folder = mkdtempSync(join(tmpdir(), 'flat-'));
       try {
         writeFileSync(join(folder, 'flat.json'), json);
-        const lap = JSON.parse(slam2d('lap', '--world', join(folder, 'flat.json'), '--information', 'chapter', '--json'));
+        const lap = JSON.parse(native('slam2d', 'lap', '--world', join(folder, 'flat.json'), '--information', 'chapter', '--json'));
         assert.equal(lap.keyframes, facts.keyframes);
         assert.equal(lap.keyframe_rms, facts.keyframe_rms_m);
         assert.equal(lap.odometry_end_error, facts.odometry_error_m);

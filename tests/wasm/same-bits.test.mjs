@@ -1,22 +1,9 @@
 // The wasm that readers get computes the same bits as the native build that the other tests check.
 
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { join } from 'node:path';
 import { describe, it } from 'node:test';
-import { ROOT, afterEachPreset, schema, wasm } from './module.mjs';
-
-/**
- * The output of a native program of the workspace. The suite says in which folder it has compiled
- * them; without it cargo compiles them first.
- */
-function native(program, ...words) {
-  const options = { cwd: ROOT, encoding: 'utf8', maxBuffer: 1 << 28 };
-  const compiled = process.env.SLAM_NATIVE;
-  if (compiled !== undefined) return execFileSync(join(compiled, program), words, options);
-  const cargo = ['run', '--quiet', '--package', program === 'states' ? 'slam_web' : 'slam2d_cli'];
-  return execFileSync('cargo', [...cargo, '--bin', program, '--', ...words], options);
-}
+import { native } from '../native.mjs';
+import { afterEachPreset, schema, wasm } from './module.mjs';
 
 describe('a lap', () => {
   for (const [seed, noise] of [[12648430, 1], [6, 1], [1, 0.25], [2, 2], [4, 4]]) {

@@ -24,10 +24,15 @@ void replayLap();
 driveLaps();
 void moveSketches();
 
+/** The core, which every picture of the page shares; undefined where it cannot be had. */
+function coreIfAny(): Promise<Glue | undefined> {
+  return (core as () => Promise<Glue>)().catch(() => undefined);
+}
+
 /** The still picture stays where the core cannot be had; the widgets say why. */
 async function replayLap(): Promise<void> {
   const figure = document.querySelector<HTMLElement>('#lap');
-  const glue = await (core as () => Promise<Glue>)().catch(() => undefined);
+  const glue = await coreIfAny();
   if (figure === null || glue === undefined) return;
   const { seed, noise } = CANONICAL;
   new LapPlayer(figure, JSON.parse(glue.lapStory(seed, noise)) as Story);
@@ -35,7 +40,7 @@ async function replayLap(): Promise<void> {
 
 /** The sliders of the small figures wait for the core. */
 async function moveSketches(): Promise<void> {
-  const glue = await (core as () => Promise<Glue>)().catch(() => undefined);
+  const glue = await coreIfAny();
   if (glue === undefined) return;
   for (const schema of JSON.parse(glue.sketchSchemas()) as SketchSchema[]) {
     const figure = document.querySelector<HTMLElement>(`[data-sketch="${schema.name}"]`);

@@ -1,0 +1,19 @@
+// The native programs of the workspace, for tests that compare with what they print.
+
+import { execFileSync } from 'node:child_process';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+const ROOT = fileURLToPath(new URL('../', import.meta.url));
+
+/**
+ * The output of a native program of the workspace. The suite says in which folder it has compiled
+ * them; without it cargo compiles them first.
+ */
+export function native(program, ...words) {
+  const options = { cwd: ROOT, encoding: 'utf8', maxBuffer: 1 << 28 };
+  const compiled = process.env.SLAM_NATIVE;
+  if (compiled !== undefined) return execFileSync(join(compiled, program), words, options);
+  const cargo = ['run', '--quiet', '--package', program === 'states' ? 'slam_web' : 'slam2d_cli'];
+  return execFileSync('cargo', [...cargo, '--bin', program, '--', ...words], options);
+}
