@@ -13,6 +13,8 @@ import { cloudSpot, restingSpot, sliderRail } from './spots.mjs';
 
 /** What the chapter adds to the element's policy are fonts, its own. */
 const POLICY = `${h.STRICT_POLICY}; font-src 'self'`;
+/** The widgets, as the page has them. */
+const IN_ORDER = ['w16.1', 'w16.3', 'w16.5', 'w16.2', 'w16.4', 'w16.6', 'w16.7', 'w16.8', 'w16.9', 'w16.10', 'w16.11', 'w16.12'];
 
 const visit = h.visitor();
 const reading = (test, options = {}, how = {}) =>
@@ -29,12 +31,11 @@ const background = (tab) => tab.evaluate(() => getComputedStyle(document.body).b
 describe('the chapter', () => {
   it('holds its widgets, starts each when it comes near, and paints it', async () => {
     await reading(async (tab) => {
-      const order = ['w16.1', 'w16.3', 'w16.5', 'w16.2', 'w16.4', 'w16.6', 'w16.7', 'w16.8', 'w16.9', 'w16.10', 'w16.11', 'w16.12'];
       const states = () => tab.evaluate(
-        (ids) => ids.map((id) => document.querySelector(`slam-widget[name="${id}"]`).state), order);
-      for (const [place, id] of order.entries()) {
+        (ids) => ids.map((id) => document.querySelector(`slam-widget[name="${id}"]`).state), IN_ORDER);
+      for (const [place, id] of IN_ORDER.entries()) {
         // Those further down have not begun.
-        const later = order.length - place - 1;
+        const later = IN_ORDER.length - place - 1;
         assert.deepEqual((await states()).slice(place + 1), Array(later).fill('resting'));
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
         await h.ready(tab, widget(id));
@@ -172,7 +173,7 @@ describe('the chapter', () => {
 
   it('fits a phone: nothing is wider than the screen', async () => {
     await reading(async (tab) => {
-      for (const id of ['w16.1', 'w16.3', 'w16.5', 'w16.2', 'w16.4', 'w16.6', 'w16.7', 'w16.8', 'w16.9', 'w16.10', 'w16.11', 'w16.12']) {
+      for (const id of IN_ORDER) {
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
         await h.ready(tab, widget(id));
       }
@@ -195,7 +196,7 @@ describe('the chapter', () => {
 
   it('shows pictures and says why where scripts do not run', async () => {
     await reading(async (tab, server) => {
-      for (const id of ['w16.1', 'w16.2', 'w16.3', 'w16.4', 'w16.5', 'w16.6', 'w16.7', 'w16.8', 'w16.9', 'w16.10', 'w16.11', 'w16.12']) {
+      for (const id of IN_ORDER) {
         const picture = tab.locator(`${widget(id)} img`);
         await picture.scrollIntoViewIfNeeded();
         assert.ok(await picture.evaluate((image) => image.decode().then(() => image.naturalWidth > 100)), id);
