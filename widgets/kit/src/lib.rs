@@ -1,8 +1,8 @@
 //! What the widgets share.
 //!
 //! The half without egui is what a widget's `model.rs` speaks: [`param`], [`spec`], [`model`],
-//! [`scene`], [`chart`], [`layers`], [`outside`], [`playback`], [`run`], [`ticks`], [`palette`]. Nothing in
-//! it may use the other half: the models are tested headless.
+//! [`scene`], [`chart`], [`layers`], [`outside`], [`playback`], [`played`], [`run`], [`ticks`],
+//! [`palette`]. Nothing in it may use the other half: the models are tested headless.
 //!
 //! The other half draws, and is compiled with the feature `view`. [`draw`] puts a scene on any
 //! [`surface::Surface`], of which there are two, [`egui_surface`] for the live picture and [`svg`]
@@ -16,6 +16,7 @@ pub mod outside;
 pub mod palette;
 pub mod param;
 pub mod playback;
+pub mod played;
 pub mod run;
 pub mod scene;
 pub mod spec;

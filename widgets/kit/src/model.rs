@@ -299,6 +299,13 @@ pub fn apply_preset(model: &mut dyn Model, preset: &Preset) -> Result<(), ParamE
     Ok(())
 }
 
+/// Does all the [`Model::work`] that is left: a [`Model::settle`] where the picture waits for all of it.
+pub fn finish_work(model: &mut dyn Model) -> Activity {
+    let first = model.work();
+    while model.work() == Activity::Busy {}
+    first
+}
+
 /// Presses the preset of that name, the last resort of a [`Model::press`].
 ///
 /// # Errors

@@ -369,6 +369,17 @@ impl Values {
         Ok(Changed::Yes)
     }
 
+    /// Keeps a value of the widget's own, that lies in its range by construction.
+    ///
+    /// # Panics
+    /// Where the list refuses it: a bug of the widget.
+    pub fn store(&mut self, id: &str, value: f64) -> Changed {
+        match self.set("the widget", id, value) {
+            Ok(changed) => changed,
+            Err(error) => panic!("a value of our own was refused: {error}"),
+        }
+    }
+
     /// Sets a parameter to what [`Values::to_text`] writes; says whether it changed.
     ///
     /// # Errors

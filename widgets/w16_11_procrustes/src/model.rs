@@ -12,9 +12,9 @@ use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
 use kit::param::{Changed, ParamError, Values};
-use kit::playback::{Playback, speed_factor};
+use kit::played::{Played, Pressed};
 use kit::scene::Scene;
-use kit::spec::{DEFAULTS, WidgetSpec};
+use kit::spec::WidgetSpec;
 
 use crate::spec::{PARAMS, SPEC, WHOLE_TURN_DEG};
 
@@ -38,7 +38,7 @@ pub struct ProcrustesTrace {
     values: Values,
     pairs: Pairs,
     problem: Procrustes,
-    playback: Playback,
+    played: Played,
 }
 
 impl Default for ProcrustesTrace {
@@ -57,7 +57,7 @@ impl ProcrustesTrace {
             problem: Procrustes::new(&pairs.source, &pairs.target),
             pairs,
             values,
-            playback: Playback::default(),
+            played: Played::along("turn"),
         }
     }
 
@@ -74,13 +74,6 @@ impl ProcrustesTrace {
     /// The angle that is tried, rad.
     fn theta_rad(&self) -> f64 {
         self.values.get("turn").to_radians()
-    }
-
-    /// Keeps a value that lies in its range by construction.
-    fn store(&mut self, id: &str, value: f64) {
-        if let Err(error) = self.values.set(SPEC.id, id, value) {
-            panic!("a value of our own was refused: {error}");
-        }
     }
 }
 
@@ -103,29 +96,19 @@ impl Model for ProcrustesTrace {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let here = self.values.get("turn");
-        if let Some(position) = self.playback.press(id, here, WHOLE_TURN_DEG) {
-            self.store("turn", position);
-            return Ok(());
+        let last = WHOLE_TURN_DEG;
+        match self.played.press(&mut self.values, id, last) {
+            Pressed::Transport => {}
+            Pressed::Defaults => self.follow(),
+            Pressed::Other => return press_preset(self, id),
         }
-        if id != DEFAULTS.id {
-            return press_preset(self, id);
-        }
-        self.playback.pause();
-        self.values.reset();
-        self.follow();
         Ok(())
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
-        if !self.playback.is_playing() {
-            return Activity::Idle;
-        }
-        let rate = STEPS_PER_S * speed_factor(self.values.get("speed"));
-        let here = self.values.get("turn");
-        let next = self.playback.advance(here, WHOLE_TURN_DEG, elapsed_s, rate);
-        self.store("turn", next);
-        Activity::Busy
+        let last = WHOLE_TURN_DEG;
+        self.played
+            .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
     }
 
     fn scene(&self) -> Scene {
@@ -146,12 +129,10 @@ impl Model for ProcrustesTrace {
             label: format!("top of the {}", words::plural(kind)),
             standing: words::standing_of(&self.problem, kind),
         };
-        Some(Timeline {
-            param: "turn",
-            last: WHOLE_TURN_DEG,
-            playing: self.playback.is_playing(),
-            marks: vec![mark(self.tried())],
-        })
+        Some(
+            self.played
+                .timeline(WHOLE_TURN_DEG, vec![mark(self.tried())]),
+        )
     }
 
     fn tables(&self) -> Vec<Table> {
@@ -171,8 +152,7 @@ impl Model for ProcrustesTrace {
     }
 
     fn set_motion(&mut self, motion: Motion) {
-        if let Some(end) = self.playback.set_motion(motion, WHOLE_TURN_DEG) {
-            self.store("turn", end);
-        }
+        let last = WHOLE_TURN_DEG;
+        self.played.set_motion(&mut self.values, motion, last);
     }
 }

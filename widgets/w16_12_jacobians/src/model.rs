@@ -14,9 +14,9 @@ use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
 use kit::param::{Changed, ParamError, Values};
-use kit::playback::{Playback, speed_factor};
+use kit::played::{Played, Pressed};
 use kit::scene::Scene;
-use kit::spec::{DEFAULTS, WidgetSpec};
+use kit::spec::WidgetSpec;
 use pr_geom::SE2;
 
 use crate::spec::{MOST_STEPS, PARAMS, SPEC};
@@ -39,7 +39,7 @@ const STEPS_PER_S: f64 = 3.0;
 pub struct WrongJacobians {
     values: Values,
     solved: Solved,
-    playback: Playback,
+    played: Played,
 }
 
 /// What is computed from the settings.
@@ -79,7 +79,7 @@ impl WrongJacobians {
         Self {
             solved: Solved::new(&values),
             values,
-            playback: Playback::default(),
+            played: Played::along("steps"),
         }
     }
 
@@ -90,20 +90,13 @@ impl WrongJacobians {
     }
 
     fn step(&self) -> usize {
-        (self.values.get("steps") as usize).min(self.last())
+        self.played.place(&self.values, self.last() as f64) as usize
     }
 
     /// A solver's graph at the step that is shown; past its end it rests.
     fn shown(&self, solver: usize) -> &Moment {
         let run = &self.solved.runs[solver];
         &run.moments[self.step().min(run.steps())]
-    }
-
-    /// Keeps a value that lies in its range by construction.
-    fn store(&mut self, id: &str, value: f64) {
-        if let Err(error) = self.values.set(SPEC.id, id, value) {
-            panic!("a value of our own was refused: {error}");
-        }
     }
 }
 
@@ -126,29 +119,19 @@ impl Model for WrongJacobians {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let (here, last) = (self.step() as f64, self.last() as f64);
-        if let Some(position) = self.playback.press(id, here, last) {
-            self.store("steps", position);
-            return Ok(());
+        let last = self.last() as f64;
+        match self.played.press(&mut self.values, id, last) {
+            Pressed::Transport => {}
+            Pressed::Defaults => self.solved = Solved::new(&self.values),
+            Pressed::Other => return press_preset(self, id),
         }
-        if id != DEFAULTS.id {
-            return press_preset(self, id);
-        }
-        self.playback.pause();
-        self.values.reset();
-        self.solved = Solved::new(&self.values);
         Ok(())
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
-        if !self.playback.is_playing() {
-            return Activity::Idle;
-        }
-        let rate = STEPS_PER_S * speed_factor(self.values.get("speed"));
-        let (here, last) = (self.step() as f64, self.last() as f64);
-        let next = self.playback.advance(here, last, elapsed_s, rate);
-        self.store("steps", next);
-        Activity::Busy
+        let last = self.last() as f64;
+        self.played
+            .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
     }
 
     fn scene(&self) -> Scene {
@@ -165,18 +148,18 @@ impl Model for WrongJacobians {
 
     fn timeline(&self) -> Option<Timeline> {
         let marks = self.solved.runs.iter().enumerate();
-        Some(Timeline {
-            param: "steps",
-            last: self.last() as f64,
-            playing: self.playback.is_playing(),
-            marks: marks
-                .map(|(solver, run)| TimelineMark {
-                    at: run.steps() as f64,
-                    label: format!("{} ends", NAMES[solver]),
-                    standing: words::standing_of(self, solver),
-                })
-                .collect(),
-        })
+        Some(
+            self.played.timeline(
+                self.last() as f64,
+                marks
+                    .map(|(solver, run)| TimelineMark {
+                        at: run.steps() as f64,
+                        label: format!("{} ends", NAMES[solver]),
+                        standing: words::standing_of(self, solver),
+                    })
+                    .collect(),
+            ),
+        )
     }
 
     fn tables(&self) -> Vec<Table> {
@@ -192,15 +175,14 @@ impl Model for WrongJacobians {
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
         if at[0].is_finite() {
-            self.playback.pause();
-            self.store("steps", dragged_to(handle, at).min(self.last() as f64));
+            self.played.pause();
+            self.values
+                .store("steps", dragged_to(handle, at).min(self.last() as f64));
         }
     }
 
     fn set_motion(&mut self, motion: Motion) {
         let last = self.last() as f64;
-        if let Some(end) = self.playback.set_motion(motion, last) {
-            self.store("steps", end);
-        }
+        self.played.set_motion(&mut self.values, motion, last);
     }
 }

@@ -14,9 +14,9 @@ use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
 use kit::param::{Changed, ParamError, Values};
-use kit::playback::{Playback, speed_factor};
+use kit::played::{Played, Pressed};
 use kit::scene::Scene;
-use kit::spec::{DEFAULTS, WidgetSpec};
+use kit::spec::WidgetSpec;
 
 use crate::spec::{PARAMS, SPEC};
 use course::{Course, Moment};
@@ -38,7 +38,7 @@ const STEPS_PER_S: f64 = 1.5;
 pub struct PoseGraphToy {
     values: Values,
     course: Course,
-    playback: Playback,
+    played: Played,
 }
 
 impl Default for PoseGraphToy {
@@ -55,7 +55,7 @@ impl PoseGraphToy {
         Self {
             course: Course::new(settings::graph(&values)),
             values,
-            playback: Playback::default(),
+            played: Played::along("steps"),
         }
     }
 
@@ -65,18 +65,11 @@ impl PoseGraphToy {
 
     /// Steps done.
     fn step(&self) -> usize {
-        (self.values.get("steps") as usize).min(self.course.last())
+        self.played.place(&self.values, self.course.last() as f64) as usize
     }
 
     fn shown(&self) -> &Moment {
         &self.course.moments[self.step()]
-    }
-
-    /// Keeps a value that lies in its range by construction.
-    fn store(&mut self, id: &str, value: f64) {
-        if let Err(error) = self.values.set(SPEC.id, id, value) {
-            panic!("a value of our own was refused: {error}");
-        }
     }
 }
 
@@ -99,29 +92,19 @@ impl Model for PoseGraphToy {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let (here, last) = (self.step() as f64, self.course.last() as f64);
-        if let Some(position) = self.playback.press(id, here, last) {
-            self.store("steps", position);
-            return Ok(());
+        let last = self.course.last() as f64;
+        match self.played.press(&mut self.values, id, last) {
+            Pressed::Transport => {}
+            Pressed::Defaults => self.solve(),
+            Pressed::Other => return press_preset(self, id),
         }
-        if id != DEFAULTS.id {
-            return press_preset(self, id);
-        }
-        self.playback.pause();
-        self.values.reset();
-        self.solve();
         Ok(())
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
-        if !self.playback.is_playing() {
-            return Activity::Idle;
-        }
-        let rate = STEPS_PER_S * speed_factor(self.values.get("speed"));
-        let (here, last) = (self.step() as f64, self.course.last() as f64);
-        let next = self.playback.advance(here, last, elapsed_s, rate);
-        self.store("steps", next);
-        Activity::Busy
+        let last = self.course.last() as f64;
+        self.played
+            .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
     }
 
     fn scene(&self) -> Scene {
@@ -138,11 +121,9 @@ impl Model for PoseGraphToy {
 
     fn timeline(&self) -> Option<Timeline> {
         let last = self.course.last() as f64;
-        Some(Timeline {
-            param: "steps",
+        Some(self.played.timeline(
             last,
-            playing: self.playback.is_playing(),
-            marks: vec![TimelineMark {
+            vec![TimelineMark {
                 at: last,
                 label: format!(
                     "at rest with χ² {:.3}",
@@ -150,7 +131,7 @@ impl Model for PoseGraphToy {
                 ),
                 standing: words::standing(self),
             }],
-        })
+        ))
     }
 
     fn tables(&self) -> Vec<Table> {
@@ -167,8 +148,6 @@ impl Model for PoseGraphToy {
 
     fn set_motion(&mut self, motion: Motion) {
         let last = self.course.last() as f64;
-        if let Some(end) = self.playback.set_motion(motion, last) {
-            self.store("steps", end);
-        }
+        self.played.set_motion(&mut self.values, motion, last);
     }
 }

@@ -15,9 +15,9 @@ use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
 };
 use kit::param::{Changed, ParamError, Values};
-use kit::playback::{Playback, speed_factor};
+use kit::played::{Played, Pressed};
 use kit::scene::Scene;
-use kit::spec::{DEFAULTS, PLAY, STEP, WidgetSpec};
+use kit::spec::{PLAY, STEP, WidgetSpec};
 use pr_geom::{SE2, math};
 
 use crate::spec::{OFFSET_SPAN_M, PARAMS, SPEC};
@@ -44,7 +44,7 @@ const REFINES_PER_S: f64 = 4.0;
 /// The whole window without its picture.
 pub struct WholeWindow {
     values: Values,
-    playback: Playback,
+    played: Played,
     scene: BasinScene,
     workspace: IcpWorkspace,
     hunt: Hunt,
@@ -67,7 +67,7 @@ impl WholeWindow {
         let mut workspace = IcpWorkspace::new();
         Self {
             hunt: Hunt::new(&scene, settings::config(&values), &mut workspace),
-            playback: Playback::default(),
+            played: Played::along("progress"),
             values,
             scene,
             workspace,
@@ -104,7 +104,7 @@ impl WholeWindow {
     }
 
     fn place(&self) -> usize {
-        (self.values.get("progress") as usize).min(self.last())
+        self.played.place(&self.values, self.last() as f64) as usize
     }
 
     /// Boxes taken up at the place that is shown.
@@ -132,22 +132,15 @@ impl WholeWindow {
         let rounded = |value: f64, per_unit: f64| (value * per_unit).round() / per_unit;
         let offset = |value: f64| rounded(value, 100.0).clamp(-OFFSET_SPAN_M, OFFSET_SPAN_M);
         let turned = SE2::new(0.0, 0.0, start.heading_deg.to_radians()).theta();
-        self.playback.pause();
-        self.store(
+        self.played.pause();
+        self.values.store(
             "heading",
             rounded(turned.to_degrees(), 1.0).clamp(-180.0, 180.0),
         );
-        self.store("dx", offset(start.dx_m));
-        self.store("dy", offset(start.dy_m));
-        self.store("progress", 0.0);
+        self.values.store("dx", offset(start.dx_m));
+        self.values.store("dy", offset(start.dy_m));
+        self.values.store("progress", 0.0);
         self.start_over();
-    }
-
-    /// Keeps a value that lies in its range by construction.
-    fn store(&mut self, id: &str, value: f64) {
-        if let Err(error) = self.values.set(SPEC.id, id, value) {
-            panic!("a value of our own was refused: {error}");
-        }
     }
 }
 
@@ -174,34 +167,25 @@ impl Model for WholeWindow {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let plays = id == PLAY.id && self.playback.motion() == Motion::Full;
+        let plays = id == PLAY.id && self.played.motion() == Motion::Full;
         if [PLAY.id, STEP.id].contains(&id) && !plays {
             // The end has to be known.
             self.settle();
         }
-        let (here, last) = (self.place() as f64, self.last() as f64);
-        if let Some(position) = self.playback.press(id, here, last) {
-            self.store("progress", position);
-            return Ok(());
+        let last = self.last() as f64;
+        match self.played.press(&mut self.values, id, last) {
+            Pressed::Transport => {}
+            Pressed::Defaults => {
+                self.scene = BasinScene::with_seed(self.values.get("seed") as u32);
+                self.start_over();
+            }
+            Pressed::Other => return press_preset(self, id),
         }
-        if id != DEFAULTS.id {
-            return press_preset(self, id);
-        }
-        self.playback.pause();
-        let seed = self.values.get("seed");
-        self.values.reset();
-        if seed != self.values.get("seed") {
-            self.scene = BasinScene::with_seed(self.values.get("seed") as u32);
-        }
-        self.start_over();
         Ok(())
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
-        if !self.playback.is_playing() {
-            return Activity::Idle;
-        }
-        if self.hunt.found.is_none() {
+        if self.played.is_playing() && self.hunt.found.is_none() {
             // The search is ahead of its playback: it ends in a few frames.
             return Activity::Busy;
         }
@@ -212,16 +196,12 @@ impl Model for WholeWindow {
         } else {
             REFINES_PER_S
         };
-        let rate = rate * speed_factor(self.values.get("speed"));
-        let next = self.playback.advance(here, last, elapsed_s, rate);
+        let activity = self.played.advance(&mut self.values, last, elapsed_s, rate);
         // ICP goes at its own pace, from its first step on.
-        let next = if here < searched && self.playback.is_playing() {
-            math::min(next, searched)
-        } else {
-            next
-        };
-        self.store("progress", next);
-        Activity::Busy
+        if here < searched && self.played.is_playing() && self.place() as f64 > searched {
+            self.values.store("progress", searched);
+        }
+        activity
     }
 
     fn work(&mut self) -> Activity {
@@ -269,12 +249,7 @@ impl Model for WholeWindow {
             let standing = words::standing(self);
             mark(self.last(), words::verdict(self), standing);
         }
-        Some(Timeline {
-            param: "progress",
-            last: self.last() as f64,
-            playing: self.playback.is_playing(),
-            marks,
-        })
+        Some(self.played.timeline(self.last() as f64, marks))
     }
 
     fn tables(&self) -> Vec<Table> {
@@ -294,12 +269,10 @@ impl Model for WholeWindow {
     }
 
     fn set_motion(&mut self, motion: Motion) {
-        if self.playback.is_playing() {
+        if self.played.is_playing() {
             self.settle();
         }
         let last = self.last() as f64;
-        if let Some(end) = self.playback.set_motion(motion, last) {
-            self.store("progress", end);
-        }
+        self.played.set_motion(&mut self.values, motion, last);
     }
 }

@@ -8,12 +8,13 @@ mod words;
 
 use ch16_lab::lap::LapConfig;
 use kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
+    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, finish_work,
+    press_preset,
 };
 use kit::param::{Changed, ParamError, Values};
-use kit::playback::{Playback, speed_factor};
+use kit::played::{Played, Pressed};
 use kit::scene::Scene;
-use kit::spec::{DEFAULTS, WidgetSpec};
+use kit::spec::WidgetSpec;
 
 use crate::spec::{LAST_OLD, MOST_ALIKE, PARAMS, SPEC};
 use lap::{Places, Work};
@@ -38,7 +39,7 @@ const KEYFRAMES_PER_S: f64 = 5.0;
 /// Have I been here, without its picture.
 pub struct BeenHere {
     values: Values,
-    playback: Playback,
+    played: Played,
     config: LapConfig,
     /// The lap under way; none once it is graded.
     work: Option<Work>,
@@ -62,7 +63,7 @@ impl BeenHere {
         let config = settings::config(&values);
         Self {
             work: Some(Work::new(&config)),
-            playback: Playback::default(),
+            played: Played::along("new"),
             config,
             values,
             places: None,
@@ -89,7 +90,7 @@ impl BeenHere {
 
     /// The newest keyframe that is shown.
     fn newest(&self) -> usize {
-        (self.values.get("new") as usize).min(self.last())
+        self.played.place(&self.values, self.last() as f64) as usize
     }
 
     /// The pair that is looked at: an older keyframe, and the newest one.
@@ -114,13 +115,6 @@ impl BeenHere {
             .as_ref()
             .map_or(f64::NAN, |places| places.threshold(detector, called))
     }
-
-    /// Keeps a value that lies in its range by construction.
-    fn store(&mut self, id: &str, value: f64) {
-        if let Err(error) = self.values.set(SPEC.id, id, value) {
-            panic!("a value of our own was refused: {error}");
-        }
-    }
 }
 
 impl Model for BeenHere {
@@ -140,33 +134,23 @@ impl Model for BeenHere {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let (here, last) = (self.newest() as f64, self.last() as f64);
-        if let Some(position) = self.playback.press(id, here, last) {
-            self.store("new", position);
-            return Ok(());
+        let last = self.last() as f64;
+        match self.played.press(&mut self.values, id, last) {
+            Pressed::Transport => {}
+            Pressed::Defaults => self.follow(),
+            Pressed::Other => return press_preset(self, id),
         }
-        if id != DEFAULTS.id {
-            return press_preset(self, id);
-        }
-        self.playback.pause();
-        self.values.reset();
-        self.follow();
         Ok(())
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
-        if !self.playback.is_playing() {
-            return Activity::Idle;
-        }
-        if self.work.is_some() {
+        if self.played.is_playing() && self.work.is_some() {
             // The lap is ahead of its playback: it ends in a few frames.
             return Activity::Busy;
         }
-        let rate = KEYFRAMES_PER_S * speed_factor(self.values.get("speed"));
-        let (here, last) = (self.newest() as f64, self.last() as f64);
-        let next = self.playback.advance(here, last, elapsed_s, rate);
-        self.store("new", next);
-        Activity::Busy
+        let last = self.last() as f64;
+        self.played
+            .advance(&mut self.values, last, elapsed_s, KEYFRAMES_PER_S)
     }
 
     fn work(&mut self) -> Activity {
@@ -184,15 +168,7 @@ impl Model for BeenHere {
     }
 
     fn settle(&mut self) -> Activity {
-        let had_work = self.work.is_some();
-        while self.work.is_some() {
-            self.work();
-        }
-        if had_work {
-            Activity::Busy
-        } else {
-            Activity::Idle
-        }
+        finish_work(self)
     }
 
     fn scene(&self) -> Scene {
@@ -209,16 +185,14 @@ impl Model for BeenHere {
 
     fn timeline(&self) -> Option<Timeline> {
         let last = self.last() as f64;
-        Some(Timeline {
-            param: "new",
+        Some(self.played.timeline(
             last,
-            playing: self.playback.is_playing(),
-            marks: vec![TimelineMark {
+            vec![TimelineMark {
                 at: last,
                 label: words::verdict(self).to_owned(),
                 standing: words::standing(self),
             }],
-        })
+        ))
     }
 
     fn tables(&self) -> Vec<Table> {
@@ -246,15 +220,14 @@ impl Model for BeenHere {
         if new == 0 {
             return;
         }
-        self.playback.pause();
-        self.store("new", new as f64);
-        self.store("old", (old.min(new - 1) as f64).min(LAST_OLD));
+        self.played.pause();
+        self.values.store("new", new as f64);
+        self.values
+            .store("old", (old.min(new - 1) as f64).min(LAST_OLD));
     }
 
     fn set_motion(&mut self, motion: Motion) {
         let last = self.last() as f64;
-        if let Some(end) = self.playback.set_motion(motion, last) {
-            self.store("new", end);
-        }
+        self.played.set_motion(&mut self.values, motion, last);
     }
 }

@@ -13,9 +13,9 @@ use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
 use kit::param::{Changed, ParamError, Values};
-use kit::playback::{Playback, speed_factor};
+use kit::played::{Played, Pressed};
 use kit::scene::Scene;
-use kit::spec::{DEFAULTS, WidgetSpec};
+use kit::spec::WidgetSpec;
 
 use crate::spec::{MOST_SHARE, PARAMS, SPEC};
 use curves::Curves;
@@ -41,7 +41,7 @@ struct Run {
 /// The moving box without its picture.
 pub struct MovingBox {
     values: Values,
-    playback: Playback,
+    played: Played,
     workspace: IcpWorkspace,
     scene: BoxScene,
     runs: [Run; 3],
@@ -65,7 +65,7 @@ impl MovingBox {
         Self {
             runs: register(&scene, &methods, &mut workspace),
             curves: Curves::new(methods, config.moved_m),
-            playback: Playback::default(),
+            played: Played::along("iteration"),
             values,
             workspace,
             scene,
@@ -89,20 +89,13 @@ impl MovingBox {
     }
 
     fn iteration(&self) -> usize {
-        (self.values.get("iteration") as usize).min(self.last())
+        self.played.place(&self.values, self.last() as f64) as usize
     }
 
     /// A run at the iteration that is shown; past its end it rests.
     fn shown(&self, method: usize) -> &IcpTrace {
         let trace = &self.runs[method].trace;
         &trace[self.iteration().min(trace.len() - 1)]
-    }
-
-    /// Keeps a value that lies in its range by construction.
-    fn store(&mut self, id: &str, value: f64) {
-        if let Err(error) = self.values.set(SPEC.id, id, value) {
-            panic!("a value of our own was refused: {error}");
-        }
     }
 }
 
@@ -136,29 +129,19 @@ impl Model for MovingBox {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let (here, last) = (self.iteration() as f64, self.last() as f64);
-        if let Some(position) = self.playback.press(id, here, last) {
-            self.store("iteration", position);
-            return Ok(());
+        let last = self.last() as f64;
+        match self.played.press(&mut self.values, id, last) {
+            Pressed::Transport => {}
+            Pressed::Defaults => self.follow(),
+            Pressed::Other => return press_preset(self, id),
         }
-        if id != DEFAULTS.id {
-            return press_preset(self, id);
-        }
-        self.playback.pause();
-        self.values.reset();
-        self.follow();
         Ok(())
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
-        if !self.playback.is_playing() {
-            return Activity::Idle;
-        }
-        let rate = STEPS_PER_S * speed_factor(self.values.get("speed"));
-        let (here, last) = (self.iteration() as f64, self.last() as f64);
-        let next = self.playback.advance(here, last, elapsed_s, rate);
-        self.store("iteration", next);
-        Activity::Busy
+        let last = self.last() as f64;
+        self.played
+            .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
     }
 
     fn work(&mut self) -> Activity {
@@ -179,16 +162,14 @@ impl Model for MovingBox {
 
     fn timeline(&self) -> Option<Timeline> {
         let last = self.last() as f64;
-        Some(Timeline {
-            param: "iteration",
+        Some(self.played.timeline(
             last,
-            playing: self.playback.is_playing(),
-            marks: vec![TimelineMark {
+            vec![TimelineMark {
                 at: last,
                 label: words::verdict(self).to_owned(),
                 standing: words::standing(self),
             }],
-        })
+        ))
     }
 
     fn tables(&self) -> Vec<Table> {
@@ -208,16 +189,14 @@ impl Model for MovingBox {
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
         let share = (at[0] - handle.offset[0]).round();
         if share.is_finite() {
-            self.playback.pause();
-            self.store("share", share.clamp(0.0, MOST_SHARE));
+            self.played.pause();
+            self.values.store("share", share.clamp(0.0, MOST_SHARE));
             self.follow();
         }
     }
 
     fn set_motion(&mut self, motion: Motion) {
         let last = self.last() as f64;
-        if let Some(end) = self.playback.set_motion(motion, last) {
-            self.store("iteration", end);
-        }
+        self.played.set_motion(&mut self.values, motion, last);
     }
 }

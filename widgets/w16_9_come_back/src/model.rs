@@ -10,12 +10,13 @@ mod words;
 use ch16_lab::come_back::{Moment, Morning};
 use kit::layers::MORE;
 use kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
+    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, finish_work,
+    press_preset,
 };
 use kit::param::{Changed, ParamError, Values};
-use kit::playback::{Playback, speed_factor};
+use kit::played::{Played, Pressed};
 use kit::scene::Scene;
-use kit::spec::{DEFAULTS, WidgetSpec};
+use kit::spec::WidgetSpec;
 use pr_geom::SE2;
 
 use crate::spec::{PARAMS, PLAN_M, SPEC};
@@ -35,7 +36,7 @@ const MOMENTS_PER_S: f64 = 6.0;
 /// Come back tomorrow, without its picture.
 pub struct ComeBack {
     values: Values,
-    playback: Playback,
+    played: Played,
     /// What is being computed; none once the morning is over.
     work: Option<Work>,
     /// The last map that was saved.
@@ -57,7 +58,7 @@ impl ComeBack {
         let values = Values::defaults(PARAMS);
         Self {
             work: Some(Work::map(&values)),
-            playback: Playback::default(),
+            played: Played::along("moment"),
             known: None,
             morning: None,
             values,
@@ -94,7 +95,7 @@ impl ComeBack {
     }
 
     fn place(&self) -> usize {
-        (self.values.get("moment") as usize).min(self.last())
+        self.played.place(&self.values, self.last() as f64) as usize
     }
 
     fn moment(&self) -> Option<&Moment> {
@@ -106,18 +107,12 @@ impl ComeBack {
     fn put(&mut self, pose: SE2) {
         let tenth = |value: f64, most: f64| ((value * 10.0).round() / 10.0).clamp(0.0, most);
         let heading_deg = (pose.theta().to_degrees() / 5.0).round() * 5.0;
-        self.playback.pause();
-        self.store("x", tenth(pose.x(), PLAN_M[0]));
-        self.store("y", tenth(pose.y(), PLAN_M[1]));
-        self.store("heading", heading_deg.clamp(-180.0, 180.0));
+        self.played.pause();
+        self.values.store("x", tenth(pose.x(), PLAN_M[0]));
+        self.values.store("y", tenth(pose.y(), PLAN_M[1]));
+        self.values
+            .store("heading", heading_deg.clamp(-180.0, 180.0));
         self.follow();
-    }
-
-    /// Keeps a value that lies in its range by construction.
-    fn store(&mut self, id: &str, value: f64) {
-        if let Err(error) = self.values.set(SPEC.id, id, value) {
-            panic!("a value of our own was refused: {error}");
-        }
     }
 }
 
@@ -139,33 +134,23 @@ impl Model for ComeBack {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let (here, last) = (self.place() as f64, self.last() as f64);
-        if let Some(position) = self.playback.press(id, here, last) {
-            self.store("moment", position);
-            return Ok(());
+        let last = self.last() as f64;
+        match self.played.press(&mut self.values, id, last) {
+            Pressed::Transport => {}
+            Pressed::Defaults => self.follow(),
+            Pressed::Other => return press_preset(self, id),
         }
-        if id != DEFAULTS.id {
-            return press_preset(self, id);
-        }
-        self.playback.pause();
-        self.values.reset();
-        self.follow();
         Ok(())
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
-        if !self.playback.is_playing() {
-            return Activity::Idle;
-        }
-        if self.work.is_some() {
+        if self.played.is_playing() && self.work.is_some() {
             // The morning is ahead of its playback: it ends in a few frames.
             return Activity::Busy;
         }
-        let rate = MOMENTS_PER_S * speed_factor(self.values.get("speed"));
-        let (here, last) = (self.place() as f64, self.last() as f64);
-        let next = self.playback.advance(here, last, elapsed_s, rate);
-        self.store("moment", next);
-        Activity::Busy
+        let last = self.last() as f64;
+        self.played
+            .advance(&mut self.values, last, elapsed_s, MOMENTS_PER_S)
     }
 
     fn work(&mut self) -> Activity {
@@ -185,15 +170,7 @@ impl Model for ComeBack {
     }
 
     fn settle(&mut self) -> Activity {
-        let had_work = self.work.is_some();
-        while self.work.is_some() {
-            self.work();
-        }
-        if had_work {
-            Activity::Busy
-        } else {
-            Activity::Idle
-        }
+        finish_work(self)
     }
 
     fn scene(&self) -> Scene {
@@ -221,12 +198,7 @@ impl Model for ComeBack {
                 standing: words::standing(self),
             });
         }
-        Some(Timeline {
-            param: "moment",
-            last: self.last() as f64,
-            playing: self.playback.is_playing(),
-            marks,
-        })
+        Some(self.played.timeline(self.last() as f64, marks))
     }
 
     fn tables(&self) -> Vec<Table> {
@@ -246,12 +218,10 @@ impl Model for ComeBack {
     }
 
     fn set_motion(&mut self, motion: Motion) {
-        if self.playback.is_playing() {
+        if self.played.is_playing() {
             self.settle();
         }
         let last = self.last() as f64;
-        if let Some(end) = self.playback.set_motion(motion, last) {
-            self.store("moment", end);
-        }
+        self.played.set_motion(&mut self.values, motion, last);
     }
 }

@@ -38,9 +38,11 @@ pub fn drag(trace: &mut ProcrustesTrace, handle: Handle, at: [f64; 2]) {
     if !at.iter().all(|value| value.is_finite()) {
         return;
     }
-    trace.playback.pause();
+    trace.played.pause();
     if handle.panel == panel::TRACE {
-        trace.store("turn", dragged_to(handle, at).min(WHOLE_TURN_DEG));
+        trace
+            .values
+            .store("turn", dragged_to(handle, at).min(WHOLE_TURN_DEG));
         return;
     }
     let Some(k) = TARGETS.iter().position(|id| *id == handle.id) else {
@@ -52,7 +54,7 @@ pub fn drag(trace: &mut ProcrustesTrace, handle: Handle, at: [f64; 2]) {
         let moved = at[axis] - handle.offset[axis] - home;
         ((100.0 * moved).round() / 100.0).clamp(-REACH_M, REACH_M)
     };
-    trace.store(MOVED[k][0], away(0, home.x));
-    trace.store(MOVED[k][1], away(1, home.y));
+    trace.values.store(MOVED[k][0], away(0, home.x));
+    trace.values.store(MOVED[k][1], away(1, home.y));
     trace.follow();
 }

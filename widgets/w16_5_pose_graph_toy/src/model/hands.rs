@@ -69,17 +69,17 @@ pub fn drag(toy: &mut PoseGraphToy, handle: Handle, at: [f64; 2]) {
 fn put(toy: &mut PoseGraphToy, poses: &[SE2]) {
     let rounded = |value: f64, per_unit: f64| (value * per_unit).round() / per_unit;
     let driven = Shape::of(&toy.values).driven();
-    toy.playback.pause();
+    toy.played.pause();
     for ((pose, home), [x, y, turn]) in poses.iter().zip(&driven).zip(MOVED) {
         let along = |value: f64| rounded(value, 100.0).clamp(-REACH_M, REACH_M);
         let turned = SE2::new(0.0, 0.0, pose.theta() - home.theta()).theta();
-        toy.store(x, along(pose.x() - home.x()));
-        toy.store(y, along(pose.y() - home.y()));
-        toy.store(
+        toy.values.store(x, along(pose.x() - home.x()));
+        toy.values.store(y, along(pose.y() - home.y()));
+        toy.values.store(
             turn,
             rounded(turned.to_degrees(), 10.0).clamp(-180.0, 180.0),
         );
     }
-    toy.store("steps", 0.0);
+    toy.values.store("steps", 0.0);
     toy.solve();
 }

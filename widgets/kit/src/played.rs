@@ -1,0 +1,162 @@
+//! A run along one parameter: the transport, reduced motion and the defaults, the same in every
+//! widget that shows one.
+
+use crate::model::{Activity, Motion, Timeline, TimelineMark};
+use crate::param::Values;
+use crate::playback::{Playback, SPEED, speed_factor};
+use crate::spec::DEFAULTS;
+
+/// The run of a widget, and the parameter that holds the place on it.
+///
+/// A place past the end means the end: so a link to it stays right where a run gets longer. The last
+/// place is asked for in each call, since most settings change it.
+#[derive(Clone, Copy, Debug)]
+pub struct Played {
+    param: &'static str,
+    playback: Playback,
+}
+
+/// What a button was to [`Played::press`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pressed {
+    /// One of the transport: the place is set.
+    Transport,
+    /// The defaults: every value is put back, and what depends on them has to follow.
+    Defaults,
+    /// None of these: nothing changed.
+    Other,
+}
+
+impl Played {
+    /// A run at rest along that parameter.
+    #[must_use]
+    pub fn along(param: &'static str) -> Self {
+        Self {
+            param,
+            playback: Playback::default(),
+        }
+    }
+
+    /// Whether it plays.
+    #[must_use]
+    pub fn is_playing(&self) -> bool {
+        self.playback.is_playing()
+    }
+
+    /// How much may move by itself.
+    #[must_use]
+    pub fn motion(&self) -> Motion {
+        self.playback.motion()
+    }
+
+    /// The place that is shown.
+    #[must_use]
+    pub fn place(&self, values: &Values, last: f64) -> f64 {
+        values.get(self.param).min(last)
+    }
+
+    /// Stops where it is.
+    pub fn pause(&mut self) {
+        self.playback.pause();
+    }
+
+    /// Presses a button of the transport, or the defaults.
+    pub fn press(&mut self, values: &mut Values, button: &str, last: f64) -> Pressed {
+        let here = self.place(values, last);
+        if let Some(position) = self.playback.press(button, here, last) {
+            values.store(self.param, position);
+            return Pressed::Transport;
+        }
+        if button != DEFAULTS.id {
+            return Pressed::Other;
+        }
+        self.pause();
+        values.reset();
+        Pressed::Defaults
+    }
+
+    /// Plays on by that many seconds, at so many steps a second of normal speed.
+    pub fn advance(
+        &mut self,
+        values: &mut Values,
+        last: f64,
+        elapsed_s: f64,
+        steps_per_s: f64,
+    ) -> Activity {
+        if !self.is_playing() {
+            return Activity::Idle;
+        }
+        let rate = steps_per_s * speed_factor(values.get(SPEED.id));
+        let here = self.place(values, last);
+        let next = self.playback.advance(here, last, elapsed_s, rate);
+        values.store(self.param, next);
+        Activity::Busy
+    }
+
+    /// Sets how much may move by itself: a run that plays is at its end at once where nothing may.
+    pub fn set_motion(&mut self, values: &mut Values, motion: Motion, last: f64) {
+        if let Some(end) = self.playback.set_motion(motion, last) {
+            values.store(self.param, end);
+        }
+    }
+
+    /// The timeline with its marks.
+    #[must_use]
+    pub fn timeline(&self, last: f64, marks: Vec<TimelineMark>) -> Timeline {
+        Timeline {
+            param: self.param,
+            last,
+            playing: self.is_playing(),
+            marks,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layers::MORE;
+    use crate::param::{ParamKind, ParamSpec};
+
+    const STEPS: ParamSpec = ParamSpec {
+        id: "steps",
+        label: "steps",
+        unit: "",
+        kind: ParamKind::Timeline { max: 1000.0 },
+        default: 1000.0,
+        help: "Steps done.",
+    };
+    const PARAMS: &[ParamSpec] = &[STEPS, SPEED, MORE];
+
+    #[test]
+    fn a_place_past_the_end_is_the_end_and_play_starts_over_there() {
+        let (mut values, mut run) = (Values::defaults(PARAMS), Played::along("steps"));
+        assert_eq!(run.place(&values, 10.0), 10.0);
+        assert_eq!(run.press(&mut values, "play", 10.0), Pressed::Transport);
+        assert_eq!((values.get("steps"), run.is_playing()), (0.0, true));
+        assert_eq!(run.advance(&mut values, 10.0, 0.2, 5.0), Activity::Busy);
+        assert_eq!(values.get("steps"), 1.0);
+        values.store("speed", 4.0);
+        run.advance(&mut values, 10.0, 0.2, 5.0);
+        assert_eq!(values.get("steps"), 5.0, "four times as fast");
+    }
+
+    #[test]
+    fn defaults_stop_the_run_and_leave_open_what_was_opened() {
+        let (mut values, mut run) = (Values::defaults(PARAMS), Played::along("steps"));
+        values.store(MORE.id, 1.0);
+        run.press(&mut values, "play", 10.0);
+        assert_eq!(run.press(&mut values, "defaults", 10.0), Pressed::Defaults);
+        assert_eq!((values.get("steps"), run.is_playing()), (1000.0, false));
+        assert_eq!(values.get(MORE.id), 1.0);
+        assert_eq!(run.press(&mut values, "quarter-turn", 10.0), Pressed::Other);
+    }
+
+    #[test]
+    fn a_run_that_plays_ends_at_once_when_nothing_may_move() {
+        let (mut values, mut run) = (Values::defaults(PARAMS), Played::along("steps"));
+        run.press(&mut values, "play", 10.0);
+        run.set_motion(&mut values, Motion::Reduced, 10.0);
+        assert_eq!((values.get("steps"), run.is_playing()), (10.0, false));
+    }
+}
