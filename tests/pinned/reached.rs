@@ -1,7 +1,8 @@
 //! No test is left out: what a manifest tells cargo not to look for by itself is named elsewhere.
 //!
-//! A package links its integration tests into one binary (`autotests = false`, `tests/main.rs`), and
-//! one without examples in its documentation is not searched for them (`doctest = false`).
+//! A package links its integration tests into one binary (`autotests = false`, `tests/main.rs`).
+//! One without examples in its documentation is not searched for them (`doctest = false`), and one
+//! without tests in its sources is not compiled for them (`test = false`).
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,7 +13,7 @@ fn root() -> PathBuf {
 
 /// The manifests of all packages with their folders.
 fn packages() -> Vec<(PathBuf, String)> {
-    let mut found: Vec<PathBuf> = ["web", "tests", "tests/bench", "tests/doors"]
+    let mut found: Vec<PathBuf> = ["web", "web/robot", "tests", "tests/bench", "tests/doors"]
         .map(|folder| root().join(folder))
         .into();
     for folder in ["crates", "widgets"] {
@@ -95,6 +96,37 @@ fn every_integration_test_is_part_of_the_one_binary_of_its_package() {
     assert!(seen >= 7, "only {seen} packages have one binary");
     let files = ["main.rs", "named.rs", "forgotten.rs"].map(PathBuf::from);
     assert_eq!(left_out("mod named;\n", &files), ["forgotten"]);
+}
+
+/// The section of a manifest, without its title.
+fn section<'a>(manifest: &'a str, title: &str) -> &'a str {
+    let (_, rest) = manifest.split_once(title).unwrap_or_default();
+    rest.split("\n[").next().unwrap_or_default()
+}
+
+#[test]
+fn every_test_in_the_sources_is_compiled() {
+    let mut seen = 0;
+    for (folder, manifest) in packages() {
+        if !section(&manifest, "[lib]").contains("\ntest = false") {
+            continue;
+        }
+        for file in rust_files(&folder.join("src")) {
+            let text = fs::read_to_string(&file).expect("a source can be read");
+            assert!(
+                !text.contains("#[test]") && !text.contains("proptest!"),
+                "{} has a test, and its manifest says `test = false`",
+                file.display()
+            );
+        }
+        seen += 1;
+    }
+    assert!(
+        seen >= 11,
+        "only {seen} packages have no tests in their sources"
+    );
+    let manifest = "[lib]\nbench = false\n\n[[bin]]\ntest = false\n";
+    assert!(!section(manifest, "[lib]").contains("test = false"));
 }
 
 #[test]

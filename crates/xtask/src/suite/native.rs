@@ -21,8 +21,11 @@ pub fn test(skipped: &SkipList, ledger: &mut Ledger) -> Result<(), Failure> {
     timed(
         ledger,
         "native: compile and lint",
-        // Benches are compiled, to be linted; only `cargo bench` runs them.
-        linting(&mut cargo())?.args(["test", "--quiet", "--no-run", "--all-targets"]),
+        // Benches are compiled, to be linted; only `cargo bench` runs them. `--all-targets` would
+        // also link test programs for what has no tests.
+        linting(&mut cargo())?
+            .args(["test", "--quiet", "--no-run"])
+            .args(["--tests", "--benches", "--examples"]),
     )?;
     timed(
         ledger,
