@@ -104,6 +104,11 @@ pub trait Matcher: CloneMatcher + Send {
     /// Finds the pose of `source` on the target.
     fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary;
 
+    /// The same without other starts: the place next to the guess.
+    fn register_near(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
+        self.register(source, request)
+    }
+
     /// The pairs at the last answer, in the target's frame, into `pairs`.
     fn pairs(&self, pairs: &mut Vec<Pair>);
 

@@ -218,6 +218,14 @@ impl Matcher for StagedMatcher {
         best
     }
 
+    fn register_near(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
+        if request.max_iterations == 0 {
+            return self.fit(source, request.guess, 0);
+        }
+        let [_, near, last] = self.config.taus_m;
+        self.staged(source, request.guess, request.max_iterations, &[near, last])
+    }
+
     fn pairs(&self, pairs: &mut Vec<Pair>) {
         self.points.pairs(pairs);
     }

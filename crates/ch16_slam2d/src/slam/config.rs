@@ -38,15 +38,28 @@ pub struct ContradictionConfig {
     pub min_score: f64,
     /// One that is believed fits better than at the prediction by so much.
     pub lead: f64,
+    /// How far wheels jump that slip or are pushed, a standard deviation, m.
+    pub jump_m: f64,
+    /// The same for the heading, rad.
+    pub jump_rad: f64,
+    /// For each standard deviation of such a jump a scan has to fit better by so much.
+    pub jump_cost: f64,
+    /// At most by so much: what fits nearly whole is believed wherever it is.
+    pub max_cost: f64,
 }
 
 impl Default for ContradictionConfig {
-    /// 99 of 100 disagreements lie within; half of the scan has to fit, and a tenth of it better.
+    /// 99 of 100 disagreements lie within; half of the scan has to fit, a tenth of it better, and a
+    /// tenth more for each half metre that the wheels would have jumped.
     fn default() -> Self {
         Self {
             chi2: 11.345,
             min_score: 0.5,
             lead: 0.1,
+            jump_m: 0.5,
+            jump_rad: 0.4,
+            jump_cost: 0.1,
+            max_cost: 0.4,
         }
     }
 }

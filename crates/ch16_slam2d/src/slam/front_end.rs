@@ -1,12 +1,13 @@
 //! The front end: registers each scan on a map of the last few.
 
+mod weighing;
+
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
 
-use super::config::{ContradictionConfig, PredictionUse, SlamConfig};
-use super::fusion::fuse;
+use super::config::{PredictionUse, SlamConfig};
 use super::snapshot::FrontEndSnapshot;
 use crate::cloud::PointCloud;
 use crate::icp::{AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
@@ -310,6 +311,14 @@ impl FrontEnd {
         }
     }
 
+    /// The same next to the guess alone, without other starts.
+    fn match_near(&mut self, scan: &PointCloud, request: &MatchRequest) -> MatchSummary {
+        match &mut self.submaps {
+            Some(submaps) => submaps.register(scan, request, None),
+            None => self.matcher.register_near(scan, request),
+        }
+    }
+
     fn matched_information(&self, pose: &SE2, trust: &TrustConfig) -> Matrix3<f64> {
         match &self.submaps {
             Some(submaps) => match_information(submaps.pairs(), pose, trust),
@@ -320,57 +329,6 @@ impl FrontEnd {
     /// For how long the velocity is expected to stay, s.
     fn extrapolated_s(&self, dt_s: f64, config: &SlamConfig) -> f64 {
         dt_s.min(config.extrapolation * self.last_dt_s)
-    }
-
-    /// Moves the estimate from the registration towards the prediction, by what both know.
-    ///
-    /// Where they disagree by more than both allow, wheels have slipped or the scan has: the scan is
-    /// believed where it fits well, and clearly better than at the prediction. Elsewhere its information is
-    /// taken to be less, by as much as the disagreement is too large.
-    fn weigh(
-        &mut self,
-        matched: &MatchSummary,
-        prediction: &SE2,
-        motion: &SE2,
-        frame: &PreparedFrame,
-        config: &SlamConfig,
-    ) {
-        let share = matched.score.unwrap_or(1.0);
-        let known = self.matched_information(&matched.pose, &config.odometry_trust);
-        // What fits in part may fit elsewhere as well.
-        let known = known * (share * share * share * share);
-        let known = without_aperture(&known, config.aperture);
-        let noise = config.motion_noise(frame.odometry.is_some());
-        let driven = noise.covariance(motion);
-        let Some(mut fusion) = fuse(&matched.pose, &known, prediction, &driven) else {
-            return;
-        };
-        let ContradictionConfig {
-            chi2,
-            min_score,
-            lead,
-        } = config.contradiction;
-        if fusion.chi2 > chi2 {
-            let mut fit_at = |pose: SE2| {
-                let request = MatchRequest::new(pose, config.threshold.initial_m, 0);
-                self.match_scan(&frame.cloud, &request, None).score
-            };
-            let predicted = fit_at(*prediction).unwrap_or(0.0);
-            // The pairs are asked for later: those of the pose that is taken.
-            if share >= min_score && predicted < share - lead {
-                fit_at(matched.pose);
-                return;
-            }
-            let believed = chi2 / fusion.chi2;
-            let Some(doubted) = fuse(&matched.pose, &(known * believed), prediction, &driven)
-            else {
-                return;
-            };
-            fusion = doubted;
-            fit_at(fusion.pose);
-            self.believed = believed;
-        }
-        self.estimate = fusion.pose;
     }
 
     fn rebuild_local_map(&mut self) {

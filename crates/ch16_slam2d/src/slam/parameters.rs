@@ -281,6 +281,22 @@ pub const PARAMETERS: &[Parameter] = &[
         "and it has to fit better than at their pose by so much"
     ),
     field!(
+        contradiction.jump_m,
+        "m",
+        "how far wheels jump, a standard deviation"
+    ),
+    field!(contradiction.jump_rad, "rad", "the same for the heading"),
+    field!(
+        contradiction.jump_cost,
+        "",
+        "for each standard deviation of a jump the scan has to fit better by so much"
+    ),
+    field!(
+        contradiction.max_cost,
+        "",
+        "and at most by so much for all of them"
+    ),
+    field!(
         aperture,
         "",
         "share of the information across a wall that noise claims along it"

@@ -227,10 +227,18 @@ fn slam(config: &mut SlamConfig, f: &mut impl Fields) {
         chi2,
         min_score,
         lead,
+        jump_m,
+        jump_rad,
+        jump_cost,
+        max_cost,
     } = contradiction;
     f.within("contradiction.chi2", chi2, 0.0..=f64::INFINITY);
     f.number("contradiction.min_score", min_score);
     f.number("contradiction.lead", lead);
+    f.within("contradiction.jump_m", jump_m, 0.0..=f64::INFINITY);
+    f.within("contradiction.jump_rad", jump_rad, 0.0..=f64::INFINITY);
+    f.number("contradiction.jump_cost", jump_cost);
+    f.number("contradiction.max_cost", max_cost);
     f.number("aperture", aperture);
     let ThresholdConfig {
         initial_m,
