@@ -329,7 +329,10 @@ impl Optimizer {
     }
 
     /// Factorizes H at the present poses without kernel or damping, by blocks.
-    fn factorize_plain(&mut self, problem: &Problem) -> Result<&mut LinearSolver, OptimizeError> {
+    pub(crate) fn factorize_plain(
+        &mut self,
+        problem: &Problem,
+    ) -> Result<&mut LinearSolver, OptimizeError> {
         let linear = analysed(&mut self.linear, problem, Factorization::Block);
         self.equations.assemble(
             problem,

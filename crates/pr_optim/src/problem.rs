@@ -136,10 +136,15 @@ impl Problem {
     /// Where the measurement does not exist.
     #[must_use]
     pub fn factor_chi2(&self, factor: usize) -> f64 {
+        self.factor_chi2_at(factor, &self.poses)
+    }
+
+    /// The same at other poses, by index.
+    pub(crate) fn factor_chi2_at(&self, factor: usize, poses: &[SE2]) -> f64 {
         let Between { from, to, .. } = self.factors[factor];
         self.prepared[factor].squared_norm(
-            &PreparedPose::new(&self.poses[from]),
-            &PreparedPose::new(&self.poses[to]),
+            &PreparedPose::new(&poses[from]),
+            &PreparedPose::new(&poses[to]),
         )
     }
 

@@ -3,6 +3,7 @@
 use arbitrary::{Result, Unstructured};
 use nalgebra::Matrix3;
 use pr_geom::SE2;
+use pr_optim::robust::{GncSettings, believe, is_sequential};
 use pr_optim::{
     Between, Factorization, JacobianModel, Method, Problem, RobustKernel, Settings, Start,
 };
@@ -19,8 +20,27 @@ pub fn door(data: &[u8]) {
     let mut bytes = Unstructured::new(data);
     // Bytes that end early read as zeros.
     if let Ok((mut problem, settings, start)) = case(&mut bytes) {
+        choose_loops(&problem, settings);
         solve(&mut problem, settings, start);
     }
+}
+
+/// Believes the path and what fits of the loops, or says by type why not.
+fn choose_loops(problem: &Problem, solver: Settings) {
+    let trusted: Vec<bool> = problem.factors().iter().map(is_sequential).collect();
+    let Ok(belief) = believe(problem, &trusted, solver, &GncSettings::default()) else {
+        return;
+    };
+    assert!(belief.cost.is_finite());
+    let is_finite = |pose: &SE2| {
+        [pose.x(), pose.y(), pose.theta()]
+            .iter()
+            .all(|v| v.is_finite())
+    };
+    assert!(belief.poses.iter().all(is_finite));
+    let pairs = trusted.iter().zip(&belief.believed);
+    assert!(pairs.fold(true, |all, (trusted, believed)| all
+        && (!trusted || *believed)));
 }
 
 fn case(bytes: &mut Unstructured<'_>) -> Result<(Problem, Settings, Start)> {

@@ -90,14 +90,14 @@ impl Loop {
 }
 
 /// The path along the sequential measurements, with the covariance summed up in its first frame.
-struct Path {
+pub(super) struct Path {
     poses: Vec<SE2>,
     /// `Σ Ad Q Adᵀ` of the steps up to each pose: that between two is a difference.
     sums: Vec<Matrix3<f64>>,
 }
 
 impl Path {
-    fn new(problem: &Problem) -> Option<Self> {
+    pub fn new(problem: &Problem) -> Option<Self> {
         let mut steps: Vec<Option<&Between>> = vec![None; problem.node_count().checked_sub(1)?];
         for factor in problem.factors().iter().filter(|f| is_sequential(f)) {
             steps[factor.from.min(factor.to)].get_or_insert(factor);
@@ -122,6 +122,21 @@ impl Path {
             path.sums.push(sum);
         }
         Some(path)
+    }
+
+    /// The poses along it, in the frame of the first.
+    pub fn poses(&self) -> &[SE2] {
+        &self.poses
+    }
+
+    /// The squared Mahalanobis norm by which the cycle of a measurement and the path fails to close.
+    pub fn cycle_chi2(&self, factor: &Between) -> Option<f64> {
+        let (from, to) = (&self.poses[factor.from], &self.poses[factor.to]);
+        let e = (factor.measurement.inverse() * from.between(to)).log();
+        let way = carried(&to.inverse(), &self.between(factor.from, factor.to));
+        let information = (way + factor.information.try_inverse()?).try_inverse()?;
+        let chi2 = e.dot(&(information * e));
+        chi2.is_finite().then_some(chi2)
     }
 
     /// Whether the cycle through both loops closes.

@@ -1,6 +1,6 @@
 //! Graduated non-convexity: the cost turns robust little by little.
 
-use pr_geom::math;
+use pr_geom::{SE2, math};
 
 use super::{LOOP_CHI2, with_factors, without_factors};
 use crate::error::OptimizeError;
@@ -13,6 +13,12 @@ use crate::settings::Settings;
 
 /// A measurement with at least this weight was believed.
 const BELIEVED: f64 = 0.5;
+
+/// Weights that changed by no more in a round of the final shape have settled.
+const SETTLED: f64 = 0.01;
+
+/// In the final shape of Geman–McClure a measurement of less weight is left out.
+const WORTH_A_BLOCK: f64 = 1e-4;
 
 /// The robust cost that [`Gnc`] ends with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -67,7 +73,7 @@ pub struct GncRound {
 pub enum GncStop {
     /// Every measurement is believed or not.
     Decided,
-    /// The cost has its final shape.
+    /// The cost has its final shape, and the weights have settled.
     FullShape,
     /// The limit of rounds.
     RoundLimit,
@@ -116,6 +122,8 @@ pub struct Gnc {
     /// The same graph with its informations weighted.
     weighted: Problem,
     mu: Option<f64>,
+    /// Largest change of a weight in the last round.
+    change: f64,
     rounds: usize,
 }
 
@@ -143,8 +151,23 @@ impl Gnc {
             trusted,
             weighted,
             mu: None,
+            change: 0.0,
             rounds: 0,
         }
+    }
+
+    /// Begins at these poses, and with the final shape of the cost.
+    ///
+    /// # Panics
+    /// Where there are not as many poses as in the graph.
+    #[must_use]
+    pub fn refining(mut self, poses: &[SE2]) -> Self {
+        self.weighted.poses_mut().copy_from_slice(poses);
+        self.mu = Some(match self.settings.loss {
+            GncLoss::TruncatedLeastSquares => f64::INFINITY,
+            GncLoss::GemanMcClure => 1.0,
+        });
+        self
     }
 
     /// One round; the reason to stop once there is nothing left to do.
@@ -162,12 +185,13 @@ impl Gnc {
         };
         self.mu = Some(mu);
         self.rounds += 1;
+        self.change = 0.0;
         for (index, s) in norms.iter().enumerate() {
-            self.weights[index] = if self.trusted[index] {
-                1.0
-            } else {
-                self.weight(*s, mu)
-            };
+            if !self.trusted[index] {
+                let weight = self.weight(*s, mu);
+                self.change = math::max(self.change, (weight - self.weights[index]).abs());
+                self.weights[index] = weight;
+            }
         }
         self.solve(problem, self.settings.steps_in_round)?;
         // Exactly: far from the optimum every weight is small at first, and grows with μ.
@@ -212,7 +236,8 @@ impl Gnc {
         &self.weights
     }
 
-    /// The graph as it is being solved: the poses of the last round, informations weighted.
+    /// The graph as it is being solved: the poses of the last round, informations weighted, without
+    /// the measurements that count for nothing.
     #[must_use]
     pub fn weighted(&self) -> &Problem {
         &self.weighted
@@ -264,7 +289,7 @@ impl Gnc {
     fn stop_after(&self, round: &GncRound) -> Option<GncStop> {
         let has_full_shape = match self.settings.loss {
             GncLoss::TruncatedLeastSquares => round.mu == f64::INFINITY,
-            GncLoss::GemanMcClure => round.mu <= 1.0,
+            GncLoss::GemanMcClure => round.mu <= 1.0 && self.change <= SETTLED,
         };
         if self.settings.loss == GncLoss::TruncatedLeastSquares && round.undecided == 0 {
             Some(GncStop::Decided)
@@ -281,7 +306,13 @@ impl Gnc {
         let poses = self.weighted.poses().to_vec();
         self.weighted = without_factors(problem);
         self.weighted.poses_mut().copy_from_slice(&poses);
-        for (factor, weight) in problem.factors().iter().zip(&self.weights) {
+        // What has no weight would only fill the factor: many false loops tie all to all.
+        let least = match (self.settings.loss, self.mu) {
+            (GncLoss::GemanMcClure, Some(mu)) if mu <= 1.0 => WORTH_A_BLOCK,
+            _ => 0.0,
+        };
+        let factors = problem.factors().iter().zip(&self.weights);
+        for (factor, weight) in factors.filter(|(_, weight)| **weight > least) {
             self.weighted.add_factor(Between {
                 information: factor.information * *weight,
                 ..*factor

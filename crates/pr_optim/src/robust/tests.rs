@@ -229,3 +229,165 @@ fn a_cycle_without_noise_closes_and_a_metre_off_does_not() {
     let member = consistent_set(&problem, &ConsistencySettings::default());
     assert_eq!(member[12..], [true, true, false, true]);
 }
+
+/// A walk through a grid of streets 4 m apart, with a loop to the first visit wherever a pose stands
+/// where one stood before, and false loops between poses anywhere. The measurements state seven times
+/// the noise that they have, as those of many recorded graphs do.
+fn streets(count: usize, share: f64, seed: u64) -> (Problem, usize) {
+    let mut numbers = Numbers(seed);
+    let stated = Matrix3::identity() * 44.7;
+    let noisy = |pose: &SE2, numbers: &mut Numbers| {
+        let noise = Vector3::from_fn(|_, _| 0.02 * numbers.normal());
+        pose.boxplus(&noise)
+    };
+    let mut problem = Problem::new();
+    problem.add_fixed_pose(SE2::identity());
+    let mut truth = vec![SE2::identity()];
+    let mut loops = Vec::new();
+    let add = |problem: &mut Problem, from, to, measurement| {
+        problem.add_factor(Between {
+            from,
+            to,
+            measurement,
+            information: stated,
+        });
+    };
+    while truth.len() < count {
+        let last = truth[truth.len() - 1];
+        let at_crossing = [last.x(), last.y()].map(|v| v.round() as i64 % 4) == [0, 0];
+        let turn = match (at_crossing, (numbers.unit() * 3.0) as usize) {
+            (true, 0) => core::f64::consts::FRAC_PI_2,
+            (true, 1) => -core::f64::consts::FRAC_PI_2,
+            _ => 0.0,
+        };
+        let step = SE2::new(0.0, 0.0, turn) * SE2::new(1.0, 0.0, 0.0);
+        let next = last * step;
+        // The town ends: the robot turns on the spot first.
+        let step = if next.x().abs() > 12.5 || next.y().abs() > 12.5 {
+            SE2::new(0.0, 0.0, core::f64::consts::PI) * SE2::new(1.0, 0.0, 0.0)
+        } else {
+            step
+        };
+        let (from, to, next) = (truth.len() - 1, truth.len(), last * step);
+        let place = |pose: &SE2| [pose.x(), pose.y()].map(|v| v.round() as i64);
+        let visit = truth.iter().position(|pose| place(pose) == place(&next));
+        if let Some(visit) = visit.filter(|visit| to - visit > 1) {
+            loops.push((visit, to));
+        }
+        truth.push(next);
+        let measurement = noisy(&step, &mut numbers);
+        let pose = problem.poses()[from] * measurement;
+        problem.add_pose(pose);
+        add(&mut problem, from, to, measurement);
+    }
+    for &(from, to) in &loops {
+        let between = noisy(&truth[from].between(&truth[to]), &mut numbers);
+        add(&mut problem, from, to, between);
+    }
+    let last_true = problem.factors().len();
+    let mut wrong = (share * loops.len() as f64).round() as usize;
+    while wrong > 0 {
+        let [from, to] = [0, 1].map(|_| (numbers.unit() * count as f64) as usize);
+        let apart = truth[from].between(&truth[to]);
+        if from.abs_diff(to) < 2 || math::norm2(apart.x(), apart.y()) < 2.0 {
+            continue;
+        }
+        let claim = noisy(&SE2::identity(), &mut numbers);
+        add(&mut problem, from.min(to), from.max(to), claim);
+        wrong -= 1;
+    }
+    (problem, last_true)
+}
+
+fn belief(problem: &Problem) -> Belief {
+    let solver = Settings {
+        jacobians: crate::JacobianModel::Exact,
+        ..Settings::default()
+    };
+    believe(problem, &trusted(problem), solver, &GncSettings::default()).unwrap()
+}
+
+fn at(problem: &Problem, poses: &[SE2]) -> Problem {
+    let mut moved = problem.clone();
+    moved.poses_mut().copy_from_slice(poses);
+    moved
+}
+
+#[test]
+fn loops_taken_along_the_way_hold_where_graduated_non_convexity_alone_is_led_astray() {
+    let mut led_astray = 0;
+    for (share, seed) in [(0.0, 1), (0.1, 2), (0.3, 3), (0.5, 4)] {
+        let clean = at(
+            &streets(600, 0.0, seed).0,
+            &belief(&streets(600, 0.0, seed).0).poses,
+        );
+        let (spoilt, last_true) = streets(600, share, seed);
+        let believed = belief(&spoilt);
+        assert!(believed.believed[..last_true].iter().all(|b| *b), "{share}");
+        assert!(
+            believed.believed[last_true..].iter().all(|b| !*b),
+            "{share}"
+        );
+        let off_m = apart_m(&at(&spoilt, &believed.poses), &clean);
+        // 1e-4: both solves end where a step is below 1e-6.
+        assert!(off_m < 1e-4, "{share}: {off_m}");
+        let mut alone = spoilt.clone();
+        Gnc::new(
+            &spoilt,
+            trusted(&spoilt),
+            Settings::default(),
+            GncSettings::default(),
+        )
+        .run(&mut alone)
+        .unwrap();
+        led_astray += usize::from(apart_m(&alone, &clean) > 0.1);
+    }
+    assert!(led_astray > 0, "the test is too easy");
+}
+
+#[test]
+fn no_loop_can_change_sides_and_lower_the_truncated_cost() {
+    for (share, seed) in [(0.0, 1), (0.3, 3), (1.0, 5)] {
+        let (problem, _) = graph(share, seed);
+        let belief = belief(&problem);
+        for k in (0..problem.factors().len()).filter(|&k| !is_sequential(&problem.factors()[k])) {
+            let other = |factor: usize| belief.believed[factor] != (factor == k);
+            let mut flipped = with_factors(&at(&problem, &belief.poses), other);
+            crate::Optimizer::new(Settings::default()).run(&mut flipped);
+            let dropped = (0..problem.factors().len()).filter(|&f| !other(f)).count();
+            let cost = flipped.chi2() + LOOP_CHI2 * dropped as f64;
+            assert!(
+                cost > belief.cost - 1e-6 * belief.cost,
+                "{share}, loop {k}: {cost}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_way_from_its_end_leads_to_the_same_belief() {
+    let (problem, _) = graph(0.5, 4);
+    let mut turned = Problem::new();
+    let last = problem.node_count() - 1;
+    for pose in problem.poses().iter().rev() {
+        turned.add_pose(*pose);
+    }
+    turned.fix(last);
+    for factor in problem.factors() {
+        turned.add_factor(Between {
+            from: last - factor.from,
+            to: last - factor.to,
+            ..*factor
+        });
+    }
+    assert_eq!(belief(&turned).believed, belief(&problem).believed);
+}
+
+#[test]
+fn a_graph_whose_path_is_torn_is_judged_by_graduated_non_convexity() {
+    let (problem, last_true) = graph(0.3, 3);
+    let torn = with_factors(&problem, |k| k != 60);
+    let belief = belief(&torn);
+    assert_eq!(belief.start, BeliefStart::GraduatedNonConvexity);
+    assert!(belief.believed[last_true - 1..].iter().all(|b| !*b));
+}

@@ -2,7 +2,8 @@
 
 use clap::ValueEnum;
 use pr_optim::robust::{
-    ConsistencySettings, Gnc, GncLoss, GncSettings, consistent_set, is_sequential, with_factors,
+    BeliefStart, ConsistencySettings, Gnc, GncLoss, GncSettings, believe, consistent_set,
+    is_sequential, with_factors,
 };
 use pr_optim::{OptimizeError, Problem, Settings, Start};
 use serde::Serialize;
@@ -12,9 +13,9 @@ use serde::Serialize;
 pub enum RobustName {
     /// Every loop is believed.
     None,
-    /// Graduated non-convexity, truncated least squares.
+    /// Loops along the way and graduated non-convexity, by truncated least squares.
     Gnc,
-    /// Graduated non-convexity, Geman–McClure.
+    /// The same, and then Geman–McClure from there: stricter, it drops what is half refuted.
     GncGm,
     /// The loops that agree with each other in pairs.
     Pcm,
@@ -29,6 +30,8 @@ pub struct Believed {
     pub believed: usize,
     /// Rounds of graduated non-convexity.
     pub rounds: usize,
+    /// The start that won, where there is more than one.
+    pub from: Option<&'static str>,
 }
 
 /// What is to be solved, and from where.
@@ -52,28 +55,33 @@ pub fn select(
     start: Start,
 ) -> Result<Option<Selected>, OptimizeError> {
     let mut moved = problem.clone();
-    let (member, rounds, start) = match robust {
+    let (member, rounds, start, from) = match robust {
         RobustName::None => return Ok(None),
         RobustName::Gnc | RobustName::GncGm => {
-            let loss = match robust {
-                RobustName::GncGm => GncLoss::GemanMcClure,
-                _ => GncLoss::TruncatedLeastSquares,
-            };
-            let trusted = problem.factors().iter().map(is_sequential).collect();
-            let settings = GncSettings {
-                loss,
-                ..GncSettings::default()
-            };
-            let outcome = Gnc::new(problem, trusted, solver, settings).run(&mut moved)?;
-            let member = (0..outcome.weights.len())
-                .map(|factor| outcome.is_believed(factor))
-                .collect();
-            (member, outcome.rounds, Start::Given)
+            let trusted: Vec<bool> = problem.factors().iter().map(is_sequential).collect();
+            let settings = GncSettings::default();
+            let belief = believe(problem, &trusted, solver, &settings)?;
+            moved.poses_mut().copy_from_slice(&belief.poses);
+            let (mut member, mut rounds) = (belief.believed, belief.rounds);
+            if robust == RobustName::GncGm {
+                let settings = GncSettings {
+                    loss: GncLoss::GemanMcClure,
+                    ..settings
+                };
+                let gnc = Gnc::new(problem, trusted, solver, settings).refining(&belief.poses);
+                let outcome = gnc.run(&mut moved)?;
+                member = (0..member.len())
+                    .map(|factor| outcome.is_believed(factor))
+                    .collect();
+                rounds += outcome.rounds;
+            }
+            (member, rounds, Start::Given, Some(name_of(belief.start)))
         }
         RobustName::Pcm => (
             consistent_set(problem, &ConsistencySettings::default()),
             0,
             start,
+            None,
         ),
     };
     let loops = || {
@@ -84,10 +92,19 @@ pub fn select(
         loops: loops().count(),
         believed: loops().filter(|(_, member)| **member).count(),
         rounds,
+        from,
     };
     Ok(Some(Selected {
         problem: with_factors(&moved, |factor| member[factor]),
         start,
         believed,
     }))
+}
+
+fn name_of(start: BeliefStart) -> &'static str {
+    match start {
+        BeliefStart::Forwards => "way",
+        BeliefStart::Backwards => "way-back",
+        BeliefStart::GraduatedNonConvexity => "gnc",
+    }
 }

@@ -1,0 +1,281 @@
+//! Which loops to believe, from more than one start.
+
+use pr_geom::{SE2, math};
+
+use super::gnc::{Gnc, GncLoss, GncSettings};
+use super::growth::{Direction, grown};
+use super::refutation::{MarginalGate, Standing};
+use super::with_factors;
+use crate::error::OptimizeError;
+use crate::optimizer::Optimizer;
+use crate::problem::Problem;
+use crate::report::StopReason;
+use crate::settings::Settings;
+
+/// Largest number of times that loops change sides after a start.
+const CHANGES: usize = 40;
+
+/// A loop whose absence lowers χ² by this share of what its absence costs is nearly refuted.
+const NEARLY: f64 = 0.25;
+
+/// Largest number of loops nearly refuted that are left out in earnest.
+const TRIALS: usize = 8;
+
+/// Where a belief came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BeliefStart {
+    /// Loops taken along the way, from its first pose on.
+    Forwards,
+    /// Loops taken along the way, from its last pose back.
+    Backwards,
+    /// Graduated non-convexity from where the trusted measurements lead.
+    GraduatedNonConvexity,
+}
+
+/// Which measurements are believed, and where they lead.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Belief {
+    /// Whether each measurement is believed; the trusted ones are.
+    pub believed: Vec<bool>,
+    /// The poses at the least-squares optimum of those.
+    pub poses: Vec<SE2>,
+    /// χ² of what is believed, and `max_chi2` for every loop that is not.
+    pub cost: f64,
+    /// The start that led there.
+    pub start: BeliefStart,
+    /// Rounds of graduated non-convexity, none where it was not needed.
+    pub rounds: usize,
+}
+
+/// Finds a set of loops of low truncated cost `Σ min(eᵀΩe, max_chi2)`.
+///
+/// Loops are taken along the way by their marginal gate ([`growth`](super::growth)), once from each
+/// end, and each belief is settled: a loop that the believed ones refute by the exact covariance is
+/// dropped, one that they do not refute is taken in, as long as the cost falls. Where both ways lead
+/// to the same belief, and it keeps more loops than it drops, that is the result. Else [`Gnc`] looks
+/// from where the trusted measurements lead, is settled too, and the lowest cost wins.
+///
+/// So every loop of the result passes the gate of all others, unless the cost could not fall further.
+/// A set of false loops that agree with each other better than the right ones stays out of its reach.
+///
+/// # Errors
+/// Where no start leads to normal equations that can be solved, and to a finite cost.
+///
+/// # Panics
+/// Where `trusted` has not as many entries as there are measurements.
+pub fn believe(
+    problem: &Problem,
+    trusted: &[bool],
+    solver: Settings,
+    settings: &GncSettings,
+) -> Result<Belief, OptimizeError> {
+    assert_eq!(trusted.len(), problem.factors().len());
+    let search = Search {
+        problem,
+        trusted,
+        solver,
+        max_chi2: settings.max_chi2,
+    };
+    let ways = [
+        (Direction::Forwards, BeliefStart::Forwards),
+        (Direction::Backwards, BeliefStart::Backwards),
+    ]
+    .map(|(direction, start)| search.along(direction, start));
+    if let [Some(first), Some(second)] = &ways
+        && first.believed == second.believed
+        && search.keeps_most(first)
+    {
+        return Ok(first.clone());
+    }
+    let third = search.graduated(settings);
+    let [first, second] = ways;
+    let mut best: Option<Belief> = None;
+    let mut failure = OptimizeError::NotFinite;
+    for belief in [first.ok_or(failure), second.ok_or(failure), third] {
+        match belief {
+            Ok(belief) if best.as_ref().is_none_or(|best| belief.cost < best.cost) => {
+                best = Some(belief);
+            }
+            Ok(_) => {}
+            Err(error) => failure = error,
+        }
+    }
+    best.ok_or(failure)
+}
+
+struct Search<'a> {
+    problem: &'a Problem,
+    trusted: &'a [bool],
+    solver: Settings,
+    max_chi2: f64,
+}
+
+impl Search<'_> {
+    /// The belief along the way; none where there is no such way, or it cannot be solved.
+    fn along(&self, direction: Direction, start: BeliefStart) -> Option<Belief> {
+        let grown = grown(
+            self.problem,
+            self.trusted,
+            direction,
+            self.solver,
+            self.max_chi2,
+        );
+        let grown = grown.ok()??;
+        // The way stands where the first fixed pose holds it.
+        let fixed = self.problem.fixed();
+        let held = fixed.iter().position(|fixed| *fixed)?;
+        let given = self.problem.poses();
+        let moved = given[held] * grown.poses[held].inverse();
+        let poses = (0..given.len()).map(|node| {
+            if fixed[node] {
+                given[node]
+            } else {
+                moved * grown.poses[node]
+            }
+        });
+        self.settled(poses.collect(), grown.believed, start).ok()
+    }
+
+    fn graduated(&self, settings: &GncSettings) -> Result<Belief, OptimizeError> {
+        let mut problem = self.problem.clone();
+        let settings = GncSettings {
+            loss: GncLoss::TruncatedLeastSquares,
+            ..*settings
+        };
+        let gnc = Gnc::new(self.problem, self.trusted.to_vec(), self.solver, settings);
+        let outcome = gnc.run(&mut problem)?;
+        let believed = (0..self.trusted.len())
+            .map(|k| outcome.is_believed(k))
+            .collect();
+        let mut belief = self.settled(
+            problem.poses().to_vec(),
+            believed,
+            BeliefStart::GraduatedNonConvexity,
+        )?;
+        belief.rounds = outcome.rounds;
+        Ok(belief)
+    }
+
+    fn keeps_most(&self, belief: &Belief) -> bool {
+        let doubted = self.trusted.iter().filter(|trusted| !**trusted).count();
+        let dropped = belief
+            .believed
+            .iter()
+            .filter(|believed| !**believed)
+            .count();
+        2 * dropped < doubted || doubted == 0
+    }
+
+    /// Lets loops change sides as long as the cost falls: first all that should, then one at a time.
+    fn settled(
+        &self,
+        poses: Vec<SE2>,
+        believed: Vec<bool>,
+        start: BeliefStart,
+    ) -> Result<Belief, OptimizeError> {
+        let mut optimizer = Optimizer::new(self.solver);
+        let mut best = self.solved(&mut optimizer, &poses, believed, start)?;
+        let mut one_at_a_time = false;
+        for _ in 0..CHANGES {
+            let gains = self.gains(&mut optimizer, &best)?;
+            let largest = gains.iter().copied().fold(0.0, math::max);
+            if largest <= 0.0 {
+                match self.without_one(&mut optimizer, &best, &gains)? {
+                    Some(next) => best = next,
+                    None => break,
+                }
+                continue;
+            }
+            let mut believed = best.believed.clone();
+            for (believed, gain) in believed.iter_mut().zip(&gains) {
+                // What is refuted may be so by another that is refuted more.
+                let least = if *believed { largest / 2.0 } else { 0.0 };
+                if *gain > least && !one_at_a_time || *gain >= largest {
+                    *believed = !*believed;
+                }
+            }
+            match self.solved(&mut optimizer, &best.poses, believed, start) {
+                Ok(next) if next.cost < best.cost => best = next,
+                _ if one_at_a_time => break,
+                _ => one_at_a_time = true,
+            }
+        }
+        Ok(best)
+    }
+
+    /// A belief of lower cost without one of the loops that are nearly refuted.
+    ///
+    /// A false loop may bend a weak part of the graph so far that first order does not refute it.
+    fn without_one(
+        &self,
+        optimizer: &mut Optimizer,
+        belief: &Belief,
+        gains: &[f64],
+    ) -> Result<Option<Belief>, OptimizeError> {
+        let mut nearly: Vec<usize> = (0..gains.len())
+            .filter(|&k| belief.believed[k] && gains[k] > (NEARLY - 1.0) * self.max_chi2)
+            .collect();
+        nearly.sort_by(|&a, &b| gains[b].total_cmp(&gains[a]).then(a.cmp(&b)));
+        for &k in nearly.iter().take(TRIALS) {
+            let mut believed = belief.believed.clone();
+            believed[k] = false;
+            let next = self.solved(optimizer, &belief.poses, believed, belief.start)?;
+            if next.cost < belief.cost {
+                return Ok(Some(next));
+            }
+        }
+        Ok(None)
+    }
+
+    /// By how much the cost falls, to first order, where a loop changes sides; −∞ for trusted ones,
+    /// and where that is not known.
+    fn gains(&self, optimizer: &mut Optimizer, belief: &Belief) -> Result<Vec<f64>, OptimizeError> {
+        let graph = self.with_belief(&belief.poses, &belief.believed);
+        let mut gate = MarginalGate::new(optimizer, &graph)?;
+        let mut kept = gate.all_kept().into_iter();
+        let mut gains = Vec::with_capacity(self.trusted.len());
+        for (k, factor) in self.problem.factors().iter().enumerate() {
+            let gain = if belief.believed[k] {
+                kept.next().map_or(f64::NAN, |chi2| chi2 - self.max_chi2)
+            } else {
+                self.max_chi2 - gate.chi2(factor, Standing::Dropped)
+            };
+            let is_known = !self.trusted[k] && !gain.is_nan();
+            gains.push(if is_known { gain } else { f64::NEG_INFINITY });
+        }
+        Ok(gains)
+    }
+
+    /// The least-squares optimum of what is believed.
+    fn solved(
+        &self,
+        optimizer: &mut Optimizer,
+        poses: &[SE2],
+        believed: Vec<bool>,
+        start: BeliefStart,
+    ) -> Result<Belief, OptimizeError> {
+        let mut graph = self.with_belief(poses, &believed);
+        let report = optimizer.run(&mut graph);
+        if let StopReason::Failed { error } = report.stop {
+            return Err(error);
+        }
+        let dropped = believed.iter().filter(|believed| !**believed).count();
+        let cost = report.chi2 + self.max_chi2 * dropped as f64;
+        if !cost.is_finite() {
+            return Err(OptimizeError::NotFinite);
+        }
+        Ok(Belief {
+            believed,
+            poses: graph.poses().to_vec(),
+            cost,
+            start,
+            rounds: 0,
+        })
+    }
+
+    fn with_belief(&self, poses: &[SE2], believed: &[bool]) -> Problem {
+        let mut graph = with_factors(self.problem, |k| believed[k]);
+        graph.poses_mut().copy_from_slice(poses);
+        graph
+    }
+}
