@@ -49,9 +49,9 @@ pub struct Belief {
 
 /// Finds a set of loops of low truncated cost `Σ min(eᵀΩe, max_chi2)`.
 ///
-/// Loops are taken along the way by their marginal gate ([`growth`](super::growth)), once from each
-/// end, and each belief is settled: a loop that the believed ones refute by the exact covariance is
-/// dropped, one that they do not refute is taken in, as long as the cost falls. Where both ways lead
+/// Loops are taken along the way by their marginal gate, once from each end, and each belief is
+/// settled: a loop that the believed ones refute by the exact covariance is dropped, one that they do
+/// not refute is taken in, as long as the cost falls. Where both ways lead
 /// to the same belief, and it keeps more loops than it drops, that is the result. Else [`Gnc`] looks
 /// from where the trusted measurements lead, is settled too, and the lowest cost wins.
 ///
