@@ -11,6 +11,7 @@ use thiserror::Error;
 use crate::carmen::CarmenReader;
 use crate::json_log::JsonLogReader;
 use crate::ros::RosReader;
+use crate::session::Session;
 
 /// A scan of a log, with the odometry at its time.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +56,66 @@ pub struct LogOptions {
     pub body_frame: Option<String>,
 }
 
+/// One of [`LogOptions`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LogOption {
+    /// [`LogOptions::scan_topic`].
+    ScanTopic,
+    /// [`LogOptions::odometry_topic`].
+    OdometryTopic,
+    /// [`LogOptions::odometry_frame`].
+    OdometryFrame,
+    /// [`LogOptions::body_frame`].
+    BodyFrame,
+}
+
+impl LogOption {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::ScanTopic,
+        Self::OdometryTopic,
+        Self::OdometryFrame,
+        Self::BodyFrame,
+    ];
+
+    /// Its name on the command line, without the dashes.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ScanTopic => "scan-topic",
+            Self::OdometryTopic => "odom-topic",
+            Self::OdometryFrame => "odom-frame",
+            Self::BodyFrame => "body-frame",
+        }
+    }
+}
+
+impl LogOptions {
+    /// The same options with one of them chosen.
+    #[must_use]
+    pub fn with(mut self, option: LogOption, value: &str) -> Self {
+        let slot = match option {
+            LogOption::ScanTopic => &mut self.scan_topic,
+            LogOption::OdometryTopic => &mut self.odometry_topic,
+            LogOption::OdometryFrame => &mut self.odometry_frame,
+            LogOption::BodyFrame => &mut self.body_frame,
+        };
+        *slot = Some(value.to_owned());
+        self
+    }
+}
+
+/// What a recording offers for one of its options.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LogOffer {
+    /// The option.
+    pub option: LogOption,
+    /// What is taken; none where nothing is.
+    pub taken: Option<String>,
+    /// What may be taken, in the order of the alphabet.
+    pub names: Vec<String>,
+}
+
 /// A line or record that could not be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BrokenRecord {
@@ -81,6 +142,8 @@ pub struct LogNotes {
     pub bytes: u64,
     /// What was chosen and found: topics, frames, where the laser sits.
     pub about: Vec<String>,
+    /// What options could choose; nothing in a log of lines.
+    pub offers: Vec<LogOffer>,
     /// What was missing and how it was made up for.
     pub warnings: Vec<String>,
     /// Why what follows in the file was not read.
@@ -167,6 +230,18 @@ pub enum LogError {
         /// What to do.
         advice: &'static str,
     },
+    /// A topic or frame that was asked for and is not there.
+    #[error("{name} has no {option} {wanted}; {advice}")]
+    Missing {
+        /// The log's name.
+        name: String,
+        /// Name of the option: `odom-topic`.
+        option: &'static str,
+        /// What was asked for.
+        wanted: String,
+        /// What there is.
+        advice: String,
+    },
     /// It has records, but no scan that could be used.
     #[error("{name} holds no scan that can be used: {detail}")]
     NoScans {
@@ -208,6 +283,8 @@ pub enum LogFormat {
     Graph,
     /// Lines of JSON, one frame each.
     Json,
+    /// A saved session.
+    Session,
 }
 
 impl LogFormat {
@@ -227,6 +304,8 @@ impl LogFormat {
             Self::Graph
         } else if starts(b"{") {
             Self::Json
+        } else if Session::begins(start) {
+            Self::Session
         } else {
             Self::Carmen
         }
@@ -269,6 +348,10 @@ impl LogFormat {
                 "a recording of ROS 2 in SQLite",
                 "convert it to MCAP with ros2 bag convert",
             )),
+            Self::Session => Err(foreign(
+                "a saved session, not a log of scans",
+                "give a log; slam2d run LOG --continue takes a session to go on from",
+            )),
             Self::Graph => Err(foreign(
                 "a pose graph, not a log of scans",
                 "optimize it with slam2d optimize",
@@ -292,6 +375,10 @@ mod tests {
             (
                 b"SQLite format 3\0",
                 "x.log is a recording of ROS 2 in SQLite; convert it to MCAP with ros2 bag convert",
+            ),
+            (
+                b"SLAM2D\r\n",
+                "x.log is a saved session, not a log of scans; give a log; slam2d run LOG --continue takes a session to go on from",
             ),
             (
                 b"VERTEX_SE2 0 0 0 0\n",

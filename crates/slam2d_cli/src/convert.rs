@@ -1,7 +1,7 @@
 //! `slam2d convert`: one format into another, by the names of the files.
 
 use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -13,8 +13,8 @@ use serde::Serialize;
 use thiserror::Error;
 
 use crate::log_file::{FileError, TopicArgs, open, open_log};
-use crate::optimize::write_whole;
-use crate::session_file::{SessionFileError, read_session};
+use crate::optimize::{WholeFile, write_whole};
+use crate::session_file::{SessionFileError, is_session, read_session};
 
 /// Write a log, a pose graph or a trajectory in another format; the ends of the names say which.
 ///
@@ -46,6 +46,9 @@ pub enum ConvertError {
     /// The session cannot be read.
     #[error(transparent)]
     Session(#[from] SessionFileError),
+    /// What is read would be lost.
+    #[error("{0} is what is read and what is written; write another file")]
+    Itself(String),
     /// One does not become the other.
     #[error("{input} cannot become {output}; {advice}")]
     NoSense {
@@ -110,7 +113,14 @@ struct PoseJson {
 /// Where a file cannot be used, or one does not become the other.
 pub fn run(args: &ConvertArgs) -> Result<(), ConvertError> {
     let [from, to] = [&args.input, &args.output].map(|path| extension(path));
-    let kind = Kind::of(&from);
+    let kind = match Kind::of(&from) {
+        // The folder of a run is its session.
+        Kind::Other if args.input.is_dir() && is_session(&args.input) => Kind::Session,
+        kind => kind,
+    };
+    if is_same_file(&args.input, &args.output) {
+        return Err(ConvertError::Itself(args.input.display().to_string()));
+    }
     match (kind, to.as_str()) {
         (Kind::Log, "clf" | "log" | "jsonl" | "tum") => convert_log(args, &to),
         (Kind::Graph, "g2o" | "graph" | "toro" | "json") => convert_graph(args, &to),
@@ -122,6 +132,12 @@ pub fn run(args: &ConvertArgs) -> Result<(), ConvertError> {
             advice: kind.advice(),
         }),
     }
+}
+
+/// Whether both are there and one.
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    let [a, b] = [a, b].map(fs::canonicalize);
+    a.is_ok_and(|a| b.is_ok_and(|b| a == b))
 }
 
 fn extension(path: &Path) -> String {
@@ -142,7 +158,7 @@ fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
     let told = told(&args.output);
     // A log that cannot be read leaves the output as it was.
     let mut next = reader.next_frame().map_err(FileError::from)?;
-    let mut file: Option<BufWriter<fs::File>> = None;
+    let mut file: Option<WholeFile> = None;
     let mut odometry: Vec<StampedPose> = Vec::new();
     let mut count = 0;
     while let Some(frame) = next {
@@ -161,9 +177,7 @@ fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
         } else {
             let file = match &mut file {
                 Some(file) => file,
-                none => none.insert(BufWriter::new(
-                    fs::File::create(&args.output).map_err(&told)?,
-                )),
+                none => none.insert(WholeFile::create(&args.output).map_err(&told)?),
             };
             match to {
                 "jsonl" => FrameLine::from(&frame).write(file).map_err(&told)?,
@@ -176,8 +190,8 @@ fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
     for sentence in reader.notes().sentences(&args.input.display().to_string()) {
         eprintln!("slam2d: {sentence}");
     }
-    if let Some(mut file) = file {
-        file.flush().map_err(&told)?;
+    if let Some(file) = file {
+        file.finish().map_err(&told)?;
     }
     if to == "tum" {
         if odometry.is_empty() {

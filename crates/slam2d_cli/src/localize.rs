@@ -17,7 +17,7 @@ use thiserror::Error;
 
 use crate::grade::{Grade, GradeError, ReferenceArgs};
 use crate::log_file::{FileError, TopicArgs, open_log};
-use crate::optimize::write_whole;
+use crate::optimize::{check_file, write_whole};
 use crate::output::{print_json, say};
 use crate::session_file::{SessionFileError, read_session};
 
@@ -162,6 +162,12 @@ impl PoseJson {
 /// Where a file cannot be used.
 pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
     let name = args.log.display().to_string();
+    if let Some(path) = &args.output {
+        check_file(path).map_err(|source| FileError::Io {
+            path: path.clone(),
+            source,
+        })?;
+    }
     let reference = args.reference.read()?;
     let (session, _) = read_session(&args.session)?;
     let odometry_use = if args.no_odometry {
@@ -196,6 +202,12 @@ pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
     }
     for sentence in reader.notes().sentences(&name) {
         eprintln!("slam2d: {sentence}");
+    }
+    if run.late() > 0 {
+        eprintln!(
+            "slam2d: {name}: {} scans are not after the one before them and were left out",
+            run.late()
+        );
     }
     let trajectory = run.trajectory();
     if let Some(path) = &args.output {

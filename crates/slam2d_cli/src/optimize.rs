@@ -18,7 +18,7 @@ pub use self::args::OptimizeArgs;
 use self::robust::Believed;
 use self::solve::solve_repeatedly;
 use self::tried::{Tried, start_name};
-pub use self::whole_file::write_whole;
+pub use self::whole_file::{WholeFile, check_file, check_folder, write_whole};
 use crate::output::{print_json, say};
 
 /// Why a graph was not solved.

@@ -12,13 +12,14 @@ use clap::Args;
 use measuring::process;
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
-use robot_io::run::{LogRun, OdometryUse};
+use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
 use serde::Serialize;
 use thiserror::Error;
 
 use crate::buildings::setting;
 use crate::grade::{Grade, GradeError, ReferenceArgs};
 use crate::log_file::{FileError, TopicArgs, open_log};
+use crate::optimize::check_folder;
 use crate::output::{print_json, say};
 use crate::run_output::write_folder;
 use crate::session_file::{SessionFileError, read_session};
@@ -129,6 +130,12 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     let flag = Arc::clone(&is_interrupted);
     // Without a handler Ctrl-C ends the process at once, which loses the work and nothing else.
     let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
+    if let Some(folder) = &args.output {
+        check_folder(folder).map_err(|source| FileError::Io {
+            path: folder.clone(),
+            source,
+        })?;
+    }
     let (mut run, mut recorder) = start(args)?;
     let (mut reader, mut progress) = open_log(&args.log, &args.topics)?;
     let mut broken = None;
@@ -163,6 +170,12 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
             None => "it was interrupted before the first one".to_owned(),
         };
         return Err(RunError::NoScan { name, problem });
+    }
+    if !run.has_seen() {
+        return Err(RunError::NoScan {
+            name,
+            problem: NOTHING_SEEN.to_owned(),
+        });
     }
     let trajectory = run.trajectory();
     let grade = reference

@@ -221,3 +221,109 @@ fn what_makes_no_sense_names_what_does() {
         "nothing is written where nothing is read"
     );
 }
+
+#[test]
+fn a_topic_or_frame_that_is_not_there_is_named_with_those_that_are() {
+    let recording = |name: &str| recording(name);
+    for (file, option, said) in [
+        (
+            "plain.mcap",
+            "--odom-topic",
+            "has no odom-topic /nowhere; it has /odom",
+        ),
+        (
+            "lz4.bag",
+            "--odom-topic",
+            "has no odom-topic /nowhere; it has /odom",
+        ),
+        (
+            "tf.mcap",
+            "--odom-frame",
+            "has no odom-frame /nowhere; it has ",
+        ),
+        (
+            "tf.mcap",
+            "--body-frame",
+            "has no body-frame /nowhere; it has ",
+        ),
+    ] {
+        let file = recording(file);
+        for command in ["run", "info"] {
+            assert_refused(&[command, &file, option, "/nowhere"], said);
+        }
+    }
+}
+
+#[test]
+fn a_log_is_never_written_over_by_what_it_becomes() {
+    let folder = TempDir::new().unwrap();
+    let log = in_folder(&folder, "a.jsonl");
+    runs(&["convert", &recording("plain.mcap"), &log]);
+    let before = fs::read(&log).unwrap();
+    assert_refused(
+        &["convert", &log, &log],
+        "is what is read and what is written",
+    );
+    let roundabout = in_folder(&folder, "./a.jsonl");
+    assert_refused(&["convert", &log, &roundabout], "write another file");
+    assert_eq!(fs::read(&log).unwrap(), before);
+    // What cannot be read to its end leaves the output as it was, and no part of it.
+    let bad = in_folder(&folder, "bad.log");
+    fs::write(&bad, "hello\n").unwrap();
+    assert_refused(&["convert", &bad, &log], "is no CARMEN log");
+    assert_eq!(fs::read(&log).unwrap(), before);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+}
+
+#[test]
+fn what_cannot_be_written_is_told_before_the_work() {
+    let folder = TempDir::new().unwrap();
+    let log = recording("plain.mcap");
+    let taken = in_folder(&folder, "taken");
+    fs::write(&taken, "mine").unwrap();
+    assert_refused(&["run", &log, "-o", &taken], "taken: not a directory");
+    assert_eq!(fs::read_to_string(&taken).unwrap(), "mine");
+    let below = in_folder(&folder, "taken/deep");
+    assert_refused(&["run", &log, "-o", &below], "not a directory");
+    let run = in_folder(&folder, "run");
+    runs(&["run", &log, "-o", &run]);
+    let nowhere = in_folder(&folder, "nowhere/poses.tum");
+    assert_refused(&["localize", &run, &log, "-o", &nowhere], "No such file");
+    // Nothing is left of the asking.
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    // The folder of a run is its session.
+    let graph = in_folder(&folder, "graph.g2o");
+    runs(&["convert", &run, &graph]);
+    let own = Path::new(&run).join("graph.g2o");
+    assert_eq!(fs::read(&graph).unwrap(), fs::read(own).unwrap());
+    let session = Path::new(&run).join("session.slam2d");
+    assert_refused(
+        &["run", text(&session)],
+        "is a saved session, not a log of scans",
+    );
+}
+
+#[test]
+fn a_log_in_which_no_beam_tells_anything_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let log = in_folder(&folder, "blind.jsonl");
+    runs(&["convert", &recording("plain.mcap"), &log]);
+    let lines: Vec<String> = fs::read_to_string(&log)
+        .unwrap()
+        .lines()
+        .map(|line| {
+            let mut frame: Value = serde_json::from_str(line).unwrap();
+            for range in frame["ranges_m"].as_array_mut().unwrap() {
+                *range = Value::from(0.0);
+            }
+            frame.to_string()
+        })
+        .collect();
+    fs::write(&log, lines.join("\n")).unwrap();
+    let run = in_folder(&folder, "run");
+    assert_refused(
+        &["run", &log, "-o", &run],
+        "no beam of any keyframe has a range",
+    );
+    assert!(!Path::new(&run).exists());
+}

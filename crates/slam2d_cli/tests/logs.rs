@@ -184,3 +184,45 @@ fn files_that_cannot_be_used_end_in_one_line() {
         assert_refused(&arguments, said);
     }
 }
+
+/// The corridor again, with so many scans on each place: a slower robot, and more bytes.
+fn slow_corridor(folder: &TempDir, times: usize) -> PathBuf {
+    let path = corridor(folder, 60);
+    let text = fs::read_to_string(&path).unwrap();
+    let mut slow = String::new();
+    for (number, line) in text.lines().enumerate() {
+        let (scan, _) = line.rsplit_once(" h ").unwrap();
+        let (scan, _) = scan.rsplit_once(' ').unwrap();
+        for step in 0..times {
+            let stamp_s = number as f64 + step as f64 / times as f64;
+            slow.push_str(&format!("{scan} {stamp_s} h {stamp_s}\n"));
+        }
+    }
+    write(folder, &format!("{times}.clf"), &slow)
+}
+
+#[test]
+fn the_memory_of_a_run_grows_with_the_way_and_not_with_the_bytes() {
+    let folder = TempDir::new().unwrap();
+    let run = |times: usize| {
+        let log = slow_corridor(&folder, times);
+        let bytes = fs::metadata(&log).unwrap().len();
+        let run = json(&["run", text(&log), "--json"]);
+        assert_eq!(run["scans"], 60 * times);
+        (run["peak_mb"].as_f64(), bytes as f64 / 1e6)
+    };
+    let ((Some(small), small_mb), (Some(large), large_mb)) = (run(2), run(200)) else {
+        measuring::skip::skip(
+            "memory of a run",
+            "the system does not tell the memory of a process",
+        );
+        return;
+    };
+    assert!(large_mb - small_mb > 7.0, "{large_mb} MB");
+    // A scan keeps its place, which is a tenth of its bytes; 2 MB are what an allocator rounds by.
+    let growth = large - small;
+    assert!(
+        growth < 0.2 * (large_mb - small_mb) + 2.0,
+        "{growth} MB for {large_mb} MB of log"
+    );
+}

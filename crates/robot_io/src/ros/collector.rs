@@ -1,5 +1,7 @@
 //! Puts frames together from messages.
 
+mod offers;
+
 use std::collections::BTreeMap;
 
 use ch16_slam2d::scan::LaserScan;
@@ -14,6 +16,9 @@ use crate::log::{LogFrame, LogNotes, LogOptions};
 
 /// A recording of garbage has no end of topics.
 const MOST_TOPICS: usize = 1000;
+
+/// The topic of transforms.
+const TRANSFORMS: &str = "/tf";
 
 /// Where the wheels' poses come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -210,7 +215,7 @@ impl Collector {
 
     /// Odometry where it is recorded, transforms else; a choice is for good.
     fn choose_wheels(&self, stamp_s: f64, is_over: bool) -> Option<WheelSource> {
-        if self.options.odometry_topic.as_deref() == Some("/tf") {
+        if self.options.odometry_topic.as_deref() == Some(TRANSFORMS) {
             return Some(WheelSource::Transforms);
         }
         let covers = |wheels: &WheelPoses| wheels.reaches(stamp_s) || is_over && !wheels.is_empty();
@@ -273,17 +278,13 @@ impl Collector {
             .map(|((topic, kind), &count)| (format!("{topic} {kind}"), count))
             .collect();
         notes.warnings = self.warning.iter().cloned().collect();
+        notes.offers = self.offers();
         notes.about.clear();
         let mut say = |text: String| notes.about.push(text);
         if let (Some(topic), Some(sensor)) = (&self.scan_topic, &self.sensor) {
             say(format!("scans are those of {topic}, in frame {sensor}"));
         }
-        let wheels = match self.wheel_source {
-            Some(WheelSource::Odometry) => self.odometry_topic.as_deref(),
-            Some(WheelSource::Transforms) => Some("/tf"),
-            None => None,
-        };
-        if let (Some(topic), Some((above, body))) = (wheels, &self.wheel_frames) {
+        if let (Some(topic), Some((above, body))) = (self.wheel_topic(), &self.wheel_frames) {
             say(format!(
                 "odometry is that of {topic}, from {above} to {body}"
             ));
@@ -303,6 +304,14 @@ impl Collector {
         }
         for (parent, child) in self.transforms.edges().take(100) {
             say(format!("frame {child} hangs on {parent}"));
+        }
+    }
+
+    /// Where the wheels' poses come from.
+    fn wheel_topic(&self) -> Option<&str> {
+        match self.wheel_source? {
+            WheelSource::Odometry => self.odometry_topic.as_deref(),
+            WheelSource::Transforms => Some(TRANSFORMS),
         }
     }
 

@@ -86,6 +86,14 @@ impl LogReader for RosReader<'_> {
             if let Some(frame) = self.collector.pop() {
                 self.frames += 1;
                 if self.frames == 1 {
+                    if let Some((option, wanted)) = self.collector.missing() {
+                        return Err(LogError::Missing {
+                            name: self.name.clone(),
+                            option: option.name(),
+                            wanted,
+                            advice: self.collector.instead_of(option),
+                        });
+                    }
                     self.collector.tell(&mut self.notes);
                 }
                 return Ok(Some(frame));

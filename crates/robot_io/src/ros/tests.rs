@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::log::{LogError, LogFormat, LogFrame, LogNotes, LogOptions};
+use crate::log::{LogError, LogFormat, LogFrame, LogNotes, LogOption, LogOptions};
 
 const FIXTURES: [(&str, &[u8]); 8] = [
     ("plain.mcap", include_bytes!("../../recordings/plain.mcap")),
@@ -141,20 +141,48 @@ fn topics_and_frames_can_be_chosen() {
         body_frame: Some("chassis".to_owned()),
         ..LogOptions::default()
     };
-    let (frames, notes) = read_with(bytes, "x.mcap", &elsewhere).unwrap();
-    assert_eq!(frames.len(), 24);
-    assert_eq!(frames[0].scan.body_from_sensor.to_array(), [0.0; 3]);
-    assert!(
-        notes.sentences("x.mcap")[0].contains("no transform leads from chassis to laser"),
-        "{:?}",
-        notes.warnings
+    let error = read_with(bytes, "x.mcap", &elsewhere).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "x.mcap has no body-frame chassis; it has base_link, laser"
     );
     let wheels = LogOptions {
         odometry_topic: Some("/tf".to_owned()),
         ..LogOptions::default()
     };
-    let (frames, _) = read_with(bytes, "x.mcap", &wheels).unwrap();
-    assert!(frames.iter().all(|frame| frame.odometry.is_none()));
+    let error = read_with(bytes, "x.mcap", &wheels).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "x.mcap has no odom-topic /tf; it has /odom"
+    );
+    let of_laser = LogOptions::default().with(LogOption::BodyFrame, "laser");
+    let (frames, notes) = read_with(bytes, "x.mcap", &of_laser).unwrap();
+    assert_eq!(frames[0].scan.body_from_sensor.to_array(), [0.0; 3]);
+    let taken = notes.offers.iter().map(|offer| offer.taken.as_deref());
+    let taken: Vec<_> = taken.collect();
+    assert_eq!(taken, [Some("/scan"), Some("/odom"), None, Some("laser")]);
+}
+
+#[test]
+fn a_recording_without_transforms_puts_the_laser_at_the_body_and_says_so() {
+    // The same bytes with another name for the laser's frame in the transforms.
+    let mut bytes = fixture("plain.bag").to_vec();
+    let name = b"base_link\x05\0\0\0laser";
+    let at: Vec<usize> = (0..bytes.len() - name.len())
+        .filter(|&at| bytes[at..].starts_with(name))
+        .collect();
+    assert!(!at.is_empty(), "the transform is where it was");
+    for at in at {
+        bytes[at + name.len() - 1] = b'z';
+    }
+    let (frames, notes) = read(&bytes, "x.mcap").unwrap();
+    assert_eq!(frames.len(), 24);
+    assert_eq!(frames[0].scan.body_from_sensor.to_array(), [0.0; 3]);
+    let said = notes.sentences("x.mcap").join(" ");
+    assert!(
+        said.contains("no transform leads from base_link to laser"),
+        "{said}"
+    );
 }
 
 #[test]

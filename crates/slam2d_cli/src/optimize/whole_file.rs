@@ -1,7 +1,7 @@
 //! Writing a file whole: a reader sees either the old one or the new one, never half of it.
 
-use std::fs::{self, File, Metadata};
-use std::io::{self, ErrorKind, Write as _};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Most links that lead from one to the next, as on Linux.
@@ -9,20 +9,112 @@ const MAX_LINKS: usize = 40;
 
 /// Writes a file so that a reader sees either the old one or the whole new one.
 ///
-/// A part file beside it takes its place, with its permissions. Links stay and what they point at is
-/// written. What exists and is no regular file, as a pipe or a terminal, is written directly.
-///
 /// # Errors
 /// What the system says; then the old file is as it was.
 pub fn write_whole(path: &Path, content: &[u8]) -> io::Result<()> {
-    match fs::metadata(path) {
-        Ok(old) if old.is_file() => replace(&fs::canonicalize(path)?, Some(&old), content),
-        Ok(_) => File::options().write(true).open(path)?.write_all(content),
-        Err(error) if error.kind() == ErrorKind::NotFound => {
-            replace(&end_of_links(path)?, None, content)
+    let mut file = WholeFile::create(path)?;
+    file.write_all(content)?;
+    file.finish()
+}
+
+/// A file under way, which nobody sees before [`WholeFile::finish`].
+///
+/// A part file beside it takes its place, with its permissions. Links stay and what they point at is
+/// written. What exists and is no regular file, as a pipe or a terminal, is written directly.
+pub struct WholeFile {
+    file: BufWriter<File>,
+    /// The part, and what it becomes; none once it has, or where it is written directly.
+    part: Option<[PathBuf; 2]>,
+}
+
+impl WholeFile {
+    /// Begins a file; dropped before it is finished, it leaves the old one as it was.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        let (path, old) = match fs::metadata(path) {
+            Ok(old) if old.is_file() => (fs::canonicalize(path)?, Some(old)),
+            Ok(_) => {
+                let file = File::options().write(true).open(path)?;
+                return Ok(Self {
+                    file: BufWriter::new(file),
+                    part: None,
+                });
+            }
+            Err(error) if error.kind() == ErrorKind::NotFound => (end_of_links(path)?, None),
+            Err(error) => return Err(error),
+        };
+        let mut part = path.as_os_str().to_owned();
+        part.push(format!(".{}.part", std::process::id()));
+        let part = PathBuf::from(part);
+        let file = File::create(&part)?;
+        let begun = Self {
+            file: BufWriter::new(file),
+            part: Some([part, path]),
+        };
+        if let Some(old) = old {
+            // Before the content: nobody may read it who may not read the old one.
+            begun.file.get_ref().set_permissions(old.permissions())?;
         }
-        Err(error) => Err(error),
+        Ok(begun)
     }
+
+    /// Puts the file into its place.
+    ///
+    /// # Errors
+    /// What the system says; then the old file is as it was.
+    pub fn finish(mut self) -> io::Result<()> {
+        self.file.flush()?;
+        if let Some([part, path]) = &self.part {
+            self.file.get_ref().sync_all()?;
+            fs::rename(part, path)?;
+            self.part = None;
+        }
+        Ok(())
+    }
+}
+
+impl Write for WholeFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Drop for WholeFile {
+    fn drop(&mut self) {
+        if let Some([part, _]) = &self.part {
+            // The write has failed already: that the rest cannot be removed either adds nothing.
+            let _ = fs::remove_file(part);
+        }
+    }
+}
+
+/// Whether a file can be written there, asked before the work that it is for.
+///
+/// # Errors
+/// What the system says.
+pub fn check_file(path: &Path) -> io::Result<()> {
+    WholeFile::create(path).map(drop)
+}
+
+/// The same for a folder, which need not be there yet.
+///
+/// # Errors
+/// What the system says.
+pub fn check_folder(folder: &Path) -> io::Result<()> {
+    let mut ancestors = folder.ancestors();
+    let here = ancestors.find(|path| path.as_os_str().is_empty() || path.exists());
+    let here = here.filter(|path| !path.as_os_str().is_empty());
+    let here = here.unwrap_or(Path::new("."));
+    if !here.is_dir() {
+        return Err(ErrorKind::NotADirectory.into());
+    }
+    check_file(&here.join("session.slam2d"))
 }
 
 /// Where a file is made that links point at and that does not exist yet.
@@ -36,28 +128,6 @@ fn end_of_links(path: &Path) -> io::Result<PathBuf> {
         end = end.parent().unwrap_or(Path::new("")).join(target);
     }
     Err(io::Error::other("too many links lead from one to the next"))
-}
-
-fn replace(path: &Path, old: Option<&Metadata>, content: &[u8]) -> io::Result<()> {
-    let mut part = path.as_os_str().to_owned();
-    part.push(format!(".{}.part", std::process::id()));
-    let part = PathBuf::from(part);
-    let written = write_synced(&part, old, content).and_then(|()| fs::rename(&part, path));
-    if written.is_err() {
-        // The write has failed already: that the rest cannot be removed either adds nothing.
-        let _ = fs::remove_file(&part);
-    }
-    written
-}
-
-fn write_synced(path: &Path, old: Option<&Metadata>, content: &[u8]) -> io::Result<()> {
-    let mut file = File::create(path)?;
-    if let Some(old) = old {
-        // Before the content: nobody may read it who may not read the old one.
-        file.set_permissions(old.permissions())?;
-    }
-    file.write_all(content)?;
-    file.sync_all()
 }
 
 #[cfg(all(test, unix))]
