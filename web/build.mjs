@@ -112,11 +112,11 @@ async function drawPictures(id) {
   }
 }
 
-/** The log that a reader may map who has none: the simulator's ring, and the truth of it. */
+/** The log that a reader may map who has none: the simulator's ring, the truth of it, and another day in it. */
 async function writeSample() {
   const robot = await import(pathToFileURL(join(ROBOT_PKG, 'slam_robot.js')).href);
   robot.initSync({ module: robotWasm });
-  const names = ['samples/ring.log', 'samples/ring-truth.tum'];
+  const names = ['samples/ring.log', 'samples/ring-truth.tum', 'samples/ring-another-day.log'];
   await mkdir(join(dist, 'samples'), { recursive: true });
   for (const [at, bytes] of robot.sampleFiles().entries()) await writeFile(join(dist, names[at]), bytes);
   return names.map((name) => `./${name}`);

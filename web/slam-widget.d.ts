@@ -299,8 +299,16 @@ export interface YourOwnRobotState {
   marked: number;
   /** Keyframes of whose scan a smaller share fits are ringed on the map, and “Next doubt” stops there. 0 to 1. */
   poor: number;
-  /** Map for Nav2, trajectory as TUM, graph as g2o, or a report with pictures. */
-  file: 'map-pgm' | 'map-yaml' | 'map-png' | 'trajectory' | 'graph' | 'report';
+  /** Map for Nav2, trajectory as TUM, graph as g2o, a report with pictures, the session with all of it to go on with, or where the robot of another log was. */
+  file: 'map-pgm' | 'map-yaml' | 'map-png' | 'trajectory' | 'graph' | 'report' | 'session' | 'where';
+  /** Where the other log begins on this map: anywhere, or within 1.5 m of the keyframe that is shown and turned by at most 34° against it. */
+  start: 'anywhere' | 'here';
+  /** The scan of the other log whose place is shown; past the end, the last one. 0 to 99999999. */
+  scan: number;
+  /** Whether a dropped log is mapped, or its robot is looked for on the map that is there. */
+  drop: 'map' | 'where';
+  /** What “Take another” changes where a recording has several: the topic of the scans or of the odometry, its frame, or the frame of the body. */
+  option: 'scan-topic' | 'odom-topic' | 'odom-frame' | 'body-frame';
   /** The keyframe whose scan lies over the map. 0 to 999999. */
   keyframe: number;
   /** How fast the run plays. */
@@ -392,7 +400,7 @@ export interface WidgetButtons {
   'w16.7': 'play' | 'step' | 'reset' | 'defaults' | 'lap' | 'ranges' | 'nearby' | 'drifted' | 'ring';
   'w16.8': 'play' | 'step' | 'reset' | 'defaults' | 'fifth' | 'most' | 'none' | 'gate';
   'w16.9': 'play' | 'step' | 'reset' | 'defaults' | 'room' | 'corridor' | 'forget' | 'twins';
-  'w16.10': 'open' | 'play' | 'sample' | 'cancel' | 'doubt' | 'previous' | 'next' | 'turn' | 'mark' | 'add' | 'unpin' | 'reference' | 'save' | 'defaults' | 'sure' | 'error' | 'evidence';
+  'w16.10': 'open' | 'play' | 'sample' | 'cancel' | 'doubt' | 'previous' | 'next' | 'turn' | 'mark' | 'add' | 'unpin' | 'reference' | 'locate' | 'locate-sample' | 'change' | 'other' | 'save' | 'defaults' | 'sure' | 'error' | 'where' | 'evidence';
   'w16.11': 'play' | 'step' | 'reset' | 'defaults' | 'corners' | 'two-points' | 'bare-wall' | 'upside-down';
   'w16.12': 'play' | 'step' | 'reset' | 'defaults' | 'four' | 'agree' | 'left' | 'half';
 }
@@ -547,7 +555,11 @@ export interface SlamWidgetProperties {
   loop: number | undefined;
   marked: number | undefined;
   poor: number | undefined;
-  file: 'map-pgm' | 'map-yaml' | 'map-png' | 'trajectory' | 'graph' | 'report' | undefined;
+  file: 'map-pgm' | 'map-yaml' | 'map-png' | 'trajectory' | 'graph' | 'report' | 'session' | 'where' | undefined;
+  start: 'anywhere' | 'here' | undefined;
+  scan: number | undefined;
+  drop: 'map' | 'where' | undefined;
+  option: 'scan-topic' | 'odom-topic' | 'odom-frame' | 'body-frame' | undefined;
   keyframe: number | undefined;
   shape: 'corners' | 'two' | 'wall' | 'upside-down' | undefined;
   tried: 'turns' | 'mirrors' | undefined;
@@ -588,8 +600,13 @@ export declare class SlamWidget extends HTMLElement {
   /** Zooms every map, or moves the part that is seen. */
   look(way: 'in' | 'out' | 'left' | 'right' | 'up' | 'down' | 'whole'): void;
   suspend(): void;
-  /** Hands a file to a widget that takes files: a log, a reference to grade it with, or a world as JSON. */
-  openFile(file: File): void;
+  /**
+   * Hands a file to a widget that takes files: a log, a session, a reference to grade with, or a world as JSON. A log
+   * becomes the map, or with `where` its robot is looked for on the map that is there; with `grade` it is a reference.
+   */
+  openFile(file: File, use?: 'map' | 'where' | 'grade'): void;
+  /** The bytes of a file that w16.10 saves, such as `session.slam2d`; rejects with a sentence where there is none. */
+  file(name: string): Promise<File>;
   addEventListener<K extends keyof SlamWidgetEvents>(
     type: K,
     listener: (this: SlamWidget, event: SlamWidgetEvents[K]) => void,

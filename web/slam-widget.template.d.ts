@@ -100,8 +100,13 @@ export declare class SlamWidget extends HTMLElement {
   /** Zooms every map, or moves the part that is seen. */
   look(way: 'in' | 'out' | 'left' | 'right' | 'up' | 'down' | 'whole'): void;
   suspend(): void;
-  /** Hands a file to a widget that takes files: a log, a reference to grade it with, or a world as JSON. */
-  openFile(file: File): void;
+  /**
+   * Hands a file to a widget that takes files: a log, a session, a reference to grade with, or a world as JSON. A log
+   * becomes the map, or with `where` its robot is looked for on the map that is there; with `grade` it is a reference.
+   */
+  openFile(file: File, use?: 'map' | 'where' | 'grade'): void;
+  /** The bytes of a file that w16.10 saves, such as `session.slam2d`; rejects with a sentence where there is none. */
+  savedFile(name: string): Promise<File>;
   addEventListener<K extends keyof SlamWidgetEvents>(
     type: K,
     listener: (this: SlamWidget, event: SlamWidgetEvents[K]) => void,

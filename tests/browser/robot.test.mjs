@@ -2,15 +2,19 @@
 // all that may happen to the picture.
 
 import assert from 'node:assert/strict';
-import { existsSync, readFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { describe, it } from 'node:test';
 import { fileURLToPath } from 'node:url';
+import { native } from '../native.mjs';
 import { skip } from '../skip.mjs';
 import * as h from './harness.mjs';
 
 const BODY = '<slam-widget name="w16.10" more="on"></slam-widget>';
 const SAMPLE = readFileSync(join(h.DIST, 'samples', 'ring.log'), 'utf8');
+const OTHER_DAY = readFileSync(join(h.DIST, 'samples', 'ring-another-day.log'), 'utf8');
+const RECORDINGS = fileURLToPath(new URL('../../crates/robot_io/recordings/', import.meta.url));
 const LOGS = fileURLToPath(new URL('../../../shared/data/logs/', import.meta.url));
 
 const visit = h.visitor();
@@ -36,6 +40,27 @@ const isMapped = (tab) => says(tab, /^(mapped|loops contradict):/);
 const give = (tab, name, text) => tab.evaluate(([file, content]) => {
   document.querySelector('slam-widget').openFile(new File([content], file));
 }, [name, text]);
+
+/** Hands the widget a file of those bytes, and says what for. */
+const giveBytes = (tab, name, bytes, use) => tab.evaluate(([file, text, what]) => {
+  const content = Uint8Array.from(atob(text), (digit) => digit.charCodeAt(0));
+  document.querySelector('slam-widget').openFile(new File([content], file), what);
+}, [name, Buffer.from(bytes).toString('base64'), use]);
+
+/** What the reader saves under that name of the list. */
+const saved = async (tab, id) => {
+  await tab.evaluate((choice) => document.querySelector('slam-widget').set('file', choice), id);
+  const download = tab.waitForEvent('download');
+  await press(tab, 'save');
+  const file = await download;
+  return [file.suggestedFilename(), await h.bytesOf(file)];
+};
+
+const table = async (tab, id) => {
+  const tables = await tab.evaluate(() => document.querySelector('slam-widget').tables());
+  const found = tables.find((one) => one.id === id);
+  return found?.csv.trim().split('\r\n').map((row) => row.split(','));
+};
 
 /** The sample many times over, one after the other in time: something that takes a while. */
 const longLog = (times) => {
@@ -156,30 +181,23 @@ describe('a log of one’s own', () => {
       await press(tab, 'sample');
       await isMapped(tab);
       const { facts } = await outcome(tab);
-      const saved = async (id) => {
-        await tab.evaluate((choice) => document.querySelector('slam-widget').set('file', choice), id);
-        const download = tab.waitForEvent('download');
-        await press(tab, 'save');
-        const file = await download;
-        return [file.suggestedFilename(), await h.bytesOf(file)];
-      };
-      const [pgmName, pgm] = await saved('map-pgm');
+      const [pgmName, pgm] = await saved(tab, 'map-pgm');
       assert.equal(pgmName, 'map.pgm');
       const [, width, height] = /^P5\n(\d+) (\d+)\n255\n/.exec(pgm.toString('latin1'));
       assert.equal(pgm.length, `P5\n${width} ${height}\n255\n`.length + width * height);
-      const [, yaml] = await saved('map-yaml');
+      const [, yaml] = await saved(tab, 'map-yaml');
       assert.match(yaml.toString(), /^image: map\.pgm\nmode: trinary\nresolution: 0\.05\n/);
-      const [, png] = await saved('map-png');
+      const [, png] = await saved(tab, 'map-png');
       assert.equal(png.subarray(1, 4).toString(), 'PNG');
       assert.equal(png.readUInt32BE(16), Number(width));
-      const [, tum] = await saved('trajectory');
+      const [, tum] = await saved(tab, 'trajectory');
       const lines = tum.toString().trim().split('\n');
       assert.equal(lines.length, facts.scans);
       assert.ok(lines.every((line) => line.split(' ').length === 8));
-      const [, graph] = await saved('graph');
+      const [, graph] = await saved(tab, 'graph');
       assert.equal(graph.toString().match(/^VERTEX_SE2/gm).length, facts.keyframes);
       assert.equal(graph.toString().match(/^EDGE_SE2/gm).length, facts.keyframes - 1 + facts.loops);
-      const [reportName, report] = await saved('report');
+      const [reportName, report] = await saved(tab, 'report');
       assert.equal(reportName, 'report.html');
       assert.match(report.toString(), /ring\.log[\s\S]*<svg/);
 
@@ -189,6 +207,155 @@ describe('a log of one’s own', () => {
       assert.equal((await outcome(tab)).facts.loops, facts.loops);
       await press(tab, 'turn');
       await says(tab, /is out of the graph/);
+    });
+  });
+
+  it('is saved as the session that the command leaves, opened again, changed further, and saved with the changes', async () => {
+    const folder = mkdtempSync(join(tmpdir(), 'slam-session-'));
+    try {
+      native('slam2d', 'run', join(h.DIST, 'samples', 'ring.log'), '-o', folder);
+      const left = readFileSync(join(folder, 'session.slam2d'));
+      await page(async (tab) => {
+        await press(tab, 'sample');
+        await isMapped(tab);
+        const [name, session] = await saved(tab, 'session');
+        assert.equal(name, 'session.slam2d');
+        assert.ok(session.equals(left), 'the same bytes in the page as natively');
+        const before = (await outcome(tab)).facts;
+
+        await press(tab, 'defaults');
+        await says(tab, /no log yet/);
+        const chosen = tab.waitForEvent('filechooser');
+        await tab.getByRole('button', { name: 'Open a log…' }).press('Enter');
+        await (await chosen).setFiles(join(folder, 'session.slam2d'));
+        await says(tab, /(mapped|contradict): session\.slam2d/);
+        const after = (await outcome(tab)).facts;
+        for (const id of ['scans', 'keyframes', 'loops', 'way_m']) assert.equal(after[id], before[id], id);
+        await press(tab, 'turn');
+        await says(tab, /is out of the graph/);
+        const [, changed] = await saved(tab, 'session');
+        assert.ok(!changed.equals(session));
+        await giveBytes(tab, 'changed.slam2d', changed);
+        await says(tab, /(mapped|contradict): changed\.slam2d/);
+        assert.equal((await outcome(tab)).facts.loops, before.loops - 1);
+
+        // Also where its name says nothing; and what is broken is answered.
+        await giveBytes(tab, 'monday', session);
+        await says(tab, /(mapped|contradict): monday:/);
+        const spoilt = Buffer.from(session);
+        spoilt[session.length >> 1] ^= 1;
+        const newer = Buffer.from(session);
+        newer[8] = 2;
+        for (const [bytes, said] of [
+          [session.subarray(0, session.length / 2), /no map: bad\.slam2d ends at byte \d+ of \d+/],
+          [spoilt, /no map: bad\.slam2d is damaged/],
+          [newer, /no map: bad\.slam2d is a session of version 2, and this program reads version 1/],
+          [Buffer.from('hello'), /no map: bad\.slam2d is no session/],
+          [Buffer.alloc(0), /no map: bad\.slam2d is empty/],
+        ]) {
+          await giveBytes(tab, 'bad.slam2d', bytes);
+          await says(tab, said);
+        }
+      });
+    } finally {
+      rmSync(folder, { recursive: true });
+    }
+  });
+
+  it('is a map for the robot of another day, which is found, followed, said in words, saved, and kept through a crash', async () => {
+    await page(async (tab) => {
+      await giveBytes(tab, 'early.log', Buffer.from(OTHER_DAY), 'where');
+      await says(tab, /early\.log needs a map/);
+      // The preset maps the sample and looks for the other day's robot on it.
+      await press(tab, 'where');
+      await says(tab, /^(mapped|loops contradict): .*The robot of ring-another-day\.log is found at its scan \d+: of \d+ scans/);
+      const { facts } = await outcome(tab);
+      const scans = OTHER_DAY.trim().split('\n').length;
+      assert.equal(facts.where_believed + facts.where_doubtful + facts.where_lost, scans);
+      assert.ok(facts.where_believed > scans / 2, JSON.stringify(facts));
+      const rows = await table(tab, 'where');
+      assert.equal(rows.length, scans + 1);
+      assert.equal(rows.filter((row) => row[2] === 'found' || row[2] === 'followed').length, facts.where_believed);
+
+      // Every scan can be asked for, and the next change of the verdict.
+      const first = rows.slice(1).find((row) => row[2] === 'found');
+      await tab.evaluate((scan) => document.querySelector('slam-widget').set('scan', scan), Number(first[0]));
+      const { sentence } = await outcome(tab);
+      assert.match(sentence, new RegExp(`At scan ${first[0]} it is found at x `));
+      await press(tab, 'change');
+      assert.notEqual(await tab.evaluate(() => document.querySelector('slam-widget').get('scan')), Number(first[0]));
+      assert.match(await tab.evaluate(() => document.querySelector('slam-widget').summary), /ring-another-day\.log/);
+
+      const [name, tum] = await saved(tab, 'where');
+      assert.equal(name, 'where.tum');
+      assert.equal(tum.toString().trim().split('\n').length, facts.where_believed);
+
+      // What the reader moves moves the places, and a worker that breaks finds them again.
+      await press(tab, 'turn');
+      await says(tab, /is out of the graph/);
+      await widget(tab, (it) => it.crashForTest('worker'));
+      await says(tab, /was begun again/);
+      await says(tab, /^(mapped|loops contradict): .*is found at its scan \d+: of/);
+
+      // Another log that is none leaves what is known.
+      await giveBytes(tab, 'empty.log', Buffer.alloc(0), 'where');
+      await says(tab, /empty\.log is empty; give a recorded log/);
+      await giveBytes(tab, 'x.slam2d', Buffer.from('SLAM2D\r\n'), 'where');
+      await says(tab, /x\.slam2d is a saved session, not a log of scans/);
+      assert.match((await outcome(tab)).sentence, /The robot of ring-another-day\.log is found/);
+    }, { options: { sees: true } });
+  });
+
+  it('takes a session and a log that are dropped together as map and robot, and a log as the setting says', async () => {
+    await page(async (tab) => {
+      await press(tab, 'sample');
+      await isMapped(tab);
+      const [, session] = await saved(tab, 'session');
+      const drop = (files) => tab.evaluate((given) => {
+        const all = new DataTransfer();
+        for (const [name, text] of given) {
+          all.items.add(new File([Uint8Array.from(atob(text), (digit) => digit.charCodeAt(0))], name));
+        }
+        const frame = document.querySelector('slam-widget').shadowRoot.querySelector('.frame');
+        for (const type of ['dragover', 'drop']) {
+          frame.dispatchEvent(new DragEvent(type, { dataTransfer: all, bubbles: true, cancelable: true }));
+        }
+      }, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString('base64')]));
+      await drop([['day.log', OTHER_DAY], ['monday.slam2d', session]]);
+      await says(tab, /^(mapped|loops contradict): monday\.slam2d.*The robot of day\.log is found/);
+      await tab.evaluate(() => Object.assign(document.querySelector('slam-widget'), { drop: 'where' }));
+      await drop([['again.log', OTHER_DAY]]);
+      await says(tab, /monday\.slam2d.*The robot of again\.log is found/);
+      // Around the keyframe that is shown, which is not where it is.
+      await tab.evaluate(() => { document.querySelector('slam-widget').value = { start: 'here', keyframe: 0 }; });
+      await drop([['near.log', OTHER_DAY]]);
+      await says(tab, /The robot of near\.log is found/);
+      await tab.evaluate(() => { document.querySelector('slam-widget').value = { drop: 'map' }; });
+      await drop([['map.log', OTHER_DAY]]);
+      await says(tab, /^(mapped|loops contradict): map\.log/);
+      assert.doesNotMatch((await outcome(tab)).sentence, /The robot of/);
+    });
+  });
+
+  it('offers the topics and frames of a recording, and maps it anew with another one', async () => {
+    await page(async (tab) => {
+      await giveBytes(tab, 'plain.mcap', readFileSync(join(RECORDINGS, 'plain.mcap')));
+      await says(tab, /(mapped|contradict): plain\.mcap: 24 scans/);
+      const taken = async () => (await table(tab, 'offers')).find(([label]) => label === 'body frame')[1];
+      const before = await taken();
+      const way = (await outcome(tab)).facts.way_m;
+      await tab.evaluate(() => Object.assign(document.querySelector('slam-widget'), { option: 'body-frame' }));
+      await press(tab, 'other');
+      // Another frame makes another map: the keyframes stand elsewhere.
+      await tab.waitForFunction((way) => {
+        const { verdict, facts } = document.querySelector('slam-widget').outcome;
+        return /mapped|contradict/.test(verdict) && facts.way_m !== way;
+      }, way);
+      assert.notEqual(await taken(), before);
+      assert.match((await outcome(tab)).sentence, /plain\.mcap: 24 scans/);
+      await tab.evaluate(() => Object.assign(document.querySelector('slam-widget'), { option: 'scan-topic' }));
+      await press(tab, 'other');
+      await says(tab, /offers nothing else to take here/);
     });
   });
 

@@ -22,7 +22,7 @@ import { findParam, findWidget, widgets } from './schema';
 import { State } from './state';
 import { defaultText, shorten, type Value } from './values';
 import { unwatchVisibility, watchVisibility } from './visibility';
-import { Desk, hand } from './robot/desk';
+import { Desk, hand, type FileUse } from './robot/desk';
 import { chooseFile, takeDrops } from './robot/files';
 import { carryTextOrder, takeTextFile, type TextFileHost } from './text-files';
 import type { Delivery } from './robot/protocol';
@@ -246,11 +246,17 @@ export class SlamWidget extends HTMLElement {
     else this.#life.ask((widget) => widget.crashForTest());
   }
 
-  /** Hands a file to a widget that takes files: a log or a reference to grade it with, or a world. */
-  openFile(file: File): void {
+  /** Hands a file to a widget that takes files: a log, a session, a reference to grade with, or a world. */
+  openFile(file: File, use: FileUse = 'map'): void {
     if (!this.#isSetUp) this.#setUp();
     if (!this.#takesFiles) throw new TypeError(`${this.name} takes no files`);
-    this.#takeFiles([file]);
+    if (use === 'where') void this.#act(() => this.#takeFiles([file], use));
+    else this.#takeFiles([file], use);
+  }
+
+  /** The bytes of a file that w16.10 saves, such as `session.slam2d`; rejects with a sentence where there is none. */
+  savedFile(name: string): Promise<File> {
+    return this.#desk?.file(String(name)) ?? Promise.reject(new Error('Open a log first.'));
   }
 
   /** Gives context and memory back; the values stay, and the picture shows them. */
@@ -384,9 +390,9 @@ export class SlamWidget extends HTMLElement {
     return spec?.takesFiles === true || spec?.params.some(({ kind }) => kind === 'text') === true;
   }
 
-  #takeFiles(files: File[]): void {
+  #takeFiles(files: File[], use?: FileUse): void {
     const [first] = files;
-    if (this.#state?.spec.takesFiles === true) this.#openDesk().take(files);
+    if (this.#state?.spec.takesFiles === true) this.#openDesk().take(files, use);
     else if (first !== undefined) void takeTextFile(first, this.#textFiles);
   }
 

@@ -16,8 +16,8 @@ use serde::Serialize;
 
 use crate::run::{PoorFit, TriedLoop};
 
-/// Of three degrees of freedom, 999 of 1,000 lie below.
-const GATE_CHI2: f64 = 16.266;
+/// The largest χ² of a loop that is not doubted: of three degrees of freedom, 999 of 1,000 lie below.
+pub const GATE_CHI2: f64 = 16.266;
 /// Keyframes that are known so many times worse than the median one are doubted.
 const UNSURE_TIMES: f64 = 3.0;
 /// Better known keyframes are not doubted, m.
@@ -91,7 +91,7 @@ impl Quality {
             tried: tried.iter().map(LinkQuality::tried).collect(),
             doubts: Vec::new(),
         };
-        let tests = edge_tests(slam);
+        let tests = loop_tests(slam);
         let closed = tried.iter().filter(|tried| tried.accepted);
         let evidence: Vec<&LoopVerification> = if links.is_empty() {
             closed.map(|tried| &tried.verification).collect()
@@ -273,8 +273,9 @@ fn keyframes(slam: &mut Slam) -> Vec<KeyframeQuality> {
         .collect()
 }
 
-/// The loops of the graph with their innovation against the rest of it.
-fn edge_tests(slam: &mut Slam) -> Vec<(EdgeView, Option<f64>)> {
+/// The loops of the graph with their innovation against the rest of it; none where it is not to be had.
+#[must_use]
+pub fn loop_tests(slam: &mut Slam) -> Vec<(EdgeView, Option<f64>)> {
     let Ok(covariances) = slam.graph_mut().edge_covariances() else {
         return Vec::new();
     };

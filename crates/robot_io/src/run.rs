@@ -12,6 +12,9 @@ use crate::quality::Quality;
 use crate::session::{MappedGraph, ScanPlace, Session, places_kept};
 use crate::trajectory::{StampedPose, Trajectory};
 
+/// What is said of a log in which no beam tells anything.
+pub const NOTHING_SEEN: &str = "no beam of any keyframe has a range between the shortest and the longest that the sensor tells";
+
 /// Whether the wheels are listened to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum OdometryUse {
@@ -120,6 +123,26 @@ impl LogRun {
     /// # Errors
     /// Where the session contradicts itself, or was mapped on submaps.
     pub fn resume(session: &Session, odometry_use: OdometryUse) -> Result<Self, SnapshotError> {
+        let slam = Slam::restore(&session.driven)?;
+        Ok(Self::holding(session, slam, odometry_use))
+    }
+
+    /// A run that stands where a session was saved, with its map as it was linked at the end: to be looked
+    /// at and changed by hand, not to be gone on with. What it is saved as, a run goes on with.
+    ///
+    /// # Errors
+    /// Where the session contradicts itself.
+    pub fn reopen(session: &Session) -> Result<Self, SnapshotError> {
+        let mut slam = Slam::restore_map(&session.driven)?;
+        *slam.graph_mut() = session.graph();
+        Ok(Self {
+            driven: Some(session.driven.clone()),
+            ..Self::holding(session, slam, OdometryUse::Log)
+        })
+    }
+
+    /// A run with what a session has seen.
+    fn holding(session: &Session, slam: Slam, odometry_use: OdometryUse) -> Self {
         let driven = &session.driven;
         let keyframes = driven.keyframes.iter().enumerate();
         let of_keyframes = keyframes.map(|(number, keyframe)| ScanPlace {
@@ -132,15 +155,15 @@ impl LogRun {
         } else {
             session.places.clone()
         };
-        Ok(Self {
-            slam: Some(Slam::restore(driven)?),
+        Self {
+            slam: Some(slam),
             last_odometry: session.last_odometry,
             last_stamp_s: driven.last_stamp_s,
             resumed: scans.len(),
             scans,
             sensor: session.sensor.clone(),
             ..Self::new(odometry_use)
-        })
+        }
     }
 
     /// Takes the next scan; none where it is left out, because it is not after the one before it or
@@ -314,6 +337,13 @@ impl LogRun {
     /// What is known of the map's quality.
     pub fn quality(&mut self) -> Quality {
         Quality::of(self.slam.as_mut(), &self.loops, &self.links, &self.poor)
+    }
+
+    /// Whether any keyframe's scan has a point.
+    #[must_use]
+    pub fn has_seen(&self) -> bool {
+        let keyframes = self.slam.as_ref().map_or(&[][..], |slam| slam.keyframes());
+        keyframes.iter().any(|keyframe| !keyframe.scan.is_empty())
     }
 
     /// Scans left out because their stamp was not after the one before.

@@ -2,7 +2,10 @@
 
 use std::io::{self, BufReader, Read};
 
+use ch16_slam2d::localize::StartPose;
 use js_sys::{Array, Float64Array, Function, Object, Reflect, Uint8Array};
+use pr_geom::SE2;
+use robot_io::log::{LogOption, LogOptions};
 use wasm_bindgen::prelude::*;
 
 use crate::engine::Engine;
@@ -48,20 +51,42 @@ pub struct Robot {
 
 #[wasm_bindgen]
 impl Robot {
-    /// Opens a file; `read(from, to)` gives its bytes as a `Uint8Array`.
+    /// Opens a file; `read(from, to)` gives its bytes as a `Uint8Array`, and `chosen` holds the options
+    /// of recordings, a line each: `scan-topic /front`.
     ///
     /// # Errors
     /// One sentence where it cannot be mapped.
     #[wasm_bindgen(constructor)]
-    pub fn new(name: &str, size: f64, read: Function) -> Result<Self, JsError> {
-        let file = JsFile {
-            read,
-            at: 0,
-            size: size as u64,
-        };
-        let source = BufReader::with_capacity(PIECE_BYTES, file);
-        let engine = Engine::open(source, name, size as u64).map_err(|said| JsError::new(&said))?;
+    pub fn new(name: &str, size: f64, read: Function, chosen: &str) -> Result<Self, JsError> {
+        let source = source(size, read);
+        let engine = Engine::open(source, name, size as u64, &options(chosen));
+        let engine = engine.map_err(|said| JsError::new(&said))?;
         Ok(Self { engine })
+    }
+
+    /// Looks for the robot of another log on the map; `start` is `[x, y, θ]`, m and rad, or empty where
+    /// it may be anywhere.
+    ///
+    /// # Errors
+    /// One sentence where that cannot be done.
+    pub fn locate(
+        &mut self,
+        name: &str,
+        size: f64,
+        read: Function,
+        chosen: &str,
+        start: &[f64],
+    ) -> Result<(), JsError> {
+        let start = match start {
+            &[x, y, theta] => StartPose::Near(SE2::new(x, y, theta)),
+            _ => StartPose::Anywhere,
+        };
+        let source = source(size, read);
+        let chosen = options(chosen);
+        let begun = self
+            .engine
+            .locate(source, name, size as u64, &chosen, start);
+        begun.map_err(|said| JsError::new(&said))
     }
 
     /// Does the next piece of work; false where nothing is left to do.
@@ -103,6 +128,28 @@ impl Robot {
     }
 }
 
+fn source(size: f64, read: Function) -> BufReader<JsFile> {
+    let file = JsFile {
+        read,
+        at: 0,
+        size: size as u64,
+    };
+    BufReader::with_capacity(PIECE_BYTES, file)
+}
+
+fn options(chosen: &str) -> LogOptions {
+    let mut options = LogOptions::default();
+    for (name, value) in chosen.lines().filter_map(|line| line.split_once(' ')) {
+        if let Some(option) = LogOption::ALL
+            .into_iter()
+            .find(|option| option.name() == name)
+        {
+            options = options.with(option, value);
+        }
+    }
+    options
+}
+
 fn to_js(update: &Update) -> JsValue {
     let object = Object::new();
     let set = |name: &str, value: &JsValue| {
@@ -116,12 +163,12 @@ fn to_js(update: &Update) -> JsValue {
     object.into()
 }
 
-/// The sample log, and its true trajectory.
+/// The sample log, its true trajectory, and the log of another day.
 #[wasm_bindgen(js_name = sampleFiles)]
 #[must_use]
 pub fn sample_files() -> Array {
     let (log, truth) = sample::ring();
-    [log, truth]
+    [log, truth, sample::another_day()]
         .iter()
         .map(|bytes| JsValue::from(Uint8Array::from(bytes.as_slice())))
         .collect()

@@ -4,6 +4,7 @@
 //! more; [`Engine::updates`] tells what changed. The file is read as far as a step needs it, so that its
 //! size costs no memory. Nothing here asks a clock: who calls decides how long a slice is.
 
+mod checking;
 mod orders;
 
 use std::collections::BTreeMap;
@@ -12,10 +13,10 @@ use std::io::BufRead;
 use ch16_slam2d::graph::PoseGraph;
 use ch16_slam2d::slam::Refinement;
 use pr_geom::SE2;
-use robot_io::log::{LogFormat, LogOptions, LogReader};
-use robot_io::quality::Quality;
+use robot_io::log::{LogFormat, LogOffer, LogOptions, LogReader};
 use robot_io::recorder::RunRecorder;
-use robot_io::run::{LogRun, OdometryUse};
+use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
+use robot_io::session::{self, Session};
 use robot_io::trajectory::{StampedPose, Trajectory};
 
 use crate::grade::Reference;
@@ -23,6 +24,7 @@ use crate::graph_log::{self, GraphSolving, loops_of};
 use crate::links::Link;
 use crate::picture::MapPicture;
 use crate::update::{Stage, Update};
+use crate::whereabouts::Whereabouts;
 
 /// Share of the work that reading is; linking is the rest.
 const READING_SHARE: f64 = 0.8;
@@ -70,26 +72,41 @@ pub struct Engine<'a> {
     doubts: Vec<String>,
     look_into: Vec<usize>,
     reference: Option<(String, Reference)>,
+    /// Another log on this map.
+    whereabouts: Option<Whereabouts<'a>>,
     has_scans: bool,
+    /// Scans of a session that was opened.
+    scans_before: usize,
     news: News,
     /// Updates that wait to be taken, answers among them.
     waiting: Vec<Update>,
 }
 
 impl<'a> Engine<'a> {
-    /// Opens a file of that name and size.
+    /// Opens a file of that name and size; `options` choose of what a recording has several of.
     ///
     /// # Errors
-    /// One sentence where it is nothing that can be mapped or solved.
+    /// One sentence where it is nothing that can be mapped, solved or looked at.
     pub fn open(
         mut source: impl BufRead + 'a,
         name: &str,
         size_bytes: u64,
+        options: &LogOptions,
     ) -> Result<Self, String> {
         let start = source.fill_buf().map_err(|problem| {
             format!("{name} cannot be read: {problem}; it may have moved or changed")
         })?;
         let lower = name.to_ascii_lowercase();
+        if Session::begins(start) || lower.ends_with(".slam2d") {
+            if size_bytes > session::MOST_BYTES {
+                let too_large = session::SessionError::TooLarge {
+                    name: name.to_owned(),
+                };
+                return Err(too_large.to_string());
+            }
+            let session = Session::read(source, name).map_err(|problem| problem.to_string())?;
+            return Self::of_session(&session, name, size_bytes);
+        }
         let is_graph = [".g2o", ".graph", ".toro"]
             .iter()
             .any(|end| lower.ends_with(end));
@@ -104,13 +121,40 @@ impl<'a> Engine<'a> {
                     .map_err(|problem| format!("{name} cannot be read: {problem}"))?;
                 Work::Solving(Box::new(GraphSolving::read(&bytes, name)?))
             } else {
-                let reader = LogFormat::open(source, name, &LogOptions::default());
+                let reader = LogFormat::open(source, name, options);
                 Work::Reading(reader.map_err(|problem| problem.to_string())?)
             };
-        Ok(Self {
+        Ok(Self::beginning(work, name, size_bytes))
+    }
+
+    /// A session is a map that stands already.
+    fn of_session(session: &Session, name: &str, size_bytes: u64) -> Result<Self, String> {
+        let run = LogRun::reopen(session).map_err(|problem| format!("{name}: {problem}"))?;
+        let keyframes = session.driven.keyframes.len();
+        if keyframes == 0 {
+            return Err(format!(
+                "{name} is the session of a run without a scan; map a log first"
+            ));
+        }
+        let mut engine = Self {
+            run,
+            recorder: RunRecorder::resume(session),
+            fits: vec![f64::NAN; keyframes],
+            has_scans: true,
+            scans_before: session.driven.frames,
+            ..Self::beginning(Work::Idle, name, size_bytes)
+        };
+        engine.begin_editing(loops_of(&session.graph()));
+        Ok(engine)
+    }
+
+    fn beginning(work: Work<'a>, name: &str, size_bytes: u64) -> Self {
+        Self {
             name: name.to_owned(),
             size_bytes,
             has_scans: matches!(work, Work::Reading(_)),
+            scans_before: 0,
+            whereabouts: None,
             work,
             run: LogRun::new(OdometryUse::Log),
             recorder: RunRecorder::default(),
@@ -130,7 +174,7 @@ impl<'a> Engine<'a> {
                 ..News::default()
             },
             waiting: Vec::new(),
-        })
+        }
     }
 
     /// Where it is.
@@ -153,7 +197,7 @@ impl<'a> Engine<'a> {
             Work::Linking(refinement, done) => self.link(refinement, done),
             Work::Solving(solving) => self.solve(solving),
             Work::Checking => self.check(),
-            Work::Idle => return self.paint(),
+            Work::Idle => return self.paint() || self.look_around(),
             Work::Failed(problem) => {
                 self.work = Work::Failed(problem);
                 return false;
@@ -165,7 +209,11 @@ impl<'a> Engine<'a> {
     fn read(&mut self, mut reader: Box<dyn LogReader + 'a>) {
         match reader.next_frame() {
             Ok(Some(frame)) => {
+                let is_first = self.run.scans() == 0;
                 if let Some(report) = self.run.step(frame.clone()) {
+                    if is_first {
+                        self.tell_offers(&reader.notes().offers);
+                    }
                     self.recorder.take(&frame, &report);
                     if report.new_keyframe.is_some() {
                         let matched = report.registration.map(|found| found.matched);
@@ -191,6 +239,7 @@ impl<'a> Engine<'a> {
     /// No scan follows: what is there is linked, or the reader is told why there is nothing.
     fn end_of_log(&mut self, reader: &dyn LogReader, problem: Option<String>) {
         let notes = reader.notes();
+        self.tell_offers(&notes.offers);
         self.remarks.clone_from(&notes.about);
         self.remarks.extend(notes.sentences(&self.name));
         if self.run.late() > 0 {
@@ -202,6 +251,10 @@ impl<'a> Engine<'a> {
         }
         let refused = self.run.refused().map(|why| why.to_string());
         match self.run.finishing() {
+            Some(_) if !self.run.has_seen() => {
+                let said = format!("{}: no scan could be used: {NOTHING_SEEN}", self.name);
+                self.work = Work::Failed(said);
+            }
             Some(refinement) => {
                 self.remarks.extend(problem);
                 if let Some(why) = refused {
@@ -221,6 +274,21 @@ impl<'a> Engine<'a> {
         }
         let remarks = self.remarks.join("\n");
         self.waiting.push(Update::text("remarks", remarks));
+    }
+
+    /// What the options of a recording could choose.
+    fn tell_offers(&mut self, offers: &[LogOffer]) {
+        let lines = offers.iter().map(|offer| {
+            let taken = offer.taken.as_deref().unwrap_or_default();
+            let names = offer.names.iter().map(String::as_str);
+            let words: Vec<&str> = [offer.option.name(), taken]
+                .into_iter()
+                .chain(names)
+                .collect();
+            words.join("\t")
+        });
+        let lines: Vec<String> = lines.collect();
+        self.waiting.push(Update::text("offers", lines.join("\n")));
     }
 
     fn link(&mut self, mut refinement: Box<Refinement>, done: usize) {
@@ -268,58 +336,21 @@ impl<'a> Engine<'a> {
         if self.has_scans {
             self.picture.follow(poses_of(&self.run));
         }
+        if let Some(whereabouts) = &mut self.whereabouts {
+            whereabouts.moved();
+        }
         self.work = Work::Checking;
-    }
-
-    fn check(&mut self) {
-        if self.has_scans {
-            let quality = self.run.quality();
-            self.take_quality(&quality);
-        } else if let Some(graph) = &mut self.graph {
-            let covariances = graph.pose_covariances().unwrap_or_default();
-            let trace_m = |c: &pr_geom::Matrix3<f64>| pr_geom::math::sqrt(c[(0, 0)] + c[(1, 1)]);
-            self.sigmas_m = covariances.iter().map(trace_m).collect();
-            let residuals: Vec<_> = graph
-                .edges()
-                .map(|view| (view.edge.measurement, graph.edge_chi2(view.id)))
-                .collect();
-            for link in &mut self.links {
-                let of = residuals.iter().find(|(is, _)| *is == link.measurement);
-                link.chi2 = of.map(|(_, chi2)| *chi2).or(link.chi2);
-            }
-            self.look_into = contradicting(&self.links).collect();
-        }
-        self.news.keyframes = true;
-        self.news.loops = true;
-        self.news.doubts = true;
-        self.work = Work::Idle;
-    }
-
-    fn take_quality(&mut self, quality: &Quality) {
-        let keyframes = quality.keyframes.iter();
-        self.sigmas_m = keyframes.map(|keyframe| keyframe.sigma_m()).collect();
-        // The links that were told to the run come back in their order.
-        let in_graph = self
-            .links
-            .iter_mut()
-            .filter(|link| link.verdict.is_in_graph() && link.found.is_some());
-        for (link, known) in in_graph.zip(&quality.links) {
-            (link.chi2, link.gate_chi2) = (known.chi2, known.gate_chi2);
-        }
-        self.doubts.clone_from(&quality.doubts);
-        let stamps: Vec<f64> = quality.keyframes.iter().map(|k| k.stamp_s).collect();
-        let at = |stamp_s: f64| stamps.partition_point(|&s| s <= stamp_s).saturating_sub(1);
-        let poor = self.run.poor().iter().map(|poor| at(poor.stamp_s));
-        let mut all: Vec<usize> = contradicting(&self.links).chain(poor).collect();
-        all.sort_unstable();
-        all.dedup();
-        self.look_into = all;
     }
 
     /// Paints the next scans; false where all are painted.
     fn paint(&mut self) -> bool {
         let frames = self.recorder.keyframes();
         self.picture.step(frames, poses_of(&self.run))
+    }
+
+    /// Looks for the robot of another log; false where there is none, or no scan of it is left.
+    fn look_around(&mut self) -> bool {
+        self.whereabouts.as_mut().is_some_and(Whereabouts::step)
     }
 
     fn graph(&self) -> Option<&PoseGraph> {
@@ -377,6 +408,9 @@ impl<'a> Engine<'a> {
             let scans = self.recorder.keyframes().len();
             updates.extend(self.picture.update(scans));
         }
+        if let Some(whereabouts) = &mut self.whereabouts {
+            updates.extend(whereabouts.update(poses_of(&self.run)));
+        }
         updates.append(&mut self.waiting);
         updates
     }
@@ -407,7 +441,7 @@ impl<'a> Engine<'a> {
                 vec![
                     f64::from(self.stage() as u8),
                     share,
-                    self.run.scans() as f64,
+                    (self.scans_before + self.run.scans()) as f64,
                     tried.len() as f64,
                     tried.iter().filter(|tried| tried.accepted).count() as f64,
                 ],
@@ -466,12 +500,4 @@ fn links_of(run: &LogRun) -> Vec<Link> {
 /// How often the estimator counts the information of an edge.
 fn confidence_of(run: &LogRun) -> f64 {
     run.slam().map_or(1.0, |slam| slam.config().confidence)
-}
-
-/// The newer keyframes of loops in the graph that the rest of it contradicts.
-fn contradicting(links: &[Link]) -> impl Iterator<Item = usize> + '_ {
-    let is_doubted = |link: &&Link| {
-        link.verdict.is_in_graph() && link.chi2.is_some_and(|chi2| chi2 > link.gate_chi2)
-    };
-    links.iter().filter(is_doubted).map(|link| link.new)
 }

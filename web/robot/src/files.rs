@@ -5,6 +5,7 @@ use std::io;
 use ch16_slam2d::graph::PoseGraph;
 use robot_io::graph_file::GraphFile;
 use robot_io::map_image::{MapImage, MapMode};
+use robot_io::session::FILE_NAME;
 use robot_io::trajectory::Trajectory;
 
 /// Side of the saved map's cells, m: what Nav2's maps have.
@@ -13,13 +14,15 @@ pub const MAP_CELL_M: f64 = 0.05;
 pub const REPORT_CELL_M: f64 = 0.1;
 
 /// Every file that can be saved.
-pub const NAMES: [&str; 6] = [
+pub const NAMES: [&str; 8] = [
     "map.pgm",
     "map.png",
     "map.yaml",
     "trajectory.tum",
     "graph.g2o",
     "report.html",
+    FILE_NAME,
+    "where.tum",
 ];
 
 /// What goes wrong where memory takes what is written: nothing that a writer could tell.

@@ -4,13 +4,12 @@ use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 use pr_optim::g2o::G2oFile;
 use pr_optim::{Method, Optimizer, Problem, Settings, StepReport};
 use robot_io::graph_file::GraphFile;
+use robot_io::quality::GATE_CHI2;
 
 use crate::links::{Link, Verdict};
 
 /// Larger graphs as text are not read, bytes.
 pub const MOST_BYTES: u64 = 1 << 28;
-/// Of three degrees of freedom, 999 of 1,000 lie below.
-const GATE_CHI2: f64 = 16.266;
 /// First damping of the solver, relative to the diagonal.
 const DAMPING: f64 = 1e-4;
 

@@ -4,7 +4,8 @@
 //! file as it is asked for, drives the estimator and answers orders; what changed goes to the widget as
 //! [`update`]s, plain numbers and text. [`links`] are the loops with their evidence and verdict,
 //! [`editing`] makes a graph of them, [`picture`] paints the map, [`grade`] compares with a reference,
-//! [`files`] writes what the reader saves, and [`sample`] is the log that stands on the page.
+//! [`whereabouts`] looks for the robot of another log on the map, [`files`] writes what the reader saves,
+//! and [`sample`] holds the logs that stand on the page.
 //!
 //! All of it is plain Rust and tested natively; the browser half hands a file in and updates out.
 
@@ -17,6 +18,7 @@ pub mod links;
 pub mod picture;
 pub mod sample;
 pub mod update;
+pub mod whereabouts;
 
 #[cfg(target_arch = "wasm32")]
 mod browser;

@@ -1,4 +1,7 @@
-//! The sample: the simulator's ring, twice around, as a log of CARMEN, and the truth of it.
+//! The sample: the simulator's ring, twice around, as a log of CARMEN, and the truth of it; and another
+//! day in the ring, where the robot is switched on half way and knows nothing of the first.
+
+use core::ops::RangeInclusive;
 
 use ch16_lab::lap::{Drive, DriveConfig};
 use pr_geom::SE2;
@@ -10,10 +13,15 @@ use robot_io::trajectory::{StampedPose, Trajectory};
 /// Its noise: wheels twice as bad as the chapter's.
 const NOISE_FACTOR: f64 = 2.0;
 
-fn drive() -> Drive {
+/// Seed of the other day.
+const OTHER_SEED: u32 = 11;
+/// The robot of the other day is switched on after this share of the way, and off after that one.
+const OTHER_PART: [f64; 2] = [0.55, 0.85];
+
+fn drive(config: &DriveConfig) -> Drive {
     let config = DriveConfig {
         noise_factor: NOISE_FACTOR,
-        ..DriveConfig::default()
+        ..config.clone()
     };
     Drive::simulate(&config.on_course(&Course::ring()))
 }
@@ -27,12 +35,40 @@ fn rounded(value: f64, digits: i32) -> f64 {
 /// The log, and the true trajectory as TUM lines.
 #[must_use]
 pub fn ring() -> (Vec<u8>, Vec<u8>) {
-    let drive = drive();
-    let (mut log, mut truth) = (Vec::new(), Vec::new());
+    let drive = drive(&DriveConfig::default());
+    let all = drive.ticks().len();
+    let truth = (0..=all).map(|tick| StampedPose {
+        stamp_s: drive.frame(tick).stamp_s,
+        pose: drive.truth(tick),
+    });
+    let mut lines = Vec::new();
+    let written = Trajectory::new(truth.collect()).write_tum(&mut lines);
+    written.expect("memory takes text");
+    (log_of(&drive, 0..=all), lines)
+}
+
+/// The log of another day.
+#[must_use]
+pub fn another_day() -> Vec<u8> {
+    let drive = drive(&DriveConfig {
+        seed: OTHER_SEED,
+        ..DriveConfig::default()
+    });
+    let all = drive.ticks().len();
+    let [first, last] = OTHER_PART.map(|share| (share * all as f64) as usize);
+    log_of(&drive, first..=last)
+}
+
+/// Lines of CARMEN; the wheels count from where the robot is switched on.
+fn log_of(drive: &Drive, ticks: RangeInclusive<usize>) -> Vec<u8> {
+    let mut log = Vec::new();
     let mut wheels = SE2::identity();
-    for tick in 0..=drive.ticks().len() {
+    let first = *ticks.start();
+    for tick in ticks {
         let frame = drive.frame(tick);
-        wheels = wheels * frame.odometry.unwrap_or(SE2::identity());
+        if tick > first {
+            wheels = wheels * frame.odometry.unwrap_or(SE2::identity());
+        }
         let [x, y, theta] = wheels.to_array().map(|value| rounded(value, 5));
         let mut scan = frame.scan;
         for range_m in &mut scan.ranges_m {
@@ -47,13 +83,6 @@ pub fn ring() -> (Vec<u8>, Vec<u8>) {
             &mut log,
         );
         written.expect("memory takes text");
-        truth.push(StampedPose {
-            stamp_s: frame.stamp_s,
-            pose: drive.truth(tick),
-        });
     }
-    let mut lines = Vec::new();
-    let written = Trajectory::new(truth).write_tum(&mut lines);
-    written.expect("memory takes text");
-    (log, lines)
+    log
 }

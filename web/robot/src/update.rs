@@ -12,6 +12,8 @@
 //! | `scan` | keyframe, then x and y of every point in the body's frame, m | |
 //! | `grade` | see [`grade`](crate::grade) | in words |
 //! | `errors` | error of each keyframe, m; NaN where there is none | |
+//! | `offers` | | an option a line: its name, what is taken, what could be, with tabs between them |
+//! | `where` | see [`whereabouts`](crate::whereabouts) | the other log's name, then a sentence a line |
 //! | `answer` | | what became of the last order |
 
 /// How far the engine is.

@@ -1,3 +1,4 @@
 //! What the worker promises, without any browser.
 
 mod engine;
+mod sessions;

@@ -4,6 +4,7 @@
 
 import type { Widget } from '../../pkg/glue.js';
 import { saveBlob } from '../export';
+import { addressOf, openFile } from '../beside';
 import { LoadError, ModuleFile } from '../module';
 import { told, type Delivery, type Order, type Report } from './protocol';
 
@@ -15,17 +16,32 @@ declare const SAMPLE_FILES: readonly string[];
 /** What is a reference and no log, by the ends of names. */
 const REFERENCES = ['.relations', '.tum'];
 /** What the file picker offers first. */
-const LOGS = '.log,.clf,.mcap,.bag,.g2o,.graph,.toro,.jsonl';
+const LOGS = '.log,.clf,.mcap,.bag,.jsonl,.g2o,.graph,.toro,.slam2d';
+/** The same for the log of a robot that is looked for. */
+const SCANS = '.log,.clf,.mcap,.bag,.jsonl';
+/** The end of a session's name. */
+const SESSION = '.slam2d';
+/** The stage in which the map stands. */
+const DONE = 5;
 /** Larger references are none, bytes. */
 const MOST_REFERENCE = 1 << 28;
 /** So often a file is begun again whose mapping broke. */
 const MOST_CRASHES = 1;
+
+/** What a file is for: to become the map, to be looked for on the map that is there, or to grade it. */
+export type FileUse = 'map' | 'where' | 'grade';
 
 const NO_WORKER =
   'A log is read by a worker beside the page, and this page may not start one: its frame or its security ' +
   'policy forbids it. Open the widget on a page of its own.';
 
 const program = new ModuleFile(ROBOT_WASM_FILE);
+
+/** A program that asked for a file. */
+interface Asked {
+  take(file: File): void;
+  refuse(problem: Error): void;
+}
 
 export interface DeskHost {
   /** Hands it to the widget, where one runs. */
@@ -51,6 +67,19 @@ export class Desk {
   /** What the reader changed of the graph; done again after a crash. */
   #edits: string[] = [];
   #owesEdits = false;
+  /** The topics and frames that the reader chose, by option. */
+  readonly #options = new Map<string, string>();
+  /** The log of a robot that is looked for on the map, and where it may be at first. */
+  #visitor: { file: File; start: number[] } | undefined;
+  #owesVisitor = false;
+  /** A log that waits for the widget to say where its robot may be. */
+  #dropped: File | undefined;
+  /** What a log is for that is dropped. */
+  #dropUse: FileUse = 'map';
+  /** Programs that wait for a file to be written, by its name. */
+  readonly #asked = new Map<string, Asked[]>();
+  /** Whether the map stands. */
+  #stands = false;
   /** Counts the files: what comes late of an older one is dropped. */
   #turn = 0;
 
@@ -76,6 +105,22 @@ export class Desk {
       case 'sample':
         void this.#openSample();
         break;
+      case 'locate':
+        this.#host.choose(SCANS, (file) => this.#visit(file, words));
+        break;
+      case 'locate-sample':
+        void this.#visitSample(words);
+        break;
+      case 'locate-dropped':
+        if (this.#dropped !== undefined) this.#visit(this.#dropped, words);
+        this.#dropped = undefined;
+        break;
+      case 'drop':
+        this.#dropUse = words[0] === 'where' ? 'where' : 'map';
+        break;
+      case 'option':
+        this.#choose(words);
+        break;
       case 'close':
         this.#renew();
         this.#isOpen = false;
@@ -91,12 +136,24 @@ export class Desk {
     }
   }
 
-  /** Takes files that were dropped or handed over: a log, a reference, or both. */
-  take(files: readonly File[]): void {
-    const isReference = (file: File): boolean => REFERENCES.some((end) => file.name.toLowerCase().endsWith(end));
-    const log = files.find((file) => !isReference(file));
+  /** Takes files that were dropped or handed over: a log, a reference, or both; a session and a log for it. */
+  take(files: readonly File[], asked?: FileUse): void {
+    const use = asked ?? this.#dropUse;
+    const ends = (file: File, end: string): boolean => file.name.toLowerCase().endsWith(end);
+    const isReference = (file: File): boolean => use === 'grade' || REFERENCES.some((end) => ends(file, end));
+    const logs = files.filter((file) => !isReference(file));
+    const session = asked === 'where' ? undefined : logs.find((file) => ends(file, SESSION));
+    const [log] = logs.filter((file) => file !== session);
     const reference = files.find(isReference);
-    if (log !== undefined) this.open(log, reference);
+    if (session !== undefined) {
+      this.open(session, reference);
+      if (log !== undefined) this.#visit(log, []);
+    } else if (log !== undefined && use === 'where') {
+      if (reference !== undefined) void this.#grade(reference);
+      // The widget knows where its robot may be, and asks for it.
+      this.#dropped = log;
+      this.#host.deliver([told('dropped', log.name)]);
+    } else if (log !== undefined) this.open(log, reference);
     else if (reference !== undefined) void this.#grade(reference);
   }
 
@@ -106,9 +163,28 @@ export class Desk {
     this.#setOut(file, reference);
   }
 
+  /** The bytes of a file that can be saved; rejects with a sentence where there is nothing to write. */
+  file(name: string): Promise<File> {
+    return new Promise((take, refuse) => {
+      if (this.#worker === undefined) {
+        refuse(new Error('Open a log first.'));
+        return;
+      }
+      this.#asked.set(name, [...(this.#asked.get(name) ?? []), { take, refuse }]);
+      this.#send({ save: name });
+    });
+  }
+
+  /** The first program that waits for a file of that name. */
+  #next(name: string): Asked | undefined {
+    return this.#asked.get(name)?.shift();
+  }
+
   /** Gives worker and memory back. */
   close(): void {
     this.#turn += 1;
+    for (const { refuse } of [...this.#asked.values()].flat()) refuse(new Error('The log was closed.'));
+    this.#asked.clear();
     this.#worker?.terminate();
     this.#worker = undefined;
     this.#waiting = [];
@@ -123,8 +199,63 @@ export class Desk {
   #renew(): void {
     this.close();
     this.#isOpen = true;
+    this.#options.clear();
+    this.#beginAnew();
+  }
+
+  /** Nothing that was done with the map before is done again. */
+  #beginAnew(): void {
     this.#crashes = 0;
     this.#edits = [];
+    this.#visitor = undefined;
+  }
+
+  /** Another topic or frame of the same file: it is mapped from its start. */
+  #choose([name = '', ...value]: string[]): void {
+    const file = this.#file;
+    if (file === undefined) {
+      this.#tell([told('answer', 'Open a log first.')]);
+      return;
+    }
+    this.close();
+    this.#isOpen = true;
+    this.#options.set(name, value.join(' '));
+    this.#beginAnew();
+    void this.#begin(file);
+  }
+
+  get #optionLines(): string {
+    return [...this.#options].map(([name, value]) => `${name} ${value}`).join('\n');
+  }
+
+  /** Looks for the robot of a log on the map, once that stands. */
+  #visit(file: File, start: readonly string[]): void {
+    if (!this.#isOpen) {
+      this.#tell([told('answer', `${file.name} needs a map: open a log or a session first.`)]);
+      return;
+    }
+    this.#visitor = { file, start: start.map(Number) };
+    if (this.#stands) this.#sendVisitor();
+    else {
+      this.#owesVisitor = true;
+      this.#tell([told('answer', `${file.name} waits until the map stands.`)]);
+    }
+  }
+
+  #sendVisitor(): void {
+    if (this.#visitor === undefined) return;
+    const { file, start } = this.#visitor;
+    this.#send({ locate: file, options: this.#optionLines, start });
+  }
+
+  async #visitSample(start: readonly string[]): Promise<void> {
+    const turn = this.#turn;
+    try {
+      const log = await fetchFile(SAMPLE_FILES[2] ?? '');
+      if (turn === this.#turn) this.#visit(log, start);
+    } catch {
+      if (turn === this.#turn) this.#tell([told('answer', 'The sample could not be fetched; try again.')]);
+    }
   }
 
   #setOut(file: File, reference: File | undefined): void {
@@ -137,12 +268,18 @@ export class Desk {
   async #begin(file: File): Promise<void> {
     const turn = this.#turn;
     this.#owesEdits = this.#edits.length > 0;
+    this.#owesVisitor = this.#visitor !== undefined;
+    this.#stands = false;
     this.#latest.clear();
     this.#tell([told('opening', file.name)]);
     try {
       const module = await program.load(() => {});
       if (turn !== this.#turn) return;
-      const worker = startWorker();
+      const worker = await startWorker();
+      if (turn !== this.#turn) {
+        worker.terminate();
+        return;
+      }
       worker.addEventListener('message', ({ data }: MessageEvent<Report>) => {
         if (turn === this.#turn) this.#hear(data);
       });
@@ -151,7 +288,7 @@ export class Desk {
         if (turn === this.#turn) this.#fail(NO_WORKER);
       });
       this.#worker = worker;
-      this.#send({ module, file });
+      this.#send({ module, file, options: this.#optionLines });
       for (const order of this.#waiting.splice(0)) this.#send(order);
       if (this.#reference !== undefined) void this.#sendReference(this.#reference);
     } catch (error) {
@@ -165,7 +302,7 @@ export class Desk {
     this.#renew();
     const turn = this.#turn;
     try {
-      const [log, truth] = await Promise.all(SAMPLE_FILES.map(fetchFile));
+      const [log, truth] = await Promise.all(SAMPLE_FILES.slice(0, 2).map(fetchFile));
       if (log !== undefined && turn === this.#turn) this.#setOut(log, truth);
     } catch {
       if (turn === this.#turn) this.#fail('The sample could not be fetched; open a log of your own, or try again.');
@@ -175,9 +312,16 @@ export class Desk {
   #hear(report: Report): void {
     if ('deliveries' in report) {
       this.#tell(report.deliveries);
-      this.#doEditsAgain(report.deliveries);
+      this.#doAgain(report.deliveries);
     } else if ('saved' in report) {
-      saveBlob(new Blob([report.bytes as Uint8Array<ArrayBuffer>]), report.saved);
+      const bytes = report.bytes as Uint8Array<ArrayBuffer>;
+      const asked = this.#next(report.saved);
+      if (asked === undefined) saveBlob(new Blob([bytes]), report.saved);
+      else asked.take(new File([bytes], report.saved));
+    } else if ('unsaved' in report) {
+      const asked = this.#next(report.unsaved);
+      if (asked === undefined) this.#tell([told('answer', report.why)]);
+      else asked.refuse(new Error(report.why));
     } else if ('failed' in report) {
       this.#fail(report.failed);
     } else {
@@ -206,13 +350,14 @@ export class Desk {
     this.#tell([told('failed', sentence)]);
   }
 
-  /** Once the map stands again, the reader's changes are made again. */
-  #doEditsAgain(deliveries: readonly Delivery[]): void {
-    const DONE = 5;
-    const isDone = deliveries.some(({ kind, numbers }) => kind === 'stage' && numbers[0] === DONE);
-    if (!this.#owesEdits || !isDone) return;
+  /** Once the map stands, what waits for it is done; after a crash that is all that the reader did. */
+  #doAgain(deliveries: readonly Delivery[]): void {
+    if (!deliveries.some(({ kind, numbers }) => kind === 'stage' && numbers[0] === DONE)) return;
+    this.#stands = true;
+    if (this.#owesEdits) for (const order of this.#edits) this.#send({ order });
+    if (this.#owesVisitor) this.#sendVisitor();
     this.#owesEdits = false;
-    for (const order of this.#edits) this.#send({ order });
+    this.#owesVisitor = false;
   }
 
   /** A keyframe that is dragged needs its last place alone. */
@@ -265,15 +410,22 @@ export function hand(widget: Widget, { kind, text, numbers, bytes }: Delivery): 
 }
 
 /** A page from elsewhere may not start our script as a worker, but one of its own that takes ours in. */
-function startWorker(): Worker {
-  const url = new URL(ROBOT_WORKER_FILE, import.meta.url);
-  if (url.origin === location.origin) return new Worker(url, { type: 'module' });
-  const script = URL.createObjectURL(new Blob([`import ${JSON.stringify(url.href)};`], { type: 'text/javascript' }));
+async function startWorker(): Promise<Worker> {
+  const address = addressOf(ROBOT_WORKER_FILE);
+  if (address !== undefined && new URL(address).origin === location.origin) {
+    return new Worker(address, { type: 'module' });
+  }
+  const text = address === undefined ? await (await ask(ROBOT_WORKER_FILE)).text() : `import ${JSON.stringify(address)};`;
+  const script = URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
   return new Worker(script, { type: 'module' });
 }
 
+function ask(name: string): Promise<Response> {
+  return openFile(name, false, new AbortController().signal);
+}
+
 async function fetchFile(name: string): Promise<File> {
-  const response = await fetch(new URL(name, import.meta.url));
+  const response = await ask(name);
   if (!response.ok) throw new LoadError(`${name} could not be fetched`);
   return new File([await response.blob()], name.replace(/^.*\//, ''));
 }

@@ -10,8 +10,10 @@ export interface Delivery {
 
 /** To the worker. */
 export type Order =
-  /** Comes first: the program, and the log. */
-  | { module: WebAssembly.Module; file: File }
+  /** Comes first: the program, the log, and which topics and frames of it, a line each. */
+  | { module: WebAssembly.Module; file: File; options: string }
+  /** Another log, for the map: where its robot was, at first about `[x, y, θ]`, or anywhere. */
+  | { locate: File; options: string; start: number[] }
   | { order: string }
   | { reference: Uint8Array; name: string }
   | { save: string };
@@ -20,6 +22,8 @@ export type Order =
 export type Report =
   | { deliveries: Delivery[] }
   | { saved: string; bytes: Uint8Array }
+  /** Why a file cannot be saved. */
+  | { unsaved: string; why: string }
   /** The file cannot be used, in one sentence. */
   | { failed: string }
   /** The program broke. */

@@ -31,18 +31,21 @@ turn.port1.onmessage = (): void => {
 };
 
 self.addEventListener('message', ({ data }: MessageEvent<Order>) => {
-  if ('module' in data) void open(data.module, data.file);
+  if ('module' in data) void open(data.module, data.file, data.options);
   else if (robot === undefined) waiting.push(data);
   else guard(() => obey(data));
 });
 
-async function open(module: WebAssembly.Module, file: File): Promise<void> {
+/** Gives a part of a file, as the program asks for it. */
+function reading(file: File): (from: number, to: number) => Uint8Array {
+  const reader = new FileReaderSync();
+  return (from, to) => new Uint8Array(reader.readAsArrayBuffer(file.slice(from, to)));
+}
+
+async function open(module: WebAssembly.Module, file: File, options: string): Promise<void> {
   try {
     await init({ module_or_path: module });
-    const reader = new FileReaderSync();
-    robot = new Robot(file.name, file.size, (from: number, to: number) => {
-      return new Uint8Array(reader.readAsArrayBuffer(file.slice(from, to)));
-    });
+    robot = new Robot(file.name, file.size, reading(file), options);
   } catch (error) {
     // What the program says of a file is a sentence; all else is its own end.
     if (error instanceof Error && error.constructor === Error) say({ failed: error.message });
@@ -67,6 +70,7 @@ function obey(order: Order): void {
   if (robot === undefined || 'module' in order) return;
   if ('save' in order) save(robot, order.save);
   else if ('reference' in order) grade(robot, order.reference, order.name);
+  else if ('locate' in order) locate(robot, order.locate, order.options, order.start);
   else if (order.order === 'pause' || order.order === 'resume') hold(order.order === 'pause');
   else if (order.order === 'crash-for-test') throw new WebAssembly.RuntimeError('crashed on purpose');
   else {
@@ -88,6 +92,16 @@ function save(from: Robot, name: string): void {
     const bytes = from.file(name);
     say({ saved: name, bytes }, [bytes.buffer]);
   } catch (error) {
+    say({ unsaved: name, why: refusal(error) });
+  }
+}
+
+function locate(on: Robot, log: File, options: string, start: number[]): void {
+  try {
+    on.locate(log.name, log.size, reading(log), options, Float64Array.from(start));
+    if (isHeld) hold(false);
+    tell(on);
+  } catch (error) {
     answer(error);
   }
 }
@@ -103,8 +117,12 @@ function grade(by: Robot, bytes: Uint8Array, name: string): void {
 
 /** Says what the program refused; a panic is not for saying. */
 function answer(error: unknown): void {
+  say({ deliveries: [told('answer', refusal(error))] });
+}
+
+function refusal(error: unknown): string {
   if (!(error instanceof Error) || error instanceof WebAssembly.RuntimeError) throw error;
-  say({ deliveries: [told('answer', error.message)] });
+  return error.message;
 }
 
 function schedule(): void {

@@ -5,6 +5,7 @@ mod picture;
 pub mod robot;
 mod settings;
 mod tables;
+pub mod whereabouts;
 mod words;
 
 use kit::model::{
@@ -17,8 +18,9 @@ use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::{DEFAULTS, PLAY, WidgetSpec};
 
-use crate::spec::{FILES, MOST_KEYFRAMES, PARAMS, SPEC};
+use crate::spec::{FILES, MOST_KEYFRAMES, MOST_SCANS, OPTIONS, PARAMS, SPEC};
 use robot::{Robot, Stage};
+use whereabouts::Place;
 
 /// Names of the panels.
 pub mod panel {
@@ -115,7 +117,7 @@ impl OwnRobot {
     fn press_play(&mut self) {
         match self.robot.stage {
             Stage::Empty | Stage::Failed => self.begin_sample(),
-            stage if stage.is_under_way() => {
+            _ if self.robot.is_under_way() => {
                 self.robot.paused = !self.robot.paused;
                 let order = if self.robot.paused { "pause" } else { "resume" };
                 self.ask(order.to_owned());
@@ -133,6 +135,67 @@ impl OwnRobot {
         self.ask("sample".to_owned());
         self.robot = Robot::opening("the sample");
         self.playback.pause();
+    }
+
+    /// Where the robot of another log may be at first, in the words of an order.
+    fn start(&self) -> String {
+        let shown = self.robot.keyframes.get(self.keyframe());
+        match shown.filter(|_| self.values.get("start") == 1.0) {
+            Some(shown) => {
+                let [x, y, theta] = shown.pose;
+                format!(" {x} {y} {theta}")
+            }
+            None => String::new(),
+        }
+    }
+
+    /// The place of the other log that is shown.
+    fn place(&self) -> Option<(usize, &Place)> {
+        let places = &self.robot.whereabouts.as_ref()?.places;
+        let last = places.len().checked_sub(1)?;
+        let scan = self.values.get("scan");
+        let after = places.partition_point(|place| place.scan <= scan);
+        let shown = after.saturating_sub(1).min(last);
+        Some((shown, &places[shown]))
+    }
+
+    /// Goes to the next scan of the other log that is believed otherwise than the one before it.
+    fn go_to_change(&mut self) {
+        let Some(((here, _), whereabouts)) = self.place().zip(self.robot.whereabouts.as_ref())
+        else {
+            return;
+        };
+        let places = &whereabouts.places;
+        let is_change = |k: &usize| {
+            let before = k
+                .checked_sub(1)
+                .map(|before| places[before].belief.is_believed());
+            before != Some(places[*k].belief.is_believed())
+        };
+        let next = (here + 1..places.len()).find(is_change).unwrap_or(0);
+        let scan = places[next].scan;
+        self.store("scan", scan);
+    }
+
+    /// Asks for the next topic or frame that the recording offers for the option that is chosen.
+    fn take_other(&mut self) {
+        let option = OPTIONS[self.values.get("option") as usize].id;
+        let offer = self
+            .robot
+            .offers
+            .iter()
+            .find(|offer| offer.option == option);
+        let other = offer.and_then(|offer| {
+            let here = offer.names.iter().position(|name| *name == offer.taken);
+            let next = here.map_or(0, |here| (here + 1) % offer.names.len());
+            offer.names.get(next).filter(|name| **name != offer.taken)
+        });
+        match other {
+            Some(name) => self.ask(format!("option {option} {name}")),
+            None => {
+                self.robot.answer = "The recording offers nothing else to take here.".to_owned();
+            }
+        }
     }
 
     /// The loop after or before the one that is shown.
@@ -184,12 +247,29 @@ impl OwnRobot {
         }
     }
 
+    /// Says what a log is for that is dropped.
+    fn ask_drop(&mut self) {
+        let order = if self.values.get("drop") == 1.0 {
+            "drop where"
+        } else {
+            "drop map"
+        };
+        self.ask(order.to_owned());
+    }
+
     /// What a button does here; none where the button is none of this widget's own.
     fn press_own(&mut self, id: &str) -> Option<()> {
         let keyframe = self.keyframe();
         match id {
             "open" | "cancel" | "unpin" | "reference" => self.ask(id.to_owned()),
             "sample" => self.begin_sample(),
+            "locate" | "locate-sample" => {
+                let order = format!("{id}{}", self.start());
+                self.ask(order);
+                self.store("scan", MOST_SCANS);
+            }
+            "change" => self.go_to_change(),
+            "other" => self.take_other(),
             "doubt" => self.go_to_doubt(),
             "previous" => self.go_to_link(false),
             "next" => self.go_to_link(true),
@@ -230,6 +310,7 @@ impl Model for OwnRobot {
             match id {
                 "keyframe" => self.look(),
                 "loop" => self.show_link(),
+                "drop" => self.ask_drop(),
                 _ => {}
             }
         }
@@ -244,10 +325,14 @@ impl Model for OwnRobot {
             return press_preset(self, id);
         }
         self.playback.pause();
+        let dropped = self.values.get("drop");
         self.values.reset();
         self.robot = Robot::default();
         self.orders.clear();
         self.ask("close".to_owned());
+        if dropped != self.values.get("drop") {
+            self.ask_drop();
+        }
         Ok(())
     }
 
@@ -275,6 +360,12 @@ impl Model for OwnRobot {
             self.store("keyframe", MOST_KEYFRAMES);
             self.store("loop", 0.0);
             self.store("marked", 0.0);
+            self.store("scan", MOST_SCANS);
+        }
+        if delivery.kind == "dropped" {
+            let order = format!("locate-dropped{}", self.start());
+            self.ask(order);
+            self.store("scan", MOST_SCANS);
         }
         if delivery.kind == "stage" && self.robot.stage == Stage::Done {
             self.look();
@@ -311,7 +402,7 @@ impl Model for OwnRobot {
         });
         // Before there is a way, there is a step to stand for it.
         let last = self.last().max(1) as f64;
-        let is_read = self.robot.stage.is_under_way() && !self.robot.paused;
+        let is_read = self.robot.is_under_way() && !self.robot.paused;
         Some(Timeline {
             param: "keyframe",
             last,

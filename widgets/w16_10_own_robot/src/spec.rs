@@ -8,6 +8,17 @@ use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, WidgetSpec};
 /// More keyframes than any log has, and past the end of every timeline.
 pub const MOST_KEYFRAMES: f64 = 999_999.0;
 
+/// More scans than any log has.
+pub const MOST_SCANS: f64 = 99_999_999.0;
+
+/// The options of recordings, named as on the command line.
+pub const OPTIONS: &[Choice] = &[
+    choice("scan-topic", "scan topic"),
+    choice("odom-topic", "odometry topic"),
+    choice("odom-frame", "odometry frame"),
+    choice("body-frame", "body frame"),
+];
+
 /// The files that can be saved, by the index of `save`.
 pub const FILES: &[Choice] = &[
     choice("map-pgm", "map.pgm"),
@@ -16,6 +27,8 @@ pub const FILES: &[Choice] = &[
     choice("trajectory", "trajectory.tum"),
     choice("graph", "graph.g2o"),
     choice("report", "report.html"),
+    choice("session", "session.slam2d"),
+    choice("where", "where.tum"),
 ];
 
 const fn choice(id: &'static str, label: &'static str) -> Choice {
@@ -91,7 +104,49 @@ pub const PARAMS: &[ParamSpec] = &[
         unit: "",
         kind: ParamKind::Choice { options: FILES },
         default: 0.0,
-        help: "Map for Nav2, trajectory as TUM, graph as g2o, or a report with pictures.",
+        help: "Map for Nav2, trajectory as TUM, graph as g2o, a report with pictures, the session with all of it to go on with, or where the robot of another log was.",
+    },
+    ParamSpec {
+        id: "start",
+        label: "look for the robot",
+        unit: "",
+        kind: ParamKind::Choice {
+            options: &[
+                choice("anywhere", "anywhere"),
+                choice("here", "at the keyframe shown"),
+            ],
+        },
+        default: 0.0,
+        help: "Where the other log begins on this map: anywhere, or within 1.5 m of the keyframe that is shown and turned by at most 34° against it.",
+    },
+    ParamSpec {
+        id: "scan",
+        label: "scan of the other log",
+        unit: "",
+        kind: ParamKind::Seed { max: MOST_SCANS },
+        default: MOST_SCANS,
+        help: "The scan of the other log whose place is shown; past the end, the last one.",
+    },
+    ParamSpec {
+        id: "drop",
+        label: "a log that you drop",
+        unit: "",
+        kind: ParamKind::Choice {
+            options: &[
+                choice("map", "becomes the map"),
+                choice("where", "is looked for on it"),
+            ],
+        },
+        default: 0.0,
+        help: "Whether a dropped log is mapped, or its robot is looked for on the map that is there.",
+    },
+    ParamSpec {
+        id: "option",
+        label: "of a recording",
+        unit: "",
+        kind: ParamKind::Choice { options: OPTIONS },
+        default: 0.0,
+        help: "What “Take another” changes where a recording has several: the topic of the scans or of the odometry, its frame, or the frame of the body.",
     },
     ParamSpec {
         id: "keyframe",
@@ -132,7 +187,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         button(
             "open",
             "Open a log…",
-            "Opens a log of CARMEN, ROS 1 or ROS 2, or a pose graph; you can drop it on the picture as well. It stays in this browser.",
+            "Opens a log of CARMEN, ROS 1 or ROS 2, a saved session, or a pose graph; you can drop it on the picture as well. It stays in this browser.",
         ),
         ButtonSpec {
             help: "Maps the sample where no log is open, holds a log that is read and goes on, and plays the way of one that is mapped.",
@@ -180,6 +235,26 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             "Grade…",
             "Opens a file of relations or of true poses, and compares the way with it.",
         ),
+        button(
+            "locate",
+            "Where am I?…",
+            "Opens another log of the same place, and looks for its robot on this map.",
+        ),
+        button(
+            "locate-sample",
+            "Another day",
+            "Looks for the robot of the sample’s other day on this map: it is switched on half way round.",
+        ),
+        button(
+            "change",
+            "Next verdict",
+            "Goes to the next scan of the other log where the robot is found or lost.",
+        ),
+        button(
+            "other",
+            "Take another",
+            "Maps the recording anew with the next topic or frame of those that it has.",
+        ),
         button("save", "Save", "Saves the file that is chosen."),
         ButtonSpec {
             label: "Start over",
@@ -201,6 +276,13 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             help: "The sample, coloured by its error against the truth, which comes with it.",
             set: &[("colour", 3.0)],
             then: &["sample"],
+        },
+        Preset {
+            id: "where",
+            label: "Where am I, another day?",
+            help: "The sample, and on its map the robot of another day, which is switched on half way round and looks for itself.",
+            set: &[],
+            then: &["sample", "locate-sample"],
         },
         Preset {
             id: "evidence",

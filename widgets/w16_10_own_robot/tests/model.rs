@@ -6,7 +6,7 @@ use kit::scene::Layer;
 use w16_10_own_robot::model::OwnRobot;
 use w16_10_own_robot::model::robot::Stage;
 
-fn tell(robot: &mut OwnRobot, kind: &str, text: &str, numbers: &[f64]) {
+pub fn tell(robot: &mut OwnRobot, kind: &str, text: &str, numbers: &[f64]) {
     robot.receive(&Delivery {
         kind,
         text,

@@ -262,10 +262,25 @@ impl Slam {
         snapshot: &SlamSnapshot,
         parts: SlamParts,
     ) -> Result<Self, SnapshotError> {
-        snapshot.check()?;
         if snapshot.config.front_end != FrontEndKind::Window {
             return Err(SnapshotError::Submaps);
         }
+        let mut slam = Self::of_map(snapshot, parts)?;
+        slam.front_end.restore(&snapshot.front_end);
+        Ok(slam)
+    }
+
+    /// The graph and the keyframes of a snapshot, whatever its front end: to be looked at and changed, not
+    /// to be gone on with.
+    ///
+    /// # Errors
+    /// Where the snapshot contradicts itself.
+    pub fn restore_map(snapshot: &SlamSnapshot) -> Result<Self, SnapshotError> {
+        Self::of_map(snapshot, SlamParts::of(&snapshot.config))
+    }
+
+    fn of_map(snapshot: &SlamSnapshot, parts: SlamParts) -> Result<Self, SnapshotError> {
+        snapshot.check()?;
         let mut slam = Self::with_parts(snapshot.config.clone(), parts);
         slam.frames = snapshot.frames;
         slam.last_stamp_s = snapshot.last_stamp_s;
@@ -274,7 +289,6 @@ impl Slam {
         slam.last_attempt_node = snapshot.last_attempt_node;
         slam.last_loop_node = snapshot.last_loop_node;
         slam.held = snapshot.held.clone();
-        slam.front_end.restore(&snapshot.front_end);
         slam.chi2 = slam.graph.chi2();
         Ok(slam)
     }

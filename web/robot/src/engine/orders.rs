@@ -1,14 +1,19 @@
 //! What the reader asks of the engine, in words: `turn 3`, `add 120 14`, `pin 7 1.5 2 0.1`, `unpin`,
-//! `look 12`, `cancel`.
+//! `look 12`, `cancel`; and where the robot of another log was.
 
+use std::io::BufRead;
+
+use ch16_slam2d::localize::StartPose;
 use ch16_slam2d::loops::{
     KeyframeView, LoopCandidate, LoopVerification, LoopWorkspace, verify_loop,
 };
 use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::slam::SlamParts;
 use pr_geom::SE2;
+use robot_io::log::LogOptions;
 use robot_io::map_image::map_of;
 use robot_io::report::Report;
+use robot_io::session;
 
 use super::{Engine, Work};
 use crate::editing::{Solving, rebuilt, solve};
@@ -16,6 +21,7 @@ use crate::files::{self, MAP_CELL_M, NAMES, REPORT_CELL_M};
 use crate::grade::Reference;
 use crate::links::{Link, Verdict};
 use crate::update::Update;
+use crate::whereabouts::Whereabouts;
 
 /// How a graph from a file is solved after a change.
 const PLAIN: Solving = Solving {
@@ -24,7 +30,7 @@ const PLAIN: Solving = Solving {
     huber: f64::INFINITY,
 };
 
-impl Engine<'_> {
+impl<'a> Engine<'a> {
     /// Does what the reader asks; what became of it is told by the next updates.
     pub fn order(&mut self, order: &str) {
         let mut words = order.split_ascii_whitespace();
@@ -47,8 +53,40 @@ impl Engine<'_> {
         }
     }
 
+    /// Looks for the robot of another log on the map, once the map stands.
+    ///
+    /// # Errors
+    /// One sentence where there is no map, or the file is no log; what was known of a log before stays.
+    pub fn locate(
+        &mut self,
+        source: impl BufRead + 'a,
+        name: &str,
+        size_bytes: u64,
+        options: &LogOptions,
+        start: StartPose,
+    ) -> Result<(), String> {
+        if !self.has_scans {
+            return Err("A graph has no scans, so nobody can be found on it.".to_owned());
+        }
+        self.may_edit().map_err(|_| {
+            format!(
+                "{name} has to wait: the map does not stand yet; ask again once the log is read."
+            )
+        })?;
+        let Some(session) = self.run.session() else {
+            return Err("There is no map to be found on.".to_owned());
+        };
+        let opened = Whereabouts::open(source, name, size_bytes, options, &session, start)?;
+        self.whereabouts = Some(opened);
+        Ok(())
+    }
+
     /// Ends the reading, and keeps what was read.
     fn cancel(&mut self) -> Result<String, String> {
+        if let Some(whereabouts) = self.whereabouts.as_mut().filter(|it| !it.is_over()) {
+            whereabouts.end();
+            return Ok("Stopped looking for the robot.".to_owned());
+        }
         match core::mem::replace(&mut self.work, Work::Idle) {
             Work::Reading(reader) => {
                 self.end_of_log(reader.as_ref(), None);
@@ -263,10 +301,20 @@ impl Engine<'_> {
             "graph.g2o" => Ok(files::graph_file(graph)),
             "trajectory.tum" => files::trajectory_file(&self.trajectory()),
             "report.html" => Ok(self.report().into_bytes()),
+            "where.tum" => match &self.whereabouts {
+                Some(whereabouts) => {
+                    files::trajectory_file(&whereabouts.trajectory(super::poses_of(&self.run)))
+                }
+                None => Err("No other log was looked for on this map.".to_owned()),
+            },
             _ if !NAMES.contains(&name) => Err(format!("there is no file {name} to save")),
             _ if !self.has_scans => {
                 Err("A graph has no scans, so there is no map of it.".to_owned())
             }
+            session::FILE_NAME => match self.run.session() {
+                Some(session) => Ok(session.to_bytes()),
+                None => Err("There is nothing to save yet.".to_owned()),
+            },
             _ => {
                 let lines = self.recorder.map_lines(&self.run);
                 let map = map_of(&lines, MAP_CELL_M).map_err(|problem| problem.to_string())?;
@@ -276,7 +324,7 @@ impl Engine<'_> {
     }
 
     fn report(&mut self) -> String {
-        let quality = self.run.quality();
+        let quality = self.quality();
         let lines = self.recorder.map_lines(&self.run);
         let map = map_of(&lines, REPORT_CELL_M).ok();
         let mut remarks = self.remarks.clone();
@@ -284,7 +332,7 @@ impl Engine<'_> {
         remarks.retain(|remark| !remark.is_empty());
         Report {
             name: &self.name,
-            scans: self.run.scans(),
+            scans: self.scans_before + self.run.scans(),
             quality: &quality,
             chi2_over_time: self.recorder.chi2_over_time(),
             map: map.as_ref(),

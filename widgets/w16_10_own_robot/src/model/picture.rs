@@ -21,6 +21,10 @@ const RATIO: f64 = 1.5;
 const MARGIN_M: f64 = 0.5;
 /// Colours along the way.
 const SHADES: usize = 24;
+/// What belongs to the robot of another log.
+const OTHER: Tone = Tone::Class(2);
+/// Standard deviations that its ellipse shows.
+const SIGMAS: f64 = 3.0;
 /// Values above this share of all are drawn like it: one that is far off would hide the others.
 const MOST_OF_ALL: f64 = 0.98;
 
@@ -44,6 +48,7 @@ fn map(own: &OwnRobot) -> Panel {
         layers.extend(shades);
         color_bar = bar;
         layers.extend(here(own));
+        layers.extend(whereabouts(own));
     }
     Panel {
         id: panel::MAP,
@@ -93,6 +98,11 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
     if own.link().is_some() {
         let chosen = LegendEntry::line("loop of the list", Tone::Prediction, Stroke::Solid);
         legend.push(chosen);
+    }
+    if own.place().is_some() {
+        let way = LegendEntry::line("the other log, believed", OTHER, Stroke::Solid);
+        let doubted = LegendEntry::line("doubtful", OTHER, Stroke::Dotted);
+        legend.extend([way, doubted]);
     }
     if !own.doubts().is_empty() {
         legend.push(LegendEntry::mark("look into", Tone::Prior, Mark::Circle));
@@ -299,6 +309,50 @@ fn here(own: &OwnRobot) -> Vec<Layer> {
         });
     }
     layers.push(Layer::pose(pose, Mark::Square, Tone::Posterior, 4.0));
+    layers
+}
+
+/// The way of the other log's robot, and how well the place that is shown is known.
+fn whereabouts(own: &OwnRobot) -> Vec<Layer> {
+    let Some(((_, shown), told)) = own.place().zip(own.robot.whereabouts.as_ref()) else {
+        return Vec::new();
+    };
+    let line = |is_believed: bool, stroke, width_px| {
+        let places = told.places.iter().map(|place| {
+            if place.belief.is_believed() == is_believed {
+                [place.pose[0], place.pose[1]]
+            } else {
+                [f64::NAN; 2]
+            }
+        });
+        Layer::Line {
+            points: places.collect(),
+            stroke,
+            tone: OTHER,
+            width_px,
+        }
+    };
+    let mut layers = vec![
+        line(true, Stroke::Solid, 3.0),
+        line(false, Stroke::Dotted, 2.0),
+    ];
+    if !shown.pose.iter().all(|value| value.is_finite()) {
+        return layers;
+    }
+    let [long, short, heading] = shown.ellipse;
+    if (long + short + heading).is_finite() {
+        let (sin, cos) = math::sin_cos(heading);
+        layers.push(Layer::Ellipse {
+            center: [shown.pose[0], shown.pose[1]],
+            half_axes: [
+                [SIGMAS * long * cos, SIGMAS * long * sin],
+                [-SIGMAS * short * sin, SIGMAS * short * cos],
+            ],
+            stroke: Stroke::Solid,
+            tone: OTHER,
+        });
+    }
+    layers.push(Layer::pose(shown.pose, Mark::Triangle, OTHER, 6.0));
     layers
 }
 

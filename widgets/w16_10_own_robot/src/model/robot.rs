@@ -6,6 +6,8 @@ use std::sync::Arc;
 use kit::outside::Delivery;
 use kit::scene::{Bounds, Cell, Raster};
 
+use super::whereabouts::Whereabouts;
+
 /// How far the worker is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stage {
@@ -119,6 +121,17 @@ pub struct Grade {
     pub error_m: f64,
 }
 
+/// What a recording offers for one of its options.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Offer {
+    /// Name of the option: `scan-topic`.
+    pub option: String,
+    /// What is taken; empty where nothing is.
+    pub taken: String,
+    /// What may be taken.
+    pub names: Vec<String>,
+}
+
 /// Everything that is known of a log.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Robot {
@@ -156,6 +169,10 @@ pub struct Robot {
     pub grade: Option<Grade>,
     /// Error of each keyframe against the reference, m.
     pub errors_m: Vec<f64>,
+    /// What the options of a recording could choose.
+    pub offers: Vec<Offer>,
+    /// The robot of another log on this map.
+    pub whereabouts: Option<Whereabouts>,
     /// What became of the last order.
     pub answer: String,
 }
@@ -169,6 +186,12 @@ impl Robot {
             stage: Stage::Opening,
             ..Self::default()
         }
+    }
+
+    /// Whether the worker has something to do that can be held.
+    #[must_use]
+    pub fn is_under_way(&self) -> bool {
+        self.stage.is_under_way() || self.whereabouts.as_ref().is_some_and(|it| !it.is_over)
     }
 
     /// Takes a delivery.
@@ -218,6 +241,13 @@ impl Robot {
                 });
             }
             "errors" => self.errors_m = numbers.to_vec(),
+            "offers" => self.offers = text.lines().filter_map(offer).collect(),
+            "where" => {
+                if let Some(told) = Whereabouts::of(delivery) {
+                    self.whereabouts = Some(told);
+                }
+                self.paused &= self.is_under_way();
+            }
             "answer" => self.answer = text.to_owned(),
             _ => {}
         }
@@ -235,7 +265,7 @@ impl Robot {
         self.scans = scans;
         self.tried = [tried, closed];
         self.problem = text.to_owned();
-        self.paused &= stage.is_under_way();
+        self.paused &= self.is_under_way();
     }
 
     fn receive_map(&mut self, delivery: &Delivery<'_>) {
@@ -264,6 +294,15 @@ impl Robot {
 
 fn lines(text: &str) -> Vec<String> {
     text.lines().map(str::to_owned).collect()
+}
+
+fn offer(line: &str) -> Option<Offer> {
+    let mut words = line.split('\t').map(str::to_owned);
+    Some(Offer {
+        option: words.next()?,
+        taken: words.next()?,
+        names: words.collect(),
+    })
 }
 
 fn keyframe(numbers: &[f64]) -> Keyframe {

@@ -6,6 +6,7 @@ use kit::model::{Table, TablePlace};
 use super::OwnRobot;
 use super::robot::Link;
 use super::words::verdict;
+use crate::spec::OPTIONS;
 
 /// Rows of loops beside the picture.
 const SHOWN_LOOPS: usize = 8;
@@ -17,6 +18,7 @@ pub fn all(own: &OwnRobot) -> Vec<Table> {
     let mut tables = shown(own);
     tables.push(every_loop(own));
     tables.push(keyframes(own));
+    tables.extend(places(own));
     tables
 }
 
@@ -26,6 +28,11 @@ pub fn shown(own: &OwnRobot) -> Vec<Table> {
     let mut tables = vec![loops(own)];
     tables.extend(sentences("doubts", "What should be doubted", &robot.doubts));
     tables.extend(sentences("remarks", "About the log", &robot.remarks));
+    if let Some(told) = &robot.whereabouts {
+        let title = format!("About {}", told.name);
+        tables.extend(sentences("remarks-where", &title, &told.remarks));
+    }
+    tables.extend(offers(own));
     tables
 }
 
@@ -94,6 +101,67 @@ fn sentences(id: &'static str, title: &str, said: &[String]) -> Option<Table> {
         columns: vec![String::new()],
         rows,
         place: TablePlace::Shown,
+    })
+}
+
+/// What the recording has several of.
+fn offers(own: &OwnRobot) -> Option<Table> {
+    let several = own
+        .robot
+        .offers
+        .iter()
+        .filter(|offer| offer.names.len() > 1);
+    let rows: Vec<Vec<String>> = several
+        .map(|offer| {
+            let names = offer.names.iter().filter(|name| **name != offer.taken);
+            let others: Vec<&str> = names.take(SHOWN_SENTENCES).map(String::as_str).collect();
+            let label = OPTIONS.iter().find(|option| option.id == offer.option);
+            let label = label.map_or("", |option| option.label);
+            vec![label.to_owned(), offer.taken.clone(), others.join(", ")]
+        })
+        .collect();
+    (!rows.is_empty()).then(|| Table {
+        id: "offers",
+        title: "What the recording has several of".to_owned(),
+        columns: ["", "taken", "others"].map(str::to_owned).to_vec(),
+        rows,
+        place: TablePlace::Shown,
+    })
+}
+
+/// Every scan of the other log.
+fn places(own: &OwnRobot) -> Option<Table> {
+    let told = own.robot.whereabouts.as_ref()?;
+    let rows = told.places.iter().map(|place| {
+        let [x, y, theta] = place.pose;
+        vec![
+            place.scan.to_string(),
+            place.stamp_s.to_string(),
+            place.belief.name().to_owned(),
+            number(x, 4),
+            number(y, 4),
+            number(theta, 5),
+            number(place.fit, 3),
+            number(place.ellipse[0], 4),
+        ]
+    });
+    Some(Table {
+        id: "where",
+        title: "Every scan of the other log".to_owned(),
+        columns: [
+            "scan",
+            "time (s)",
+            "verdict",
+            "x (m)",
+            "y (m)",
+            "heading (rad)",
+            "share that fits",
+            "σ (m)",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+        place: TablePlace::ExportOnly,
     })
 }
 

@@ -21,13 +21,14 @@ pub fn outcome(own: &OwnRobot) -> Outcome {
         Stage::Linking => (Standing::Neutral, "linking"),
         Stage::Solving => (Standing::Neutral, "solving"),
         Stage::Checking => (Standing::Neutral, "checking"),
+        _ if robot.is_under_way() => (Standing::Neutral, "looking for the robot"),
         Stage::Done if contradicted(robot) > 0 => (Standing::Bad, "loops contradict"),
         Stage::Done => (Standing::Good, "mapped"),
     };
     Outcome {
         standing,
         verdict: verdict.to_owned(),
-        sentence: sentence(robot),
+        sentence: sentence(own),
         facts: facts(own),
     }
 }
@@ -38,7 +39,8 @@ fn contradicted(robot: &Robot) -> usize {
     robot.links.iter().filter(doubted).count()
 }
 
-fn sentence(robot: &Robot) -> String {
+fn sentence(own: &OwnRobot) -> String {
+    let robot = &own.robot;
     let name = &robot.name;
     let done = (100.0 * robot.share).round();
     let said = match robot.stage {
@@ -62,7 +64,59 @@ fn sentence(robot: &Robot) -> String {
     };
     let grade = robot.grade.as_ref();
     let grade = grade.map_or(String::new(), |grade| format!(" {}.", grade.words));
-    format!("{said}{held}{grade}{answer} {STAYS}")
+    let visitor = visitor(own);
+    format!("{said}{held}{grade}{visitor}{answer} {STAYS}")
+}
+
+/// What is known of the other log's robot: on the whole, and at the scan that is shown.
+fn visitor(own: &OwnRobot) -> String {
+    let Some(told) = &own.robot.whereabouts else {
+        return String::new();
+    };
+    let name = &told.name;
+    let Some((_, shown)) = own.place() else {
+        let why = told.remarks.first().map_or("", String::as_str);
+        return if told.is_over {
+            format!(" {why}.")
+        } else {
+            format!(" {name} is looked for on the map.")
+        };
+    };
+    let [.., doubtful, lost] = told.counts;
+    let first = if told.first.is_finite() {
+        format!("is found at its scan {:.0}", told.first)
+    } else if told.is_over {
+        "is found nowhere on this map".to_owned()
+    } else {
+        "is not found yet".to_owned()
+    };
+    let done = if told.is_over {
+        String::new()
+    } else {
+        format!(", {:.0} % done", (100.0 * told.share).floor())
+    };
+    let scans = told.believed() + doubtful + lost;
+    let [x, y, theta] = shown.pose;
+    let at = if x.is_finite() {
+        let sigma_m = shown.ellipse[0];
+        let known = if sigma_m.is_finite() {
+            format!(", known to {sigma_m:.2} m")
+        } else {
+            String::new()
+        };
+        format!(
+            " at x {x:.1} m, y {y:.1} m, turned {:.0}°{known}",
+            theta.to_degrees()
+        )
+    } else {
+        String::new()
+    };
+    format!(
+        " The robot of {name} {first}{done}: of {scans:.0} scans {:.0} are believed, {doubtful:.0} doubtful, {lost:.0} lost. At scan {:.0} it is {}{at}.",
+        told.believed(),
+        shown.scan,
+        shown.belief.name()
+    )
 }
 
 fn finished(robot: &Robot) -> String {
@@ -120,7 +174,7 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
     let of_shown = |of: fn(&super::robot::Keyframe) -> f64| shown.map_or(f64::NAN, of);
     let grade_m = robot.grade.as_ref().map_or(f64::NAN, |grade| grade.error_m);
     let done = 100.0 * robot.share;
-    vec![
+    let mut facts = vec![
         Fact::count("done_percent", "done, %", done.floor()),
         Fact::count("scans", "scans", robot.scans),
         Fact::count("keyframes", "keyframes", robot.keyframes.len() as f64),
@@ -140,7 +194,16 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
         Fact::metres("error_m", "error against the reference", grade_m),
         Fact::new("fit", "scan shown: fits", of_shown(|k| k.fit), "", 2),
         Fact::metres("sigma_m", "keyframe shown: σ", of_shown(|k| k.sigma_m)),
-    ]
+    ];
+    if let Some(told) = &robot.whereabouts {
+        let [.., doubtful, lost] = told.counts;
+        facts.extend([
+            Fact::count("where_believed", "other log: believed", told.believed()),
+            Fact::count("where_doubtful", "other log: doubtful", doubtful),
+            Fact::count("where_lost", "other log: lost", lost),
+        ]);
+    }
+    facts
 }
 
 /// A text that stands for the picture.
@@ -149,7 +212,7 @@ pub fn summary(own: &OwnRobot) -> String {
     if robot.keyframes.is_empty() {
         return format!(
             "An empty map that waits for the log of a robot. {}",
-            sentence(robot)
+            sentence(own)
         );
     }
     let shown = own.keyframe();
@@ -169,7 +232,7 @@ pub fn summary(own: &OwnRobot) -> String {
     });
     format!(
         "A map with the way of the robot. {} Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°.{link}",
-        sentence(robot),
+        sentence(own),
         theta.to_degrees()
     )
 }

@@ -1,0 +1,102 @@
+//! What is known of the graph's quality: covariances, each loop against the rest, and what to look into.
+
+use robot_io::quality::{LinkQuality, Quality, loop_tests};
+
+use super::{Engine, Work};
+use crate::links::Link;
+
+impl Engine<'_> {
+    pub(super) fn check(&mut self) {
+        if self.has_scans {
+            self.test_unregistered();
+            let quality = self.quality();
+            self.take_quality(&quality);
+        } else if let Some(graph) = &mut self.graph {
+            let covariances = graph.pose_covariances().unwrap_or_default();
+            let trace_m = |c: &pr_geom::Matrix3<f64>| pr_geom::math::sqrt(c[(0, 0)] + c[(1, 1)]);
+            self.sigmas_m = covariances.iter().map(trace_m).collect();
+            let residuals: Vec<_> = graph
+                .edges()
+                .map(|view| (view.edge.measurement, graph.edge_chi2(view.id)))
+                .collect();
+            for link in &mut self.links {
+                let of = residuals.iter().find(|(is, _)| *is == link.measurement);
+                link.chi2 = of.map(|(_, chi2)| *chi2).or(link.chi2);
+            }
+            self.look_into = contradicting(&self.links).collect();
+        }
+        self.news.keyframes = true;
+        self.news.loops = true;
+        self.news.doubts = true;
+        self.work = Work::Idle;
+    }
+
+    /// The quality of the run; the loops of a session have no registration to tell of.
+    pub(super) fn quality(&mut self) -> Quality {
+        let mut quality = self.run.quality();
+        let unregistered = self.links.iter().filter(|link| link.found.is_none());
+        let in_graph = unregistered.filter(|link| link.verdict.is_in_graph());
+        quality.links.extend(in_graph.map(|link| LinkQuality {
+            from: link.new,
+            to: link.old,
+            score: None,
+            rmse_m: None,
+            inliers: 0,
+            margin: None,
+            chi2: link.chi2,
+            gate_chi2: link.gate_chi2,
+            accepted: true,
+            reason: None,
+        }));
+        quality
+    }
+
+    /// The loops of a session against the rest of the graph.
+    fn test_unregistered(&mut self) {
+        let is_open = |link: &Link| link.found.is_none();
+        let Some(slam) = self.run.slam_mut() else {
+            return;
+        };
+        if !self.links.iter().any(is_open) {
+            return;
+        }
+        let tests = loop_tests(slam);
+        for link in self.links.iter_mut().filter(|link| is_open(link)) {
+            let test = tests
+                .iter()
+                .find(|(view, _)| view.edge.measurement == link.measurement);
+            if let Some((_, chi2)) = test {
+                link.chi2 = *chi2;
+            }
+        }
+    }
+
+    fn take_quality(&mut self, quality: &Quality) {
+        let keyframes = quality.keyframes.iter();
+        self.sigmas_m = keyframes.map(|keyframe| keyframe.sigma_m()).collect();
+        // The links that were told to the run come back in their order.
+        let in_graph = self
+            .links
+            .iter_mut()
+            .filter(|link| link.verdict.is_in_graph() && link.found.is_some());
+        for (link, known) in in_graph.zip(&quality.links) {
+            (link.chi2, link.gate_chi2) = (known.chi2, known.gate_chi2);
+        }
+        self.doubts.clone_from(&quality.doubts);
+        let stamps: Vec<f64> = quality.keyframes.iter().map(|k| k.stamp_s).collect();
+        let at = |stamp_s: f64| stamps.partition_point(|&s| s <= stamp_s).saturating_sub(1);
+        let poor = self.run.poor().iter().map(|poor| at(poor.stamp_s));
+        let mut all: Vec<usize> = contradicting(&self.links).chain(poor).collect();
+        all.sort_unstable();
+        all.dedup();
+        self.look_into = all;
+    }
+}
+
+/// The newer keyframes of loops in the graph that the rest of it contradicts.
+fn contradicting(links: &[Link]) -> impl Iterator<Item = usize> + '_ {
+    let is_doubted = |link: &&Link| {
+        link.verdict.is_in_graph() && link.chi2.is_some_and(|chi2| chi2 > link.gate_chi2)
+    };
+    links.iter().filter(is_doubted).map(|link| link.new)
+}

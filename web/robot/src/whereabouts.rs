@@ -1,0 +1,251 @@
+//! “Where am I?”: the robot of another log on the map as it stands, scan by scan.
+//!
+//! The update `where` tells all of it: seven numbers on the whole ([`HEAD`]), then ten for each scan
+//! ([`PLACE`]); its text is the log's name, and below it what the owner should know, a sentence a line.
+//! Places hang on the keyframes next to them, so that they go along where the reader moves those.
+
+use std::io::BufRead;
+
+use ch16_slam2d::localize::{LocalizeReport, StartPose, Verdict};
+use ch16_slam2d::metrics::position_error_m;
+use pr_geom::SE2;
+use robot_io::localize::LocalizeRun;
+use robot_io::log::{LogFormat, LogNotes, LogOptions, LogReader};
+use robot_io::quality::KeyframeQuality;
+use robot_io::run::OdometryUse;
+use robot_io::session::Session;
+use robot_io::trajectory::{StampedPose, Trajectory};
+
+use crate::update::Update;
+
+/// Share done, whether it is over, and the scans of each verdict: found, tracking, doubtful, lost; then
+/// the first scan that is believed, counted from 0, NaN where none is.
+pub const HEAD: usize = 7;
+/// Number of the scan, stamp (s), x, y (m), θ (rad), verdict, share that fits, then the half axes of the
+/// 1σ ellipse, long and short (m), and the heading of the long one (rad); NaN where there is none.
+pub const PLACE: usize = 10;
+/// Of a longer log every second scan is told, or every third.
+const MOST_TOLD: usize = 20_000;
+/// It is told again once there are so many times as many scans.
+const TOLD_AGAIN: f64 = 1.02;
+
+/// A place that hangs on a keyframe of the map.
+#[derive(Clone, Copy, Debug)]
+struct Hung {
+    keyframe: usize,
+    keyframe_from_body: SE2,
+}
+
+/// Another log on its way through the map.
+pub struct Whereabouts<'a> {
+    name: String,
+    size_bytes: u64,
+    reader: Box<dyn LogReader + 'a>,
+    run: LocalizeRun,
+    /// Where the keyframes stood when it began.
+    map: Vec<SE2>,
+    places: Vec<Option<Hung>>,
+    is_over: bool,
+    problem: Option<String>,
+    told: usize,
+    is_new: bool,
+}
+
+impl<'a> Whereabouts<'a> {
+    /// Opens a log of that name and size; `session` is the map.
+    ///
+    /// # Errors
+    /// One sentence where the file is no log, or the session no map.
+    pub fn open(
+        source: impl BufRead + 'a,
+        name: &str,
+        size_bytes: u64,
+        options: &LogOptions,
+        session: &Session,
+        start: StartPose,
+    ) -> Result<Self, String> {
+        let reader =
+            LogFormat::open(source, name, options).map_err(|problem| problem.to_string())?;
+        let run = LocalizeRun::new(session, OdometryUse::Log, start)
+            .map_err(|problem| format!("The map cannot be searched: {problem}."))?;
+        Ok(Self {
+            name: name.to_owned(),
+            size_bytes,
+            reader,
+            run,
+            map: session.poses(),
+            places: Vec::new(),
+            is_over: false,
+            problem: None,
+            told: 0,
+            is_new: true,
+        })
+    }
+
+    /// Looks for the robot in the next scan; false once there is none.
+    pub fn step(&mut self) -> bool {
+        if self.is_over {
+            return false;
+        }
+        match self.reader.next_frame() {
+            Ok(Some(frame)) => {
+                if let Some(report) = self.run.step(frame) {
+                    self.places.push(hung(&self.map, report));
+                }
+                let enough = TOLD_AGAIN * self.told as f64;
+                self.is_new |= self.places.len() as f64 > enough;
+            }
+            Ok(None) => self.end(),
+            Err(problem) => {
+                self.problem = Some(problem.to_string());
+                self.end();
+            }
+        }
+        true
+    }
+
+    /// No scan follows, because there is none or because nobody asks for more.
+    pub fn end(&mut self) {
+        self.is_over = true;
+        self.is_new = true;
+        if self.places.is_empty() && self.problem.is_none() {
+            let name = &self.name;
+            self.problem = Some(match self.run.refused() {
+                Some(why) => format!("{name}: no scan could be used: {why}"),
+                None => format!("{name} was stopped before its first scan"),
+            });
+        }
+    }
+
+    /// Whether no scan follows.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.is_over
+    }
+
+    /// Says that the map has moved, and all places with it.
+    pub fn moved(&mut self) {
+        self.is_new = true;
+    }
+
+    /// The poses that are believed, on the map as it is now.
+    #[must_use]
+    pub fn trajectory(&self, map: &[SE2]) -> Trajectory {
+        let placed = self.run.reports().iter().zip(&self.places);
+        let believed = placed.filter(|(report, _)| report.verdict.is_believed());
+        let poses = believed.filter_map(|(report, place)| {
+            Some(StampedPose {
+                stamp_s: report.stamp_s,
+                pose: place.and_then(|place| on(map, place))?,
+            })
+        });
+        Trajectory::new(poses.collect())
+    }
+
+    /// What is known, where it is news.
+    pub fn update(&mut self, map: &[SE2]) -> Option<Update> {
+        if !core::mem::take(&mut self.is_new) {
+            return None;
+        }
+        let reports = self.run.reports();
+        self.told = reports.len();
+        let count = |verdict| {
+            let of_it = reports.iter().filter(|report| report.verdict == verdict);
+            of_it.count() as f64
+        };
+        let first = reports
+            .iter()
+            .position(|report| report.verdict.is_believed());
+        let mut numbers = vec![
+            self.share(),
+            f64::from(u8::from(self.is_over)),
+            count(Verdict::Found),
+            count(Verdict::Tracking),
+            count(Verdict::Doubtful),
+            count(Verdict::Lost),
+            first.map_or(f64::NAN, |first| first as f64),
+        ];
+        let stride = reports.len().div_ceil(MOST_TOLD).max(1);
+        let placed = reports.iter().zip(&self.places).enumerate();
+        for (number, (report, place)) in placed.step_by(stride) {
+            let pose = place.and_then(|place| on(map, place));
+            numbers.extend(place_numbers(number, report, pose));
+        }
+        let mut lines = vec![self.name.clone()];
+        lines.extend(self.problem.clone());
+        if self.is_over && !reports.is_empty() {
+            lines.extend(self.remarks(self.reader.notes()));
+        }
+        Some(Update {
+            text: lines.join("\n"),
+            ..Update::numbers("where", numbers)
+        })
+    }
+
+    fn share(&self) -> f64 {
+        if self.is_over {
+            return 1.0;
+        }
+        let read = self.reader.notes().bytes as f64;
+        (read / (self.size_bytes as f64).max(1.0)).min(1.0)
+    }
+
+    fn remarks(&self, notes: &LogNotes) -> Vec<String> {
+        let mut said = notes.sentences(&self.name);
+        if self.run.late() > 0 {
+            said.push(format!(
+                "{}: {} scans are not after the one before them and were left out",
+                self.name,
+                self.run.late()
+            ));
+        }
+        said
+    }
+}
+
+/// A place on the keyframe next to it.
+fn hung(map: &[SE2], report: &LocalizeReport) -> Option<Hung> {
+    let pose = report.pose?;
+    let distances = map.iter().map(|at| position_error_m(at, &pose)).enumerate();
+    let (keyframe, _) = distances.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(Hung {
+        keyframe,
+        keyframe_from_body: map[keyframe].between(&pose),
+    })
+}
+
+fn on(map: &[SE2], place: Hung) -> Option<SE2> {
+    Some(*map.get(place.keyframe)? * place.keyframe_from_body)
+}
+
+fn place_numbers(number: usize, report: &LocalizeReport, pose: Option<SE2>) -> [f64; PLACE] {
+    let [x, y, theta] = pose.map_or([f64::NAN; 3], |pose| pose.to_array());
+    let ellipse = report.covariance.map(|known| {
+        let known = KeyframeQuality {
+            stamp_s: report.stamp_s,
+            pose: [x, y, theta],
+            covariance: core::array::from_fn(|i| core::array::from_fn(|j| known[(i, j)])),
+        };
+        known.ellipse()
+    });
+    let (long, short, heading) = ellipse.unwrap_or((f64::NAN, f64::NAN, f64::NAN));
+    let verdict = match report.verdict {
+        Verdict::Found => 0.0,
+        Verdict::Tracking => 1.0,
+        Verdict::Doubtful => 2.0,
+        Verdict::Lost => 3.0,
+    };
+    let fit = report.score.unwrap_or(f64::NAN);
+    [
+        number as f64,
+        report.stamp_s,
+        x,
+        y,
+        theta,
+        verdict,
+        fit,
+        long,
+        short,
+        heading,
+    ]
+}

@@ -1,0 +1,320 @@
+//! Sessions out and in, another log on the map, and recordings with several topics.
+
+use ch16_slam2d::localize::StartPose;
+use pr_geom::SE2;
+use robot_io::log::{LogFormat, LogOption, LogOptions};
+use robot_io::run::{LogRun, OdometryUse};
+use robot_io::session::Session;
+use robot_io::trajectory::Trajectory;
+use slam_robot::engine::Engine;
+use slam_robot::sample;
+use slam_robot::update::{Stage, Update};
+use slam_robot::whereabouts::{HEAD, PLACE};
+
+use crate::engine::{files, finished, of, open};
+
+fn saved() -> Vec<u8> {
+    let mut engine = finished(&files().0);
+    engine.file("session.slam2d").unwrap()
+}
+
+fn opened(session: &[u8]) -> Engine<'_> {
+    let mut engine = open(session, "monday.slam2d").unwrap();
+    while engine.step() {}
+    engine
+}
+
+fn edges(engine: &mut Engine<'_>) -> usize {
+    let graph = String::from_utf8(engine.file("graph.g2o").unwrap()).unwrap();
+    graph.matches("EDGE_SE2").count()
+}
+
+#[test]
+fn a_saved_session_is_the_file_that_a_run_leaves() {
+    let (log, _) = files();
+    let mut reader = LogFormat::open(&log[..], "ring.log", &LogOptions::default()).unwrap();
+    let mut run = LogRun::new(OdometryUse::Log);
+    while let Some(frame) = reader.next_frame().unwrap() {
+        run.step(frame);
+    }
+    run.finish();
+    assert!(saved() == run.session().unwrap().to_bytes());
+}
+
+#[test]
+fn a_session_is_opened_with_its_map_and_loops_and_saved_as_it_was() {
+    let session = saved();
+    let mut log = finished(&files().0);
+    let mut engine = opened(&session);
+    assert_eq!(engine.stage(), Stage::Done);
+    assert!(engine.file("session.slam2d").unwrap() == session);
+    let (before, after) = (log.updates(), engine.updates());
+    assert_eq!(of(&after, "file").numbers[1], 1.0);
+    assert_eq!(
+        of(&before, "stage").numbers[2],
+        of(&after, "stage").numbers[2]
+    );
+    let [then, now] = [&before, &after].map(|updates| &of(updates, "keyframes").numbers);
+    assert_eq!(then.len(), now.len());
+    for (then, now) in then.chunks(6).zip(now.chunks(6)) {
+        assert_eq!(then[..4], now[..4]);
+        // 1e-9 m: the same graph with its loops in another order.
+        assert!(
+            (then[5] - now[5]).abs() < 1e-9,
+            "σ {} and {}",
+            then[5],
+            now[5]
+        );
+    }
+    let closed = |updates: &[Update]| {
+        let loops = &of(updates, "loops").numbers;
+        let closed = loops.chunks(10).filter(|found| found[8] == 0.0);
+        let mut chi2: Vec<f64> = closed.map(|found| found[6]).collect();
+        chi2.sort_by(f64::total_cmp);
+        chi2
+    };
+    let [then, now] = [closed(&before), closed(&after)];
+    assert_eq!(then.len(), now.len());
+    // 1e-6: χ² of the same loops against the same graph.
+    assert!(then.iter().zip(&now).all(|(a, b)| (a - b).abs() < 1e-6));
+    assert!(engine.file("map.pgm").unwrap().starts_with(b"P5"));
+    assert_eq!(
+        engine.file("graph.g2o").unwrap(),
+        log.file("graph.g2o").unwrap()
+    );
+}
+
+#[test]
+fn a_session_is_edited_further_and_what_was_changed_is_saved_with_it() {
+    let session = saved();
+    let mut engine = opened(&session);
+    let all = edges(&mut engine);
+    engine.updates();
+    engine.order("turn 0");
+    while engine.step() {}
+    assert!(
+        of(&engine.updates(), "answer")
+            .text
+            .contains("out of the graph")
+    );
+    engine.order("look 3");
+    assert!(of(&engine.updates(), "scan").numbers.len() > 50);
+    let changed = engine.file("session.slam2d").unwrap();
+    let mut again = opened(&changed);
+    assert_eq!(edges(&mut again), all - 1);
+    let keyframes = again.updates();
+    let keyframes = &of(&keyframes, "keyframes").numbers;
+    again.order(&format!(
+        "pin 20 {} {} 0",
+        keyframes[121] + 0.5,
+        keyframes[122]
+    ));
+    while again.step() {}
+    let pinned = again.file("session.slam2d").unwrap();
+    let mut third = opened(&pinned);
+    let updates = third.updates();
+    assert_eq!(of(&updates, "keyframes").numbers[121], keyframes[121] + 0.5);
+    // What goes on from it goes on from the scans, not from what was pinned.
+    let session = Session::of_bytes(&pinned, "pinned").unwrap();
+    assert!(LogRun::resume(&session, OdometryUse::Log).is_ok());
+}
+
+#[test]
+fn sessions_that_are_broken_are_answered_in_one_sentence() {
+    let session = saved();
+    let mut newer = session.clone();
+    newer[8] = 2;
+    let mut spoilt = session.clone();
+    spoilt[session.len() / 2] ^= 1;
+    for (bytes, said) in [
+        (&b""[..], "is empty"),
+        (b"SLAM2D", "ends at byte 6"),
+        (
+            &session[..session.len() / 2],
+            "copy it again, or run the log again",
+        ),
+        (&newer, "is a session of version 2"),
+        (&spoilt, "is damaged"),
+        (b"hello", "is no session"),
+    ] {
+        let told = open(bytes, "monday.slam2d").err().unwrap();
+        assert!(told.starts_with("monday.slam2d "), "{told}");
+        assert!(told.contains(said), "{told}");
+        assert_eq!(told.lines().count(), 1);
+    }
+    let huge = Engine::open(&session[..], "x.slam2d", 1 << 30, &LogOptions::default());
+    assert!(huge.err().unwrap().contains("larger than 512 MB"));
+    // By its first bytes alone it is told from a log.
+    assert!(open(&session, "monday.log").is_ok());
+}
+
+fn look<'a>(engine: &mut Engine<'a>, log: &'a [u8], start: StartPose) -> Update {
+    engine.updates();
+    let options = LogOptions::default();
+    let begun = engine.locate(log, "tuesday.log", log.len() as u64, &options, start);
+    begun.unwrap();
+    while engine.step() {}
+    of(&engine.updates(), "where").clone()
+}
+
+#[test]
+fn the_robot_of_another_day_is_found_on_the_map_and_followed() {
+    let day = sample::another_day();
+    let session = saved();
+    let mut engine = opened(&session);
+    assert!(
+        engine
+            .file("where.tum")
+            .unwrap_err()
+            .contains("No other log")
+    );
+    let told = look(&mut engine, &day, StartPose::Anywhere);
+    assert_eq!(told.text.lines().next(), Some("tuesday.log"));
+    let (head, places) = told.numbers.split_at(HEAD);
+    assert_eq!((head[0], head[1]), (1.0, 1.0));
+    let scans = places.len() / PLACE;
+    assert_eq!(head[2..6].iter().sum::<f64>(), scans as f64);
+    assert!(head[2] >= 1.0 && head[3] > 0.5 * scans as f64, "{head:?}");
+    let written = engine.file("where.tum").unwrap();
+    let way = Trajectory::read_tum(&written[..], "where.tum").unwrap();
+    assert_eq!(way.poses().len() as f64, head[2] + head[3]);
+
+    // The same as on the command line, which takes the session from the file.
+    let session = Session::of_bytes(&session, "monday").unwrap();
+    let mut run =
+        robot_io::localize::LocalizeRun::new(&session, OdometryUse::Log, StartPose::Anywhere)
+            .unwrap();
+    let mut reader = LogFormat::open(&day[..], "day", &LogOptions::default()).unwrap();
+    while let Some(frame) = reader.next_frame().unwrap() {
+        run.step(frame);
+    }
+    for (report, place) in run.reports().iter().zip(places.chunks(PLACE)) {
+        let [x, y, theta] = report.pose.map_or([f64::NAN; 3], |pose| pose.to_array());
+        // 1e-9: a pose that hung on a keyframe meanwhile.
+        let is_same = |a: f64, b: f64| (a - b).abs() < 1e-9 || a.is_nan() && b.is_nan();
+        assert!(is_same(place[2], x) && is_same(place[3], y) && is_same(place[4], theta));
+    }
+}
+
+#[test]
+fn a_start_that_is_given_is_where_the_robot_is_looked_for() {
+    let day = sample::another_day();
+    let session = saved();
+    let mut engine = opened(&session);
+    let told = look(&mut engine, &day, StartPose::Anywhere);
+    let places: Vec<&[f64]> = told.numbers[HEAD..].chunks(PLACE).collect();
+    let found = places.iter().find(|place| place[5] < 2.0).unwrap();
+    let at = SE2::new(found[2], found[3], found[4]);
+    // Three metres beside it nobody is found at the first scan; there one is.
+    let near = look(&mut engine, &day[..], StartPose::Near(at));
+    let first = |told: &Update| told.numbers[6];
+    let far = SE2::new(at.x() + 30.0, at.y() + 30.0, at.theta());
+    let away = look(&mut engine, &day[..], StartPose::Near(far));
+    assert!(
+        first(&near) <= first(&away),
+        "{} and {}",
+        first(&near),
+        first(&away)
+    );
+    assert!(near.numbers[HEAD + 5] < 3.0);
+}
+
+#[test]
+fn the_places_go_along_where_the_reader_moves_the_map() {
+    let day = sample::another_day();
+    let session = saved();
+    let mut engine = opened(&session);
+    let before = look(&mut engine, &day, StartPose::Anywhere);
+    let keyframes = {
+        engine.order("turn 0");
+        while engine.step() {}
+        engine.updates()
+    };
+    engine.order("turn 0");
+    while engine.step() {}
+    let after = engine.updates();
+    assert_eq!(of(&keyframes, "where").numbers.len(), before.numbers.len());
+    let back = &of(&after, "where").numbers;
+    for (old, new) in before.numbers[HEAD..]
+        .chunks(PLACE)
+        .zip(back[HEAD..].chunks(PLACE))
+    {
+        // 1e-3 m: the solver ends where a step is small, from another start.
+        assert!(old[2].is_nan() || (old[2] - new[2]).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn what_is_no_log_is_answered_and_leaves_the_map_and_the_place_before_it() {
+    let day = sample::another_day();
+    let session = saved();
+    let mut engine = opened(&session);
+    look(&mut engine, &day, StartPose::Anywhere);
+    let options = LogOptions::default();
+    let mut tried = |bytes: &'static [u8]| {
+        let size = bytes.len() as u64;
+        engine.locate(bytes, "x.log", size, &options, StartPose::Anywhere)
+    };
+    assert!(tried(b"").unwrap_err().contains("is empty"));
+    assert!(tried(b"\x1f\x8b").unwrap_err().contains("gunzip"));
+    assert!(tried(b"SLAM2D\r\n").is_err());
+    assert!(engine.file("where.tum").is_ok());
+    let begun = engine.locate(&b"hello\n"[..], "x.log", 6, &options, StartPose::Anywhere);
+    begun.unwrap();
+    while engine.step() {}
+    let told = of(&engine.updates(), "where").clone();
+    assert!(told.text.contains("x.log"), "{}", told.text);
+    assert_eq!(told.numbers.len(), HEAD);
+    assert_eq!(engine.stage(), Stage::Done);
+    let (log, _) = files();
+    let graph = finished(log).file("graph.g2o").unwrap();
+    let mut of_graph = open(&graph, "x.g2o").unwrap();
+    while of_graph.step() {}
+    let said = of_graph.locate(&log[..], "x.log", 1, &options, StartPose::Anywhere);
+    assert!(said.unwrap_err().contains("no scans"));
+}
+
+#[test]
+fn a_search_is_stopped_and_keeps_what_was_found() {
+    let day = sample::another_day();
+    let session = saved();
+    let mut engine = opened(&session);
+    let options = LogOptions::default();
+    let begun = engine.locate(
+        &day[..],
+        "day.log",
+        day.len() as u64,
+        &options,
+        StartPose::Anywhere,
+    );
+    begun.unwrap();
+    for _ in 0..5 {
+        engine.step();
+    }
+    engine.order("cancel");
+    while engine.step() {}
+    let told = of(&engine.updates(), "where").clone();
+    assert_eq!(told.numbers[1], 1.0);
+    assert_eq!((told.numbers.len() - HEAD) / PLACE, 5);
+}
+
+#[test]
+fn a_recording_says_what_its_options_could_choose_and_takes_them() {
+    let recording = include_bytes!("../../../crates/robot_io/recordings/plain.mcap");
+    let options = LogOptions::default();
+    let size = recording.len() as u64;
+    let mut engine = Engine::open(&recording[..], "plain.mcap", size, &options).unwrap();
+    while engine.step() {}
+    let told = of(&engine.updates(), "offers").text.clone();
+    let offer = |name: &str| {
+        let line = told.lines().find(|line| line.starts_with(name)).unwrap();
+        line.split('\t').map(str::to_owned).collect::<Vec<_>>()
+    };
+    let scans = offer("scan-topic");
+    assert!(scans.len() >= 3 && scans[2..].contains(&scans[1]), "{told}");
+    let options = LogOptions::default().with(LogOption::ScanTopic, "/nowhere");
+    let mut engine = Engine::open(&recording[..], "plain.mcap", size, &options).unwrap();
+    while engine.step() {}
+    let said = of(&engine.updates(), "stage").text.clone();
+    assert!(said.contains("/nowhere is not one of"), "{said}");
+}
