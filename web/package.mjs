@@ -13,6 +13,11 @@ import * as esbuild from 'esbuild';
 
 const WEB = dirname(fileURLToPath(import.meta.url));
 
+/** The programs by what the module calls them: the widgets, the worker's, and its script. */
+const PROGRAMS = { program: /^slam_web-.*\.wasm$/, robot: /^slam_robot-.*\.wasm$/, worker: /^slam-robot-.*\.js$/ };
+/** The samples of w16.10, in the order of `web/build.mjs`. */
+const SAMPLES = ['samples/ring.log', 'samples/ring-truth.tum', 'samples/ring-another-day.log'];
+
 const [dist, out] = process.argv.slice(2).map((path) => resolve(path));
 if (dist === undefined || out === undefined) throw new Error('usage: node web/package.mjs DIST OUT');
 
@@ -43,17 +48,27 @@ async function wheel() {
   }
 }
 
-/** The element, the program and the anywidget module, in one file of text. */
+/** A file of the site, compressed, as text. */
+async function packed(file) {
+  return gzipSync(await readFile(join(dist, file)), { level: 9 }).toString('base64');
+}
+
+/** The element, the programs, the samples and the anywidget module, in one file of text. */
 async function wholeModule() {
-  const wasmFile = (await readdir(dist)).find((file) => /^slam_web-.*\.wasm$/.test(file));
-  if (wasmFile === undefined) throw new Error(`${dist} holds no program; run cargo xtask build`);
-  const program = gzipSync(await readFile(join(dist, wasmFile)), { level: 9 }).toString('base64');
+  const carried = {};
+  const files = await readdir(dist);
+  for (const [name, pattern] of Object.entries(PROGRAMS)) {
+    const file = files.find((one) => pattern.test(one));
+    if (file === undefined) throw new Error(`${dist} holds no ${name}; run cargo xtask build`);
+    carried[name] = await packed(file);
+  }
+  for (const name of SAMPLES) carried[name] = await packed(name);
   const inside = {
     name: 'inside',
     setup(build) {
-      build.onResolve({ filter: /^program\.wasm\.gz$/ }, () => ({ path: 'program', namespace: 'inside' }));
+      build.onResolve({ filter: /^carried-files$/ }, () => ({ path: 'carried', namespace: 'inside' }));
       build.onLoad({ filter: /.*/, namespace: 'inside' }, () => ({
-        contents: `export default ${JSON.stringify(program)};`,
+        contents: `export default ${JSON.stringify(carried)};`,
       }));
       // What stands beside this file elsewhere stands in it here.
       build.onResolve({ filter: /^\.\/slam-widget\.js$/ }, () => ({ path: join(WEB, 'ts', 'main.ts') }));
@@ -68,9 +83,9 @@ async function wholeModule() {
     // No address of its own is ever asked for.
     define: {
       WASM_FILE: '"program"',
-      // A recorded log needs files beside the page; the widget says so.
-      ROBOT_WASM_FILE: '"worker"',
+      ROBOT_WASM_FILE: '"robot"',
       ROBOT_WORKER_FILE: '"worker"',
+      SAMPLE_FILES: JSON.stringify(SAMPLES),
       'import.meta.url': '""',
     },
     write: false,

@@ -7,6 +7,10 @@ export interface Model {
   save_changes(): void;
   on(event: string, callback: () => void): void;
   off(event: string, callback: () => void): void;
+  /** Messages beside the traits, where the notebook has them: files in, and files that were asked for. */
+  on(event: 'msg:custom', callback: (message: unknown, buffers: DataView[]) => void): void;
+  off(event: 'msg:custom', callback: (message: unknown, buffers: DataView[]) => void): void;
+  send?(message: unknown, callbacks?: unknown, buffers?: ArrayBuffer[]): void;
 }
 
 declare const module: {

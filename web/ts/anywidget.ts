@@ -1,10 +1,12 @@
-// The widget for Jupyter, marimo and MyST through anywidget: traits `name`, `value`, `outcome`.
+// The widget for Jupyter, marimo and MyST through anywidget: traits `name`, `value`, `outcome`; and for w16.10
+// `tables`, with files as messages (notebook-files.ts).
 
 // @ts-expect-error: stays a file of its own beside this one.
 import './slam-widget.js';
 import type Declared from '../slam-anywidget';
 import type { Model } from '../slam-anywidget';
 import type { SlamWidget } from './element';
+import { exchangeFiles } from './notebook-files';
 import type { Value } from './values';
 
 function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
@@ -26,12 +28,15 @@ function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
     isGiving = false;
     model.save_changes();
   };
+  const files = exchangeFiles(model, widget);
   take();
   widget.addEventListener('slam-ready', give);
   widget.addEventListener('slam-result', give);
+  widget.addEventListener('slam-result', files.tell);
   model.on('change:value', take);
   return () => {
     model.off('change:value', take);
+    files.end();
     widget.remove();
     refused.remove();
   };

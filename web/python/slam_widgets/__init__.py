@@ -2,17 +2,18 @@
 
 Each widget of the chapter is a class: `Basin`, `FullLap` and so on, see `WIDGETS`. Its parameters are arguments and
 attributes, `value` holds all of them, and `outcome` what came out. Parameters whose names have a hyphen in links have
-an underscore here: `gate_model`.
+an underscore here: `gate_model`. `Robot("log.mcap")` maps a recorded log.
 """
 
 import json
 from importlib.resources import files
+from pathlib import Path
 from urllib.parse import parse_qsl
 
 import anywidget
 import traitlets
 
-__all__ = ["SlamWidget", "WIDGETS"]
+__all__ = ["SlamWidget", "WIDGETS", "Robot"]
 
 _STATIC = files(__name__) / "static"
 _SCHEMA = {widget["id"]: widget for widget in json.loads((_STATIC / "schema.json").read_text("utf-8"))}
@@ -117,12 +118,99 @@ def _class(widget):
             lambda self, given, id=id: self._set(id, given),
             doc=_spec(widget["id"], id)["help"],
         )
-    return type(name, (_Widget,), body)
+    return type(name, (_RobotWidget if widget["id"] == "w16.10" else _Widget,), body)
 
 
-_SHORT = {"w16.1": "Basin"}
+_SHORT = {"w16.1": "Basin", "w16.10": "Robot"}
+
+#: So much of a file goes into one message, bytes.
+_PIECE = 1 << 20
+
+
+class _RobotWidget(_Widget):
+    """What w16.10 has beside parameters: files, which go from the kernel to the page in pieces, and back."""
+
+    #: Every plot and table as CSV, by its name: loops, keyframes, where.
+    tables = traitlets.Dict().tag(sync=True)
+    #: What was refused last, in a sentence.
+    refused = traitlets.Unicode("")
+
+    def __init__(self, log=None, *, reference=None, where=None, **parameters):
+        # What a page that shows the widget is given, in this order, by what it is for.
+        self._given = {}
+        self._wanted = {}
+        self._saved = []
+        super().__init__(**parameters)
+        self.on_msg(self._hear)
+        for path, give in ((log, self.open), (reference, self.grade), (where, self.locate)):
+            if path is not None:
+                give(path)
+
+    def open(self, path):
+        """Maps a log, or opens a session or a pose graph; what was there before is gone."""
+        self._given.clear()
+        self._give(path, "map")
+
+    def grade(self, path):
+        """Compares with relations (`.relations`) or true poses (`.tum`)."""
+        self._give(path, "grade")
+
+    def locate(self, path):
+        """Looks for the robot of another log on the map."""
+        self._give(path, "where")
+
+    def save(self, name, path=None):
+        """Writes a file of the page, such as `session.slam2d` or `map.png`, to `path`, once the page has given it.
+
+        `saved` says which files came, and `refused` why one did not.
+        """
+        self._wanted.setdefault(name, []).append(Path(path or name))
+        self.send({"type": "file", "name": name})
+
+    @property
+    def saved(self):
+        """The files that were written."""
+        return list(self._saved)
+
+    def _give(self, path, use):
+        path = Path(path)
+        if not path.is_file():
+            raise FileNotFoundError(f"{path} is no file that can be read; give a log, a session or a reference")
+        self._given[use] = path
+        self._send(path, use)
+
+    def _send(self, path, use):
+        size = path.stat().st_size
+        with path.open("rb") as source:
+            at = 0
+            while at == 0 or at < size:
+                piece = source.read(_PIECE)
+                last = at + len(piece) >= size or not piece
+                message = {"type": "piece", "name": path.name, "use": use, "first": at == 0, "last": last}
+                self.send(message, [piece])
+                at += len(piece)
+                if last:
+                    break
+
+    def _hear(self, _, message, buffers):
+        kind = message.get("type")
+        if kind == "ready":
+            # A page that shows it now has no files yet.
+            for use, path in self._given.items():
+                self._send(path, use)
+        elif kind == "file":
+            waiting = self._wanted.get(message["name"], [])
+            if waiting:
+                path = waiting.pop(0)
+                path.write_bytes(bytes(buffers[0]))
+                self._saved.append(path)
+        elif kind == "refused":
+            waiting = self._wanted.get(message["name"], [])
+            if waiting:
+                waiting.pop(0)
+            self.refused = message["why"]
 
 #: Every widget's class by its name in the chapter: `WIDGETS["w16.1"]` is `Basin`.
 WIDGETS = {id: _class(widget) for id, widget in _SCHEMA.items()}
 globals().update({made.__name__: made for made in WIDGETS.values()})
-__all__ += [made.__name__ for made in WIDGETS.values()]
+__all__ += [made.__name__ for made in WIDGETS.values() if made.__name__ not in __all__]

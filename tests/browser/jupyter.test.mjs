@@ -1,0 +1,155 @@
+// The Python wheel in a real JupyterLab: the widget lives in its cell without any network but the notebook's own, and
+// values, files and results go both ways.
+
+import assert from 'node:assert/strict';
+import { execFileSync, spawn } from 'node:child_process';
+import { cpSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { createInterface } from 'node:readline';
+import { test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { skip } from '../skip.mjs';
+import { LAST_RESORT_MS, launch } from './chromium.mjs';
+import * as h from './harness.mjs';
+
+const ROOT = fileURLToPath(new URL('../../', import.meta.url));
+const PYTHON = process.env.PYTHON ?? 'python3';
+const NEEDED = ['jupyterlab', 'anywidget', 'hatchling'];
+
+const CELLS = [
+  ['from slam_widgets import Basin, Robot', 'basin = Basin(heading=60)', 'basin'],
+  ['print("kernel has", basin.value["heading"], basin.outcome["verdict"] != "")', 'basin.heading = 120'],
+  ['robot = Robot("ring.log", reference="ring-truth.tum", where="ring-another-day.log", colour="error")', 'robot'],
+  ['rows = len(robot.tables["keyframes"].splitlines()) - 1',
+    'print("kernel has", rows, robot.outcome["facts"] is not None)',
+    'robot.save("session.slam2d", "saved.slam2d")', 'robot.save("../x")'],
+  ['print("saved", [path.name for path in robot.saved], robot.refused)', 'robot.open("saved.slam2d")'],
+];
+
+function has(module) {
+  try {
+    execFileSync(PYTHON, ['-c', `import ${module}`], { stdio: 'ignore' });
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+function notebook() {
+  const cells = CELLS.map((lines, at) => ({
+    cell_type: 'code', id: `cell-${at}`, metadata: {}, execution_count: null, outputs: [], source: lines.join('\n'),
+  }));
+  const kernelspec = { name: 'python3', display_name: 'Python 3', language: 'python' };
+  return JSON.stringify({ cells, metadata: { kernelspec }, nbformat: 4, nbformat_minor: 5 });
+}
+
+/** Packs the wheel, and installs it into a folder of its own. */
+function install(folder) {
+  const packages = join(folder, 'packages');
+  execFileSync('node', [join(ROOT, 'web', 'package.mjs'), h.DIST, packages], { cwd: ROOT, stdio: 'ignore' });
+  const wheel = readdirSync(packages).find((file) => file.endsWith('.whl'));
+  const site = join(folder, 'site');
+  const pip = ['-m', 'pip', 'install', '--quiet', '--no-deps', '--no-index', '--target', site];
+  execFileSync(PYTHON, [...pip, join(packages, wheel)], { stdio: 'ignore' });
+  return site;
+}
+
+/** Starts JupyterLab on `folder`; resolves with its process and the address that it tells. */
+async function startLab(folder, site) {
+  const own = (name) => join(folder, name);
+  const env = {
+    ...process.env, PYTHONPATH: site, JUPYTER_CONFIG_DIR: own('config'), JUPYTER_DATA_DIR: own('data'),
+    JUPYTER_RUNTIME_DIR: own('runtime'), IPYTHONDIR: own('ipython'),
+  };
+  const lab = spawn(PYTHON, ['-m', 'jupyterlab', '--no-browser', '--allow-root', '--ip=127.0.0.1', '--port=8890',
+    '--ServerApp.port_retries=100', '--IdentityProvider.token=', '--ServerApp.password=',
+    '--LabApp.expose_app_in_browser=True', `--ServerApp.root_dir=${join(folder, 'work')}`], { env, stdio: ['ignore', 'ignore', 'pipe'] });
+  const said = [];
+  for await (const line of createInterface({ input: lab.stderr })) {
+    said.push(line);
+    const [address] = /http:\/\/127\.0\.0\.1:\d+\//.exec(line) ?? [];
+    if (address !== undefined) {
+      lab.stderr.resume();
+      return { lab, address };
+    }
+  }
+  throw new Error(`JupyterLab does not start:\n${said.join('\n')}`);
+}
+
+test('the wheel lives in JupyterLab without a network, and values, logs and files go both ways', async (context) => {
+  const missing = NEEDED.filter((module) => !has(module));
+  if (missing.length > 0) {
+    skip(context, `${PYTHON} has no ${missing.join(', no ')}; pip install ${NEEDED.join(' ')}, and name it by PYTHON`);
+    return;
+  }
+  const folder = mkdtempSync(join(tmpdir(), 'slam-jupyter-'));
+  let lab;
+  let browser;
+  try {
+    cpSync(join(h.DIST, 'samples'), join(folder, 'work'), { recursive: true });
+    writeFileSync(join(folder, 'work', 'widgets.ipynb'), notebook());
+    const started = await startLab(folder, install(folder));
+    lab = started.lab;
+    browser = await launch(['--window-size=1400,2400']);
+    const tab = await (await browser.newContext({ viewport: { width: 1400, height: 2400 } })).newPage();
+    tab.setDefaultTimeout(LAST_RESORT_MS);
+    // Nothing but the notebook's own server is there.
+    await tab.route((url) => url.origin !== new URL(started.address).origin, (route) => route.abort());
+    await tab.goto(`${started.address}lab/tree/widgets.ipynb?reset`);
+    await tab.waitForSelector('.jp-Notebook .jp-Cell');
+    const run = async (at) => {
+      await tab.evaluate(async (cell) => {
+        const { shell, commands } = window.jupyterapp;
+        const { content, sessionContext } = shell.currentWidget;
+        await sessionContext.ready;
+        content.activeCellIndex = cell;
+        await commands.execute('notebook:run-cell');
+      }, at);
+    };
+    const says = (pattern) => tab.waitForFunction(
+      (source) => [...document.querySelectorAll('.jp-OutputArea-output')].some((out) => new RegExp(source).test(out.textContent)),
+      pattern.source);
+    const widget = (at) => tab.locator(`.jp-Cell >> nth=${at} >> slam-widget`);
+    const verdict = (at, pattern) => tab.waitForFunction(([cell, source]) => {
+      const found = document.querySelectorAll('.jp-Cell')[cell]?.querySelector('slam-widget');
+      const { verdict: said, sentence } = found?.outcome ?? {};
+      return new RegExp(source).test(`${said}: ${sentence}`);
+    }, [at, pattern.source]);
+
+    await run(0);
+    await verdict(0, /\w+: /);
+    assert.equal(await widget(0).evaluate((it) => it.get('heading')), 60);
+    // From the page to the kernel, and back.
+    await widget(0).evaluate((it) => new Promise((done) => {
+      it.addEventListener('slam-result', () => done(), { once: true });
+      it.set('heading', 90);
+    }));
+    await run(1);
+    await says(/kernel has 90 True/);
+    await tab.waitForFunction(() => document.querySelector('slam-widget').get('heading') === 120);
+
+    await run(2);
+    await verdict(2, /^(mapped|loops contradict): ring\.log.*off the truth.*The robot of ring-another-day\.log is found/);
+    const { keyframes } = await widget(2).evaluate((it) => it.outcome.facts);
+    await widget(2).evaluate((it) => new Promise((done) => {
+      it.addEventListener('slam-result', () => done(), { once: true });
+      it.set('poor', 0.4);
+    }));
+    await run(3);
+    await says(new RegExp(`kernel has ${keyframes} True`));
+    // What was asked for comes by messages; a cell that runs after them sees it.
+    await tab.waitForFunction(() => window.jupyterapp.shell.currentWidget.sessionContext.session.kernel.status === 'idle');
+    await run(4);
+    await says(/saved \['saved\.slam2d'\] .*there is no file/);
+    assert.equal(readFileSync(join(folder, 'work', 'saved.slam2d')).subarray(0, 6).toString(), 'SLAM2D');
+    await verdict(2, /^(mapped|loops contradict): saved\.slam2d/);
+  } finally {
+    await browser?.close();
+    if (lab !== undefined) {
+      lab.kill('SIGTERM');
+      await new Promise((ended) => lab.once('exit', ended));
+    }
+    rmSync(folder, { recursive: true, force: true });
+  }
+});
