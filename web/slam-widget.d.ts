@@ -606,7 +606,7 @@ export declare class SlamWidget extends HTMLElement {
    */
   openFile(file: File, use?: 'map' | 'where' | 'grade'): void;
   /** The bytes of a file that w16.10 saves, such as `session.slam2d`; rejects with a sentence where there is none. */
-  file(name: string): Promise<File>;
+  savedFile(name: string): Promise<File>;
   addEventListener<K extends keyof SlamWidgetEvents>(
     type: K,
     listener: (this: SlamWidget, event: SlamWidgetEvents[K]) => void,

@@ -107,9 +107,17 @@ test('the wheel lives in JupyterLab without a network, and values, logs and file
         await commands.execute('notebook:run-cell');
       }, at);
     };
-    const says = (pattern) => tab.waitForFunction(
-      (source) => [...document.querySelectorAll('.jp-OutputArea-output')].some((out) => new RegExp(source).test(out.textContent)),
-      pattern.source);
+    const outputs = () => tab.evaluate(() => {
+      return [...document.querySelectorAll('.jp-OutputArea-output')].map((out) => out.textContent.slice(0, 500)).join('\n');
+    });
+    /** Waits until a cell has ended, and looks what it printed. */
+    const says = async (pattern) => {
+      await tab.waitForFunction(() => {
+        const { content, sessionContext } = window.jupyterapp.shell.currentWidget;
+        return content.activeCell.model.executionCount !== null && sessionContext.session.kernel.status === 'idle';
+      });
+      assert.match(await outputs(), pattern);
+    };
     const widget = (at) => tab.locator(`.jp-Cell >> nth=${at} >> slam-widget`);
     const verdict = (at, pattern) => tab.waitForFunction(([cell, source]) => {
       const found = document.querySelectorAll('.jp-Cell')[cell]?.querySelector('slam-widget');
