@@ -16,6 +16,8 @@ const POLICY = `${h.STRICT_POLICY}; font-src 'self'`;
 /** The widgets, as the page has them. */
 const IN_ORDER = ['w16.1', 'w16.3', 'w16.5', 'w16.2', 'w16.4', 'w16.6', 'w16.7', 'w16.8', 'w16.9', 'w16.10', 'w16.11', 'w16.12'];
 
+const PHONE = { width: 390, height: 844 };
+
 const visit = h.visitor();
 const reading = (test, options = {}, how = {}) =>
   visit('', test, { path: '/index.html', server: { policy: POLICY }, options, ...how });
@@ -171,18 +173,20 @@ describe('the chapter', () => {
     });
   }
 
-  it('fits a phone: nothing is wider than the screen', async () => {
+  it('fits a phone: nothing is wider than the screen, and no widget higher than two', async () => {
     await reading(async (tab) => {
       for (const id of IN_ORDER) {
         await tab.locator(widget(id)).scrollIntoViewIfNeeded();
         await h.ready(tab, widget(id));
+        const height = await tab.evaluate((css) => document.querySelector(css).offsetHeight, widget(id));
+        assert.ok(height <= 2 * PHONE.height, `${id} is ${height} px high`);
       }
       const width = await tab.evaluate(() => document.documentElement.scrollWidth);
       assert.equal(width, 390);
       const tables = await tab.evaluate(() =>
         [...document.querySelectorAll('.scroll')].map((box) => box.scrollWidth - box.clientWidth));
       assert.deepEqual(tables, [0, 0, 0], 'no table has to be scrolled to be read');
-    }, { viewport: { width: 390, height: 800 } });
+    }, { viewport: PHONE, deviceScaleFactor: 1 });
   });
 
   for (const colorScheme of ['light', 'dark']) {

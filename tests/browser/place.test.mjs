@@ -72,3 +72,54 @@ describe('a widget', () => {
     });
   }
 });
+
+/** What a widget opens with, as far as one looks for it at once: its parameter, Play, and More. */
+const opening = ({ id }) => {
+  const control = { 'w16.1': 'heading', 'w16.2': 'loops', 'w16.3': 'tau', 'w16.4': 'noise' }[id];
+  return control === undefined ? [] : [control, 'play', 'more'];
+};
+
+describe('a widget beside its text', () => {
+  for (const viewport of [{ width: 1440, height: 900 }, { width: 1100, height: 900 }, { width: 1280, height: 800 }]) {
+    it(`shows scene, control and verdict together, at ${viewport.width}×${viewport.height}`, async () => {
+      const beside = h.schema.filter((spec) => opening(spec).length > 0);
+      for (const spec of beside) {
+        await chapter(`/index.html?w=${spec.id.slice(1)}`, async (tab) => {
+          const css = named(spec.id);
+          await h.ready(tab, css);
+          await h.quiet(tab);
+          const seen = await tab.evaluate(([name, controls]) => {
+            const element = document.querySelector(name);
+            const { top } = element.shadowRoot.querySelector('canvas').getBoundingClientRect();
+            const box = ([, y, , height]) => [top + y, top + y + height];
+            return {
+              position: getComputedStyle(element).position,
+              hidden: element.scrollHeight - element.clientHeight,
+              boxes: [box(element.sceneBox()), ...controls.map((control) => box(element.controlBox(control)))],
+            };
+          }, [css, opening(spec)]);
+          assert.equal(seen.position, 'sticky', spec.id);
+          assert.ok(seen.hidden <= 1, `${spec.id} hides ${seen.hidden} px`);
+          for (const [top, bottom] of seen.boxes) {
+            assert.ok(top >= 0 && bottom <= viewport.height, `${spec.id}: ${JSON.stringify(seen.boxes)}`);
+          }
+          const [scene] = seen.boxes;
+          // The maps of w16.3 are the lowest: each still takes a tenth of the screen.
+          assert.ok(scene[1] - scene[0] >= 0.1 * viewport.height, `${spec.id} has a scene of ${scene[1] - scene[0]} px`);
+        }, { options: { deviceScaleFactor, viewport } });
+      }
+    });
+  }
+
+  it('shows all that it has once more is asked for, and scrolls', async () => {
+    await chapter('/index.html?w=16.3&more=on', async (tab) => {
+      await h.ready(tab, named('w16.3'));
+      await h.quiet(tab);
+      const hidden = await tab.evaluate((css) => {
+        const element = document.querySelector(css);
+        return element.scrollHeight - element.clientHeight;
+      }, named('w16.3'));
+      assert.ok(hidden > 500, `${hidden} px`);
+    }, { options: { deviceScaleFactor, viewport: { width: 1440, height: 900 } } });
+  });
+});

@@ -381,6 +381,13 @@ impl Widget {
         self.shared.shell.borrow().content_height()
     }
 
+    /// Says what height the page has for all of the widget, in CSS pixels.
+    #[wasm_bindgen(js_name = setRoom)]
+    pub fn set_room(&self, height_px: f32) {
+        self.shared.shell.borrow_mut().set_room(height_px);
+        self.shared.request_repaint();
+    }
+
     /// The height that it would need at that width, both in CSS pixels; lays it out without a canvas.
     #[wasm_bindgen(js_name = heightAt)]
     pub fn height_at(&self, width_px: f32) -> f32 {

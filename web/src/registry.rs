@@ -93,9 +93,11 @@ mod tests {
         }
     }
 
-    /// A phone, in points.
-    const PHONE: egui::Vec2 = egui::vec2(390.0, 844.0);
-    const TWO_SCREENS: f32 = 2.0 * PHONE.y;
+    /// The canvas on a phone of 390 by 844 points, between the margins of the page.
+    const PHONE: egui::Vec2 = egui::vec2(356.0, 844.0);
+    /// The border of the element, and its buttons below the canvas.
+    const BAR: f32 = 47.0;
+    const TWO_SCREENS: f32 = 2.0 * PHONE.y - BAR;
 
     /// What the module measures in the browser, with egui's own fonts in place of ours.
     fn height_on_a_phone(ctx: &egui::Context, shell: &mut Shell) -> f32 {

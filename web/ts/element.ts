@@ -333,6 +333,7 @@ export class SlamWidget extends HTMLElement {
         for (const id of state?.texts.keys() ?? []) state?.keep(id, widget.text(id));
         this.#controls?.show(state?.texts ?? []);
         this.#looks.prepare(widget);
+        widget.setRoom(this.#place.room);
       },
       live: (milliseconds) => {
         this.#showTimeline();
@@ -459,6 +460,7 @@ export class SlamWidget extends HTMLElement {
 
   #resized(): void {
     this.#place.fit();
+    this.#life.ask((widget) => widget.setRoom(this.#place.room));
     this.#life.wake();
   }
 

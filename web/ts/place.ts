@@ -27,13 +27,22 @@ export class Place {
     this.fit();
   }
 
-  /** The width may have changed. */
+  /** The width may have changed, or the height that the page has for it. */
   fit(): void {
     const width = this.#stage.clientWidth;
     if (width === 0) return;
     const height = this.#kept?.width === width ? this.#kept.height : heightAt(this.#heights, width);
     if (height === undefined) this.free();
-    else this.#stage.style.setProperty('--place', `${height}px`);
+    else this.#stage.style.setProperty('--place', `${Math.min(height, this.room)}px`);
+  }
+
+  /** What the page has for the canvas: infinite where the element has no `max-height` in its style. */
+  get room(): number {
+    const frame = this.#stage.parentElement;
+    const { host } = this.#stage.getRootNode() as ShadowRoot;
+    const most = getComputedStyle(host).maxHeight;
+    if (frame === null || !most.endsWith('px')) return Infinity;
+    return parseFloat(most) - (frame.offsetHeight - this.#stage.offsetHeight);
   }
 
   /** Nothing will be drawn: the picture takes the room that it likes. */

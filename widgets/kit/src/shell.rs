@@ -1,6 +1,7 @@
 //! A whole widget on egui: words, presets, panels, transport, controls, readouts, tables.
 
 mod parts;
+mod room;
 mod stage;
 
 use egui::{Pos2, Rect, Ui, UiBuilder, pos2, vec2};
@@ -20,6 +21,7 @@ use crate::svg::picture_svg;
 use crate::transform::Transform;
 use crate::view::View;
 use crate::zoom::Look;
+use room::Room;
 
 /// From this width on, controls and readouts stand beside the panels.
 const WIDE: f32 = 820.0;
@@ -65,6 +67,7 @@ pub struct Shell {
     hot: Hot,
     changes: Vec<Change>,
     content_height: f32,
+    room: Room,
 }
 
 /// Whether the model moves by itself.
@@ -115,6 +118,7 @@ impl Shell {
             hot: Hot::default(),
             changes: Vec::new(),
             content_height: 0.0,
+            room: Room::default(),
         }
     }
 
@@ -148,6 +152,11 @@ impl Shell {
     #[must_use]
     pub fn content_height(&self) -> f32 {
         self.content_height
+    }
+
+    /// What the host has for all of it, in points: until more is asked for, the plots of the scene give way.
+    pub fn set_room(&mut self, height: f32) {
+        self.room = Room::of(height);
     }
 
     /// Light or dark.
@@ -253,7 +262,7 @@ impl Shell {
         let width = (whole.width() - 2.0 * MARGIN).max(200.0);
         let mut y = self.block(ui, [left, whole.top() + MARGIN], width, Self::header);
         let mut reserved = Vec::new();
-        if width >= WIDE {
+        let column = if width >= WIDE {
             let stage_width = width - SIDE_WIDTH - 2.0 * GAP;
             let side_left = left + width - SIDE_WIDTH;
             // Controls come first in time: what they change shows in this very frame.
@@ -261,10 +270,13 @@ impl Shell {
             let stage = self.stage(ui, [left, y], stage_width, &mut reserved);
             let notice = self.block(ui, [left, stage], stage_width, Self::notice);
             y = side.max(notice);
+            notice
         } else {
             y = self.stage_narrow(ui, [left, y], width, &mut reserved);
             y = self.block(ui, [left, y], width, Self::notice);
-        }
+            y
+        };
+        self.room.learn(width, column - whole.top() + MARGIN - GAP);
 
         let (dragging, frame_s) = ui.input(|input| (input.pointer.any_down(), input.stable_dt));
         self.work(if dragging {

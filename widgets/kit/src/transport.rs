@@ -18,6 +18,8 @@ use crate::style::TARGET;
 const THUMB: f32 = 12.0;
 /// Width of the speed with its name.
 const SPEED_ROOM: f32 = 260.0;
+/// From this width on, the place on the timeline stands beside the buttons of what a widget opens with.
+const PLACE_BESIDE: f32 = 480.0;
 /// A mark answers to the pointer within that distance.
 const MARK_REACH: f32 = 7.0;
 
@@ -28,6 +30,8 @@ pub fn bar(ui: &mut Ui, model: &mut dyn Model, theme: Theme, hot: &mut Hot) -> T
     let layer = model.layer();
     let timeline = model.timeline();
     let playing = timeline.as_ref().is_some_and(|timeline| timeline.playing);
+    // Beside few buttons the place on the timeline needs no row of its own.
+    let is_beside = !layer.is_all() && ui.available_width() >= PLACE_BESIDE;
     ui.horizontal_wrapped(|ui| {
         for spec in model.spec().buttons {
             if spec.id != DEFAULTS.id
@@ -53,7 +57,13 @@ pub fn bar(ui: &mut Ui, model: &mut dyn Model, theme: Theme, hot: &mut Hot) -> T
                 touched = Touched::Yes;
             }
         }
+        if is_beside {
+            place_on(ui, model, timeline.as_ref());
+        }
     });
+    if !is_beside {
+        place_on(ui, model, timeline.as_ref());
+    }
     if let Some(timeline) = timeline
         && let Some((spec, value)) = model.values().find(timeline.param)
         && let Some(new) = scrubber(ui, spec, &timeline, value, theme, hot)
@@ -73,6 +83,19 @@ pub fn button(ui: &mut Ui, spec: &'static ButtonSpec, playing: bool, hot: &mut H
     response.on_hover_text(spec.help)
 }
 
+/// Where on the timeline the widget is, in words.
+fn place_on(ui: &mut Ui, model: &dyn Model, timeline: Option<&Timeline>) {
+    if let Some(timeline) = timeline
+        && let Some((spec, value)) = model.values().find(timeline.param)
+    {
+        let last = timeline.last.max(0.0);
+        // A position past the end means the end, wherever that is at the moment.
+        let value = value.min(last);
+        ui.label(format!("{} {value:.0} of {last:.0}", spec.label))
+            .on_hover_text(spec.help);
+    }
+}
+
 fn scrubber(
     ui: &mut Ui,
     spec: &'static ParamSpec,
@@ -82,10 +105,7 @@ fn scrubber(
     hot: &mut Hot,
 ) -> Option<f64> {
     let last = timeline.last.max(0.0);
-    // A position past the end means the end, wherever that is at the moment.
     let value = value.min(last);
-    ui.label(format!("{} {value:.0} of {last:.0}", spec.label))
-        .on_hover_text(spec.help);
     let size = vec2(ui.available_width(), 30.0);
     let (rect, mut response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     hot.control(spec.id, &response);

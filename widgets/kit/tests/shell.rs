@@ -219,6 +219,37 @@ fn a_press_on_the_timeline_goes_there_and_play_runs_to_the_end() {
 }
 
 #[test]
+fn what_a_widget_opens_with_fits_into_the_room_that_there_is_and_its_words_keep_theirs() {
+    for width in [560.0, 1100.0] {
+        let mut harness = harness(width);
+        harness.state_mut().model_mut().set("more", 0.0).unwrap();
+        harness.run_steps(3);
+        let slider = |harness: &Harness<'_, Shell>| {
+            harness.get_by_role_and_label(Role::Slider, "tick").rect()
+        };
+        let (natural, at) = (harness.state().content_height(), slider(&harness));
+        let room = natural - 60.0;
+        harness.state_mut().set_room(room);
+        harness.run_steps(3);
+        let height = harness.state().content_height();
+        assert!(height <= room && height > room - 20.0, "{height} of {room}");
+        assert_eq!(slider(&harness).size(), at.size());
+        // A plot of no height says nothing: then the host has to scroll.
+        harness.state_mut().set_room(10.0);
+        harness.run_steps(3);
+        assert!(harness.state().content_height() > 200.0);
+        // More is more: all of it, as high as it likes.
+        harness.state_mut().model_mut().set("more", 1.0).unwrap();
+        harness.run_steps(3);
+        assert!(harness.state().content_height() > natural);
+        harness.state_mut().model_mut().set("more", 0.0).unwrap();
+        harness.state_mut().set_room(f32::INFINITY);
+        harness.run_steps(3);
+        assert_eq!(harness.state().content_height(), natural);
+    }
+}
+
+#[test]
 fn nothing_is_cut_off_at_any_width() {
     for width in [340.0, 390.0, 560.0, 700.0, 820.0, 900.0, 1100.0, 1400.0] {
         let harness = harness(width);

@@ -18,10 +18,11 @@ pub struct TerracesView;
 impl View for TerracesView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let narrow = width < BESIDE;
-        let most = if narrow { 220.0 } else { 235.0 };
+        // Four panels above each other stay within two screens of a phone.
+        let most = if narrow { 205.0 } else { 235.0 };
         let map = |id| slot(id, PlotHeight::Natural { most });
         // Room and corridor have other shapes; what stands below does not move for it.
-        let matched = |id| slot(id, PlotHeight::Fixed(if narrow { 135.0 } else { 190.0 }));
+        let matched = |id| slot(id, PlotHeight::Fixed(if narrow { 120.0 } else { 190.0 }));
         let cut = |id| slot(id, PlotHeight::Fixed(130.0));
         let stage = [
             [map("icp"), matched("sweep")],

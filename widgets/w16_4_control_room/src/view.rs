@@ -1,4 +1,4 @@
-//! Where the control room's panels stand: the map large, the registration beside it.
+//! Where the control room's panels stand: the map over the lanes, the registration beside both.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -12,7 +12,8 @@ impl View for ControlRoomView {
     fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
         let lanes = Slot {
             panel: "lanes",
-            height: PlotHeight::Fixed(220.0),
+            // Three panels above each other stay within two screens of a phone.
+            height: PlotHeight::Fixed(if width < SIDE_BY_SIDE { 200.0 } else { 220.0 }),
         };
         let natural = |panel| Slot {
             panel,
@@ -29,20 +30,17 @@ impl View for ControlRoomView {
                 below: rows(&[plot("tau"), plot("errors")]),
             };
         }
-        let column = |share, slot| Column {
+        let column = |share, slots: &[Slot]| Column {
             share,
-            slots: vec![slot],
+            slots: slots.to_vec(),
         };
         Arrangement {
-            stage: vec![
-                Row {
-                    columns: vec![
-                        column(3.0, natural("map")),
-                        column(2.0, natural("registration")),
-                    ],
-                },
-                Row::of(&[lanes]),
-            ],
+            stage: vec![Row {
+                columns: vec![
+                    column(3.0, &[natural("map"), lanes]),
+                    column(2.0, &[natural("registration")]),
+                ],
+            }],
             below: vec![Row::of(&[plot("tau"), plot("errors")])],
         }
     }

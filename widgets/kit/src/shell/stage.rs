@@ -13,6 +13,11 @@ use crate::scene::{Panel, Scene};
 use crate::view::{self, Arrangement, Placed, Row};
 use crate::{draw, style};
 
+/// From this width on, the control of what a widget opens with stands beside its verdict.
+const BESIDE_THE_VERDICT: f32 = 480.0;
+/// Of the width they share: a verdict has more words.
+const CONTROL_SHARE: f32 = 0.38;
+
 /// A panel whose place this frame is settled; it is painted last, when the model is.
 pub(super) struct Reserved {
     placed: Placed,
@@ -30,7 +35,7 @@ impl Shell {
         width: f32,
         out: &mut Vec<Reserved>,
     ) -> f32 {
-        let Arrangement { stage, below } = self.arrange(width);
+        let Arrangement { stage, below } = self.arrange(ui, width);
         let y = self.reserve(ui, at, width, &stage, out);
         let y = self.block(ui, [at[0], y], width, Self::transport);
         self.reserve(ui, [at[0], y], width, &below, out)
@@ -44,9 +49,16 @@ impl Shell {
         width: f32,
         out: &mut Vec<Reserved>,
     ) -> f32 {
-        let Arrangement { stage, below } = self.arrange(width);
+        let Arrangement { stage, below } = self.arrange(ui, width);
         let y = self.reserve(ui, at, width, &stage, out);
         let y = self.block(ui, [at[0], y], width, Self::transport);
+        if width >= BESIDE_THE_VERDICT && !self.model.layer().is_all() {
+            let control = CONTROL_SHARE * width;
+            let verdict = [at[0] + control + GAP, y];
+            let y = self.block(ui, [at[0], y], control, Self::controls);
+            let y = self.block(ui, [at[0], y], control, Self::more);
+            return y.max(self.block(ui, verdict, width - control - GAP, Self::outcome));
+        }
         let y = self.block(ui, [at[0], y], width, Self::controls);
         let y = self.block(ui, [at[0], y], width, Self::outcome);
         let y = self.block(ui, [at[0], y], width, Self::more);
@@ -54,9 +66,17 @@ impl Shell {
         self.block(ui, [at[0], y], width, Self::tables)
     }
 
-    fn arrange(&self, width: f32) -> Arrangement {
+    fn arrange(&mut self, ui: &Ui, width: f32) -> Arrangement {
         let arrangement = self.view.arrange(&self.shown.scene, width);
-        arrangement.of_layer(&self.model.layer())
+        let layer = self.model.layer();
+        let mut arrangement = arrangement.of_layer(&layer);
+        let mut measure = EguiMeasure(ui.painter().clone());
+        self.room.begin(!layer.is_all());
+        let scene = &self.shown.scene;
+        self.room.fit(&mut arrangement.stage, |rows| {
+            view::place(scene, rows, width, &mut measure)
+        });
+        arrangement
     }
 
     /// Settles the places of panels, and lets the pointer act on them.
