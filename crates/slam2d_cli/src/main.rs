@@ -16,6 +16,7 @@ mod map;
 mod numbers;
 mod optimize;
 mod output;
+mod parameters;
 mod places;
 mod register;
 mod run_log;
@@ -56,6 +57,7 @@ enum Command {
     Info(info::InfoArgs),
     Run(run_log::RunArgs),
     Localize(localize::LocalizeArgs),
+    Parameters(parameters::ParametersArgs),
     Evaluate(evaluate::EvaluateArgs),
     Convert(convert::ConvertArgs),
     Map(map::MapArgs),
@@ -88,6 +90,7 @@ fn main() -> ExitCode {
         Command::Info(args) => info::run(args).map_err(|e| e.to_string()),
         Command::Run(args) => run_log::run(args).map_err(|e| e.to_string()),
         Command::Localize(args) => localize::run(args).map_err(|e| e.to_string()),
+        Command::Parameters(args) => parameters::run(args).map_err(|e| e.to_string()),
         Command::Evaluate(args) => evaluate::run(args).map_err(|e| e.to_string()),
         Command::Convert(args) => convert::run(args).map_err(|e| e.to_string()),
         Command::Map(args) => map::run(args).map_err(|e| e.to_string()),
