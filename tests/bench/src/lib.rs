@@ -7,9 +7,11 @@
 
 pub mod calibration;
 pub mod chapter;
+mod estimators;
 pub mod frames;
 pub mod measure;
 mod scans;
+mod search;
 
 use ch16_slam2d::digest::Digest;
 
