@@ -1,5 +1,6 @@
 //! Draws a panel on a surface: the one drawing code for the live picture, SVG and print.
 
+mod edge;
 mod frame;
 mod labels;
 mod layers;
@@ -28,10 +29,18 @@ pub fn panel(
 ) {
     let transform = transform(panel, layout, origin, window);
     frame::back(surface, panel, &transform, theme);
-    surface.clip(Some(transform.plot()));
+    let plot = transform.plot();
+    surface.clip(Some(plot));
     for (index, layer) in panel.layers.iter().enumerate() {
         let key = format!("{}/{index}", panel.id);
+        let over = edge::reach_over(layer, &transform);
+        if let Some(reach) = over {
+            surface.clip(Some(plot.grown(reach)));
+        }
         layers::layer(surface, layer, &transform, theme, &key);
+        if over.is_some() {
+            surface.clip(Some(plot));
+        }
     }
     labels::labels(surface, panel, &transform, theme);
     surface.clip(None);

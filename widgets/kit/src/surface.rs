@@ -52,6 +52,13 @@ impl PxRect {
         [self.left + self.width / 2.0, self.top + self.height / 2.0]
     }
 
+    /// The rectangle that reaches `by` farther on every side, or less far where that is negative.
+    #[must_use]
+    pub fn grown(&self, by: f32) -> Self {
+        let (width, height) = (self.width + 2.0 * by, self.height + 2.0 * by);
+        Self::new(self.left - by, self.top - by, width, height)
+    }
+
     /// Whether a point lies in it, edges included.
     #[must_use]
     pub fn contains(&self, at: Px) -> bool {

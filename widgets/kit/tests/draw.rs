@@ -92,3 +92,38 @@ fn two_dashes_show_on_either_side_of_a_legends_mark() {
     // The mark reaches 5 to either side of the middle.
     assert!(from_mark - to_mark >= 10.0, "{outline}");
 }
+
+/// How wide the clip is under which the circles of a panel with these points are drawn, and how many
+/// circles there are.
+fn clip_of_circles(points: Vec<[f64; 2]>) -> (f64, usize) {
+    let layer = Layer::points(points, Mark::Circle, Tone::Posterior, 6.0);
+    let svg = svg_of(vec![layer], Vec::new(), Theme::Light);
+    let parts = svg.split("<clipPath").skip(1);
+    let drawn: Vec<_> = parts
+        .map(|part| (part, part.matches("a6.0 6.0 0 1 0 12.0").count()))
+        .filter(|(_, circles)| *circles > 0)
+        .collect();
+    let [(part, circles)] = drawn[..] else {
+        panic!("the circles have one clip: {svg}");
+    };
+    let (_, width) = part.split_once("width=\"").unwrap();
+    (width.split_once('"').unwrap().0.parse().unwrap(), circles)
+}
+
+#[test]
+fn a_mark_at_the_edge_of_a_plot_is_whole_and_one_beyond_it_is_cut() {
+    let (plot, one) = clip_of_circles(vec![[2.0, 1.0]]);
+    assert_eq!(one, 1);
+    // A radius and two pixels of the stroke on either side.
+    let at_the_edge = clip_of_circles(vec![[2.0, 1.0], [4.0, 1.0]]);
+    assert_eq!(at_the_edge, (plot + 16.0, 2));
+    let beyond = clip_of_circles(vec![[4.0, 1.0], [4.05, 1.0]]);
+    assert_eq!(beyond, (plot, 2));
+}
+
+#[test]
+fn a_cloud_that_reaches_the_edge_is_cut_there() {
+    let (plot, _) = clip_of_circles(vec![[2.0, 1.0]]);
+    let cloud = (0..=40).map(|k| [0.1 * f64::from(k), 1.0]).collect();
+    assert_eq!(clip_of_circles(cloud), (plot, 41));
+}

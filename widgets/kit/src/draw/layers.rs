@@ -7,7 +7,7 @@ use crate::surface::{Align, Haloed, Pen, Px, Surface, TextSize};
 use crate::transform::Transform;
 
 /// Radius of a handle's ring in pixels: a target of 24 pixels across.
-const HANDLE_RADIUS: f32 = 9.0;
+pub const HANDLE_RADIUS: f32 = 9.0;
 
 /// Draws one layer; `key` names it among the textures.
 pub fn layer(surface: &mut dyn Surface, layer: &Layer, to: &Transform, theme: Theme, key: &str) {
