@@ -106,12 +106,15 @@ impl Pointer {
             (input.pointer.primary_pressed(), input.any_touches(), moved)
         });
         if just_pressed {
+            // A fast finger has moved on within the frame of its press.
+            let origin = ui.input(|input| input.pointer.press_origin());
+            let from = origin.map_or(at, |pos| to.from_px([pos.x, pos.y]));
             self.by_touch = touch;
-            self.held = match model.grab(panel.id, at, reach(to, touch)) {
+            self.held = match model.grab(panel.id, from, reach(to, touch)) {
                 Some(handle) => Some(Held::Thing(handle)),
                 None if self.zoom.is_zoomed(panel.id) => Some(Held::Map {
                     panel: panel.id,
-                    spot: at,
+                    spot: from,
                 }),
                 None => None,
             };

@@ -412,6 +412,29 @@ fn a_typed_number_is_taken_and_one_out_of_range_stops_at_the_border() {
     }
 }
 
+/// All of it comes in one frame where a page is slow and a finger fast.
+#[test]
+fn a_press_takes_hold_of_what_lay_under_it_though_the_pointer_moved_on_in_the_same_frame() {
+    let mut harness = harness(1100.0);
+    let screen = |world: [f64; 2]| harness.state().panel_to_screen("map", world);
+    let [from, to] =
+        [[1.0, 1.0], [2.0, 1.0]].map(|world| Pos2::from(screen(world).expect("the map is shown")));
+    harness.event(Event::PointerMoved(from));
+    harness.event(Event::PointerButton {
+        pos: from,
+        button: PointerButton::Primary,
+        pressed: true,
+        modifiers: Modifiers::NONE,
+    });
+    harness.event(Event::PointerMoved(to));
+    harness.run_steps(2);
+    assert!(
+        (value(&harness, "x") - 2.0).abs() < 0.02,
+        "{}",
+        value(&harness, "x")
+    );
+}
+
 #[test]
 fn a_cancelled_touch_lets_go_of_what_it_dragged() {
     let mut harness = harness(1100.0);
