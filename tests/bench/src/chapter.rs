@@ -1,11 +1,9 @@
 //! The chapter's computations: the list of them, and the runs of the lap.
 
-use ch16_lab::ancestor::Ancestor;
 use ch16_lab::lap::{LapConfig, LapRecord, LapRunner};
 use ch16_lab::samples;
 use ch16_slam2d::icp::IcpVariant;
 
-use crate::estimators::{ancestor_lap, submaps_lap};
 use crate::scans::{
     QUERIES, ndt_build, ndt_registration, nearest_in_dense_map, nearest_in_table,
     nearest_in_voxel_map, normals, register_with_table, register_without_table, sweep, table,
@@ -133,19 +131,6 @@ pub fn workloads() -> Vec<Workload> {
             "a window searched, ±3 m and every heading at 5 cm, on a submap of the Apartment",
             limit(15.0, 30.0),
             search,
-        ),
-        workload("lap-submaps", "a lap on submaps", None, submaps_lap),
-        workload(
-            "lap-ml",
-            "a lap by incremental maximum likelihood",
-            None,
-            || ancestor_lap(Ancestor::MaximumLikelihood),
-        ),
-        workload(
-            "lap-ml-cycles",
-            "the same with particles for cycles",
-            None,
-            || ancestor_lap(Ancestor::WithCycles),
         ),
         workload("normals", "normals of 720 points", None, normals),
         workload(

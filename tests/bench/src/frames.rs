@@ -18,6 +18,12 @@ const LIMIT: Option<Limit> = Some(Limit {
     wasm_ms: 4.0,
 });
 
+/// A frame of a widget that computes anew what its slider asks for: a sixtieth of a second in the browser.
+const DRAG_LIMIT: Option<Limit> = Some(Limit {
+    native_ms: 8.0,
+    wasm_ms: 16.0,
+});
+
 /// The tick before the canonical lap's 38th keyframe, and its own.
 const KEYFRAME_TICKS: [f64; 2] = [118.0, 119.0];
 
@@ -31,6 +37,10 @@ pub fn workloads() -> Vec<Workload> {
         limit: LIMIT,
         most_of_native: None,
         prepare,
+    };
+    let drag = |id, what, prepare| Workload {
+        limit: DRAG_LIMIT,
+        ..frame(id, what, prepare)
     };
     vec![
         frame(
@@ -58,6 +68,41 @@ pub fn workloads() -> Vec<Workload> {
             "a frame of w16.4 that takes a keyframe in or out, and so draws its grid again",
             || Frames::of(w16_4_control_room::widget(), "t", KEYFRAME_TICKS),
         ),
+        drag(
+            "frame-w16.5",
+            "a frame of w16.5 while a spring is made stiffer, and the graph solved",
+            || Frames::settled(w16_5_pose_graph_toy::widget(), "stiffness", [1.0, 2.0]),
+        ),
+        drag(
+            "frame-w16.6",
+            "a frame of w16.6 while its search is scrubbed",
+            || Frames::settled(w16_6_whole_window::widget(), "progress", [200.0, 201.0]),
+        ),
+        drag(
+            "frame-w16.7",
+            "a frame of w16.7 while its threshold is dragged",
+            || Frames::settled(w16_7_been_here::widget(), "called", [4.0, 5.0]),
+        ),
+        drag(
+            "frame-w16.8",
+            "a frame of w16.8 while the share of the box is dragged: three registrations",
+            || Frames::settled(w16_8_moving_box::widget(), "share", [20.0, 21.0]),
+        ),
+        drag(
+            "frame-w16.9",
+            "a frame of w16.9 while its morning is scrubbed",
+            || Frames::settled(w16_9_come_back::widget(), "moment", [20.0, 21.0]),
+        ),
+        drag(
+            "frame-w16.11",
+            "a frame of w16.11 while its matrix turns",
+            || Frames::settled(w16_11_procrustes::widget(), "turn", [40.0, 41.0]),
+        ),
+        drag(
+            "frame-w16.12",
+            "a frame of w16.12 while its Jacobian is made worse: four solvers to their ends",
+            || Frames::settled(w16_12_jacobians::widget(), "bias", [5.0, 6.0]),
+        ),
     ]
 }
 
@@ -72,8 +117,16 @@ struct Frames {
 }
 
 impl Frames {
+    /// Frames of a widget whose picture is filled in to the last pixel.
     fn of(mut shell: Shell, param: &'static str, values: [f64; 2]) -> Box<dyn Run> {
         while shell.model_mut().work() == Activity::Busy {}
+        Self::settled(shell, param, values)
+    }
+
+    /// Frames of a widget that has what its picture waits for; what fills in later, such as the
+    /// hundred seeds of w16.8, stays out.
+    fn settled(mut shell: Shell, param: &'static str, values: [f64; 2]) -> Box<dyn Run> {
+        shell.model_mut().settle();
         let mut frames = Self {
             shell,
             param,

@@ -7,7 +7,6 @@
 
 pub mod calibration;
 pub mod chapter;
-mod estimators;
 pub mod frames;
 pub mod measure;
 mod scans;
