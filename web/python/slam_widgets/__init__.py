@@ -142,11 +142,11 @@ class _RobotWidget(_Widget):
         self._saved = []
         super().__init__(**parameters)
         self.on_msg(self._hear)
-        for path, give in ((log, self.open), (reference, self.grade), (where, self.locate)):
+        for path, give in ((log, self.load), (reference, self.grade), (where, self.locate)):
             if path is not None:
                 give(path)
 
-    def open(self, path):
+    def load(self, path):
         """Maps a log, or opens a session or a pose graph; what was there before is gone."""
         self._given.clear()
         self._give(path, "map")
@@ -177,9 +177,9 @@ class _RobotWidget(_Widget):
         if not path.is_file():
             raise FileNotFoundError(f"{path} is no file that can be read; give a log, a session or a reference")
         self._given[use] = path
-        self._send(path, use)
+        self._carry(path, use)
 
-    def _send(self, path, use):
+    def _carry(self, path, use):
         size = path.stat().st_size
         with path.open("rb") as source:
             at = 0
@@ -197,7 +197,7 @@ class _RobotWidget(_Widget):
         if kind == "ready":
             # A page that shows it now has no files yet.
             for use, path in self._given.items():
-                self._send(path, use)
+                self._carry(path, use)
         elif kind == "file":
             waiting = self._wanted.get(message["name"], [])
             if waiting:
