@@ -2,20 +2,16 @@
 // values and results go both ways, and logs in.
 
 import assert from 'node:assert/strict';
-import { execFileSync, spawn } from 'node:child_process';
-import { cpSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { spawn } from 'node:child_process';
+import { cpSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
 import { test } from 'node:test';
-import { fileURLToPath } from 'node:url';
 import { skip } from '../skip.mjs';
+import { PYTHON, install, without } from '../wheel.mjs';
 import { LAST_RESORT_MS, launch } from './chromium.mjs';
 import * as h from './harness.mjs';
-
-const ROOT = fileURLToPath(new URL('../../', import.meta.url));
-const PYTHON = process.env.PYTHON ?? 'python3';
-const NEEDED = ['jupyterlab', 'anywidget', 'hatchling'];
 
 const CELLS = [
   ['from slam_widgets import Basin, Robot', 'basin = Basin(heading=60)', 'basin'],
@@ -23,32 +19,12 @@ const CELLS = [
   ['robot = Robot("ring.log", reference="ring-truth.tum", where="ring-another-day.log", colour="error")', 'robot'],
 ];
 
-function has(module) {
-  try {
-    execFileSync(PYTHON, ['-c', `import ${module}`], { stdio: 'ignore' });
-    return true;
-  } catch {
-    return false;
-  }
-}
-
 function notebook() {
   const cells = CELLS.map((lines, at) => ({
     cell_type: 'code', id: `cell-${at}`, metadata: {}, execution_count: null, outputs: [], source: lines.join('\n'),
   }));
   const kernelspec = { name: 'python3', display_name: 'Python 3', language: 'python' };
   return JSON.stringify({ cells, metadata: { kernelspec }, nbformat: 4, nbformat_minor: 5 });
-}
-
-/** Packs the wheel, and installs it into a folder of its own. */
-function install(folder) {
-  const packages = join(folder, 'packages');
-  execFileSync('node', [join(ROOT, 'web', 'package.mjs'), h.DIST, packages], { cwd: ROOT, stdio: 'ignore' });
-  const wheel = readdirSync(packages).find((file) => file.endsWith('.whl'));
-  const site = join(folder, 'site');
-  const pip = ['-m', 'pip', 'install', '--quiet', '--no-deps', '--no-index', '--target', site];
-  execFileSync(PYTHON, [...pip, join(packages, wheel)], { stdio: 'ignore' });
-  return site;
 }
 
 /** Starts JupyterLab on `folder`; resolves with its process and the address that it tells. */
@@ -74,9 +50,9 @@ async function startLab(folder, site) {
 }
 
 test('the wheel lives in JupyterLab without a network, and values and results go both ways, and logs in', async (context) => {
-  const missing = NEEDED.filter((module) => !has(module));
-  if (missing.length > 0) {
-    skip(context, `${PYTHON} has no ${missing.join(', no ')}; pip install ${NEEDED.join(' ')}, and name it by PYTHON`);
+  const why = without('jupyterlab', 'anywidget', 'hatchling');
+  if (why !== undefined) {
+    skip(context, why);
     return;
   }
   const folder = mkdtempSync(join(tmpdir(), 'slam-jupyter-'));
@@ -85,7 +61,7 @@ test('the wheel lives in JupyterLab without a network, and values and results go
   try {
     cpSync(join(h.DIST, 'samples'), join(folder, 'work'), { recursive: true });
     writeFileSync(join(folder, 'work', 'widgets.ipynb'), notebook());
-    const started = await startLab(folder, install(folder));
+    const started = await startLab(folder, install(folder).site);
     lab = started.lab;
     browser = await launch(['--window-size=1400,2400']);
     const tab = await (await browser.newContext({ viewport: { width: 1400, height: 2400 } })).newPage();

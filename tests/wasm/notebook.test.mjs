@@ -2,42 +2,31 @@
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 
 import { skip } from '../skip.mjs';
+import { PYTHON, install, without } from '../wheel.mjs';
 
 const root = fileURLToPath(new URL('../../', import.meta.url));
-const python = process.env.PYTHON ?? 'python3';
 const dist = join(root, 'dist');
 
-function has(module) {
-  try {
-    execFileSync(python, ['-c', `import ${module}`], { stdio: 'ignore' });
-    return true;
-  } catch {
-    return false;
-  }
-}
-
 test('the wheel holds the program, and a class for each widget with its parameters', (context) => {
-  if (!has('anywidget') || !has('hatchling')) {
-    skip(context, `${python} has no anywidget or no hatchling; pip install anywidget hatchling`);
+  const why = without('anywidget', 'hatchling');
+  if (why !== undefined) {
+    skip(context, why);
     return;
   }
   const folder = mkdtempSync(join(tmpdir(), 'slam-packages-'));
   try {
-    execFileSync('node', [join(root, 'web', 'package.mjs'), dist, folder], { cwd: root, stdio: 'ignore' });
-    const files = readdirSync(folder).sort();
+    const { files, site } = install(folder);
     assert.deepEqual(files, ['slam-widgets-0.1.0.tgz', 'slam_widgets-0.1.0-py3-none-any.whl']);
-    const site = join(folder, 'site');
-    execFileSync(python, ['-m', 'pip', 'install', '--quiet', '--no-deps', '--no-index', '--target', site, join(folder, files[1])]);
     const whole = readFileSync(join(site, 'slam_widgets', 'static', 'slam-widgets.js'), 'utf8');
     assert.doesNotMatch(whole, /import\s*["'{*]/, 'the module asks for files beside it');
-    const said = execFileSync(python, ['-c', `
+    const said = execFileSync(PYTHON, ['-c', `
 import json
 import slam_widgets
 from slam_widgets import Basin, WIDGETS
