@@ -25,6 +25,7 @@ mod session_file;
 mod sweep;
 mod table;
 mod terrain;
+mod tick_costs;
 mod trial;
 mod world;
 

@@ -9,7 +9,7 @@ use ch16_slam2d::slam::SnapshotError;
 use ch16_slam2d::slam::parameters::{Parameter, ParameterError};
 use ch16_slam2d::submaps::FrontEndChoice;
 use clap::Args;
-use measuring::process;
+use measuring::{process, timed};
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
 use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
@@ -23,6 +23,7 @@ use crate::optimize::check_folder;
 use crate::output::{print_json, say};
 use crate::run_output::write_folder;
 use crate::session_file::{SessionFileError, read_session};
+use crate::tick_costs::{TickCosts, TickSummary};
 use crate::trial::choice;
 
 /// Map a recorded log, and grade the trajectory where a reference is given.
@@ -107,6 +108,8 @@ struct RunJson {
     cpu_s: f64,
     /// Most memory that the process held, MB; null where the system does not tell.
     peak_mb: Option<f64>,
+    /// What a scan took, at the start of the log and at its end; null below ten scans.
+    ticks: Option<TickSummary>,
     /// Whether Ctrl-C ended the run before the log's end.
     interrupted: bool,
     /// What should be looked at, a sentence each.
@@ -139,10 +142,13 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     let (mut run, mut recorder) = start(args)?;
     let (mut reader, mut progress) = open_log(&args.log, &args.topics)?;
     let mut broken = None;
+    let mut costs = TickCosts::default();
     while !is_interrupted.load(Ordering::Relaxed) {
         match reader.next_frame() {
             Ok(Some(frame)) => {
-                if let Some(report) = run.step(frame.clone()) {
+                let (report, ms) = timed(|| run.step(frame.clone()));
+                costs.push(ms);
+                if let Some(report) = report {
                     recorder.take(&frame, &report);
                 }
                 progress.tell(run.scans());
@@ -202,6 +208,7 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
         loops_accepted: run.loops().iter().filter(|tried| tried.accepted).count(),
         cpu_s: process::cpu_s(),
         peak_mb: process::peak_mb(),
+        ticks: costs.summary(),
         interrupted: is_interrupted.load(Ordering::Relaxed),
         doubts,
         quality,
@@ -322,6 +329,13 @@ fn print_text(result: &RunJson) {
     say!("CPU              {:.2} s", result.cpu_s);
     if let Some(peak_mb) = result.peak_mb {
         say!("memory           {peak_mb:.0} MB at most");
+    }
+    if let Some(TickSummary { first, last }) = result.ticks {
+        say!(
+            "a scan           {:.2} ms in the first tenth, {:.2} ms in the last (medians)",
+            first.median_ms,
+            last.median_ms
+        );
     }
     for doubt in &result.doubts {
         say!("doubt            {doubt}");

@@ -57,6 +57,11 @@ fn a_log_is_mapped_and_graded_against_relations() {
     assert_eq!(run["scans"], 40);
     assert!(run["keyframes"].as_u64().unwrap() > 3);
     assert!(run["cpu_s"].as_f64().unwrap() > 0.0);
+    for tenth in ["first", "last"] {
+        let ticks = &run["ticks"][tenth];
+        let ms = |figure: &str| ticks[figure].as_f64().unwrap();
+        assert!(ms("median_ms") > 0.0 && ms("median_ms") <= ms("worst_ms"));
+    }
     let error_m = run["relations"]["trans"]["mean"].as_f64().unwrap();
     // The wheels alone are off by 0.39 m; the wall at the end tells better.
     assert!(error_m < 0.1, "{error_m}");

@@ -1,0 +1,74 @@
+//! What a scan costs at the start of a log, and at its end.
+
+use serde::Serialize;
+
+/// The ticks of a run: how long each kept its thread busy.
+#[derive(Clone, Debug, Default)]
+pub struct TickCosts {
+    ms: Vec<f64>,
+}
+
+/// The ticks of the first tenth of a run, and those of the last.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TickSummary {
+    /// The first tenth.
+    pub first: Tenth,
+    /// The last tenth.
+    pub last: Tenth,
+}
+
+/// The ticks of a tenth of a run, milliseconds of CPU.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Tenth {
+    /// Half of them took less.
+    pub median_ms: f64,
+    /// What they took on average: the ticks that close a loop count with all they take.
+    pub mean_ms: f64,
+    /// The longest.
+    pub worst_ms: f64,
+}
+
+impl TickCosts {
+    /// The next tick took so many milliseconds.
+    pub fn push(&mut self, ms: f64) {
+        self.ms.push(ms);
+    }
+
+    /// Both tenths; none before ten ticks were made.
+    pub fn summary(&self) -> Option<TickSummary> {
+        let tenth = self.ms.len() / 10;
+        (tenth > 0).then(|| TickSummary {
+            first: Tenth::of(&self.ms[..tenth]),
+            last: Tenth::of(&self.ms[self.ms.len() - tenth..]),
+        })
+    }
+}
+
+impl Tenth {
+    fn of(ticks_ms: &[f64]) -> Self {
+        let mut sorted = ticks_ms.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        Self {
+            median_ms: sorted[sorted.len() / 2],
+            mean_ms: sorted.iter().sum::<f64>() / sorted.len() as f64,
+            worst_ms: sorted[sorted.len() - 1],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_tenth_and_the_last_are_told_apart() {
+        let mut costs = TickCosts::default();
+        (0..9).for_each(|k| costs.push(f64::from(k)));
+        assert!(costs.summary().is_none());
+        (9..35).for_each(|k| costs.push(f64::from(k)));
+        let TickSummary { first, last } = costs.summary().unwrap();
+        let told = |tenth: Tenth| [tenth.median_ms, tenth.mean_ms, tenth.worst_ms];
+        assert_eq!(told(first), [1.0, 1.0, 2.0]);
+        assert_eq!(told(last), [33.0, 33.0, 34.0]);
+    }
+}
