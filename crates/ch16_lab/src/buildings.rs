@@ -11,9 +11,11 @@
 pub mod kinds;
 mod plan;
 mod recording;
+mod robots;
 mod trial;
 
-pub use kinds::{Kind, recorded};
+pub use kinds::{Kind, recorded, recorded_by};
 pub use plan::{BuildingConfig, BuildingPlan, Layout, Rooms};
-pub use recording::{RecordedFrame, Recorder, Recording};
+pub use recording::{Mounting, RecordedFrame, Recorder, Recording};
+pub use robots::Robot;
 pub use trial::{Trial, TrialLoops};

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 
-use ch16_lab::buildings::{Kind, Recording, Trial, recorded};
+use ch16_lab::buildings::{Kind, Recording, Robot, Trial, recorded_by};
 use ch16_slam2d::slam::parameters::{Parameter, ParameterError};
 use clap::Args;
 use rayon::prelude::*;
@@ -29,6 +29,9 @@ pub struct BuildingsArgs {
     /// What is driven through, and with which scanner.
     #[arg(long, default_value = "ring", value_parser = choice::<Kind>())]
     kind: Kind,
+    /// Who drives through it, where it is not the robot of that kind.
+    #[arg(long, default_value = "own", value_parser = choice::<Robot>())]
+    robot: Robot,
     /// Leave the wheels out: scans alone.
     #[arg(long)]
     no_odometry: bool,
@@ -105,7 +108,7 @@ pub fn run(args: &BuildingsArgs) -> Result<(), BuildingsFailure> {
         return Err(BuildingsFailure::TooMany { seeds });
     }
     if let Some(path) = &args.log {
-        let (recording, _) = recorded(args.kind, args.seeds.first);
+        let (recording, _) = recorded_by(args.robot, args.kind, args.seeds.first);
         return write(path, &recording).map_err(|source| BuildingsFailure::Write {
             path: path.display().to_string(),
             source,
@@ -128,7 +131,7 @@ pub fn run(args: &BuildingsArgs) -> Result<(), BuildingsFailure> {
 }
 
 fn row(args: &BuildingsArgs, seed: u32) -> Result<Row, ParameterError> {
-    let (recording, mut config) = recorded(args.kind, seed);
+    let (recording, mut config) = recorded_by(args.robot, args.kind, seed);
     for (name, value) in &args.settings {
         Parameter::named(name)?.set(&mut config, *value)?;
     }

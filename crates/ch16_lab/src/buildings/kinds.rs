@@ -6,6 +6,7 @@ use ch16_slam2d::slam::SlamConfig;
 
 use super::plan::{BuildingConfig, BuildingPlan, Layout, Rooms};
 use super::recording::{Recorder, Recording};
+use super::robots::Robot;
 use crate::lap::Choice;
 
 /// What is driven through, and with which scanner.
@@ -43,9 +44,15 @@ impl Choice for Kind {
     }
 }
 
-/// What a robot records in the building of a seed, and the defaults for its scanner.
+/// What the robot of a kind records in the building of a seed, and the defaults for its scanner.
 #[must_use]
 pub fn recorded(kind: Kind, seed: u32) -> (Recording, SlamConfig) {
+    recorded_by(Robot::Own, kind, seed)
+}
+
+/// What another robot records there.
+#[must_use]
+pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, SlamConfig) {
     let plan = BuildingConfig {
         seed,
         ..BuildingConfig::default()
@@ -92,6 +99,7 @@ pub fn recorded(kind: Kind, seed: u32) -> (Recording, SlamConfig) {
             },
         ),
     };
+    let robot = driver.instead_of(robot);
     let recording = Recording::new(&BuildingPlan::new(&plan), &robot);
     let config = SlamConfig::for_robot(&recording.frames[0].scan);
     (recording, config)

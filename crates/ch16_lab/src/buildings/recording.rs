@@ -16,6 +16,16 @@ const PERSON_M: f64 = 0.18;
 /// Turn from one scan to the next on the spot, rad.
 const TURN_RAD: f64 = 0.3;
 
+/// Whether a log says where the sensor sits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mounting {
+    /// Every scan carries it.
+    #[default]
+    Told,
+    /// Scans look as if the sensor sat above the axle.
+    Untold,
+}
+
 /// A robot with its sensor and its faults.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recorder {
@@ -33,8 +43,18 @@ pub struct Recorder {
     pub range_step_m: f64,
     /// Share of the beams that tell some range in front of the wall.
     pub stray: f64,
+    /// Share of the beams that tell no range: 0, no number, or infinity.
+    pub dropped: f64,
+    /// Where the sensor sits on the body.
+    pub body_from_sensor: SE2,
+    /// Whether the log says so.
+    pub mounting: Mounting,
     /// Way from scan to scan, the shortest and the longest, m.
     pub spacing_m: [f64; 2],
+    /// So many more scans are taken on each spot where the way bends.
+    pub rests: usize,
+    /// Wheels measure so many times the way, and more or less by what they slip.
+    pub wheel_scale: f64,
     /// Wheels measure so much of the way too little or too much, a standard deviation.
     pub slip: f64,
     /// Heading that the wheels lose on each metre, rad: the same on the whole way.
@@ -56,11 +76,26 @@ impl Default for Recorder {
             range_sigma_m: 0.015,
             range_step_m: 0.01,
             stray: 0.01,
+            dropped: 0.0,
+            body_from_sensor: SE2::identity(),
+            mounting: Mounting::Told,
             spacing_m: [0.2, 0.5],
+            rests: 0,
+            wheel_scale: 1.0,
             slip: 0.05,
             drift_rad: 0.01,
             jumps: 0.004,
             people: 2,
+        }
+    }
+}
+
+impl Recorder {
+    /// From the body to what a reader of the log takes for it.
+    fn untold(&self) -> SE2 {
+        match self.mounting {
+            Mounting::Told => SE2::identity(),
+            Mounting::Untold => self.body_from_sensor,
         }
     }
 }
@@ -74,7 +109,7 @@ pub struct RecordedFrame {
     pub odometry: SE2,
     /// The scan with its geometry.
     pub scan: LaserScan,
-    /// Where the body was, `world_from_body`.
+    /// Where the body was, `world_from_body`; where the log does not tell the mounting, the sensor.
     pub truth: SE2,
 }
 
@@ -109,7 +144,7 @@ impl Recording {
                 stamp_s: 0.5 * number as f64,
                 odometry,
                 scan,
-                truth: *truth,
+                truth: *truth * recorder.untold(),
             });
         }
         Self { frames }
@@ -164,6 +199,8 @@ fn poses(plan: &BuildingPlan, recorder: &Recorder, rng: &mut Rng) -> Vec<SE2> {
             poses.push(SE2::new(x, y, heading + rng.normal(0.0, 0.04)));
             along += rng.uniform(shortest, longest);
         }
+        let last = poses.last().copied();
+        poses.extend(last.into_iter().cycle().take(recorder.rests));
     }
     poses
 }
@@ -184,7 +221,7 @@ impl Wheels {
                 rng.uniform(-PI, PI),
             ),
             recorder: *recorder,
-            scale: 1.0 + rng.normal(0.0, 0.5 * recorder.slip),
+            scale: recorder.wheel_scale + rng.normal(0.0, 0.5 * recorder.slip),
         }
     }
 
@@ -280,9 +317,13 @@ impl Scanner {
             range_sigma_m,
             range_step_m,
             stray,
+            dropped,
+            body_from_sensor,
+            mounting,
             ..
         } = self.recorder;
-        let (here, far) = (body.position(), max_range_m);
+        let sensor = *body * body_from_sensor;
+        let (here, far) = (sensor.position(), max_range_m);
         let nearby = crowd(
             people
                 .into_iter()
@@ -293,7 +334,7 @@ impl Scanner {
         self.people.stand_at(&nearby, here, far);
         let mut ranges_m = Vec::with_capacity(self.recorder.beams);
         for beam in 0..self.recorder.beams {
-            let angle = body.theta() + self.first_angle_rad + beam as f64 * self.angle_step_rad;
+            let angle = sensor.theta() + self.first_angle_rad + beam as f64 * self.angle_step_rad;
             let mut range = self.opaque.cast(angle);
             let pane = self.glass.cast(angle);
             // Facades stand along the axes: where the beam does, too, the pane sends it back.
@@ -306,6 +347,10 @@ impl Scanner {
                 range *= rng.uniform(0.3, 1.0);
             }
             let noise = rng.normal(0.0, range_sigma_m);
+            if dropped > 0.0 && rng.unit() < dropped {
+                ranges_m.push([0.0, f64::NAN, f64::INFINITY][beam % 3]);
+                continue;
+            }
             ranges_m.push(if range >= far {
                 // What a scanner of this kind tells of a beam that met nothing.
                 far + 1.0
@@ -317,6 +362,10 @@ impl Scanner {
             first_angle_rad: self.first_angle_rad,
             angle_step_rad: self.angle_step_rad,
             range_max_m: far,
+            body_from_sensor: match mounting {
+                Mounting::Told => body_from_sensor,
+                Mounting::Untold => SE2::identity(),
+            },
             ranges_m,
             ..LaserScan::default()
         }

@@ -1,0 +1,253 @@
+//! Robots other than those of the kinds: another sensor, other wheels, other faults.
+
+use core::f64::consts::{PI, TAU};
+
+use pr_geom::SE2;
+
+use super::recording::{Mounting, Recorder};
+use crate::lap::Choice;
+
+/// Who drives through a building of some [`Kind`](super::Kind); each but the first differs in one thing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Robot {
+    /// The robot of the kind.
+    #[default]
+    Own,
+    /// 181 beams over half a circle, 80 m.
+    Degree,
+    /// The same, to 8 m.
+    Short,
+    /// 91 beams over half a circle, 30 m.
+    Coarse,
+    /// 360 beams over the full circle to 3.5 m, ranges off by 3 cm.
+    Small,
+    /// The same to 12 m.
+    Spinning,
+    /// 682 beams over 240°, 5.6 m.
+    Hand,
+    /// 1081 beams over 270°, 30 m.
+    Fine,
+    /// A scan every 3 to 8 cm.
+    Often,
+    /// A scan every 0.6 to 1 m.
+    Seldom,
+    /// Wheels that slip and drift three times as much.
+    Slippery,
+    /// Wheels that jump three times as often.
+    Jumpy,
+    /// Wheels that turn by 2° a metre, and do nothing else wrong.
+    Veering,
+    /// Wheels that measure a tenth too much.
+    Oversized,
+    /// A sensor 0.3 m ahead of the wheels' axle that looks back, and the log says so.
+    Ahead,
+    /// A sensor 0.2 m ahead, of which the log says nothing.
+    Untold,
+    /// One beam of twenty tells some range in front of the wall.
+    Stray,
+    /// One beam of five tells 0, no number, or infinity.
+    Dropping,
+    /// Fifty scans on each spot where the way bends.
+    Resting,
+    /// Ten people who walk along.
+    Crowded,
+}
+
+impl Choice for Robot {
+    const ALL: &'static [Self] = &[
+        Self::Own,
+        Self::Degree,
+        Self::Short,
+        Self::Coarse,
+        Self::Small,
+        Self::Spinning,
+        Self::Hand,
+        Self::Fine,
+        Self::Often,
+        Self::Seldom,
+        Self::Slippery,
+        Self::Jumpy,
+        Self::Veering,
+        Self::Oversized,
+        Self::Ahead,
+        Self::Untold,
+        Self::Stray,
+        Self::Dropping,
+        Self::Resting,
+        Self::Crowded,
+    ];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Own => "own",
+            Self::Degree => "degree",
+            Self::Short => "short",
+            Self::Coarse => "coarse",
+            Self::Small => "small",
+            Self::Spinning => "spinning",
+            Self::Hand => "hand",
+            Self::Fine => "fine",
+            Self::Often => "often",
+            Self::Seldom => "seldom",
+            Self::Slippery => "slippery",
+            Self::Jumpy => "jumpy",
+            Self::Veering => "veering",
+            Self::Oversized => "oversized",
+            Self::Ahead => "ahead",
+            Self::Untold => "untold",
+            Self::Stray => "stray",
+            Self::Dropping => "dropping",
+            Self::Resting => "resting",
+            Self::Crowded => "crowded",
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Own => "the robot of the kind",
+            Self::Degree => "181 beams over half a circle, 80 m",
+            Self::Short => "181 beams over half a circle, 8 m",
+            Self::Coarse => "91 beams over half a circle, 30 m",
+            Self::Small => "360 beams over the full circle, 3.5 m, off by 3 cm",
+            Self::Spinning => "360 beams over the full circle, 12 m, off by 3 cm",
+            Self::Hand => "682 beams over 240°, 5.6 m",
+            Self::Fine => "1081 beams over 270°, 30 m",
+            Self::Often => "a scan every 3 to 8 cm",
+            Self::Seldom => "a scan every 0.6 to 1 m",
+            Self::Slippery => "wheels that slip and drift three times as much",
+            Self::Jumpy => "wheels that jump three times as often",
+            Self::Veering => "wheels that turn by 2° a metre and are right in all else",
+            Self::Oversized => "wheels that measure a tenth too much",
+            Self::Ahead => "a sensor 0.3 m ahead of the axle that looks back",
+            Self::Untold => "a sensor 0.2 m ahead, of which the log says nothing",
+            Self::Stray => "one beam of twenty tells some range in front of the wall",
+            Self::Dropping => "one beam of five tells 0, no number, or infinity",
+            Self::Resting => "fifty scans on each spot where the way bends",
+            Self::Crowded => "ten people who walk along",
+        }
+    }
+}
+
+impl Robot {
+    /// The recorder of a kind, changed into this robot's.
+    #[must_use]
+    pub fn instead_of(self, own: Recorder) -> Recorder {
+        let sensor = |beams: usize, field_of_view_rad: f64, max_range_m: f64| Recorder {
+            beams,
+            field_of_view_rad,
+            max_range_m,
+            ..own
+        };
+        let noisy = |recorder: Recorder| Recorder {
+            range_sigma_m: 0.03,
+            ..recorder
+        };
+        match self {
+            Self::Own => own,
+            Self::Degree => sensor(181, PI, 80.0),
+            Self::Short => sensor(181, PI, 8.0),
+            Self::Coarse => sensor(91, PI, 30.0),
+            Self::Small => noisy(sensor(360, TAU, 3.5)),
+            Self::Spinning => noisy(sensor(360, TAU, 12.0)),
+            Self::Hand => sensor(682, TAU * 240.0 / 360.0, 5.6),
+            Self::Fine => sensor(1081, 1.5 * PI, 30.0),
+            Self::Often => Recorder {
+                spacing_m: [0.03, 0.08],
+                ..own
+            },
+            Self::Seldom => Recorder {
+                spacing_m: [0.6, 1.0],
+                ..own
+            },
+            Self::Slippery => Recorder {
+                slip: 3.0 * own.slip,
+                drift_rad: 3.0 * own.drift_rad,
+                ..own
+            },
+            Self::Jumpy => Recorder {
+                jumps: 3.0 * own.jumps,
+                ..own
+            },
+            Self::Veering => Recorder {
+                slip: 0.0,
+                drift_rad: PI / 90.0,
+                jumps: 0.0,
+                ..own
+            },
+            Self::Oversized => Recorder {
+                wheel_scale: 1.1,
+                ..own
+            },
+            Self::Ahead => Recorder {
+                body_from_sensor: SE2::new(0.3, 0.0, PI),
+                ..own
+            },
+            Self::Untold => Recorder {
+                body_from_sensor: SE2::new(0.2, 0.0, 0.0),
+                mounting: Mounting::Untold,
+                ..own
+            },
+            Self::Stray => Recorder { stray: 0.05, ..own },
+            Self::Dropping => Recorder {
+                dropped: 0.2,
+                ..own
+            },
+            Self::Resting => Recorder { rests: 50, ..own },
+            Self::Crowded => Recorder { people: 10, ..own },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::buildings::{Kind, recorded, recorded_by};
+    use ch16_slam2d::metrics::position_error_m;
+
+    #[test]
+    fn each_robot_differs_from_the_kinds_own_and_from_all_others() {
+        let own = Recorder::default();
+        let recorders: Vec<Recorder> = Robot::ALL
+            .iter()
+            .map(|robot| robot.instead_of(own))
+            .collect();
+        assert_eq!(recorders[0], own);
+        for (k, recorder) in recorders.iter().enumerate() {
+            assert!(
+                !recorders[..k].contains(recorder),
+                "{}",
+                Robot::ALL[k].name()
+            );
+        }
+    }
+
+    #[test]
+    fn what_a_log_does_not_tell_is_where_its_sensor_sits() {
+        let (told, _) = recorded(Kind::Hallway, 1);
+        let (untold, _) = recorded_by(Robot::Untold, Kind::Hallway, 1);
+        let sensor = SE2::new(0.2, 0.0, 0.0);
+        for (told, untold) in told.frames.iter().zip(&untold.frames).take(20) {
+            assert_eq!(untold.scan.body_from_sensor, SE2::identity());
+            assert_eq!(untold.odometry, told.odometry);
+            assert!(position_error_m(&untold.truth, &(told.truth * sensor)) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn one_beam_of_five_is_dropped_and_a_robot_that_rests_stays_where_it_is() {
+        let (dropping, _) = recorded_by(Robot::Dropping, Kind::Hallway, 1);
+        let scan = &dropping.frames[10].scan;
+        let seen = scan
+            .ranges_m
+            .iter()
+            .filter(|range| **range > 0.0 && range.is_finite());
+        let share = seen.count() as f64 / scan.ranges_m.len() as f64;
+        // 0.2 of 360 beams, with a standard deviation of 0.02.
+        assert!((share - 0.8).abs() < 0.08, "{share}");
+
+        let (resting, _) = recorded_by(Robot::Resting, Kind::Hallway, 1);
+        let pairs = resting.frames.windows(2);
+        let still = pairs.filter(|pair| pair[0].truth == pair[1].truth).count();
+        assert!(still >= 50 && still.is_multiple_of(50), "{still}");
+    }
+}
