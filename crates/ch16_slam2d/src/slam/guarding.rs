@@ -1,7 +1,7 @@
 //! Loops that wait until others agree with them.
 
 use nalgebra::Matrix3;
-use pr_geom::math;
+use pr_geom::{SE2, math};
 use pr_optim::OptimizeError;
 
 use super::Slam;
@@ -209,21 +209,47 @@ impl Slam {
     ///
     /// Each step counts by the share of it that the wheels alone tell: where the scans say where the robot
     /// is, wheels of the wrong size do no harm.
-    fn blind_drift_m(&self, old: usize, new: usize) -> f64 {
+    pub(super) fn blind_drift_m(&self, old: usize, new: usize) -> f64 {
         let (first, last) = (old.min(new), old.max(new));
-        let steps = self.graph.edges().filter(|view| {
-            let (from, to) = (view.from.index(), view.to.index());
-            view.edge.kind == EdgeKind::Odometry && first <= from && to <= last
-        });
-        let blind = steps.map(|view| {
-            let motion = view.edge.measurement;
-            let wheels = self.config.odometry_noise.covariance(&motion);
-            let claimed = view.edge.information / self.config.confidence;
-            let known = claimed.try_inverse().unwrap_or(wheels);
-            let share = math::sqrt(widest_variance(&known) / wheels[(0, 0)]);
-            math::min(share, 1.0) * math::norm2(motion.x(), motion.y())
-        });
-        0.5 * self.config.loops.drift_share * blind.sum::<f64>()
+        let blind_m: f64 = if self.submap_loops.is_some() {
+            self.blind_steps_m(first, last).sum()
+        } else {
+            let steps = self.graph.edges().filter(|view| {
+                let (from, to) = (view.from.index(), view.to.index());
+                view.edge.kind == EdgeKind::Odometry && first <= from && to <= last
+            });
+            steps
+                .map(|view| self.blind_m(&view.edge.measurement, &view.edge.information))
+                .sum()
+        };
+        0.5 * self.config.loops.drift_share * blind_m
+    }
+
+    /// The blind part of each step between two nodes of a map on submaps, m.
+    ///
+    /// There the edges start at anchors, metres back, and two submaps share what one registration
+    /// tells: so a step is known by all edges that end with it, and is as long as the way.
+    fn blind_steps_m(&self, first: usize, last: usize) -> impl Iterator<Item = f64> {
+        let mut known = vec![Matrix3::zeros(); last - first];
+        for view in self.graph.edges() {
+            let to = view.to.index();
+            if view.edge.kind == EdgeKind::Odometry && first < to && to <= last {
+                known[to - first - 1] += view.edge.information;
+            }
+        }
+        let steps = self.graph.poses()[first..=last].windows(2);
+        steps
+            .zip(known)
+            .map(|(step, information)| self.blind_m(&step[0].between(&step[1]), &information))
+    }
+
+    /// How much of a motion the wheels alone tell, m, where so much is known of it.
+    fn blind_m(&self, motion: &SE2, information: &Matrix3<f64>) -> f64 {
+        let wheels = self.config.odometry_noise.covariance(motion);
+        let claimed = information / self.config.confidence;
+        let known = claimed.try_inverse().unwrap_or(wheels);
+        let share = math::sqrt(widest_variance(&known) / wheels[(0, 0)]);
+        math::min(share, 1.0) * math::norm2(motion.x(), motion.y())
     }
 
     /// Length of the way of the keyframes between two nodes, m.

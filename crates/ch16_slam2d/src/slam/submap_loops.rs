@@ -69,6 +69,7 @@ impl Slam {
                 gate_information,
                 &loops,
             );
+            let verification = self.guarded(verification);
             if self.report_attempt(verification, pending) {
                 return;
             }
@@ -80,7 +81,7 @@ impl Slam {
 mod tests {
 
     use crate::graph::EdgeKind;
-    use crate::loops::LoopCandidate;
+    use crate::loops::{LoopCandidate, LoopRejection};
     use crate::metrics::position_error_m;
     use crate::slam::test_room::{frame, truth};
     use crate::slam::{Slam, SlamConfig};
@@ -89,6 +90,10 @@ mod tests {
     fn slam(scans: usize) -> Slam {
         let mut config = SlamConfig::for_robot(&frame(0).scan);
         config.start = truth(0);
+        with_submaps(config, scans)
+    }
+
+    fn with_submaps(mut config: SlamConfig, scans: usize) -> Slam {
         let submaps = SubmapConfig {
             scans,
             ..SubmapConfig::of(&config)
@@ -172,6 +177,44 @@ mod tests {
             .fold(0.0, f64::max);
         // A cell and a half.
         assert!(worst_m < 0.1, "{worst_m} m");
+    }
+
+    #[test]
+    fn loops_on_submaps_wait_for_others_where_the_guard_says_so() {
+        let mut config = SlamConfig::for_robot(&frame(0).scan);
+        config.start = truth(0);
+        let guard = config.loops.guard.as_mut().unwrap();
+        guard.sure_m = 0.0;
+        (guard.agreeing, guard.agreeing_outside) = (usize::MAX, usize::MAX);
+        let mut slam = with_submaps(config, 20);
+        let mut attempts = Vec::new();
+        for step in 0..=210 {
+            attempts.extend(slam.step(&frame(step)).unwrap().loop_attempts);
+        }
+        let waits = |rejection| matches!(rejection, Some(LoopRejection::Waiting { .. }));
+        let found = attempts.iter().map(|attempt| &attempt.verification);
+        assert!(found.clone().all(|found| !found.accepted()));
+        assert!(found.filter(|found| waits(found.rejection)).count() >= 2);
+    }
+
+    #[test]
+    fn drift_counts_a_step_once_however_many_submaps_it_is_tied_to() {
+        let slam = two_laps(20);
+        let last = slam.keyframes().len() - 1;
+        let way_m = slam.way_between_m(0, last);
+        let edges = slam.graph().edges();
+        let edges_m: f64 = edges
+            .filter(|view| view.edge.kind == EdgeKind::Odometry)
+            .map(|view| position_error_m(&view.edge.measurement, &pr_geom::SE2::identity()))
+            .sum();
+        // Anchors lie metres back.
+        assert!(edges_m > 2.0 * way_m, "{edges_m} m on {way_m} m");
+        let drift_m = slam.blind_drift_m(0, last);
+        let most_m = 0.5 * slam.config().loops.drift_share * way_m;
+        assert!(
+            drift_m > 0.0 && drift_m < most_m,
+            "{drift_m} m of {most_m} m"
+        );
     }
 
     #[test]
