@@ -122,6 +122,16 @@ pub enum LapError {
     /// The wardrobe has its place in the Apartment.
     #[error("--wardrobe moves one through the Apartment; leave --world out")]
     NotTheApartment,
+    /// The wardrobe stays until a lap that is never driven.
+    #[error(
+        "--wardrobe {lap} waits for a lap that --laps {count} does not drive; take one up to {count}"
+    )]
+    NoSuchLap {
+        /// The lap.
+        lap: usize,
+        /// How many are driven.
+        count: usize,
+    },
     /// The session cannot be written.
     #[error("{}: {source}", path.display())]
     Written {

@@ -229,6 +229,14 @@ fn lap_after_lap_is_told_in_lines_and_left_as_a_session() {
             vec!["lap", "--laps", "2", "--wardrobe", "1", "--world", "ring"],
             "--wardrobe moves one through the Apartment",
         ),
+        (
+            vec!["lap", "--laps", "2", "--wardrobe", "3"],
+            "--laps 2 does not drive; take one up to 2",
+        ),
+        (
+            vec!["lap", "--laps", "2", "--front-end", "submaps"],
+            "cannot be used with",
+        ),
     ] {
         assert_refused(&arguments, said);
     }

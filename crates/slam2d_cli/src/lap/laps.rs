@@ -20,7 +20,7 @@ use crate::output::{print_json, say};
 pub struct LapsArgs {
     /// Drive so many laps one after the other, with the values for robots, and keep the map up.
     #[arg(long, value_name = "N", value_parser = numbers::laps,
-          conflicts_with_all = ["matcher", "loop_matcher", "detector", "gate", "information", "frames", "no_loops", "estimator"])]
+          conflicts_with_all = ["matcher", "front_end", "loop_matcher", "detector", "gate", "information", "frames", "no_loops", "estimator"])]
     pub laps: Option<usize>,
     /// After the last lap write the session into this file.
     #[arg(long, value_name = "FILE", requires = "laps")]
@@ -72,6 +72,9 @@ pub fn run(
 ) -> Result<(), LapError> {
     if args.wardrobe.is_some() && *course != Course::apartment() {
         return Err(LapError::NotTheApartment);
+    }
+    if let Some(lap) = args.wardrobe.filter(|&lap| lap > count) {
+        return Err(LapError::NoSuchLap { lap, count });
     }
     let mut config = LapsConfig::new(course, seed, noise);
     config.wardrobe = args.wardrobe;
