@@ -70,6 +70,9 @@ impl LineFormat for Carmen {
         let mut fields = Fields::of(text);
         let kind = fields.word();
         let records = notes.records.len();
+        if ["FLASER", "ROBOTLASER1", "RAWLASER1", "ODOM", "PARAM"].contains(&kind) {
+            self.known_lines += 1;
+        }
         let mut count = || {
             *notes.records.entry(printable(kind)).or_default() += 1;
         };
@@ -77,19 +80,16 @@ impl LineFormat for Carmen {
             "FLASER" => {
                 let frame = self.front.frame(&mut fields, frames)?;
                 count();
-                self.known_lines += 1;
                 Ok(self.choose(Source::Flaser).then_some(frame))
             }
             "ROBOTLASER1" => {
                 let frame = laser_message(&mut fields, true, frames)?;
                 count();
-                self.known_lines += 1;
                 Ok(self.choose(Source::RobotLaser).then_some(frame))
             }
             "RAWLASER1" => {
                 let frame = laser_message(&mut fields, false, frames)?;
                 count();
-                self.known_lines += 1;
                 // A log often has the same scan as ROBOTLASER1 right after it.
                 if matches!(self.chosen, None | Some(Source::RawLaser)) {
                     self.raw.push(frame);
@@ -99,12 +99,10 @@ impl LineFormat for Carmen {
             "ODOM" => {
                 let (stamp_s, pose) = odometry_message(&mut fields)?;
                 count();
-                self.known_lines += 1;
                 self.raw.take_odometry(stamp_s, pose);
                 Ok(None)
             }
             "PARAM" => {
-                self.known_lines += 1;
                 count();
                 self.front.take_parameter(&mut fields);
                 Ok(None)
@@ -151,7 +149,9 @@ impl Carmen {
     fn choose(&mut self, kind: Source) -> bool {
         if self.chosen.is_none() {
             self.chosen = Some(kind);
-            self.raw.forget();
+            if kind != Source::RawLaser {
+                self.raw.forget();
+            }
         }
         self.chosen == Some(kind)
     }

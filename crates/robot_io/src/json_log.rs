@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::line_log::{LineFormat, LineReader};
 use crate::log::{LogFrame, LogNotes};
+use crate::place::checked;
 
 /// One line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -142,8 +143,12 @@ impl LineFormat for JsonLines {
             return Ok(None);
         }
         let line: FrameLine = serde_json::from_slice(line).map_err(|problem| in_words(&problem))?;
+        let frame = LogFrame::from(line);
+        for pose in [Some(frame.scan.body_from_sensor), frame.odometry] {
+            pose.map(checked).transpose()?;
+        }
         *notes.records.entry("frame".to_owned()).or_default() += 1;
-        Ok(Some(line.into()))
+        Ok(Some(frame))
     }
 }
 

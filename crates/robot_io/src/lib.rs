@@ -40,3 +40,4 @@ pub mod session;
 pub mod trajectory;
 
 mod lines;
+mod place;

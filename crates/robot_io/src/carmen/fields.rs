@@ -5,6 +5,7 @@ use pr_geom::SE2;
 
 use crate::lines::{finite, printable};
 use crate::log::LogFrame;
+use crate::place::checked;
 
 /// More beams than any planar laser has.
 const MOST_BEAMS: usize = 100_000;
@@ -35,7 +36,7 @@ impl<'a> Fields<'a> {
     /// The next three words as a pose.
     pub fn pose(&mut self, names: [&str; 3]) -> Result<SE2, String> {
         let [x, y, theta] = names;
-        Ok(SE2::new(
+        checked(SE2::new(
             self.number(x)?,
             self.number(y)?,
             self.number(theta)?,

@@ -5,6 +5,7 @@ use pr_geom::SE2;
 
 use super::fields::Fields;
 use crate::log::LogFrame;
+use crate::place::is_length;
 
 /// Farther readings of the lasers that wrote these logs saw nothing, m.
 const FARTHEST_M: f64 = 80.0;
@@ -31,7 +32,8 @@ impl FrontLaser {
     /// Takes a PARAM line; names that say nothing of the front laser are left.
     pub fn take_parameter(&mut self, fields: &mut Fields<'_>) {
         let name = fields.word();
-        let Ok(value) = fields.number(name) else {
+        let value = fields.number(name).ok().filter(|value| is_length(*value));
+        let Some(value) = value else {
             return;
         };
         match name {

@@ -80,6 +80,15 @@ fn a_raw_scan_takes_the_odometry_of_its_time() {
 }
 
 #[test]
+fn raw_scans_without_any_odometry_are_all_read() {
+    // More than wait for odometry at a time.
+    let raw = |t: usize| format!("RAWLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 {t} h {t}\n");
+    let (frames, _) = read((1..=200).map(raw).collect::<String>()).unwrap();
+    assert_eq!(frames.len(), 200);
+    assert!(frames.iter().all(|frame| frame.odometry.is_none()));
+}
+
+#[test]
 fn a_scan_that_is_logged_twice_is_read_once() {
     let text = "\
 ODOM 0 0 0 0 0 0 1 h 1
@@ -149,7 +158,15 @@ fn what_holds_no_scan_is_refused_in_one_sentence() {
         ),
         (
             "FLASER 2 1",
-            "x.clf is no CARMEN log; give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1",
+            "x.clf holds no scan that can be used: line 1: 2 readings were announced, and 1 stand there",
+        ),
+        (
+            "FLASER 1 1.5 0 0 0 0 0 0 1 h 1\n",
+            "x.clf holds no scan that can be used: line 1: a scan has to have two readings at least",
+        ),
+        (
+            "FLASER 2 1 2 0 0 0 1e300 0 0 1 h 1\n",
+            "x.clf holds no scan that can be used: line 1: a pose has to lie within 41000 km of its origin, and is 1e300 m, 0e0 m",
         ),
     ] {
         let error = read(text).unwrap_err().to_string();

@@ -13,6 +13,7 @@ use super::transforms::{Mount, Transforms, planar};
 use super::waiting::{WaitingScan, WaitingScans, WheelPoses};
 use super::wire::WireReader;
 use crate::log::{LogFrame, LogNotes, LogOptions};
+use crate::place::checked;
 
 /// A recording of garbage has no end of topics.
 const MOST_TOPICS: usize = 1000;
@@ -46,6 +47,8 @@ pub struct Collector {
     /// Why clouds that were not asked for are no scans.
     other_clouds: Option<String>,
     warning: Option<String>,
+    /// Scans whose odometry had not come when they had waited long enough.
+    early: usize,
     is_done: bool,
 }
 
@@ -144,10 +147,7 @@ impl Collector {
         }
         let mut fields = reader(message)?;
         let told = odometry(&mut fields).map_err(|problem| problem.to_string())?;
-        let pose = planar(&told.pose);
-        if !pose.to_array().iter().all(|value| value.is_finite()) {
-            return Err("a pose has to be finite numbers".to_owned());
-        }
+        let pose = checked(planar(&told.pose))?;
         self.odometry_topic
             .get_or_insert_with(|| message.topic.clone());
         if self.by_odometry.is_empty() {
@@ -163,10 +163,9 @@ impl Collector {
     }
 
     fn take_transform(&mut self, told: &TransformMessage) {
-        let pose = planar(&told.transform);
-        if !pose.to_array().iter().all(|value| value.is_finite()) {
+        let Ok(pose) = checked(planar(&told.transform)) else {
             return;
-        }
+        };
         self.transforms.take(told);
         let parent = &told.header.frame;
         let is_odometry = match &self.options.odometry_frame {
@@ -201,6 +200,9 @@ impl Collector {
         let odometry = wheels.and_then(|wheels| wheels.at(stamp_s));
         if !is_over && self.mount.is_none() && self.look_for_mount(&first.sensor).is_none() {
             return None;
+        }
+        if !self.is_done && !wheels.is_some_and(|wheels| wheels.reaches(stamp_s)) {
+            self.early += 1;
         }
         self.wheel_source = source;
         let mut scan = self.waiting.pop()?;
@@ -250,6 +252,7 @@ impl Collector {
             problem => {
                 let why = match problem {
                     Some(Err(problem)) => problem,
+                    _ if sensor.is_empty() => "the scans do not name their frame".to_owned(),
                     _ => format!("no transform leads from {} to {sensor}", self.body()),
                 };
                 self.warning = Some(format!(
@@ -278,6 +281,13 @@ impl Collector {
             .map(|((topic, kind), &count)| (format!("{topic} {kind}"), count))
             .collect();
         notes.warnings = self.warning.iter().cloned().collect();
+        let has_wheels = !self.by_odometry.is_empty() || !self.by_transforms.is_empty();
+        if self.early > 0 && has_wheels {
+            notes.warnings.push(format!(
+                "{} scans stand long before the odometry of their time and go without it; sort the recording by time",
+                self.early
+            ));
+        }
         notes.offers = self.offers();
         notes.about.clear();
         let mut say = |text: String| notes.about.push(text);

@@ -2,6 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use super::collector::Collector;
+use super::container::{Container, Recorded};
+use super::mcap_file::McapFile;
 use crate::log::{LogError, LogFormat, LogFrame, LogNotes, LogOption, LogOptions};
 
 const FIXTURES: [(&str, &[u8]); 8] = [
@@ -161,6 +164,34 @@ fn topics_and_frames_can_be_chosen() {
     let taken = notes.offers.iter().map(|offer| offer.taken.as_deref());
     let taken: Vec<_> = taken.collect();
     assert_eq!(taken, [Some("/scan"), Some("/odom"), None, Some("laser")]);
+}
+
+#[test]
+fn scans_that_stand_long_before_the_odometry_of_their_time_are_told() {
+    let mut file = McapFile::new(fixture("plain.mcap"));
+    let mut all: Vec<Recorded> = Vec::new();
+    while let Some(message) = file.next_message().unwrap() {
+        all.push(message);
+    }
+    let (scans, others): (Vec<_>, Vec<_>) =
+        all.iter().partition(|message| message.topic == "/scan");
+    let mut collector = Collector::new(&LogOptions::default());
+    let mut bare = 0;
+    // More scans than wait at a time, and then all odometry.
+    for message in scans.iter().cycle().take(100).chain(&others) {
+        collector.take(message).unwrap();
+        while let Some(frame) = collector.pop() {
+            bare += usize::from(frame.odometry.is_none());
+        }
+    }
+    let mut notes = LogNotes::default();
+    collector.tell(&mut notes);
+    assert!(bare > 0);
+    let said = notes.warnings.join(" ");
+    assert!(
+        said.contains(&format!("{bare} scans stand long before the odometry")),
+        "{said}"
+    );
 }
 
 #[test]

@@ -1,0 +1,46 @@
+//! Where a robot can be: numbers beyond that are garbage, and would make poses that are none.
+
+use pr_geom::SE2;
+
+/// Once round the Earth, m: no frame of odometry, mounting or map has its origin farther away.
+const FARTHEST_M: f64 = 4.1e7;
+
+/// Whether a length is one that a robot may have.
+pub fn is_length(value_m: f64) -> bool {
+    value_m.abs() <= FARTHEST_M
+}
+
+/// A pose that a robot may have.
+///
+/// # Errors
+/// Where it has a number that is not finite, or lies out of the world.
+pub fn checked(pose: SE2) -> Result<SE2, String> {
+    let [x, y, theta] = pose.to_array();
+    if is_length(x) && is_length(y) && theta.is_finite() {
+        Ok(pose)
+    } else {
+        Err(format!(
+            "a pose has to lie within {:.0} km of its origin, and is {x:e} m, {y:e} m",
+            FARTHEST_M / 1e3
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pose_on_earth_is_taken_and_one_beyond_is_told() {
+        // The northern end of a UTM zone, in metres from the equator.
+        let far = SE2::new(834_000.0, 9_328_000.0, 3.0);
+        assert_eq!(checked(far), Ok(far));
+        for x in [1e300, f64::INFINITY, f64::NAN] {
+            let said = checked(SE2::new(x, 0.0, 0.0)).unwrap_err();
+            assert!(
+                said.starts_with("a pose has to lie within 41000 km"),
+                "{said}"
+            );
+        }
+    }
+}
