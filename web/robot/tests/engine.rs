@@ -2,7 +2,8 @@
 
 use std::sync::OnceLock;
 
-use robot_io::log::LogOptions;
+use robot_io::log::{LogFormat, LogOptions};
+use robot_io::run::{LogRun, OdometryUse};
 use slam_robot::engine::Engine;
 use slam_robot::sample;
 use slam_robot::update::{Stage, Update};
@@ -20,6 +21,16 @@ pub fn finished(bytes: &[u8]) -> Engine<'_> {
     let mut engine = open(bytes, "ring.log").unwrap();
     while engine.step() {}
     engine
+}
+
+/// Refuses the first loop of the list; what is told then.
+pub fn refuse_first(engine: &mut Engine<'_>) -> Vec<Update> {
+    engine.order("turn 0");
+    while engine.step() {}
+    let updates = engine.updates();
+    let said = &of(&updates, "answer").text;
+    assert!(said.contains("is out of the graph"), "{said}");
+    updates
 }
 
 pub fn of<'u>(updates: &'u [Update], kind: &str) -> &'u Update {
@@ -51,6 +62,49 @@ fn the_sample_becomes_a_map_with_loops_and_its_grade() {
     assert_eq!(of(&updates, "errors").numbers.len(), keyframes);
 }
 
+/// A loop as it is told: newer and older keyframe, χ² and its gate, and the verdict.
+fn told_loops(updates: &[Update]) -> Vec<([usize; 2], f64, f64, f64)> {
+    let loops = of(updates, "loops").numbers.chunks(10);
+    loops
+        .map(|told| {
+            let ends = [told[0] as usize, told[1] as usize];
+            (ends, told[6], told[7], told[8])
+        })
+        .collect()
+}
+
+#[test]
+fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
+    let (log, _) = files();
+    let mut engine = finished(log);
+    let told = told_loops(&engine.updates());
+    let closed: Vec<_> = told.iter().filter(|told| told.3 == 0.0).collect();
+    assert!(closed.len() > 5);
+    assert!(
+        closed.windows(2).all(|two| two[0].1 >= two[1].1),
+        "{told:?}"
+    );
+
+    // The same by the command's way through the file.
+    let mut reader = LogFormat::open(&log[..], "ring.log", &LogOptions::default()).unwrap();
+    let mut run = LogRun::new(OdometryUse::Log);
+    while let Some(frame) = reader.next_frame().unwrap() {
+        run.step(frame);
+    }
+    run.finish();
+    let quality = run.quality();
+    assert_eq!(quality.links.len(), closed.len());
+    for link in &quality.links {
+        let found = closed.iter().find(|told| told.0 == [link.from, link.to]);
+        assert_eq!(found.map(|told| Some(told.1)), Some(link.chi2), "{link:?}");
+    }
+    // A loop keeps its number while it is refused, though it is not the most doubtful any more.
+    let after = told_loops(&refuse_first(&mut engine));
+    let ends =
+        |told: &[([usize; 2], f64, f64, f64)]| told.iter().map(|told| told.0).collect::<Vec<_>>();
+    assert_eq!(ends(&after), ends(&told));
+}
+
 #[test]
 fn a_loop_that_is_refused_leaves_the_graph_and_comes_back() {
     let (log, _) = files();
@@ -66,10 +120,7 @@ fn a_loop_that_is_refused_leaves_the_graph_and_comes_back() {
         0.0,
         "closed ones come first"
     );
-    engine.order("turn 0");
-    while engine.step() {}
-    let after = engine.updates();
-    assert!(of(&after, "answer").text.contains("is out of the graph"));
+    let after = refuse_first(&mut engine);
     assert_eq!(of(&after, "loops").numbers[8], 2.0);
     assert_eq!(edges(&mut engine), all - 1);
     engine.order("turn 0");
@@ -181,13 +232,7 @@ fn a_graph_is_solved_and_edited_without_scans() {
     assert_eq!(engine.stage(), Stage::Done);
     assert_eq!(of(&updates, "file").numbers[1], 0.0);
     assert!(!of(&updates, "loops").numbers.is_empty());
-    engine.order("turn 0");
-    while engine.step() {}
-    assert!(
-        of(&engine.updates(), "answer")
-            .text
-            .contains("out of the graph")
-    );
+    refuse_first(&mut engine);
     engine.order("add 3 30");
     assert!(of(&engine.updates(), "answer").text.contains("no scans"));
     assert!(engine.file("map.png").unwrap_err().contains("no map"));

@@ -11,7 +11,7 @@ use slam_robot::sample;
 use slam_robot::update::{Stage, Update};
 use slam_robot::whereabouts::{HEAD, PLACE};
 
-use crate::engine::{files, finished, of, open};
+use crate::engine::{files, finished, of, open, refuse_first};
 
 fn saved() -> Vec<u8> {
     let mut engine = finished(&files().0);
@@ -90,13 +90,7 @@ fn a_session_is_edited_further_and_what_was_changed_is_saved_with_it() {
     let mut engine = opened(&session);
     let all = edges(&mut engine);
     engine.updates();
-    engine.order("turn 0");
-    while engine.step() {}
-    assert!(
-        of(&engine.updates(), "answer")
-            .text
-            .contains("out of the graph")
-    );
+    refuse_first(&mut engine);
     engine.order("look 3");
     assert!(of(&engine.updates(), "scan").numbers.len() > 50);
     let changed = engine.file("session.slam2d").unwrap();

@@ -25,10 +25,25 @@ impl Engine<'_> {
             }
             self.look_into = contradicting(&self.links).collect();
         }
+        if !self.is_ranked {
+            self.rank();
+        }
         self.news.keyframes = true;
         self.news.loops = true;
         self.news.doubts = true;
         self.work = Work::Idle;
+    }
+
+    /// Puts the loops in the order of doubt: those of the graph that it contradicts most come first. It
+    /// is done once, so that a loop keeps its number while the reader changes others.
+    fn rank(&mut self) {
+        let doubt = |link: &Link| link.chi2.unwrap_or(f64::INFINITY) / link.gate_chi2;
+        self.links.sort_by(|a, b| {
+            let in_graph = |link: &Link| link.verdict.is_in_graph();
+            let by_graph = in_graph(b).cmp(&in_graph(a));
+            by_graph.then(doubt(b).total_cmp(&doubt(a)))
+        });
+        self.is_ranked = true;
     }
 
     /// The quality of the run; the loops of a session have no registration to tell of.
@@ -74,13 +89,20 @@ impl Engine<'_> {
     fn take_quality(&mut self, quality: &Quality) {
         let keyframes = quality.keyframes.iter();
         self.sigmas_m = keyframes.map(|keyframe| keyframe.sigma_m()).collect();
-        // The links that were told to the run come back in their order.
-        let in_graph = self
+        for link in self
             .links
             .iter_mut()
-            .filter(|link| link.verdict.is_in_graph() && link.found.is_some());
-        for (link, known) in in_graph.zip(&quality.links) {
-            (link.chi2, link.gate_chi2) = (known.chi2, known.gate_chi2);
+            .filter(|link| link.verdict.is_in_graph())
+        {
+            let Some(found) = &link.found else { continue };
+            // Two registrations of one pair of keyframes differ in what fitted.
+            let known = quality.links.iter().find(|known| {
+                (known.from, known.to, known.inliers) == (link.new, link.old, found.inliers)
+                    && known.score == found.score
+            });
+            if let Some(known) = known {
+                (link.chi2, link.gate_chi2) = (known.chi2, known.gate_chi2);
+            }
         }
         self.doubts.clone_from(&quality.doubts);
         let stamps: Vec<f64> = quality.keyframes.iter().map(|k| k.stamp_s).collect();

@@ -226,7 +226,7 @@ impl<'a> Engine<'a> {
 
     fn may_edit(&self) -> Result<(), String> {
         match self.work {
-            Work::Checking | Work::Idle if !self.fixed.is_empty() => Ok(()),
+            Work::Checking | Work::Idle if self.is_ranked => Ok(()),
             Work::Failed(_) => Err("There is no graph to change.".to_owned()),
             _ => Err("The graph can be changed once the whole log is read.".to_owned()),
         }
