@@ -1,5 +1,6 @@
 //! The state of the widget: what the worker has told of a log, and how the reader looks at it.
 
+mod buttons;
 mod hands;
 mod picture;
 pub mod robot;
@@ -16,9 +17,9 @@ use kit::outside::Delivery;
 use kit::param::{Changed, ParamError, Values};
 use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
-use kit::spec::{DEFAULTS, PLAY, WidgetSpec};
+use kit::spec::{DEFAULTS, WidgetSpec};
 
-use crate::spec::{FILES, MOST_KEYFRAMES, MOST_SCANS, OPTIONS, PARAMS, SPEC};
+use crate::spec::{MOST_KEYFRAMES, MOST_SCANS, PARAMS, SPEC};
 use robot::{Robot, Stage};
 use whereabouts::Place;
 
@@ -84,13 +85,6 @@ impl OwnRobot {
         Some((self.values.get("loop") as usize).min(last))
     }
 
-    /// Keeps a value that lies in its range by construction.
-    fn store(&mut self, id: &str, value: f64) {
-        if let Err(error) = self.values.set(SPEC.id, id, value) {
-            panic!("a value of our own was refused: {error}");
-        }
-    }
-
     /// Asks for something; of two orders of a kind that replace each other only the later stands.
     fn ask(&mut self, order: String) {
         let kind = |order: &str| order.split(' ').next().unwrap_or_default().to_owned();
@@ -102,7 +96,7 @@ impl OwnRobot {
 
     /// Shows a keyframe, and asks for its scan.
     fn show(&mut self, keyframe: usize) {
-        self.store("keyframe", keyframe as f64);
+        self.values.store("keyframe", keyframe as f64);
         self.look();
     }
 
@@ -112,29 +106,6 @@ impl OwnRobot {
         if self.robot.has_scans && !is_there && !self.robot.keyframes.is_empty() {
             self.ask(format!("look {keyframe}"));
         }
-    }
-
-    fn press_play(&mut self) {
-        match self.robot.stage {
-            Stage::Empty | Stage::Failed => self.begin_sample(),
-            _ if self.robot.is_under_way() => {
-                self.robot.paused = !self.robot.paused;
-                let order = if self.robot.paused { "pause" } else { "resume" };
-                self.ask(order.to_owned());
-            }
-            _ => {
-                let (here, last) = (self.keyframe() as f64, self.last() as f64);
-                let position = self.playback.toggle(here, last);
-                self.store("keyframe", position);
-                self.look();
-            }
-        }
-    }
-
-    fn begin_sample(&mut self) {
-        self.ask("sample".to_owned());
-        self.robot = Robot::opening("the sample");
-        self.playback.pause();
     }
 
     /// Where the robot of another log may be at first, in the words of an order.
@@ -174,44 +145,7 @@ impl OwnRobot {
         };
         let next = (here + 1..places.len()).find(is_change).unwrap_or(0);
         let scan = places[next].scan;
-        self.store("scan", scan);
-    }
-
-    /// Asks for the next topic or frame that the recording offers for the option that is chosen.
-    fn take_other(&mut self) {
-        let option = OPTIONS[self.values.get("option") as usize].id;
-        let offer = self
-            .robot
-            .offers
-            .iter()
-            .find(|offer| offer.option == option);
-        let other = offer.and_then(|offer| {
-            let here = offer.names.iter().position(|name| *name == offer.taken);
-            let next = here.map_or(0, |here| (here + 1) % offer.names.len());
-            offer.names.get(next).filter(|name| **name != offer.taken)
-        });
-        match other {
-            Some(name) => self.ask(format!("option {option} {name}")),
-            None => {
-                self.robot.answer = "The recording offers nothing else to take here.".to_owned();
-            }
-        }
-    }
-
-    /// The loop after or before the one that is shown.
-    fn go_to_link(&mut self, forward: bool) {
-        let Some(here) = self.link() else {
-            return;
-        };
-        let last = self.robot.links.len() - 1;
-        let next = match (forward, here) {
-            (true, here) if here == last => 0,
-            (true, here) => here + 1,
-            (false, 0) => last,
-            (false, here) => here - 1,
-        };
-        self.store("loop", next as f64);
-        self.show_link();
+        self.values.store("scan", scan);
     }
 
     /// Goes to the newer keyframe of the loop that is shown.
@@ -237,16 +171,6 @@ impl OwnRobot {
         doubts
     }
 
-    fn go_to_doubt(&mut self) {
-        let here = self.keyframe();
-        let doubts = self.doubts();
-        let next = doubts.iter().find(|&&keyframe| keyframe > here);
-        if let Some(&next) = next.or(doubts.first()) {
-            self.playback.pause();
-            self.show(next);
-        }
-    }
-
     /// Says what a log is for that is dropped.
     fn ask_drop(&mut self) {
         let order = if self.values.get("drop") == 1.0 {
@@ -255,44 +179,6 @@ impl OwnRobot {
             "drop map"
         };
         self.ask(order.to_owned());
-    }
-
-    /// What a button does here; none where the button is none of this widget's own.
-    fn press_own(&mut self, id: &str) -> Option<()> {
-        let keyframe = self.keyframe();
-        match id {
-            "open" | "cancel" | "unpin" | "reference" => self.ask(id.to_owned()),
-            "sample" => self.begin_sample(),
-            "locate" | "locate-sample" => {
-                let order = format!("{id}{}", self.start());
-                self.ask(order);
-                self.store("scan", MOST_SCANS);
-            }
-            "change" => self.go_to_change(),
-            "other" => self.take_other(),
-            "doubt" => self.go_to_doubt(),
-            "previous" => self.go_to_link(false),
-            "next" => self.go_to_link(true),
-            "mark" => self.store("marked", keyframe as f64),
-            "turn" => {
-                if let Some(link) = self.link() {
-                    self.ask(format!("turn {link}"));
-                }
-            }
-            "add" => {
-                let marked = self.values.get("marked");
-                self.ask(format!("add {marked} {keyframe}"));
-                // What is added comes first.
-                self.store("loop", 0.0);
-            }
-            "save" => {
-                let file = FILES[self.values.get("file") as usize].label;
-                self.ask(format!("save {file}"));
-            }
-            _ if id == PLAY.id => self.press_play(),
-            _ => return None,
-        }
-        Some(())
     }
 }
 
@@ -344,7 +230,7 @@ impl Model for OwnRobot {
         let rate = (last / PLAY_S).max(4.0) * speed_factor(self.values.get("speed"));
         let here = self.keyframe() as f64;
         let next = self.playback.advance(here, last, elapsed_s, rate);
-        self.store("keyframe", next);
+        self.values.store("keyframe", next);
         self.look();
         Activity::Busy
     }
@@ -357,15 +243,15 @@ impl Model for OwnRobot {
         self.robot.receive(delivery);
         if delivery.kind == "opening" {
             self.playback.pause();
-            self.store("keyframe", MOST_KEYFRAMES);
-            self.store("loop", 0.0);
-            self.store("marked", 0.0);
-            self.store("scan", MOST_SCANS);
+            self.values.store("keyframe", MOST_KEYFRAMES);
+            self.values.store("loop", 0.0);
+            self.values.store("marked", 0.0);
+            self.values.store("scan", MOST_SCANS);
         }
         if delivery.kind == "dropped" {
             let order = format!("locate-dropped{}", self.start());
             self.ask(order);
-            self.store("scan", MOST_SCANS);
+            self.values.store("scan", MOST_SCANS);
         }
         if delivery.kind == "stage" && self.robot.stage == Stage::Done {
             self.look();
@@ -436,7 +322,7 @@ impl Model for OwnRobot {
     fn set_motion(&mut self, motion: Motion) {
         let last = self.last() as f64;
         if let Some(end) = self.playback.set_motion(motion, last) {
-            self.store("keyframe", end);
+            self.values.store("keyframe", end);
         }
     }
 }

@@ -1,6 +1,8 @@
 //! The panels: the map with the way and the loops, and what is known of each keyframe.
 
-use kit::chart::{Series, TimeChart};
+mod charts;
+mod visitor;
+
 use kit::scene::{
     Aspect, Axis, Bounds, ColorBar, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
@@ -9,6 +11,8 @@ use pr_geom::math;
 use super::robot::{Robot, Stage};
 use super::settings::{Colour, shows};
 use super::{OwnRobot, panel};
+use charts::{fit, sure};
+use visitor::whereabouts;
 
 /// What is seen before there is a map, m.
 const EMPTY: Bounds = Bounds {
@@ -23,8 +27,6 @@ const MARGIN_M: f64 = 0.5;
 const SHADES: usize = 24;
 /// What belongs to the robot of another log.
 const OTHER: Tone = Tone::Class(2);
-/// Standard deviations that its ellipse shows.
-const SIGMAS: f64 = 3.0;
 /// Values above this share of all are drawn like it: one that is far off would hide the others.
 const MOST_OF_ALL: f64 = 0.98;
 
@@ -310,96 +312,4 @@ fn here(own: &OwnRobot) -> Vec<Layer> {
     }
     layers.push(Layer::pose(pose, Mark::Square, Tone::Posterior, 4.0));
     layers
-}
-
-/// The way of the other log's robot, and how well the place that is shown is known.
-fn whereabouts(own: &OwnRobot) -> Vec<Layer> {
-    let Some(((_, shown), told)) = own.place().zip(own.robot.whereabouts.as_ref()) else {
-        return Vec::new();
-    };
-    let line = |is_believed: bool, stroke, width_px| {
-        let places = told.places.iter().map(|place| {
-            if place.belief.is_believed() == is_believed {
-                [place.pose[0], place.pose[1]]
-            } else {
-                [f64::NAN; 2]
-            }
-        });
-        Layer::Line {
-            points: places.collect(),
-            stroke,
-            tone: OTHER,
-            width_px,
-        }
-    };
-    let mut layers = vec![
-        line(true, Stroke::Solid, 3.0),
-        line(false, Stroke::Dotted, 2.0),
-    ];
-    if !shown.pose.iter().all(|value| value.is_finite()) {
-        return layers;
-    }
-    let [long, short, heading] = shown.ellipse;
-    if (long + short + heading).is_finite() {
-        let (sin, cos) = math::sin_cos(heading);
-        layers.push(Layer::Ellipse {
-            center: [shown.pose[0], shown.pose[1]],
-            half_axes: [
-                [SIGMAS * long * cos, SIGMAS * long * sin],
-                [-SIGMAS * short * sin, SIGMAS * short * cos],
-            ],
-            stroke: Stroke::Solid,
-            tone: OTHER,
-        });
-    }
-    layers.push(Layer::pose(shown.pose, Mark::Triangle, OTHER, 6.0));
-    layers
-}
-
-fn fit(own: &OwnRobot) -> Panel {
-    let fits: Vec<f64> = own.robot.keyframes.iter().map(|k| k.fit).collect();
-    let chart = TimeChart {
-        id: panel::FIT,
-        title: "How well each scan fits",
-        x_label: "keyframe",
-        last: own.last(),
-        y_label: "share",
-        now: own.keyframe(),
-    };
-    chart.panel(&[Series {
-        label: "share of the scan that fits",
-        values: &fits,
-        tone: Tone::Measurement,
-        mark: Mark::Cross,
-    }])
-}
-
-fn sure(own: &OwnRobot) -> Panel {
-    let sigmas: Vec<f64> = own.robot.keyframes.iter().map(|k| k.sigma_m).collect();
-    let chart = TimeChart {
-        id: panel::SURE,
-        title: "How sure the graph is",
-        x_label: "keyframe",
-        last: own.last(),
-        y_label: "m",
-        now: own.keyframe(),
-    };
-    let sigma = Series {
-        label: "σ of the position",
-        values: &sigmas,
-        tone: Tone::Posterior,
-        mark: Mark::Square,
-    };
-    if own.robot.errors_m.is_empty() {
-        return chart.panel(&[sigma]);
-    }
-    chart.panel(&[
-        sigma,
-        Series {
-            label: "error",
-            values: &own.robot.errors_m,
-            tone: Tone::Truth,
-            mark: Mark::Plus,
-        },
-    ])
 }
