@@ -219,4 +219,5 @@ def write_bag(path, recorded, packing):
             writer.write(connections[topic], round(stamp * 1e9), data)
 
 
-main(sys.argv[1])
+if __name__ == '__main__':
+    main(sys.argv[1])
