@@ -161,6 +161,10 @@ describe('on a narrow screen', () => {
       const shown = await pinned();
       assert.ok(shown.top === 0 && shown.bottom < at[1] - 20 && shown.colors > 3, JSON.stringify(shown));
       assert.ok(shown.left >= 0 && shown.right <= 390);
+      // The last frames before it rests draw nothing, and the canvas holds nothing after them.
+      await h.quiet(tab);
+      const rested = await pinned();
+      assert.ok(rested.colors > 3, `a copy of ${rested.colors} colours`);
       await tab.mouse.up();
       await isPinned(false);
     }, { viewport: { width: 390, height: 844 }, sees: true });

@@ -61,6 +61,8 @@ export class Life implements Visibility, Drawer {
   #isInView = false;
   #hasFailed = false;
   #isBusy = false;
+  /** How many frames the instance had laid out when the last one was drawn. */
+  #drawnFrames = 0;
   /** Rises with every end: what started before it knows that it comes too late. */
   #generation = 0;
 
@@ -244,6 +246,7 @@ export class Life implements Visibility, Drawer {
 
   #begin(instance: Instance, stage: Stage): void {
     const startedAt = performance.now();
+    this.#drawnFrames = 0;
     instance.frames.afterFrame = () => this.#afterFrame(instance, stage, startedAt);
     instance.frames.onCrash = (error) => this.fail(instance.crash() ?? error);
     instance.frames.open();
@@ -270,7 +273,10 @@ export class Life implements Visibility, Drawer {
     const fits = Math.abs(height - canvas.clientHeight) <= 1;
     if (!fits && height > 0) canvas.style.height = `${height}px`;
     else if (!this.#parts.stage.classList.contains('live')) this.#showLive(startedAt);
-    this.#host.drew(canvas);
+    const frames = instance.use((widget) => widget.frames());
+    // eframe draws only what is new; a canvas that was not drawn on holds nothing any more.
+    if (frames !== this.#drawnFrames) this.#host.drew(canvas);
+    this.#drawnFrames = frames;
     const wasBusy = this.#isBusy;
     this.#isBusy = instance.use((widget) => widget.wantsFrame());
     if (wasBusy && !this.#isBusy) this.#host.rested();
