@@ -221,7 +221,7 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
         layers.push(Layer::points(at, Mark::Circle, Tone::Ink, 7.0));
     }
     layers.extend(names.map(|(lane, Lane { name, .. })| Layer::Text {
-        at: [0.15 * last, height(lane) + 0.5],
+        at: [-0.14 * last, height(lane)],
         text: format!("{} {name}", height(lane)),
         tone: Tone::Ink,
     }));
@@ -230,8 +230,8 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
         title: "Who does what when".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Free,
-        // The ring at the last tick is whole.
-        x: Axis::new("tick", 0.0, 1.03 * last.max(1.0)),
+        // The names have room before the first tick, and the ring at the last one is whole.
+        x: Axis::new("tick", -0.28 * last.max(1.0), 1.03 * last.max(1.0)),
         y: Axis::new("lane", 0.4, height(0) + 0.9),
         layers,
         legend: vec![
