@@ -113,6 +113,10 @@ export interface CostTerracesState {
   'probe-y': number;
   /** So many sweeps, each with noise of its own, are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m. 0 to 100. */
   drops: number;
+  /** So many points, in the order of the beams, give a row (n_x, n_y, p × n) of the point-to-plane step; to the right, all. 0 to 120. */
+  rows: number;
+  /** Adds the row (1, 0, 0) with the weight 1/σ²; 0 adds none. 0 to 0.5 m. */
+  odometry: number;
   /** How many gradient steps both balls have taken. 0 to 400. */
   t: number;
   /** How fast the run plays. */
@@ -393,7 +397,7 @@ export interface WidgetStates {
 export interface WidgetButtons {
   'w16.1': 'play' | 'step' | 'reset' | 'sweep' | 'defaults' | 'near' | 'quarter-turn' | 'between' | 'between-plane' | 'half-turn' | 'fence' | 'mark-edge' | 'short-sighted';
   'w16.2': 'play' | 'step' | 'reset' | 'before' | 'at' | 'after' | 'next' | 'one-back' | 'one-on' | 'tie' | 'undo' | 'edit-flat' | 'piece-back' | 'piece-on' | 'west' | 'east' | 'north' | 'south' | 'remove' | 'add-wall' | 'add-way-point' | 'turn-here' | 'take-back' | 'do-again' | 'open-flat' | 'save-flat' | 'defaults' | 'first-loop' | 'rejected' | 'no-loops' | 'noisy' | 'tight-gate' | 'locked-out' | 'let-in' | 'wrong-loop' | 'tamed-loop' | 'true-loop' | 'ring' | 'twins' | 'corridor' | 'hall' | 'own-flat' | 'bells' | 'sliding';
-  'w16.3': 'drop' | 'drop-100' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'bowl' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'own-corridor' | 'drop-room' | 'drop-corridor' | 'turned';
+  'w16.3': 'drop' | 'drop-100' | 'play' | 'step' | 'reset' | 'defaults' | 'terraces' | 'bowl' | 'wide-hill' | 'wide-tau' | 'corridor' | 'wrong-wall' | 'own-corridor' | 'drop-room' | 'drop-corridor' | 'one-row' | 'wheels-row' | 'turned';
   'w16.4': 'play' | 'step' | 'reset' | 'next-event' | 'defaults' | 'watch' | 'blurred' | 'rebuilt' | 'noisy' | 'wrong-loop' | 'open';
   'w16.5': 'play' | 'step' | 'reset' | 'defaults' | 'three-poses' | 'stiff' | 'unpinned' | 'square' | 'tangled';
   'w16.6': 'play' | 'step' | 'reset' | 'defaults' | 'quarter-turn' | 'upside-down' | 'wide' | 'without-home' | 'coarse';
@@ -510,11 +514,12 @@ export interface SlamWidgetProperties {
   'probe-y': number | undefined;
   probeY: number | undefined;
   drops: number | undefined;
+  rows: number | undefined;
+  odometry: number | undefined;
   lane: 'predict' | 'register' | 'keyframe' | 'candidate' | 'fit' | 'gate' | 'optimize' | 'repaint' | undefined;
   stiffness: number | undefined;
   graph: 'line' | 'square' | 'ring' | undefined;
   gap: number | undefined;
-  odometry: number | undefined;
   pinned: boolean | undefined;
   x1: number | undefined;
   y1: number | undefined;

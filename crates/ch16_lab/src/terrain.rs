@@ -20,6 +20,7 @@ mod information;
 mod ndt_row;
 mod probe;
 mod ridge;
+mod rows;
 mod scene;
 
 pub use ball::{Ball, BallConfig, BallStep, BallStop};
@@ -28,4 +29,5 @@ pub use grid::{Peak, Terrain};
 pub use information::{PoseInformation, ShiftInformation, pose_information};
 pub use probe::{Objective, Slope, TerrainProbe};
 pub use ridge::{Partner, PartnerChange};
+pub use rows::{PlaneRow, PlaneRows, RowsKnow};
 pub use scene::{SceneKind, TerrainScene, TerrainSettings};

@@ -17,6 +17,7 @@ mod ndt;
 mod places;
 mod procrustes;
 mod robots;
+mod rows;
 mod search;
 mod setup;
 mod sweep;
@@ -63,6 +64,7 @@ impl Figures {
                 search::value(self.basin.get_or_init(BasinScene::new), case, what)
             }
             ["terrain", what @ ..] => terrain::value(what),
+            ["rows", what @ ..] => rows::value(what),
             ["drops", what @ ..] => drops::value(what),
             ["ball", place, objective, reach_cm, dx_cm, dy_cm, "rest_m"] => {
                 ball::rest_m(place, objective, [reach_cm, dx_cm, dy_cm])

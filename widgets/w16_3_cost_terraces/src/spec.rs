@@ -18,6 +18,9 @@ pub const MAX_BALL_STEPS: usize = 400;
 /// Most sweeps that are dropped at once.
 pub const MOST_DROPS: f64 = 100.0;
 
+/// The end of the slider of rows, where all are taken, however many points a sweep has.
+pub const MOST_ROWS: f64 = 120.0;
+
 /// What the reader can change.
 pub const PARAMS: &[ParamSpec] = &[
     ParamSpec {
@@ -155,6 +158,30 @@ pub const PARAMS: &[ParamSpec] = &[
         help: "So many sweeps, each with noise of its own, are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m.",
     },
     ParamSpec {
+        id: "rows",
+        label: "rows of H",
+        unit: "",
+        kind: ParamKind::Slider {
+            min: 0.0,
+            max: MOST_ROWS,
+            step: 1.0,
+        },
+        default: MOST_ROWS,
+        help: "So many points, in the order of the beams, give a row (n_x, n_y, p × n) of the point-to-plane step; to the right, all.",
+    },
+    ParamSpec {
+        id: "odometry",
+        label: "σ of a row of odometry",
+        unit: "m",
+        kind: ParamKind::Slider {
+            min: 0.0,
+            max: 0.5,
+            step: 0.01,
+        },
+        default: 0.0,
+        help: "Adds the row (1, 0, 0) with the weight 1/σ²; 0 adds none.",
+    },
+    ParamSpec {
         id: "t",
         label: "step of the balls",
         unit: "",
@@ -281,6 +308,20 @@ const PRESETS: &[Preset] = &[
         help: "They rest in a streak along the walls, much longer than the needle of the information.",
         set: &[("scene", 1.0), ("tau", 0.6), ("colours", 0.0)],
         then: &["drop-100"],
+    },
+    Preset {
+        id: "one-row",
+        label: "Take the corridor's rows one by one",
+        help: "One row, then more with the slider of rows: the second row that differs makes the rank two, and no other ever makes it three.",
+        set: &[("scene", 1.0), ("rows", 1.0)],
+        then: &[],
+    },
+    Preset {
+        id: "wheels-row",
+        label: "Add one row of odometry",
+        help: "The rank is three. Along the corridor the pose is known to the σ of that row, and no better.",
+        set: &[("scene", 1.0), ("odometry", 0.05)],
+        then: &[],
     },
     Preset {
         id: "turned",

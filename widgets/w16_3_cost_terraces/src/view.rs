@@ -50,7 +50,8 @@ impl View for TerracesView {
                 pairs.map(|pair| side_by_side(pair, shares)).collect()
             }
         };
-        let mut below = vec![Row::of(&[rests])];
+        let rows_of_h = slot("rows", PlotHeight::Fixed(190.0));
+        let mut below = vec![Row::of(&[rests]), Row::of(&[rows_of_h])];
         below.extend(rows(slices, [1.0, 1.0]));
         Arrangement {
             stage: rows(stage, [MAP_SHARE, MATCHED_SHARE]),

@@ -289,3 +289,73 @@ fn slices_of_a_landscape_share_an_axis_and_the_ellipse_keeps_its_scale() {
         assert_eq!(ellipse(&model), usual, "{}", spec.id);
     }
 }
+
+#[test]
+fn the_corridors_rows_have_rank_two_and_leave_an_arrow_along_it() {
+    let mut model = with(&[("scene", 1.0), ("rows", 0.0)]);
+    let ranks: Vec<f64> = (0..=120)
+        .map(|rows| {
+            model.set("rows", f64::from(rows)).unwrap();
+            fact(&model, "rows_rank")
+        })
+        .collect();
+    assert_eq!(ranks[..3], [0.0, 1.0, 2.0]);
+    assert!(ranks[2..].iter().all(|&rank| rank == 2.0));
+    // 1e-12: an eigenvector whose other entries are nothing.
+    assert!((fact(&model, "null_x") - 1.0).abs() < 1e-12);
+    let arrow = |model: &dyn Model| drawn(model, Tone::Prior);
+    let [[from, to], ..] = arrow(&model)[..] else {
+        panic!("no arrow");
+    };
+    assert!(to[0] > from[0] + 1.0 && (to[1] - from[1]).abs() < 1e-9);
+    // A room holds every direction.
+    model.set("scene", 0.0).unwrap();
+    assert_eq!(fact(&model, "rows_rank"), 3.0);
+    // The end of the slider means all.
+    assert!(fact(&model, "rows") > 120.0);
+    assert!(arrow(&model).is_empty());
+}
+
+#[test]
+fn a_row_of_odometry_restores_the_rank_and_says_by_how_much() {
+    for sigma_m in [0.01, 0.05, 0.5] {
+        let model = with(&[("scene", 1.0), ("odometry", sigma_m)]);
+        assert_eq!(fact(&model, "rows_rank"), 3.0);
+        // 1e-9: the inverse of a matrix whose entries reach 1e6.
+        assert!((fact(&model, "rows_along_m") - sigma_m).abs() < 1e-9);
+        let said = format!("x known to {:.1} cm", 100.0 * sigma_m);
+        assert!(model.outcome().sentence.contains(&said));
+        assert!(panel(&model, "rows").title.contains(&said));
+        let [[from, to]] = drawn(&model, Tone::Posterior)[..] else {
+            panic!("no bar");
+        };
+        assert!((to[0] - from[0] - 2.0 * sigma_m).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn each_row_can_be_read_one_by_one() {
+    let model = preset("one-row");
+    let tables = model.tables();
+    let rows = &tables.iter().find(|table| table.id == "rows").unwrap().rows;
+    assert!(
+        rows.iter()
+            .all(|row| row[1] == "0" && row[2].ends_with('1'))
+    );
+    let first = &rows[0];
+    let title = panel(&model, "rows").title;
+    let count = rows.len();
+    let said = format!("Row 1 of {count}: ({}, {}, ", first[1], first[2]);
+    assert!(title.starts_with(&said), "{title}");
+    assert!(title.ends_with("rank 1"), "{title}");
+}
+
+/// The segments of a tone in the panel of the rows.
+fn drawn(model: &dyn Model, wanted: Tone) -> Vec<[[f64; 2]; 2]> {
+    let layers = panel(model, "rows").layers.into_iter();
+    let segments = layers.filter_map(|layer| match layer {
+        Layer::Segments { segments, tone, .. } if tone == wanted => Some(segments),
+        _ => None,
+    });
+    segments.flatten().collect()
+}

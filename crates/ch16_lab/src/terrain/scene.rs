@@ -10,7 +10,7 @@ use ch16_slam2d::icp::{IcpConfig, correspondences};
 use ch16_slam2d::ndt::NdtMap;
 
 const MAX_RANGE_M: f64 = 3.0;
-const RANGE_SIGMA_M: f64 = 0.01;
+pub(super) const RANGE_SIGMA_M: f64 = 0.01;
 const VOXEL_M: f64 = 0.08;
 const MAP_CELL_M: f64 = 0.3;
 const NDT_MIN_POINTS: usize = 4;

@@ -3,6 +3,7 @@
 mod maps;
 mod places;
 mod plots;
+mod rows;
 
 use kit::scene::{Axis, Scene};
 
@@ -68,6 +69,7 @@ pub fn scene(terrains: &Terrains, rests: &Rests, moment: Moment) -> Scene {
             plots::slice(terrains, moment, Measure::Ndt, Along::X),
             plots::slice(terrains, moment, Measure::Ndt, Along::Y),
             plots::information(terrains, rests),
+            rows::panel(terrains),
         ],
     }
 }

@@ -2,6 +2,8 @@
 
 use kit::param::Values;
 
+use crate::spec::MOST_ROWS;
+
 /// Where the sweep was taken, and what it is matched with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
@@ -41,6 +43,10 @@ pub struct Settings {
     pub colors: Colors,
     /// Shift under the cross hair, m.
     pub probe_m: [f64; 2],
+    /// So many rows of the point-to-plane step are taken.
+    pub rows: usize,
+    /// Standard deviation of a row of odometry, m, where there is one.
+    pub odometry_m: Option<f64>,
 }
 
 impl Settings {
@@ -63,6 +69,11 @@ impl Settings {
                 Colors::ByRank
             },
             probe_m: [values.get("probe-x"), values.get("probe-y")],
+            rows: match values.get("rows") {
+                MOST_ROWS => usize::MAX,
+                rows => rows as usize,
+            },
+            odometry_m: Some(values.get("odometry")).filter(|&sigma_m| sigma_m > 0.0),
         }
     }
 }

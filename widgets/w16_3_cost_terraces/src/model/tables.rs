@@ -18,6 +18,7 @@ pub fn all(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Vec<Table
     let mut tables = shown(terrains);
     tables.extend([
         information(terrains),
+        rows(terrains),
         dropped(rests),
         partners(terrains, settings),
         bells(terrains),
@@ -107,6 +108,26 @@ fn information(terrains: &Terrains) -> Table {
         &["direction", "angle from x (°)", "eigenvalue (1/cm²)"],
         TablePlace::ExportOnly,
         vec![row("firmest", 0), row("loosest", 1)],
+    )
+}
+
+/// The rows of the point-to-plane step, and the rank of each with those before it.
+fn rows(terrains: &Terrains) -> Table {
+    let each = terrains.rows.rows.iter().enumerate().map(|(index, row)| {
+        vec![
+            (index + 1).to_string(),
+            signed(row.normal.x, 0),
+            signed(row.normal.y, 0),
+            format!("{:.4}", row.lever_m),
+            terrains.rows.know(index + 1, None).rank.to_string(),
+        ]
+    });
+    table(
+        "rows",
+        "Rows of H",
+        &["row", "n_x", "n_y", "p × n (m)", "rank so far"],
+        TablePlace::ExportOnly,
+        each.collect(),
     )
 }
 

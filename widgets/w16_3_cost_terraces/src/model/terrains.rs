@@ -1,8 +1,8 @@
 //! Both landscapes of a place, and what has to be computed again when a setting changes.
 
 use ch16_lab::terrain::{
-    Ball as Roller, BallConfig, BallStop, Objective, PartnerChange, SceneKind, Terrain,
-    TerrainProbe, TerrainScene, TerrainSettings,
+    Ball as Roller, BallConfig, BallStop, Objective, PartnerChange, PlaneRows, RowsKnow, SceneKind,
+    Terrain, TerrainProbe, TerrainScene, TerrainSettings,
 };
 use ch16_slam2d::cloud::{NearestMap, PointCloud};
 use ch16_slam2d::ndt::NdtCell;
@@ -29,6 +29,8 @@ pub struct Terrains {
     pub ndt: Landscape,
     /// What point-to-plane knows of a shift at the truth.
     pub information: Hold,
+    /// The rows of the point-to-plane step at the truth.
+    pub rows: PlaneRows,
     settings: Settings,
     scene: TerrainScene,
     grids: Terrain,
@@ -126,6 +128,7 @@ impl Terrains {
             icp: Landscape::flat(),
             ndt: Landscape::flat(),
             information: Hold::of(&scene),
+            rows: rows_of(&scene),
             settings,
             scene,
             grids: Terrain::default(),
@@ -143,6 +146,7 @@ impl Terrains {
         if stale.place {
             self.scene = scene_of(&settings);
             self.information = Hold::of(&self.scene);
+            self.rows = rows_of(&self.scene);
         } else if stale.ndt_map {
             self.scene.set_ndt_cell(settings.ndt_cell_m);
         }
@@ -237,6 +241,16 @@ impl Terrains {
             .collect()
     }
 
+    /// How many of the rows are taken.
+    pub fn rows_taken(&self) -> usize {
+        self.settings.rows.min(self.rows.rows.len())
+    }
+
+    /// What they know, with the row of odometry where there is one.
+    pub fn rows_know(&self) -> RowsKnow {
+        self.rows.know(self.rows_taken(), self.settings.odometry_m)
+    }
+
     /// Width of NDT's cells, m.
     pub fn ndt_cell_m(&self) -> f64 {
         self.scene.ndt().cell_m()
@@ -302,6 +316,11 @@ fn roll(probe: &TerrainProbe<'_>, objective: Objective, [x, y]: [f64; 2]) -> Bal
         heights,
         end,
     }
+}
+
+/// Of pairs up to the chapter's τ, as the information is.
+fn rows_of(scene: &TerrainScene) -> PlaneRows {
+    PlaneRows::of(scene, TerrainSettings::default().tau_m)
 }
 
 impl Bell {

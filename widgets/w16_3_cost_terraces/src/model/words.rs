@@ -23,6 +23,9 @@ pub fn outcome(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Outco
         rest(icp),
         rest(ndt),
     );
+    if terrains.rows_taken() < terrains.rows.rows.len() || settings.odometry_m.is_some() {
+        sentence += &format!(" {}.", row_in_words(terrains));
+    }
     let scatter = rests.scatter();
     if scatter.count > 1 {
         let [x, y] = scatter.deviation_m.map(|m| 100.0 * m);
@@ -37,6 +40,26 @@ pub fn outcome(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Outco
         sentence,
         facts: facts(terrains, &scatter, settings),
     }
+}
+
+/// The last row that is taken, and what all of them know.
+pub fn row_in_words(terrains: &Terrains) -> String {
+    let (taken, know) = (terrains.rows_taken(), terrains.rows_know());
+    let row = match taken.checked_sub(1).map(|last| terrains.rows.rows[last]) {
+        Some(row) => format!(
+            "Row {taken} of {}: ({}, {}, {} m)",
+            terrains.rows.rows.len(),
+            signed(row.normal.x, 0),
+            signed(row.normal.y, 0),
+            signed(row.lever_m, 2)
+        ),
+        None => "No row".to_owned(),
+    };
+    let held = match know.along_m {
+        Some(along_m) => format!(", x known to {:.1} cm", 100.0 * along_m),
+        None => String::new(),
+    };
+    format!("{row}; rank {}{held}", know.rank)
 }
 
 /// A shift as readers see it, with true minus signs.
@@ -61,6 +84,7 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &Settings) -> Vec<Fac
     };
     let (icp, ndt, hold) = (&terrains.icp, &terrains.ndt, &terrains.information);
     let [firm, loose] = hold.eigenvalues_per_cm2;
+    let know = terrains.rows_know();
     let known = |label, id, value| Fact::new(id, label, value, "1/cm²", 2);
     let mut facts = vec![
         Fact::new(
@@ -105,6 +129,8 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &Settings) -> Vec<Fac
             "",
             0,
         ),
+        Fact::count("rows", "rows of H taken", terrains.rows_taken() as f64),
+        Fact::count("rows_rank", "their rank", know.rank as f64),
         Fact::count(
             "partners_changing",
             "partners about to change",
@@ -113,6 +139,16 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &Settings) -> Vec<Fac
         Fact::count("bells", "NDT's bells", terrains.bells().len() as f64),
         Fact::count("rests", "sweeps dropped", scatter.count as f64),
     ];
+    if let Some(null) = know.null {
+        facts.extend([
+            Fact::new("null_x", "no row holds: shift along x", null.x, "m", 3),
+            Fact::new("null_y", "no row holds: shift along y", null.y, "m", 3),
+            Fact::new("null_turn", "no row holds: turn", null.z, "rad", 3),
+        ]);
+    }
+    if let Some(along_m) = know.along_m {
+        facts.push(Fact::metres("rows_along_m", "rows: x known to", along_m));
+    }
     if scatter.count > 1 {
         let [x, y] = scatter.deviation_m.map(|m| 100.0 * m);
         facts.extend([

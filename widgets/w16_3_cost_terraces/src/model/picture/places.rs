@@ -9,7 +9,7 @@ use crate::model::terrains::{Pairing, Terrains};
 const MARGIN_M: f64 = 0.5;
 
 /// The picture of the pairs shows at most this much along an axis, m: the long corridor is cut off.
-const MOST_M: f64 = 6.0;
+pub(super) const MOST_M: f64 = 6.0;
 
 /// The picture of the bells is a closer look, so wide, m: they are as thin as the walls.
 const CLOSE_M: f64 = 2.5;
@@ -107,7 +107,7 @@ pub fn bells(terrains: &Terrains, moment: Moment) -> Panel {
     )
 }
 
-fn map_points(terrains: &Terrains) -> Layer {
+pub(super) fn map_points(terrains: &Terrains) -> Layer {
     let points = terrains.map_points_m().to_vec();
     Layer::points(points, Mark::Cross, Tone::Measurement, 2.5)
 }
@@ -127,7 +127,7 @@ fn edges(Bounds { min, max }: Bounds) -> [[[f64; 2]; 2]; 4] {
     [0, 1, 2, 3].map(|k: usize| [corners[k], corners[(k + 1) % 4]])
 }
 
-fn panel(
+pub(super) fn panel(
     id: &'static str,
     title: &str,
     frame: Bounds,
@@ -149,7 +149,7 @@ fn panel(
 
 /// The walls of the map, at most `most_m` of them along each axis: along x from the left or, where
 /// there is no left end, about the sensor; along y from below.
-fn frame(terrains: &Terrains, most_m: f64) -> Bounds {
+pub(super) fn frame(terrains: &Terrains, most_m: f64) -> Bounds {
     let [(left, right), (low, high)] = [0, 1].map(|axis| walls(terrains.map_points_m(), axis));
     let sensor_x = terrains.scene().world_from_sensor().x();
     let left = if right - left > MOST_M {
