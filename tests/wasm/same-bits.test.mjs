@@ -14,6 +14,13 @@ describe('a lap', () => {
     });
   }
 
+  it('on submaps has the same digest of all poses, and another one than on the window', () => {
+    const words = ['--seed', '12648430', '--noise', '2', '--front-end', 'submaps', '--json'];
+    const digest = wasm.lapDigest(12648430, 2, true);
+    assert.equal(digest, JSON.parse(native('slam2d', 'lap', ...words)).digest);
+    assert.notEqual(digest, wasm.lapDigest(12648430, 2));
+  });
+
   it('of another seed has another digest', () => {
     assert.notEqual(wasm.lapDigest(1, 1), wasm.lapDigest(2, 1));
   });

@@ -3,6 +3,8 @@
 use std::cell::{Cell, OnceCell, RefCell};
 use std::rc::Rc;
 
+use ch16_lab::lap::{LapConfig, LapRunner};
+use ch16_slam2d::submaps::FrontEndChoice;
 use kit::model::{Activity, Motion};
 use kit::outside::Delivery;
 use kit::palette::Theme;
@@ -34,10 +36,18 @@ pub fn after_each_preset(name: &str) -> Result<String, JsError> {
     Ok(state::after_each_preset(*maker))
 }
 
-/// The digest of a lap's poses and metrics, 16 hexadecimal digits as `slam2d lap` prints it.
+/// The digest of a lap's poses and metrics, 16 hexadecimal digits as `slam2d lap` prints it; with
+/// `on_submaps` the front end has them.
 #[wasm_bindgen(js_name = lapDigest)]
-pub fn lap_digest(seed: u32, noise_factor: f64) -> String {
-    format!("{:016x}", ch16_lab::lap::lap_digest(seed, noise_factor))
+pub fn lap_digest(seed: u32, noise_factor: f64, on_submaps: Option<bool>) -> String {
+    let digest = if on_submaps.unwrap_or_default() {
+        let lap = LapConfig::with_seed_and_noise(seed, noise_factor);
+        let lap = lap.with_front_end(FrontEndChoice::Submaps);
+        LapRunner::new().run(&lap).digest()
+    } else {
+        ch16_lab::lap::lap_digest(seed, noise_factor)
+    };
+    format!("{digest:016x}")
 }
 
 /// A whole lap as JSON, for a drawing of it; see [`story::story`].
