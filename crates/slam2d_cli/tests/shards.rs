@@ -76,7 +76,18 @@ fn rows_that_do_not_belong_together_are_refused_in_one_sentence() {
     let folder = tempfile::tempdir().unwrap();
     let rows = folder.path().join("rows.jsonl");
     let path = rows.to_str().unwrap();
-    let sweep = ["sweep", "--seeds", "1..=2", "--noise", "1", "--rows", path];
+    // With one thread, seed 1 is the first row.
+    let sweep = [
+        "sweep",
+        "--seeds",
+        "1..=2",
+        "--noise",
+        "1",
+        "--rows",
+        path,
+        "--threads",
+        "1",
+    ];
     said(&sweep);
     let other = |option: &[&'static str]| [&sweep[..], option].concat();
     assert_refused(
