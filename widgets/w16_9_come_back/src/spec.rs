@@ -17,7 +17,7 @@ pub const MOST_MOMENTS: f64 = 4000.0;
 pub const PARAMS: &[ParamSpec] = &[
     ParamSpec {
         id: "laps",
-        label: "laps since the wardrobe was moved",
+        label: "laps since the wardrobe moved",
         unit: "",
         kind: ParamKind::Slider {
             min: 0.0,

@@ -20,6 +20,6 @@ fn a_press_goes_to_the_next_moment() {
         harness.get_by_label("Next moment").click();
         harness.run_steps(2);
         assert_eq!(harness.state().model().values().get("moment"), 6.0);
-        harness.get_by_role_and_label(Role::Slider, "laps since the wardrobe was moved");
+        harness.get_by_role_and_label(Role::Slider, "laps since the wardrobe moved");
     }
 }
