@@ -95,11 +95,7 @@ pub fn lap_graph() -> PoseGraph {
     lap.run();
     let mut graph = lap.graph().clone();
     for (node, keyframe) in lap.keyframes().enumerate() {
-        // Tick 0 is the start, before anything moved.
-        let driven = keyframe.tick.checked_sub(1);
-        let tick = driven.and_then(|index| lap.drive().ticks().get(index));
-        let pose = tick.map_or(lap.config().drive.start, |tick| tick.dead_reckoning);
-        graph.set_pose(node, pose);
+        graph.set_pose(node, lap.drive().dead_reckoning(keyframe.tick));
     }
     graph
 }

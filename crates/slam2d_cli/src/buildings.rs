@@ -5,6 +5,7 @@ use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 
 use ch16_lab::buildings::{Kind, Recording, Robot, Trial, recorded_by};
+use ch16_lab::lap::Choice;
 use ch16_slam2d::slam::parameters::{Parameter, ParameterError};
 use clap::Args;
 use rayon::prelude::*;
@@ -54,6 +55,16 @@ pub enum BuildingsFailure {
     TooMany {
         /// How many.
         seeds: u64,
+    },
+    /// A lap has a robot of its own.
+    #[error(
+        "--robot {robot} drives through buildings, not on --kind {kind}: leave it out, or take another kind"
+    )]
+    OtherRobot {
+        /// Who should drive.
+        robot: &'static str,
+        /// What is no building.
+        kind: &'static str,
     },
     /// A parameter cannot be set.
     #[error(transparent)]
@@ -106,6 +117,12 @@ pub fn run(args: &BuildingsArgs) -> Result<(), BuildingsFailure> {
     let seeds = args.seeds.count();
     if seeds > MAX_SEEDS {
         return Err(BuildingsFailure::TooMany { seeds });
+    }
+    if args.kind.is_lap() && args.robot != Robot::Own {
+        return Err(BuildingsFailure::OtherRobot {
+            robot: args.robot.name(),
+            kind: args.kind.name(),
+        });
     }
     if let Some(path) = &args.log {
         let (recording, _) = recorded_by(args.robot, args.kind, args.seeds.first);

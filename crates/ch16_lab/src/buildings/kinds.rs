@@ -7,7 +7,7 @@ use ch16_slam2d::slam::SlamConfig;
 use super::plan::{BuildingConfig, BuildingPlan, Layout, Rooms};
 use super::recording::{Recorder, Recording};
 use super::robots::Robot;
-use crate::lap::Choice;
+use crate::lap::{BuiltInWorld, Choice, Drive, DriveConfig};
 
 /// What is driven through, and with which scanner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,10 +20,29 @@ pub enum Kind {
     Circle,
     /// Corridors around a block of rooms that are all alike; half a circle, 181 beams, 8 m.
     Alike,
+    /// The chapter's lap of the Apartment, with its sensor and its wheels.
+    Lap,
+    /// The lap of the ring world, with the same robot.
+    RingLap,
+}
+
+impl Kind {
+    /// Whether it is a lap of the chapter's robot, and no building that is drawn from the seed.
+    #[must_use]
+    pub fn is_lap(self) -> bool {
+        matches!(self, Self::Lap | Self::RingLap)
+    }
 }
 
 impl Choice for Kind {
-    const ALL: &'static [Self] = &[Self::Ring, Self::Hallway, Self::Circle, Self::Alike];
+    const ALL: &'static [Self] = &[
+        Self::Ring,
+        Self::Hallway,
+        Self::Circle,
+        Self::Alike,
+        Self::Lap,
+        Self::RingLap,
+    ];
 
     fn name(self) -> &'static str {
         match self {
@@ -31,6 +50,8 @@ impl Choice for Kind {
             Self::Hallway => "hallway",
             Self::Circle => "circle",
             Self::Alike => "alike",
+            Self::Lap => "lap",
+            Self::RingLap => "ring-lap",
         }
     }
 
@@ -40,6 +61,8 @@ impl Choice for Kind {
             Self::Hallway => "a corridor and its rooms, 360 beams over half a circle, 80 m",
             Self::Circle => "corridors around a block, 360 beams over the full circle, 30 m",
             Self::Alike => "corridors around rooms that are all alike, 181 beams, 8 m",
+            Self::Lap => "the chapter's lap of the Apartment, 120 beams over the full circle, 6 m",
+            Self::RingLap => "the lap of the ring world, 120 beams over the full circle, 6 m",
         }
     }
 }
@@ -50,9 +73,28 @@ pub fn recorded(kind: Kind, seed: u32) -> (Recording, SlamConfig) {
     recorded_by(Robot::Own, kind, seed)
 }
 
-/// What another robot records there.
+/// What another robot records there; on the laps the chapter's own drives, whichever is asked for.
 #[must_use]
 pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, SlamConfig) {
+    let recording = match kind {
+        Kind::Lap => lap(BuiltInWorld::Apartment, seed),
+        Kind::RingLap => lap(BuiltInWorld::Ring, seed),
+        Kind::Ring | Kind::Hallway | Kind::Circle | Kind::Alike => building(driver, kind, seed),
+    };
+    let config = SlamConfig::for_robot(&recording.frames[0].scan);
+    (recording, config)
+}
+
+/// The drive of `slam2d lap` at this seed.
+fn lap(world: BuiltInWorld, seed: u32) -> Recording {
+    let drive = DriveConfig {
+        seed,
+        ..DriveConfig::default()
+    };
+    Recording::of_drive(&Drive::simulate(&drive.on_course(&world.course())))
+}
+
+fn building(driver: Robot, kind: Kind, seed: u32) -> Recording {
     let plan = BuildingConfig {
         seed,
         ..BuildingConfig::default()
@@ -62,7 +104,6 @@ pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, SlamConf
         ..Recorder::default()
     };
     let (plan, robot) = match kind {
-        Kind::Ring => (plan, robot),
         Kind::Hallway => (
             BuildingConfig {
                 layout: Layout::Hallway,
@@ -98,9 +139,7 @@ pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, SlamConf
                 ..robot
             },
         ),
+        Kind::Ring | Kind::Lap | Kind::RingLap => (plan, robot),
     };
-    let robot = driver.instead_of(robot);
-    let recording = Recording::new(&BuildingPlan::new(&plan), &robot);
-    let config = SlamConfig::for_robot(&recording.frames[0].scan);
-    (recording, config)
+    Recording::new(&BuildingPlan::new(&plan), &driver.instead_of(robot))
 }

@@ -8,6 +8,7 @@ use pr_sim::world::Viewpoint;
 use pr_sim::{Bounds, LidarConfig, Rng, Wall, World};
 
 use super::plan::BuildingPlan;
+use crate::lap::Drive;
 
 /// Beams meet glass and see it where they are this steep on it: the sine of the angle off its normal.
 const GLASS_SINE: f64 = 0.15;
@@ -148,6 +149,23 @@ impl Recording {
             });
         }
         Self { frames }
+    }
+
+    /// A simulated lap as a recording: the start and every tick.
+    #[must_use]
+    pub fn of_drive(drive: &Drive) -> Self {
+        let frame = |tick: usize| {
+            let Frame { stamp_s, scan, .. } = drive.frame(tick);
+            RecordedFrame {
+                stamp_s,
+                odometry: drive.dead_reckoning(tick),
+                scan,
+                truth: drive.truth(tick),
+            }
+        };
+        Self {
+            frames: (0..=drive.ticks().len()).map(frame).collect(),
+        }
     }
 
     /// A frame as the estimator sees it, with the wheels or without.

@@ -113,6 +113,15 @@ impl Drive {
         }
     }
 
+    /// The wheels' odometry composed up to `tick`, world frame; 0 is the start.
+    #[must_use]
+    pub fn dead_reckoning(&self, tick: usize) -> SE2 {
+        match tick {
+            0 => self.config.start,
+            _ => self.ticks[tick - 1].dead_reckoning,
+        }
+    }
+
     /// What the estimator is handed after `tick` ticks, as a robot would hand it; 0 is the start.
     #[must_use]
     pub fn frame(&self, tick: usize) -> Frame {
