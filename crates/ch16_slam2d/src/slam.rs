@@ -27,6 +27,7 @@ mod snapshot;
 mod submap_loops;
 #[cfg(test)]
 pub(crate) mod test_room;
+mod uncertainty;
 mod upkeep;
 
 use std::sync::Arc;

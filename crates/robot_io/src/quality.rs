@@ -1,6 +1,7 @@
 //! How far a map is to be trusted: keyframes, loops, and a list of what is to be doubted.
 //!
-//! A keyframe's covariance is that of the graph, against its first keyframe. A loop that is in the graph
+//! A keyframe's covariance is that of the graph, against its first keyframe, times what its
+//! contradictions say of it ([`Slam::keyframe_covariances`]). A loop that is in the graph
 //! is tested against all else that the graph knows: with the residual e of its edge, the information
 //! Ω of its measurement and the marginal covariance P of the relative pose by the whole graph, the loop
 //! included, `eᵀ(Ω⁻¹ − P)⁻¹e` has three degrees of freedom. It is the innovation of the loop against the
@@ -259,7 +260,7 @@ pub fn reason(rejection: &LoopRejection) -> String {
 }
 
 fn keyframes(slam: &mut Slam) -> Vec<KeyframeQuality> {
-    let Ok(covariances) = slam.graph_mut().pose_covariances() else {
+    let Ok(covariances) = slam.keyframe_covariances() else {
         return Vec::new();
     };
     let places = slam.keyframes().iter().zip(slam.graph().poses());

@@ -70,6 +70,9 @@ impl Slam {
         let wider = LoopConfig {
             detection: Detection::Visits,
             radius_m: half_width_m,
+            min_gap_nodes: self
+                .nodes_since(wide.min_way_m, node)
+                .max(loops.min_gap_nodes),
             min_score: wide.min_score,
             // The fit is measured once the place is found.
             max_rmse_m: f64::INFINITY,
@@ -135,6 +138,12 @@ impl Slam {
             effect: None,
         });
         is_accepted
+    }
+
+    /// Keyframes within so much of the way before a node.
+    fn nodes_since(&self, way_m: f64, node: usize) -> usize {
+        let within = |old: &usize| self.way_between_m(*old, node) <= way_m;
+        (0..node).rev().take_while(within).count()
     }
 
     /// Length of the way of the keyframes since the last loop, m.

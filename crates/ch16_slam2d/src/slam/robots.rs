@@ -45,7 +45,7 @@ impl SlamConfig {
         Self {
             scan: ScanConfig {
                 cell_m: 0.065,
-                normal_radius_m: NORMAL_RADIUS_M * step_deg.clamp(1.0, 4.0),
+                normal_radius_m: NORMAL_RADIUS_M * step_deg.clamp(1.0, 1.4),
             },
             matcher: MatcherKind::Staged(far),
             window_distance_m: 0.16,
@@ -70,6 +70,7 @@ impl SlamConfig {
             loops: LoopConfig {
                 detection: Detection::Visits,
                 radius_m: 4.0,
+                min_gap_nodes: 10,
                 submap: map(6),
                 matcher: MatcherKind::Staged(near),
                 min_tau_m: 0.3,
