@@ -255,6 +255,7 @@ impl Slam {
         let distance = position_error_m(&relative, &SE2::identity());
         if distance < self.config.keyframe_distance_m
             && relative.theta().abs() < self.config.keyframe_turn_rad
+            && !self.front_end.has_rivals()
         {
             return None;
         }

@@ -46,6 +46,8 @@ pub struct ContradictionConfig {
     pub jump_cost: f64,
     /// At most by so much: what fits nearly whole is believed wherever it is.
     pub max_cost: f64,
+    /// Places that fit worse by so much are e times less likely; 0 believes the best alone.
+    pub rival: f64,
 }
 
 impl Default for ContradictionConfig {
@@ -60,6 +62,7 @@ impl Default for ContradictionConfig {
             jump_rad: 0.4,
             jump_cost: 0.1,
             max_cost: 0.4,
+            rival: 0.0,
         }
     }
 }

@@ -68,6 +68,8 @@ pub struct FrontEnd {
     driven: Matrix3<f64>,
     /// Share of what the last registration claims that the wheels leave it.
     believed: f64,
+    /// Covariance of what the last registration leaves open between places, about the body.
+    rivalry: Matrix3<f64>,
     /// Covariance of the motions since the last registration that was believed, none after one.
     unregistered: Option<Matrix3<f64>>,
 }
@@ -96,6 +98,7 @@ impl FrontEnd {
             pairs: Vec::new(),
             driven: Matrix3::zeros(),
             believed: 1.0,
+            rivalry: Matrix3::zeros(),
             unregistered: None,
         }
     }
@@ -213,6 +216,7 @@ impl FrontEnd {
         let accepted = matched.inliers >= config.min_inliers && is_finite(&matched.pose);
         self.estimate = if accepted { matched.pose } else { prediction };
         self.believed = 1.0;
+        self.rivalry = Matrix3::zeros();
         if config.prediction_use == PredictionUse::Measurement {
             let noise = config.motion_noise(frame.odometry.is_some());
             self.driven = noise.then(&self.driven, &motion);
@@ -247,7 +251,8 @@ impl FrontEnd {
                 let known = self.matched_information(&self.estimate, trust) * self.believed;
                 let driven = std::mem::take(&mut self.driven);
                 let wheels = driven.try_inverse().unwrap_or_default();
-                without_aperture(&known, config.aperture) + wheels
+                let claimed = without_aperture(&known, config.aperture) + wheels;
+                self.with_rivals(claimed)
             }
             (InformationFrame::Chapter, _) => {
                 match &self.submaps {
@@ -272,6 +277,11 @@ impl FrontEnd {
         if let Some(submaps) = &mut self.submaps {
             submaps.correct(correction);
         }
+    }
+
+    /// Whether the last registration leaves open which of several places it is.
+    pub(super) fn has_rivals(&self) -> bool {
+        self.rivalry != Matrix3::zeros()
     }
 
     /// Whether the last registration was believed.

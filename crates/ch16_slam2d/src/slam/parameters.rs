@@ -297,6 +297,11 @@ pub const PARAMETERS: &[Parameter] = &[
         "and at most by so much for all of them"
     ),
     field!(
+        contradiction.rival,
+        "",
+        "places that fit worse by so much are e times less likely; 0 believes the best alone"
+    ),
+    field!(
         aperture,
         "",
         "share of the information across a wall that noise claims along it"

@@ -231,6 +231,7 @@ fn slam(config: &mut SlamConfig, f: &mut impl Fields) {
         jump_rad,
         jump_cost,
         max_cost,
+        rival,
     } = contradiction;
     f.within("contradiction.chi2", chi2, 0.0..=f64::INFINITY);
     f.number("contradiction.min_score", min_score);
@@ -239,6 +240,7 @@ fn slam(config: &mut SlamConfig, f: &mut impl Fields) {
     f.within("contradiction.jump_rad", jump_rad, 0.0..=f64::INFINITY);
     f.number("contradiction.jump_cost", jump_cost);
     f.number("contradiction.max_cost", max_cost);
+    f.number("contradiction.rival", rival);
     f.number("aperture", aperture);
     let ThresholdConfig {
         initial_m,

@@ -80,6 +80,7 @@ impl FrontEnd {
         let predicted = predicted.score.unwrap_or(0.0);
         let turned = SE2::new(prediction.x(), prediction.y(), matched.pose.theta());
         let mut best: Option<Place> = None;
+        let mut rivals = vec![(*prediction, predicted)];
         let starts = [None, Some(*prediction), Some(turned)];
         for start in starts.into_iter().take(if compares { 3 } else { 1 }) {
             let found = match start {
@@ -96,6 +97,7 @@ impl FrontEnd {
                 _ => 0.0,
             };
             let worth = share - math::min(cost, rules.max_cost);
+            rivals.push((pose, worth));
             if best.as_ref().is_none_or(|best| worth > best.worth) {
                 best = Some(Place { pose, share, worth });
             }
@@ -103,6 +105,7 @@ impl FrontEnd {
         let Some(Place { pose, share, worth }) = best else {
             return;
         };
+        let best_worth = worth;
         // The pairs are asked for later: those of the pose that is taken.
         self.match_near(cloud, &request(pose, 0));
         let known = self.claimed(&pose, share, config);
@@ -124,6 +127,26 @@ impl FrontEnd {
             self.estimate = fused.pose;
             self.match_near(cloud, &request(fused.pose, 0));
         }
+        if compares && rules.rival > 0.0 {
+            let likely = |worth: f64| math::exp((worth - best_worth) / rules.rival);
+            let all: f64 = rivals.iter().map(|(_, worth)| likely(*worth)).sum();
+            let spread = |(pose, worth): &(SE2, f64)| {
+                let gap = self.estimate.between(pose).log();
+                gap * gap.transpose() * (likely(*worth) / all)
+            };
+            self.rivalry = rivals.iter().map(spread).sum();
+        }
+    }
+
+    /// Information of the estimate, where the scan may have been taken from another place.
+    pub(super) fn with_rivals(&self, claimed: Matrix3<f64>) -> Matrix3<f64> {
+        if !self.has_rivals() {
+            return claimed;
+        }
+        let covariance = claimed.try_inverse().map(|known| known + self.rivalry);
+        covariance
+            .and_then(|open| open.try_inverse())
+            .unwrap_or(claimed)
     }
 
     /// What the last registration claims to know at a pose.
