@@ -85,9 +85,9 @@ mod tests {
 
     #[test]
     fn measurements_that_are_off_by_more_than_they_say_show_in_what_contradicts() {
-        for (off_sigmas, expected) in [(0.2, 0.04), (1.0, 1.0), (3.0, 9.0)] {
-            let factor = variance_factor(&tied(120, 3, off_sigmas));
-            // 240 redundant measurements: the deviation of their mean square is about 5 %.
+        for (times, expected) in [(0.2, 0.04), (1.0, 1.0), (3.0, 9.0)] {
+            let factor = variance_factor(&tied(120, 3, times));
+            // 235 measurements of three numbers each more than needed: the deviation of their mean square is 5 %.
             assert!(
                 (factor / expected - 1.0).abs() < 0.15,
                 "{factor}, {expected}"
