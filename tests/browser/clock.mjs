@@ -44,6 +44,7 @@ export function install({ stepMs, lookMs, quickLookMs, patienceMs }) {
   const watchers = new Set();
   let nowMs = 0;
   let takesMs = lookMs;
+  let isHeld = false;
   let skippedMs = 0;
   let asked = 0;
   let askedAt = { ms: 0, tick: 0 };
@@ -51,7 +52,7 @@ export function install({ stepMs, lookMs, quickLookMs, patienceMs }) {
   // Far from the numbers that the browser gives.
   let lastTimer = 1e9;
 
-  performance.now = () => (nowMs += takesMs);
+  performance.now = () => (nowMs += isHeld ? 0 : takesMs);
   window.requestAnimationFrame = (callback) => {
     asked += 1;
     askedAt = { ms: nowMs, tick: ticks };
@@ -72,7 +73,7 @@ export function install({ stepMs, lookMs, quickLookMs, patienceMs }) {
   const tick = () => {
     nextFrame(tick);
     ticks += 1;
-    nowMs += stepMs;
+    nowMs += isHeld ? 0 : stepMs;
     const due = [...timers].filter(([, { atMs, isPatient }]) => atMs <= (isPatient ? skippedMs : nowMs));
     for (const [timer, { call }] of due.sort(([, a], [, b]) => a.atMs - b.atMs)) {
       // One that was due may have called another one off.
@@ -101,6 +102,10 @@ export function install({ stepMs, lookMs, quickLookMs, patienceMs }) {
       await when(() => since('ms', nowMs) >= ms && since('tick', ticks) >= 3);
       takesMs = lookMs;
       return asked - before;
+    },
+    /** Stands still, or goes on: a finger that is quick is quick however long the test takes to move it. */
+    hold: (holds) => {
+      isHeld = holds;
     },
     /** Lets so much time pass at once, for those as well who are patient. */
     skip: async (ms) => {

@@ -289,11 +289,14 @@ async function tabUntil(tab, key, id) {
   return assert.fail(`${key} never reaches #${id}`);
 }
 
-async function swipe(tab, from, to, pause = () => {}) {
+/** A finger that moves at once, or rests first for as long as `rest` takes. */
+async function swipe(tab, from, to, rest) {
+  const hold = (holds) => tab.evaluate((held) => frameClock.hold(held), holds);
   const session = await tab.context().newCDPSession(tab);
   const touch = (type, points) => session.send('Input.dispatchTouchEvent', { type, touchPoints: points });
+  await hold(rest === undefined);
   await touch('touchStart', [{ x: from[0], y: from[1] }]);
-  await pause();
+  await rest?.();
   for (let step = 1; step <= 8; step += 1) {
     const share = step / 8;
     await touch('touchMove', [{
@@ -302,4 +305,5 @@ async function swipe(tab, from, to, pause = () => {}) {
     }]);
   }
   await touch('touchEnd', []);
+  await hold(false);
 }
