@@ -8,7 +8,8 @@
 //! - [`Gnc`] begins with a cost that hardly discriminates and bends it step by step into one that
 //!   keeps a measurement whole or drops it.
 //! - [`consistent_set`] looks for the largest set of loops that agree with each other along the
-//!   trusted path, before anything is solved.
+//!   trusted path, before anything is solved; [`believe_consistent`] begins there and lets each stand or
+//!   fall as [`believe`] does.
 //!
 //! All take the measurements between neighbours in time as true: [`is_sequential`]. What stands or
 //! falls is the loops. None can tell a false loop that fits the rest from a right one.
@@ -17,9 +18,10 @@ mod belief;
 mod consistency;
 mod gnc;
 mod growth;
+mod path;
 mod refutation;
 
-pub use belief::{Belief, BeliefStart, believe};
+pub use belief::{Belief, BeliefStart, believe, believe_consistent};
 pub use consistency::{ConsistencySettings, consistent_set};
 pub use gnc::{Gnc, GncLoss, GncOutcome, GncRound, GncSettings, GncStop};
 

@@ -2,6 +2,7 @@
 
 use pr_geom::{SE2, math};
 
+use super::consistency::{ConsistencySettings, consistent_set};
 use super::gnc::{Gnc, GncLoss, GncSettings};
 use super::growth::{Direction, grown};
 use super::refutation::{MarginalGate, Standing};
@@ -14,6 +15,10 @@ use crate::settings::Settings;
 
 /// Largest number of times that loops change sides after a start.
 const CHANGES: usize = 40;
+
+/// Loops that gain at least this share of the largest gain change sides together; the next share once
+/// that did not lower the cost, and at last one loop alone.
+const BARS: [f64; 4] = [0.0, 0.5, 0.8, 1.0];
 
 /// A loop whose absence lowers χ² by this share of what its absence costs is nearly refuted.
 const NEARLY: f64 = 0.25;
@@ -30,6 +35,8 @@ pub enum BeliefStart {
     Backwards,
     /// Graduated non-convexity from where the trusted measurements lead.
     GraduatedNonConvexity,
+    /// The loops that agree with each other in pairs.
+    PairwiseConsistency,
 }
 
 /// Which measurements are believed, and where they lead.
@@ -76,11 +83,12 @@ pub fn believe(
         solver,
         max_chi2: settings.max_chi2,
     };
+    let all = vec![true; trusted.len()];
     let ways = [
         (Direction::Forwards, BeliefStart::Forwards),
         (Direction::Backwards, BeliefStart::Backwards),
     ]
-    .map(|(direction, start)| search.along(direction, start));
+    .map(|(direction, start)| search.along(&all, direction, start));
     if let [Some(first), Some(second)] = &ways
         && first.believed == second.believed
         && search.keeps_most(first)
@@ -88,10 +96,17 @@ pub fn believe(
         return Ok(first.clone());
     }
     let third = search.graduated(settings);
-    let [first, second] = ways;
+    let [first, second] = ways.map(|way| way.ok_or(OptimizeError::NotFinite));
+    cheapest([first, second, third])
+}
+
+/// The belief of lowest cost, the first of equals.
+fn cheapest(
+    beliefs: impl IntoIterator<Item = Result<Belief, OptimizeError>>,
+) -> Result<Belief, OptimizeError> {
     let mut best: Option<Belief> = None;
     let mut failure = OptimizeError::NotFinite;
-    for belief in [first.ok_or(failure), second.ok_or(failure), third] {
+    for belief in beliefs {
         match belief {
             Ok(belief) if best.as_ref().is_none_or(|best| belief.cost < best.cost) => {
                 best = Some(belief);
@@ -103,6 +118,47 @@ pub fn believe(
     best.ok_or(failure)
 }
 
+/// The same with loops that agree with each other in pairs for candidates: see [`consistent_set`].
+///
+/// Along a long way the path's covariance lets false loops agree with right ones. So what agrees joins along
+/// the way, from either end, by the exact covariance of what is believed by then, and is settled: right
+/// loops that a clique left out come in. The lower cost wins.
+///
+/// # Errors
+/// Where the trusted measurements do not tie every pose to the next, or neither way leads to a finite
+/// cost.
+///
+/// # Panics
+/// Where `trusted` has not as many entries as there are measurements.
+pub fn believe_consistent(
+    problem: &Problem,
+    trusted: &[bool],
+    solver: Settings,
+    settings: &ConsistencySettings,
+) -> Result<Belief, OptimizeError> {
+    assert_eq!(trusted.len(), problem.factors().len());
+    let search = Search {
+        problem,
+        trusted,
+        solver,
+        max_chi2: settings.max_chi2,
+    };
+    let agreeing = consistent_set(problem, settings);
+    let ways = [Direction::Forwards, Direction::Backwards].map(|direction| {
+        let way = search.along(&agreeing, direction, BeliefStart::PairwiseConsistency);
+        way.ok_or(OptimizeError::NotFinite)
+    });
+    cheapest(ways)
+}
+
+/// By how much the cost falls where a loop changes sides, to first order.
+#[derive(Clone, Copy, Debug)]
+struct Gain {
+    value: f64,
+    /// Whether the covariance tells; else the value is the least that it may be.
+    is_sure: bool,
+}
+
 struct Search<'a> {
     problem: &'a Problem,
     trusted: &'a [bool],
@@ -112,10 +168,16 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// The belief along the way; none where there is no such way, or it cannot be solved.
-    fn along(&self, direction: Direction, start: BeliefStart) -> Option<Belief> {
+    fn along(
+        &self,
+        candidates: &[bool],
+        direction: Direction,
+        start: BeliefStart,
+    ) -> Option<Belief> {
         let grown = grown(
             self.problem,
             self.trusted,
+            candidates,
             direction,
             self.solver,
             self.max_chi2,
@@ -166,7 +228,8 @@ impl Search<'_> {
         2 * dropped < doubted || doubted == 0
     }
 
-    /// Lets loops change sides as long as the cost falls: first all that should, then one at a time.
+    /// Lets loops change sides as long as the cost falls: first all that should, then
+    /// fewer, and at last one at a time.
     fn settled(
         &self,
         poses: Vec<SE2>,
@@ -175,10 +238,11 @@ impl Search<'_> {
     ) -> Result<Belief, OptimizeError> {
         let mut optimizer = Optimizer::new(self.solver);
         let mut best = self.solved(&mut optimizer, &poses, believed, start)?;
-        let mut one_at_a_time = false;
+        let mut bars = BARS.into_iter();
+        let mut bar = bars.next().unwrap_or(1.0);
         for _ in 0..CHANGES {
             let gains = self.gains(&mut optimizer, &best)?;
-            let largest = gains.iter().copied().fold(0.0, math::max);
+            let largest = gains.iter().map(|gain| gain.value).fold(0.0, math::max);
             if largest <= 0.0 {
                 match self.without_one(&mut optimizer, &best, &gains)? {
                     Some(next) => best = next,
@@ -189,33 +253,38 @@ impl Search<'_> {
             let mut believed = best.believed.clone();
             for (believed, gain) in believed.iter_mut().zip(&gains) {
                 // What is refuted may be so by another that is refuted more.
-                let least = if *believed { largest / 2.0 } else { 0.0 };
-                if *gain > least && !one_at_a_time || *gain >= largest {
+                let bar = if *believed { math::max(bar, 0.5) } else { bar };
+                if gain.value > 0.0 && gain.value >= bar * largest {
                     *believed = !*believed;
                 }
             }
             match self.solved(&mut optimizer, &best.poses, believed, start) {
                 Ok(next) if next.cost < best.cost => best = next,
-                _ if one_at_a_time => break,
-                _ => one_at_a_time = true,
+                _ => match bars.next() {
+                    Some(higher) => bar = higher,
+                    None => break,
+                },
             }
         }
         Ok(best)
     }
 
-    /// A belief of lower cost without one of the loops that are nearly refuted.
+    /// A belief of lower cost without one of the loops that are nearly refuted, or of which the covariance
+    /// tells nothing.
     ///
     /// A false loop may bend a weak part of the graph so far that first order does not refute it.
     fn without_one(
         &self,
         optimizer: &mut Optimizer,
         belief: &Belief,
-        gains: &[f64],
+        gains: &[Gain],
     ) -> Result<Option<Belief>, OptimizeError> {
+        let is_nearly = |gain: &Gain| !gain.is_sure || gain.value > (NEARLY - 1.0) * self.max_chi2;
         let mut nearly: Vec<usize> = (0..gains.len())
-            .filter(|&k| belief.believed[k] && gains[k] > (NEARLY - 1.0) * self.max_chi2)
+            .filter(|&k| !self.trusted[k] && belief.believed[k] && is_nearly(&gains[k]))
             .collect();
-        nearly.sort_by(|&a, &b| gains[b].total_cmp(&gains[a]).then(a.cmp(&b)));
+        let value = |k: usize| gains[k].value;
+        nearly.sort_by(|&a, &b| value(b).total_cmp(&value(a)).then(a.cmp(&b)));
         for &k in nearly.iter().take(TRIALS) {
             let mut believed = belief.believed.clone();
             believed[k] = false;
@@ -227,21 +296,39 @@ impl Search<'_> {
         Ok(None)
     }
 
-    /// By how much the cost falls, to first order, where a loop changes sides; −∞ for trusted ones,
-    /// and where that is not known.
-    fn gains(&self, optimizer: &mut Optimizer, belief: &Belief) -> Result<Vec<f64>, OptimizeError> {
+    /// By how much the cost falls where a loop changes sides; −∞ for trusted ones, and for a dropped one of
+    /// which that is not known.
+    fn gains(
+        &self,
+        optimizer: &mut Optimizer,
+        belief: &Belief,
+    ) -> Result<Vec<Gain>, OptimizeError> {
         let graph = self.with_belief(&belief.poses, &belief.believed);
         let mut gate = MarginalGate::new(optimizer, &graph)?;
         let mut kept = gate.all_kept().into_iter();
         let mut gains = Vec::with_capacity(self.trusted.len());
         for (k, factor) in self.problem.factors().iter().enumerate() {
-            let gain = if belief.believed[k] {
-                kept.next().map_or(f64::NAN, |chi2| chi2 - self.max_chi2)
-            } else {
-                self.max_chi2 - gate.chi2(factor, Standing::Dropped)
+            let mut gain = Gain {
+                value: f64::NEG_INFINITY,
+                is_sure: true,
             };
-            let is_known = !self.trusted[k] && !gain.is_nan();
-            gains.push(if is_known { gain } else { f64::NEG_INFINITY });
+            if belief.believed[k] {
+                let chi2 = kept.next().unwrap_or(f64::NAN);
+                // (Ω⁻¹ − Σ′)⁻¹ is at least Ω: what is less, or no number, is a difference lost in rounding.
+                let least = self.problem.factor_chi2_at(k, &belief.poses);
+                gain.is_sure = chi2 >= least;
+                let chi2 = if gain.is_sure { chi2 } else { least };
+                gain.value = chi2 - self.max_chi2;
+            } else {
+                let value = self.max_chi2 - gate.chi2(factor, Standing::Dropped);
+                if !value.is_nan() {
+                    gain.value = value;
+                }
+            }
+            if self.trusted[k] {
+                gain.value = f64::NEG_INFINITY;
+            }
+            gains.push(gain);
         }
         Ok(gains)
     }

@@ -1,16 +1,18 @@
 //! Pairwise consistency: the largest set of loops that agree with each other.
 
-use nalgebra::Matrix3;
-use pr_geom::SE2;
-
+use super::path::{Loop, Path, variance_share};
 use super::{LOOP_CHI2, is_sequential};
-use crate::factor::Between;
 use crate::problem::Problem;
+
+/// Pairs may contradict by twice the deviations that the path has to first order: over long ways those are
+/// too small.
+const FIRST_ORDER: f64 = 4.0;
 
 /// What [`consistent_set`] calls consistent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConsistencySettings {
-    /// Two loops agree where the cycle through both closes within this squared Mahalanobis norm.
+    /// Two loops agree where the cycle through both closes within this squared Mahalanobis norm, of noise
+    /// as large as that of loops over short ways.
     pub max_chi2: f64,
     /// The search for a large set begins at so many loops, those that agree with most others.
     pub beginnings: usize,
@@ -28,8 +30,9 @@ impl Default for ConsistencySettings {
 /// Which measurements belong to a large set of loops that agree in pairs; the sequential ones do.
 ///
 /// Two loops `a: i → j` and `b: k → l` agree where the cycle `Z_a⁻¹ X_ik Z_b X_lj` through the path
-/// between them closes: `eᵀ C⁻¹ e ≤ max_chi2` for its logarithm e, with C the sum of the
-/// covariances of both loops and of both ways along the path, to first order (Mangelson, Dominic,
+/// between them closes: `eᵀ C⁻¹ e ≤ 4 v max_chi2` for its logarithm e, with C the sum of the
+/// covariances of both loops and of both ways along the path, to first order, and v the share of its
+/// stated variance that the noise of loops over short ways has, at most 1 (Mangelson, Dominic,
 /// Eustice, Vasudevan, "Pairwise consistent measurement set maximization for robust multi-robot map
 /// merging", ICRA 2018). The largest set in which all agree is a largest clique. It is looked for
 /// greedily, from many beginnings (Pattabiraman et al. 2015), so a larger one may exist.
@@ -49,10 +52,12 @@ pub fn consistent_set(problem: &Problem, settings: &ConsistencySettings) -> Vec<
         .filter(|(_, factor)| !is_sequential(factor))
         .filter_map(|(index, factor)| Some((index, Loop::new(factor)?)))
         .collect();
+    let sequential: Vec<bool> = problem.factors().iter().map(is_sequential).collect();
+    let max_chi2 = FIRST_ORDER * settings.max_chi2 * variance_share(problem, &sequential, &path);
     let mut agreeing = Agreement::new(loops.len());
     for (a, (_, first)) in loops.iter().enumerate() {
         for (b, (_, second)) in loops.iter().enumerate().skip(a + 1) {
-            if path.closes(first, second, settings.max_chi2) {
+            if path.closes(first, second, max_chi2) {
                 agreeing.add(a, b);
             }
         }
@@ -68,108 +73,6 @@ pub fn consistent_set(problem: &Problem, settings: &ConsistencySettings) -> Vec<
         }
     }
     member
-}
-
-/// A loop with its covariance.
-struct Loop {
-    from: usize,
-    to: usize,
-    measurement: SE2,
-    covariance: Matrix3<f64>,
-}
-
-impl Loop {
-    fn new(factor: &Between) -> Option<Self> {
-        Some(Self {
-            from: factor.from,
-            to: factor.to,
-            measurement: factor.measurement,
-            covariance: factor.information.try_inverse()?,
-        })
-    }
-}
-
-/// The path along the sequential measurements, with the covariance summed up in its first frame.
-pub(super) struct Path {
-    poses: Vec<SE2>,
-    /// `Σ Ad Q Adᵀ` of the steps up to each pose: that between two is a difference.
-    sums: Vec<Matrix3<f64>>,
-}
-
-impl Path {
-    pub fn new(problem: &Problem) -> Option<Self> {
-        let mut steps: Vec<Option<&Between>> = vec![None; problem.node_count().checked_sub(1)?];
-        for factor in problem.factors().iter().filter(|f| is_sequential(f)) {
-            steps[factor.from.min(factor.to)].get_or_insert(factor);
-        }
-        let (mut pose, mut sum) = (SE2::identity(), Matrix3::zeros());
-        let mut path = Self {
-            poses: vec![pose],
-            sums: vec![sum],
-        };
-        for step in steps {
-            let step = step?;
-            let covariance = step.information.try_inverse()?;
-            // The noise is at the end of the measurement; backwards that is where it starts.
-            if step.from < step.to {
-                pose = pose * step.measurement;
-                sum += carried(&pose, &covariance);
-            } else {
-                sum += carried(&pose, &covariance);
-                pose = pose * step.measurement.inverse();
-            }
-            path.poses.push(pose);
-            path.sums.push(sum);
-        }
-        Some(path)
-    }
-
-    /// The poses along it, in the frame of the first.
-    pub fn poses(&self) -> &[SE2] {
-        &self.poses
-    }
-
-    /// The squared Mahalanobis norm by which the cycle of a measurement and the path fails to close.
-    pub fn cycle_chi2(&self, factor: &Between) -> Option<f64> {
-        let (from, to) = (&self.poses[factor.from], &self.poses[factor.to]);
-        let e = (factor.measurement.inverse() * from.between(to)).log();
-        let way = carried(&to.inverse(), &self.between(factor.from, factor.to));
-        let information = (way + factor.information.try_inverse()?).try_inverse()?;
-        let chi2 = e.dot(&(information * e));
-        chi2.is_finite().then_some(chi2)
-    }
-
-    /// Whether the cycle through both loops closes.
-    fn closes(&self, a: &Loop, b: &Loop, max_chi2: f64) -> bool {
-        let (i, j, k, l) = (a.from, a.to, b.from, b.to);
-        let to_b = self.poses[i].between(&self.poses[k]);
-        let back = self.poses[l].between(&self.poses[j]);
-        let at_l = a.measurement.inverse() * to_b * b.measurement;
-        let closed = at_l * back;
-        let e = closed.log();
-        // Every part in the frame where the cycle ends, which is the frame of pose j.
-        let end = closed.inverse();
-        let first = end * a.measurement.inverse();
-        let mut covariance = carried(&end, &a.covariance);
-        covariance += carried(&(first * self.poses[i].inverse()), &self.between(i, k));
-        covariance += carried(&(end * at_l), &b.covariance);
-        covariance += carried(&(end * at_l * self.poses[l].inverse()), &self.between(l, j));
-        let Some(information) = covariance.try_inverse() else {
-            return false;
-        };
-        e.dot(&(information * e)) <= max_chi2
-    }
-
-    /// Covariance of the steps between two poses, in the path's first frame.
-    fn between(&self, a: usize, b: usize) -> Matrix3<f64> {
-        self.sums[a.max(b)] - self.sums[a.min(b)]
-    }
-}
-
-/// `Ad C Adᵀ`: a covariance in the frame that `to_from` leads to.
-fn carried(to_from: &SE2, covariance: &Matrix3<f64>) -> Matrix3<f64> {
-    let adjoint = to_from.adjoint();
-    adjoint * covariance * adjoint.transpose()
 }
 
 /// Which loops agree: one row of bits each.

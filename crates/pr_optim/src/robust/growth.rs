@@ -2,7 +2,7 @@
 
 use pr_geom::SE2;
 
-use super::consistency::Path;
+use super::path::{Path, variance_share};
 use super::refutation::{MarginalGate, Standing};
 use super::with_factors;
 use crate::error::OptimizeError;
@@ -11,18 +11,6 @@ use crate::optimizer::Optimizer;
 use crate::problem::Problem;
 use crate::report::StopReason;
 use crate::settings::Settings;
-
-/// The median of χ² with three degrees of freedom.
-const MEDIAN_CHI2: f64 = 2.366;
-
-/// How much noise there is, the loops over the shortest ways tell: one in so many of all.
-const ONE_IN: usize = 4;
-
-/// At least so many of them.
-const AT_LEAST: usize = 16;
-
-/// The smallest share of its stated variance that noise is taken to have.
-const LEAST_VARIANCE: f64 = 0.01;
 
 /// The way is taken in so many stretches.
 const STRETCHES: usize = 100;
@@ -54,7 +42,7 @@ pub enum Direction {
 /// covariance of the relative pose by the way so far and the loops believed on it, v the share of
 /// its stated variance that the noise of loops over short ways has, at most 1. Measurements often
 /// state too much noise. Then the gate of what is stated lets false loops in.
-/// After the solve a loop has to fit by its own information as well.
+/// After the solve a loop has to fit by its own information as well. Only loops marked in `candidates` join.
 ///
 /// `None` where the trusted measurements do not tie every pose to the next.
 ///
@@ -63,6 +51,7 @@ pub enum Direction {
 pub fn grown(
     problem: &Problem,
     trusted: &[bool],
+    candidates: &[bool],
     direction: Direction,
     solver: Settings,
     max_chi2: f64,
@@ -71,6 +60,7 @@ pub fn grown(
         let grown = grown(
             &turned(problem),
             trusted,
+            candidates,
             Direction::Forwards,
             solver,
             max_chi2,
@@ -83,7 +73,9 @@ pub fn grown(
     let Some(path) = Path::new(&with_factors(problem, |k| trusted[k])) else {
         return Ok(None);
     };
-    let mut doubted: Vec<usize> = (0..trusted.len()).filter(|k| !trusted[*k]).collect();
+    let mut doubted: Vec<usize> = (0..trusted.len())
+        .filter(|&k| candidates[k] && !trusted[k])
+        .collect();
     doubted.sort_by_key(|&k| (later_end(&problem.factors()[k]), k));
     let mut growth = Growth {
         problem,
@@ -131,24 +123,6 @@ fn turned(problem: &Problem) -> Problem {
         });
     }
     turned
-}
-
-/// Share of its stated variance that the noise of loops over short ways has.
-///
-/// Most of the loops over short ways are right, since two poses anywhere are rarely close in time.
-fn variance_share(problem: &Problem, trusted: &[bool], path: &Path) -> f64 {
-    let factors = problem.factors().iter().zip(trusted);
-    let mut loops: Vec<&Between> = factors
-        .filter_map(|(factor, trusted)| (!trusted).then_some(factor))
-        .collect();
-    loops.sort_by_key(|factor| factor.from.abs_diff(factor.to));
-    loops.truncate((loops.len() / ONE_IN).max(AT_LEAST));
-    let mut squares: Vec<f64> = loops.iter().filter_map(|f| path.cycle_chi2(f)).collect();
-    squares.sort_by(f64::total_cmp);
-    let median = squares.get(squares.len() / 2);
-    median.map_or(1.0, |median| {
-        (median / MEDIAN_CHI2).clamp(LEAST_VARIANCE, 1.0)
-    })
 }
 
 struct Growth<'a> {

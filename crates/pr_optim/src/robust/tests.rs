@@ -299,12 +299,15 @@ fn streets(count: usize, share: f64, seed: u64) -> (Problem, usize) {
     (problem, last_true)
 }
 
-fn belief(problem: &Problem) -> Belief {
-    let solver = Settings {
+fn exact() -> Settings {
+    Settings {
         jacobians: crate::JacobianModel::Exact,
         ..Settings::default()
-    };
-    believe(problem, &trusted(problem), solver, &GncSettings::default()).unwrap()
+    }
+}
+
+fn belief(problem: &Problem) -> Belief {
+    believe(problem, &trusted(problem), exact(), &GncSettings::default()).unwrap()
 }
 
 fn at(problem: &Problem, poses: &[SE2]) -> Problem {
@@ -343,6 +346,27 @@ fn loops_taken_along_the_way_hold_where_graduated_non_convexity_alone_is_led_ast
         led_astray += usize::from(apart_m(&alone, &clean) > 0.1);
     }
     assert!(led_astray > 0, "the test is too easy");
+}
+
+#[test]
+fn what_agrees_in_pairs_is_settled_by_what_all_of_it_says() {
+    let settings = ConsistencySettings::default();
+    let mut misjudged = 0;
+    for (share, seed) in [(0.1, 2), (0.3, 3), (0.5, 4)] {
+        let (problem, last_true) = streets(600, share, seed);
+        let is_right = |k: usize| k < last_true;
+        let pairs = consistent_set(&problem, &settings);
+        misjudged += (0..pairs.len())
+            .filter(|&k| pairs[k] != is_right(k))
+            .count();
+        let found = believe_consistent(&problem, &trusted(&problem), exact(), &settings).unwrap();
+        assert_eq!(found.start, BeliefStart::PairwiseConsistency);
+        let wrong = (0..pairs.len())
+            .filter(|&k| found.believed[k] != is_right(k))
+            .count();
+        assert_eq!(wrong, 0, "{share}");
+    }
+    assert!(misjudged > 0, "the test is too easy");
 }
 
 #[test]

@@ -2,10 +2,10 @@
 
 use clap::ValueEnum;
 use pr_optim::robust::{
-    BeliefStart, ConsistencySettings, Gnc, GncLoss, GncSettings, believe, consistent_set,
+    BeliefStart, ConsistencySettings, Gnc, GncLoss, GncSettings, believe, believe_consistent,
     is_sequential, with_factors,
 };
-use pr_optim::{OptimizeError, Problem, Settings, Start};
+use pr_optim::{OptimizeError, Problem, Settings};
 use serde::Serialize;
 
 /// `--robust`.
@@ -17,7 +17,7 @@ pub enum RobustName {
     Gnc,
     /// The same, and then Geman–McClure from there: stricter, it drops what is half refuted.
     GncGm,
-    /// The loops that agree with each other in pairs.
+    /// The loops that agree with each other in pairs, and then what the graph by them says of each.
     Pcm,
 }
 
@@ -30,16 +30,14 @@ pub struct Believed {
     pub believed: usize,
     /// Rounds of graduated non-convexity.
     pub rounds: usize,
-    /// The start that won, where there is more than one.
-    pub from: Option<&'static str>,
+    /// The start that won.
+    pub from: &'static str,
 }
 
-/// What is to be solved, and from where.
+/// What is to be solved, from where it is.
 pub struct Selected {
-    /// The same poses with the measurements that are believed.
+    /// The poses of the belief, with the measurements that are believed.
     pub problem: Problem,
-    /// Where to start.
-    pub start: Start,
     /// How many are believed.
     pub believed: Believed,
 }
@@ -52,38 +50,31 @@ pub fn select(
     problem: &Problem,
     robust: RobustName,
     solver: Settings,
-    start: Start,
 ) -> Result<Option<Selected>, OptimizeError> {
-    let mut moved = problem.clone();
-    let (member, rounds, start, from) = match robust {
+    let trusted: Vec<bool> = problem.factors().iter().map(is_sequential).collect();
+    let settings = GncSettings::default();
+    let belief = match robust {
         RobustName::None => return Ok(None),
-        RobustName::Gnc | RobustName::GncGm => {
-            let trusted: Vec<bool> = problem.factors().iter().map(is_sequential).collect();
-            let settings = GncSettings::default();
-            let belief = believe(problem, &trusted, solver, &settings)?;
-            moved.poses_mut().copy_from_slice(&belief.poses);
-            let (mut member, mut rounds) = (belief.believed, belief.rounds);
-            if robust == RobustName::GncGm {
-                let settings = GncSettings {
-                    loss: GncLoss::GemanMcClure,
-                    ..settings
-                };
-                let gnc = Gnc::new(problem, trusted, solver, settings).refining(&belief.poses);
-                let outcome = gnc.run(&mut moved)?;
-                member = (0..member.len())
-                    .map(|factor| outcome.is_believed(factor))
-                    .collect();
-                rounds += outcome.rounds;
-            }
-            (member, rounds, Start::Given, Some(name_of(belief.start)))
+        RobustName::Gnc | RobustName::GncGm => believe(problem, &trusted, solver, &settings)?,
+        RobustName::Pcm => {
+            believe_consistent(problem, &trusted, solver, &ConsistencySettings::default())?
         }
-        RobustName::Pcm => (
-            consistent_set(problem, &ConsistencySettings::default()),
-            0,
-            start,
-            None,
-        ),
     };
+    let mut moved = problem.clone();
+    moved.poses_mut().copy_from_slice(&belief.poses);
+    let (mut member, mut rounds) = (belief.believed, belief.rounds);
+    if robust == RobustName::GncGm {
+        let settings = GncSettings {
+            loss: GncLoss::GemanMcClure,
+            ..settings
+        };
+        let gnc = Gnc::new(problem, trusted, solver, settings).refining(&belief.poses);
+        let outcome = gnc.run(&mut moved)?;
+        member = (0..member.len())
+            .map(|factor| outcome.is_believed(factor))
+            .collect();
+        rounds += outcome.rounds;
+    }
     let loops = || {
         let factors = problem.factors().iter().zip(&member);
         factors.filter(|(factor, _): &(_, &bool)| !is_sequential(factor))
@@ -92,11 +83,10 @@ pub fn select(
         loops: loops().count(),
         believed: loops().filter(|(_, member)| **member).count(),
         rounds,
-        from,
+        from: name_of(belief.start),
     };
     Ok(Some(Selected {
         problem: with_factors(&moved, |factor| member[factor]),
-        start,
         believed,
     }))
 }
@@ -106,5 +96,6 @@ fn name_of(start: BeliefStart) -> &'static str {
         BeliefStart::Forwards => "way",
         BeliefStart::Backwards => "way-back",
         BeliefStart::GraduatedNonConvexity => "gnc",
+        BeliefStart::PairwiseConsistency => "pairs",
     }
 }

@@ -91,15 +91,14 @@ fn solve_once(
     bar: &ProgressBar,
 ) -> Result<(Outcome, Option<Believed>, f64), OptimizeError> {
     let mut clock = CpuClock::start();
-    let start = args.init.start();
-    let Some(mut selected) = select(problem, args.robust, settings(args), start)? else {
-        let outcome = solve_session(optimizer, problem, start, &mut clock, bar)?;
+    let Some(mut selected) = select(problem, args.robust, settings(args))? else {
+        let outcome = solve_session(optimizer, problem, args.init.start(), &mut clock, bar)?;
         return Ok((outcome, None, clock.elapsed_ms()));
     };
     let outcome = solve_session(
         optimizer,
         &mut selected.problem,
-        selected.start,
+        Start::Given,
         &mut clock,
         bar,
     )?;

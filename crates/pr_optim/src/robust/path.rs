@@ -1,0 +1,142 @@
+//! The path along the trusted measurements, and how well cycles through it close.
+
+use nalgebra::Matrix3;
+use pr_geom::SE2;
+
+use super::is_sequential;
+use crate::factor::Between;
+use crate::problem::Problem;
+
+/// The median of χ² with three degrees of freedom.
+const MEDIAN_CHI2: f64 = 2.366;
+
+/// How much noise there is, the loops over the shortest ways tell: one in so many of all.
+const ONE_IN: usize = 4;
+
+/// At least so many of them.
+const AT_LEAST: usize = 16;
+
+/// The smallest share of its stated variance that noise is taken to have.
+const LEAST_VARIANCE: f64 = 0.01;
+
+/// A loop with its covariance.
+pub struct Loop {
+    from: usize,
+    to: usize,
+    measurement: SE2,
+    covariance: Matrix3<f64>,
+}
+
+impl Loop {
+    /// None where its information has no inverse.
+    pub fn new(factor: &Between) -> Option<Self> {
+        Some(Self {
+            from: factor.from,
+            to: factor.to,
+            measurement: factor.measurement,
+            covariance: factor.information.try_inverse()?,
+        })
+    }
+}
+
+/// The path along the sequential measurements, with the covariance summed up in its first frame.
+pub struct Path {
+    poses: Vec<SE2>,
+    /// `Σ Ad Q Adᵀ` of the steps up to each pose: that between two is a difference.
+    sums: Vec<Matrix3<f64>>,
+}
+
+impl Path {
+    /// None where the sequential measurements do not tie every pose to the next.
+    pub fn new(problem: &Problem) -> Option<Self> {
+        let mut steps: Vec<Option<&Between>> = vec![None; problem.node_count().checked_sub(1)?];
+        for factor in problem.factors().iter().filter(|f| is_sequential(f)) {
+            steps[factor.from.min(factor.to)].get_or_insert(factor);
+        }
+        let (mut pose, mut sum) = (SE2::identity(), Matrix3::zeros());
+        let mut path = Self {
+            poses: vec![pose],
+            sums: vec![sum],
+        };
+        for step in steps {
+            let step = step?;
+            let covariance = step.information.try_inverse()?;
+            // The noise is at the end of the measurement; backwards that is where it starts.
+            if step.from < step.to {
+                pose = pose * step.measurement;
+                sum += carried(&pose, &covariance);
+            } else {
+                sum += carried(&pose, &covariance);
+                pose = pose * step.measurement.inverse();
+            }
+            path.poses.push(pose);
+            path.sums.push(sum);
+        }
+        Some(path)
+    }
+
+    /// The poses along it, in the frame of the first.
+    pub fn poses(&self) -> &[SE2] {
+        &self.poses
+    }
+
+    /// The squared Mahalanobis norm by which the cycle of a measurement and the path fails to close.
+    pub fn cycle_chi2(&self, factor: &Between) -> Option<f64> {
+        let (from, to) = (&self.poses[factor.from], &self.poses[factor.to]);
+        let e = (factor.measurement.inverse() * from.between(to)).log();
+        let way = carried(&to.inverse(), &self.between(factor.from, factor.to));
+        let information = (way + factor.information.try_inverse()?).try_inverse()?;
+        let chi2 = e.dot(&(information * e));
+        chi2.is_finite().then_some(chi2)
+    }
+
+    /// Whether the cycle through both loops closes.
+    pub fn closes(&self, a: &Loop, b: &Loop, max_chi2: f64) -> bool {
+        let (i, j, k, l) = (a.from, a.to, b.from, b.to);
+        let to_b = self.poses[i].between(&self.poses[k]);
+        let back = self.poses[l].between(&self.poses[j]);
+        let at_l = a.measurement.inverse() * to_b * b.measurement;
+        let closed = at_l * back;
+        let e = closed.log();
+        // Every part in the frame where the cycle ends, which is the frame of pose j.
+        let end = closed.inverse();
+        let first = end * a.measurement.inverse();
+        let mut covariance = carried(&end, &a.covariance);
+        covariance += carried(&(first * self.poses[i].inverse()), &self.between(i, k));
+        covariance += carried(&(end * at_l), &b.covariance);
+        covariance += carried(&(end * at_l * self.poses[l].inverse()), &self.between(l, j));
+        let Some(information) = covariance.try_inverse() else {
+            return false;
+        };
+        e.dot(&(information * e)) <= max_chi2
+    }
+
+    /// Covariance of the steps between two poses, in the path's first frame.
+    fn between(&self, a: usize, b: usize) -> Matrix3<f64> {
+        self.sums[a.max(b)] - self.sums[a.min(b)]
+    }
+}
+
+/// `Ad C Adᵀ`: a covariance in the frame that `to_from` leads to.
+fn carried(to_from: &SE2, covariance: &Matrix3<f64>) -> Matrix3<f64> {
+    let adjoint = to_from.adjoint();
+    adjoint * covariance * adjoint.transpose()
+}
+
+/// Share of its stated variance that the noise of loops over short ways has.
+///
+/// Most of the loops over short ways are right, since two poses anywhere are rarely close in time.
+pub fn variance_share(problem: &Problem, trusted: &[bool], path: &Path) -> f64 {
+    let factors = problem.factors().iter().zip(trusted);
+    let mut loops: Vec<&Between> = factors
+        .filter_map(|(factor, trusted)| (!trusted).then_some(factor))
+        .collect();
+    loops.sort_by_key(|factor| factor.from.abs_diff(factor.to));
+    loops.truncate((loops.len() / ONE_IN).max(AT_LEAST));
+    let mut squares: Vec<f64> = loops.iter().filter_map(|f| path.cycle_chi2(f)).collect();
+    squares.sort_by(f64::total_cmp);
+    let median = squares.get(squares.len() / 2);
+    median.map_or(1.0, |median| {
+        (median / MEDIAN_CHI2).clamp(LEAST_VARIANCE, 1.0)
+    })
+}
