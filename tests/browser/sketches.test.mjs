@@ -6,7 +6,7 @@ import * as h from './harness.mjs';
 
 const visit = h.visitor();
 const reading = (test, options = {}) => visit('', test, { path: '/index.html', options });
-const NAMES = ['slide', 'bells', 'ellipse', 'gate'];
+const NAMES = ['nearest', 'slide', 'bells', 'ellipse', 'gate', 'ancestor'];
 const figure = (tab, name) => tab.locator(`[data-sketch="${name}"]`);
 /** Its slider, once the core has come. */
 async function slider(tab, name) {

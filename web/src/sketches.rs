@@ -3,9 +3,11 @@
 //! They show one idea where no widget stands. Each is computed by the core for every place of its slider,
 //! and drawn by the kit as the widgets are.
 
+mod ancestor;
 mod bells;
 mod ellipse;
 mod gate;
+mod nearest;
 mod slide;
 
 use kit::palette::Theme;
@@ -54,7 +56,14 @@ pub struct Sketch {
 }
 
 /// All figures, in the order of the page.
-pub const SKETCHES: [Sketch; 4] = [slide::SKETCH, bells::SKETCH, ellipse::SKETCH, gate::SKETCH];
+pub const SKETCHES: [Sketch; 6] = [
+    nearest::SKETCH,
+    slide::SKETCH,
+    bells::SKETCH,
+    ellipse::SKETCH,
+    gate::SKETCH,
+    ancestor::SKETCH,
+];
 
 /// The figure of that name.
 #[must_use]
