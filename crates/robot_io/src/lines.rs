@@ -1,6 +1,6 @@
 //! Lines of a file, one at a time, with a bound on the memory.
 
-use std::io::{self, BufRead, Read};
+use std::io::{self, BufRead};
 
 /// Longer lines are no text of a log: a scan of 10,000 beams has 100 kB.
 const MOST_BYTES: usize = 1 << 22;
@@ -16,29 +16,57 @@ pub enum LineEnd {
     TooLong,
 }
 
-/// Reads the next line into `line`, without its newline; none at the end of the file.
+/// Reads the next line into `line`, without its end; none at the end of the file.
+///
+/// A line ends by LF, by CR and LF, or by CR alone.
 pub fn next_line(
     source: &mut impl BufRead,
     line: &mut Vec<u8>,
 ) -> io::Result<Option<(LineEnd, u64)>> {
     line.clear();
-    let mut bytes = source
-        .by_ref()
-        .take(MOST_BYTES as u64)
-        .read_until(b'\n', line)? as u64;
-    if bytes == 0 {
-        return Ok(None);
+    let (mut bytes, mut is_kept) = (0, true);
+    loop {
+        let buffer = filled(source)?;
+        if buffer.is_empty() {
+            let end = if is_kept {
+                LineEnd::CutOff
+            } else {
+                LineEnd::TooLong
+            };
+            return Ok((bytes > 0).then_some((end, bytes)));
+        }
+        let end = buffer.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+        let part = &buffer[..end.unwrap_or(buffer.len())];
+        let room = MOST_BYTES - line.len();
+        is_kept &= part.len() <= room;
+        line.extend_from_slice(&part[..part.len().min(room)]);
+        let is_cr = end.is_some_and(|end| buffer[end] == b'\r');
+        let used = part.len() + usize::from(end.is_some());
+        source.consume(used);
+        bytes += used as u64;
+        if end.is_some() {
+            if is_cr && filled(source)?.first() == Some(&b'\n') {
+                source.consume(1);
+                bytes += 1;
+            }
+            let end = if is_kept {
+                LineEnd::Whole
+            } else {
+                LineEnd::TooLong
+            };
+            return Ok(Some((end, bytes)));
+        }
     }
-    let end = if line.last() == Some(&b'\n') {
-        line.pop();
-        LineEnd::Whole
-    } else if line.len() >= MOST_BYTES {
-        bytes += source.skip_until(b'\n')? as u64;
-        LineEnd::TooLong
-    } else {
-        LineEnd::CutOff
-    };
-    Ok(Some((end, bytes)))
+}
+
+/// What can be read without waiting, at least a byte of it; nothing at the end.
+fn filled(source: &mut impl BufRead) -> io::Result<&[u8]> {
+    while let Err(error) = source.fill_buf() {
+        if error.kind() != io::ErrorKind::Interrupted {
+            return Err(error);
+        }
+    }
+    source.fill_buf()
 }
 
 /// A field fit to be printed: short, and without control characters.
@@ -76,6 +104,27 @@ mod tests {
         let (end, _) = next_line(&mut source, &mut line).unwrap().unwrap();
         assert_eq!((end, &line[..]), (LineEnd::CutOff, &b"next"[..]));
         assert_eq!(next_line(&mut source, &mut line).unwrap(), None);
+    }
+
+    #[test]
+    fn a_line_ends_as_any_system_ends_it() {
+        for text in [
+            "one\ntwo\n\nthree",
+            "one\r\ntwo\r\n\r\nthree",
+            "one\rtwo\r\rthree",
+        ] {
+            // A buffer of one byte: CR and LF come apart.
+            for capacity in [1, 64] {
+                let mut source = io::BufReader::with_capacity(capacity, text.as_bytes());
+                let (mut lines, mut line, mut read) = (Vec::new(), Vec::new(), 0);
+                while let Some((_, bytes)) = next_line(&mut source, &mut line).unwrap() {
+                    lines.push(String::from_utf8(line.clone()).unwrap());
+                    read += bytes;
+                }
+                assert_eq!(lines, ["one", "two", "", "three"], "{text:?}");
+                assert_eq!(read, text.len() as u64);
+            }
+        }
     }
 
     #[test]

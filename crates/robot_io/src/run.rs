@@ -70,6 +70,16 @@ pub struct LogRun {
     poor: Vec<PoorFit>,
     late: usize,
     refused: Option<FrameError>,
+    /// Where the beams of the log point that a session goes on with, where it is not as in the session.
+    other_sensor: Option<LaserScan>,
+}
+
+/// What is said of a log with scans that are not after the one before them; nothing where it has none.
+#[must_use]
+pub fn late_scans(name: &str, late: usize) -> Option<String> {
+    (late > 0).then(|| {
+        format!("{name}: {late} scans are not after the one before them and were left out")
+    })
 }
 
 impl LogRun {
@@ -93,6 +103,7 @@ impl LogRun {
             poor: Vec::new(),
             late: 0,
             refused: None,
+            other_sensor: None,
         }
     }
 
@@ -209,10 +220,17 @@ impl LogRun {
         self.last_stamp_s = frame.stamp_s;
         self.last_odometry = log.odometry;
         self.driven = None;
-        self.sensor.get_or_insert_with(|| LaserScan {
+        let sensor = LaserScan {
             ranges_m: Vec::new(),
             ..frame.scan
-        });
+        };
+        match &self.sensor {
+            Some(known) if self.scans.len() == self.resumed && !has_same_beams(known, &sensor) => {
+                self.other_sensor = Some(sensor);
+            }
+            Some(_) => {}
+            None => self.sensor = Some(sensor),
+        }
         let keyframe = slam.keyframes().len() - 1;
         self.scans.push(ScanPlace {
             stamp_s: frame.stamp_s,
@@ -358,6 +376,31 @@ impl LogRun {
         self.refused
     }
 
+    /// What the owner of a log should know of the scans that were taken from it, and of those left out.
+    #[must_use]
+    pub fn sentences(&self, name: &str) -> Vec<String> {
+        let other = self.sensor.as_ref().zip(self.other_sensor.as_ref());
+        let other = other.map(|(known, other)| {
+            let [known, other] = [known, other].map(|sensor| {
+                let degrees = |angle_rad: f64| angle_rad.to_degrees();
+                format!(
+                    "start at {:.1}° and stand {:.2}° apart",
+                    degrees(sensor.first_angle_rad),
+                    degrees(sensor.angle_step_rad)
+                )
+            });
+            format!(
+                "{name}: its beams {other}, and those of the session {known}; the values stay those for the \
+                 session's scanner"
+            )
+        });
+        let refused = self
+            .refused
+            .map(|problem| format!("{name}: scans were left out; the first because {problem}"));
+        let late = late_scans(name, self.late);
+        [other, late, refused].into_iter().flatten().collect()
+    }
+
     /// Where every scan was taken, by the graph as it is now; those of a session come first.
     #[must_use]
     pub fn trajectory(&self) -> Trajectory {
@@ -371,4 +414,11 @@ impl LogRun {
         });
         Trajectory::new(places.collect())
     }
+}
+
+/// Whether two sensors point their beams the same way, to a thousandth of a step.
+fn has_same_beams(one: &LaserScan, other: &LaserScan) -> bool {
+    let little_rad = 1e-3 * one.angle_step_rad.abs();
+    (one.first_angle_rad - other.first_angle_rad).abs() <= little_rad
+        && (one.angle_step_rad - other.angle_step_rad).abs() <= little_rad
 }

@@ -11,7 +11,7 @@ use clap::Args;
 use measuring::process;
 use pr_geom::SE2;
 use robot_io::localize::LocalizeRun;
-use robot_io::run::OdometryUse;
+use robot_io::run::{OdometryUse, late_scans};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -200,14 +200,9 @@ pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
             problem.unwrap_or_else(|| "it was interrupted before the first one".to_owned());
         return Err(LocalizeError::NoScan { name, problem });
     }
-    for sentence in reader.notes().sentences(&name) {
+    let late = late_scans(&name, run.late());
+    for sentence in reader.notes().sentences(&name).into_iter().chain(late) {
         eprintln!("slam2d: {sentence}");
-    }
-    if run.late() > 0 {
-        eprintln!(
-            "slam2d: {name}: {} scans are not after the one before them and were left out",
-            run.late()
-        );
     }
     let trajectory = run.trajectory();
     if let Some(path) = &args.output {

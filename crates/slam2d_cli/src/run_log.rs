@@ -166,7 +166,8 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     if run.scans() == 0 && run.late() > 0 {
         return Err(RunError::NotLater { name });
     }
-    let mut remarks = notes(&run, reader.notes().sentences(&name), &name);
+    let mut remarks = reader.notes().sentences(&name);
+    remarks.extend(run.sentences(&name));
     for remark in &remarks {
         eprintln!("slam2d: {remark}");
     }
@@ -246,22 +247,6 @@ fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder), RunError> {
     };
     let run = LogRun::resume(&session, odometry_use).map_err(told)?;
     Ok((run, RunRecorder::resume(&session)))
-}
-
-/// What the owner of the log should know: of its lines, and of scans that were left out.
-fn notes(run: &LogRun, mut sentences: Vec<String>, name: &str) -> Vec<String> {
-    if run.late() > 0 {
-        sentences.push(format!(
-            "{name}: {} scans are not after the one before them and were left out",
-            run.late()
-        ));
-    }
-    if let Some(problem) = run.refused() {
-        sentences.push(format!(
-            "{name}: scans were left out; the first because {problem}"
-        ));
-    }
-    sentences
 }
 
 /// Writes trajectory, graph, quality and doubts into a folder, which is made where it is missing.

@@ -243,14 +243,6 @@ impl<'a> Engine<'a> {
         self.tell_offers(&notes.offers);
         self.remarks.clone_from(&notes.about);
         self.remarks.extend(notes.sentences(&self.name));
-        if self.run.late() > 0 {
-            self.remarks.push(format!(
-                "{}: {} scans are not after the one before them and were left out",
-                self.name,
-                self.run.late()
-            ));
-        }
-        let refused = self.run.refused().map(|why| why.to_string());
         match self.run.finishing() {
             Some(_) if !self.run.has_seen() => {
                 let said = format!("{}: no scan could be used: {NOTHING_SEEN}", self.name);
@@ -258,15 +250,11 @@ impl<'a> Engine<'a> {
             }
             Some(refinement) => {
                 self.remarks.extend(problem);
-                if let Some(why) = refused {
-                    let name = &self.name;
-                    let said = format!("{name}: scans were left out; the first because {why}");
-                    self.remarks.push(said);
-                }
+                self.remarks.extend(self.run.sentences(&self.name));
                 self.work = Work::Linking(Box::new(refinement), 0);
             }
             None => {
-                let nothing = || match refused {
+                let nothing = || match self.run.refused() {
                     Some(why) => format!("{}: no scan could be used: {why}", self.name),
                     None => format!("{} was stopped before its first scan", self.name),
                 };

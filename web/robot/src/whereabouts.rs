@@ -12,7 +12,7 @@ use pr_geom::SE2;
 use robot_io::localize::LocalizeRun;
 use robot_io::log::{LogFormat, LogNotes, LogOptions, LogReader};
 use robot_io::quality::KeyframeQuality;
-use robot_io::run::OdometryUse;
+use robot_io::run::{OdometryUse, late_scans};
 use robot_io::session::Session;
 use robot_io::trajectory::{StampedPose, Trajectory};
 
@@ -192,13 +192,7 @@ impl<'a> Whereabouts<'a> {
 
     fn remarks(&self, notes: &LogNotes) -> Vec<String> {
         let mut said = notes.sentences(&self.name);
-        if self.run.late() > 0 {
-            said.push(format!(
-                "{}: {} scans are not after the one before them and were left out",
-                self.name,
-                self.run.late()
-            ));
-        }
+        said.extend(late_scans(&self.name, self.run.late()));
         said
     }
 }

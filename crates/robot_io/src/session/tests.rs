@@ -94,6 +94,19 @@ fn a_run_that_goes_on_from_a_file_ends_in_the_bits_of_one_that_was_never_interru
 }
 
 #[test]
+fn a_log_of_another_scanner_is_told() {
+    let session = run(120, 0..80).session().unwrap();
+    for (beams, told) in [(120, 0), (90, 1)] {
+        let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
+        go_on(&mut second, beams, 80..90);
+        let sentences = second.sentences("log");
+        assert_eq!(sentences.len(), told, "{sentences:?}");
+        let is_said = |said: &String| said.contains("stand 4.00° apart");
+        assert!(sentences.iter().all(is_said), "{sentences:?}");
+    }
+}
+
+#[test]
 fn loops_that_wait_are_saved_and_wait_on() {
     // A guard that is never sure and never has enough.
     let settings = [
