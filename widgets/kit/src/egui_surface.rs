@@ -1,10 +1,12 @@
 //! Draws on an egui painter.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use egui::epaint::PathStroke;
 use egui::{
-    Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions, pos2, vec2,
+    Color32, FontId, Galley, Painter, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions,
+    pos2, vec2,
 };
 
 use crate::palette::{self, Rgb, Theme};
@@ -107,6 +109,11 @@ fn egui_rect(rect: PxRect) -> Rect {
     Rect::from_min_size(pos2(rect.left, rect.top), vec2(rect.width, rect.height))
 }
 
+/// A text without a colour: what is measured and drawn, in whatever colour, egui lays out once.
+fn laid_out(painter: &Painter, text: &str, size: TextSize) -> Arc<Galley> {
+    painter.layout_no_wrap(text.to_owned(), font(size), Color32::PLACEHOLDER)
+}
+
 /// Measures text with egui's fonts.
 pub struct EguiMeasure(
     /// The painter whose fonts count.
@@ -115,10 +122,7 @@ pub struct EguiMeasure(
 
 impl Measure for EguiMeasure {
     fn text_width(&mut self, text: &str, size: TextSize) -> f32 {
-        let galley = self
-            .0
-            .layout_no_wrap(text.to_owned(), font(size), Color32::WHITE);
-        galley.size().x
+        laid_out(&self.0, text, size).size().x
     }
 }
 
@@ -184,8 +188,9 @@ impl Surface for EguiSurface<'_> {
             Align::Center => egui::Align2::CENTER_CENTER,
             Align::Right => egui::Align2::RIGHT_CENTER,
         };
-        self.painter
-            .text(pos(at), anchor, text, font(size), color(ink));
+        let galley = laid_out(&self.painter, text, size);
+        let place = anchor.anchor_size(pos(at), galley.size());
+        self.painter.galley(place.min, galley, color(ink));
     }
 
     fn snap(&self, coordinate: f32) -> f32 {

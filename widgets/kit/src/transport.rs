@@ -1,6 +1,8 @@
 //! The transport bar: play, step, reset, speed, and the timeline with its events.
 
-use egui::{Button, CursorIcon, Key, Rect, Response, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{
+    Button, CursorIcon, Key, Label, Rect, Response, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
+};
 
 use crate::controls;
 use crate::egui_surface::color;
@@ -91,8 +93,9 @@ fn place_on(ui: &mut Ui, model: &dyn Model, timeline: Option<&Timeline>) {
         let last = timeline.last.max(0.0);
         // A position past the end means the end, wherever that is at the moment.
         let value = value.min(last);
-        ui.label(format!("{} {value:.0} of {last:.0}", spec.label))
-            .on_hover_text(spec.help);
+        // In one piece: what does not fit beside the buttons stands below them.
+        let words = format!("{} {value:.0} of {last:.0}", spec.label);
+        ui.add(Label::new(words).extend()).on_hover_text(spec.help);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Cost, score and their slopes at single shifts.
 
-use pr_geom::{Point2, Vector2, math};
+use pr_geom::{Point2, Vector2};
 
 use super::{TerrainScene, TerrainSettings};
 use ch16_slam2d::cloud::NearestMap;
@@ -92,10 +92,9 @@ impl<'a> TerrainProbe<'a> {
     fn ndt_slope(&self, offset_m: Vector2<f64>) -> Slope {
         let (mut value, mut gradient) = (0.0, Vector2::zeros());
         for point in self.moved(offset_m) {
-            for gaussian in self.scene.ndt().around(point.x, point.y) {
-                let e = math::exp(-gaussian.exponent(point.x, point.y));
-                value += e;
-                gradient -= gaussian.information * (point - gaussian.mean) * e;
+            for (gaussian, added) in self.scene.ndt().scores_around(point.x, point.y) {
+                value += added;
+                gradient -= gaussian.information * (point - gaussian.mean) * added;
             }
         }
         Slope {

@@ -120,6 +120,15 @@ impl NdtMap {
             .map(|&index| &self.gaussians[index as usize])
     }
 
+    /// Those of them that add to the score of a point, each with what it adds, `exp(−½ dᵀ Σ⁻¹ d)`.
+    #[inline]
+    pub fn scores_around(&self, x: f64, y: f64) -> impl Iterator<Item = (&NdtCell, f64)> {
+        self.around(x, y).filter_map(move |gaussian| {
+            let exponent = gaussian.exponent(x, y);
+            (exponent < NEGLIGIBLE_EXPONENT).then(|| (gaussian, math::exp(-exponent)))
+        })
+    }
+
     /// Indices of the Gaussians of the 3×3 cells around `cell`.
     #[inline]
     #[must_use]
@@ -139,12 +148,8 @@ impl NdtMap {
 
     #[inline]
     fn add_scores(&self, x: f64, y: f64, score: &mut f64) {
-        for gaussian in self.around(x, y) {
-            let exponent = gaussian.exponent(x, y);
-            if exponent < NEGLIGIBLE_EXPONENT {
-                *score += math::exp(-exponent);
-            }
-        }
+        self.scores_around(x, y)
+            .for_each(|(_, added)| *score += added);
     }
 
     /// The sum of the scores of all points of `cloud`, moved by `map_from_cloud`.
