@@ -100,6 +100,8 @@ function locate(on: Robot, log: File, options: string, start: number[]): void {
   try {
     on.locate(log.name, log.size, reading(log), options, Float64Array.from(start));
     if (isHeld) hold(false);
+    // What was said while it had to wait is over.
+    say({ deliveries: [told('answer', '')] });
     tell(on);
   } catch (error) {
     answer(error);

@@ -51,6 +51,22 @@ fn hollows(model: &dyn Model) -> usize {
 }
 
 #[test]
+fn the_picture_of_the_bells_shows_bells_in_every_preset() {
+    for spec in CostTerraces::new().spec().presets {
+        let bells = panel(&preset(spec.id), "bells");
+        let is_inside = |[x, y]: [f64; 2]| {
+            (bells.x.min..bells.x.max).contains(&x) && (bells.y.min..bells.y.max).contains(&y)
+        };
+        let shown = bells.layers.iter().filter(|layer| match layer {
+            Layer::Ellipse { center, .. } => is_inside(*center),
+            _ => false,
+        });
+        // Two ellipses a bell.
+        assert!(shown.count() >= 4, "{}", spec.id);
+    }
+}
+
+#[test]
 fn it_opens_on_terraces_where_icps_ball_sticks() {
     let model = CostTerraces::new();
     assert_eq!(model.outcome().verdict, "ICP sticks");

@@ -1,9 +1,10 @@
 //! The sweep over what it is matched with: ICP's partners, and NDT's bells.
 
 use kit::scene::{Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use pr_geom::math;
 
 use super::{Looked, Moment};
-use crate::model::terrains::{Pairing, Terrains};
+use crate::model::terrains::{Bell, Pairing, Terrains};
 
 /// Room around the map's walls, m.
 const MARGIN_M: f64 = 0.5;
@@ -96,7 +97,7 @@ pub fn bells(terrains: &Terrains, moment: Moment) -> Panel {
     panel(
         "bells",
         &format!("{} bells, cells {width_m:.2} m", bells.len()),
-        frame(terrains, CLOSE_M),
+        close_frame(terrains, &bells),
         layers,
         vec![
             LegendEntry::line("bell, 1 σ", Tone::Measurement, Stroke::Solid),
@@ -105,6 +106,20 @@ pub fn bells(terrains: &Terrains, moment: Moment) -> Panel {
             LegendEntry::mark("sweep", Tone::Prior, Mark::Circle),
         ],
     )
+}
+
+/// The lower left end of the walls; where no bell lies there, as much of them upwards from the lowest bell.
+fn close_frame(terrains: &Terrains, bells: &[Bell]) -> Bounds {
+    let Bounds { mut min, mut max } = frame(terrains, CLOSE_M);
+    let is_across = |bell: &&Bell| (min[0]..max[0]).contains(&bell.mean_m[0]);
+    let heights = bells.iter().filter(is_across).map(|bell| bell.mean_m[1]);
+    let lowest_m = heights.fold(f64::INFINITY, math::min);
+    if lowest_m.is_finite() && lowest_m > max[1] {
+        let height_m = max[1] - min[1];
+        min[1] = lowest_m - MARGIN_M;
+        max[1] = min[1] + height_m;
+    }
+    Bounds { min, max }
 }
 
 pub(super) fn map_points(terrains: &Terrains) -> Layer {
