@@ -3,7 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { cpSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdtempSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
@@ -17,6 +17,9 @@ const CELLS = [
   ['from slam_widgets import Basin, Robot', 'basin = Basin(heading=60)', 'basin'],
   ['print("kernel has", basin.value["heading"], basin.outcome["verdict"] != "")', 'basin.heading = 120'],
   ['robot = Robot("ring.log", reference="ring-truth.tum", where="ring-another-day.log", colour="error")', 'robot'],
+  ['robot.save("trajectory.tum")', 'robot.save("map.png", "kept.png")', 'robot.save("nothing.txt")'],
+  ['print("came:", *(f"{path.name} {path.stat().st_size > 1000}" for path in robot.saved), "| refused:", robot.refused,',
+    '      "| tables:", *sorted(robot.tables))'],
 ];
 
 function notebook() {
@@ -103,6 +106,11 @@ test('the wheel lives in JupyterLab without a network, and values and results go
 
     await run(2);
     await verdict(2, /^(mapped|loops contradict): ring\.log.*off the truth.*The robot of ring-another-day\.log is found/);
+    // Files come when the page has written them: the kernel is asked until they are there.
+    await run(3);
+    const told = /came: trajectory\.tum True kept\.png True \| refused: .*nothing\.txt.* \| tables: .*loops.*/;
+    while (!told.test(await tab.locator('.jp-Cell >> nth=4').innerText())) await run(4);
+    assert.ok(statSync(join(folder, 'work', 'kept.png')).size > 1000);
   } finally {
     await browser?.close();
     if (lab !== undefined) {
