@@ -76,25 +76,6 @@ pub fn recorded(kind: Kind, seed: u32) -> (Recording, SlamConfig) {
 /// What another robot records there; on the laps the chapter's own drives, whichever is asked for.
 #[must_use]
 pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, SlamConfig) {
-    let recording = match kind {
-        Kind::Lap => lap(BuiltInWorld::Apartment, seed),
-        Kind::RingLap => lap(BuiltInWorld::Ring, seed),
-        Kind::Ring | Kind::Hallway | Kind::Circle | Kind::Alike => building(driver, kind, seed),
-    };
-    let config = SlamConfig::for_robot(&recording.frames[0].scan);
-    (recording, config)
-}
-
-/// The drive of `slam2d lap` at this seed.
-fn lap(world: BuiltInWorld, seed: u32) -> Recording {
-    let drive = DriveConfig {
-        seed,
-        ..DriveConfig::default()
-    };
-    Recording::of_drive(&Drive::simulate(&drive.on_course(&world.course())))
-}
-
-fn building(driver: Robot, kind: Kind, seed: u32) -> Recording {
     let plan = BuildingConfig {
         seed,
         ..BuildingConfig::default()
@@ -104,6 +85,9 @@ fn building(driver: Robot, kind: Kind, seed: u32) -> Recording {
         ..Recorder::default()
     };
     let (plan, robot) = match kind {
+        Kind::Lap => return with_defaults(lap(BuiltInWorld::Apartment, seed)),
+        Kind::RingLap => return with_defaults(lap(BuiltInWorld::Ring, seed)),
+        Kind::Ring => (plan, robot),
         Kind::Hallway => (
             BuildingConfig {
                 layout: Layout::Hallway,
@@ -139,7 +123,23 @@ fn building(driver: Robot, kind: Kind, seed: u32) -> Recording {
                 ..robot
             },
         ),
-        Kind::Ring | Kind::Lap | Kind::RingLap => (plan, robot),
     };
-    Recording::new(&BuildingPlan::new(&plan), &driver.instead_of(robot))
+    with_defaults(Recording::new(
+        &BuildingPlan::new(&plan),
+        &driver.instead_of(robot),
+    ))
+}
+
+fn with_defaults(recording: Recording) -> (Recording, SlamConfig) {
+    let config = SlamConfig::for_robot(&recording.frames[0].scan);
+    (recording, config)
+}
+
+/// The drive of `slam2d lap` at this seed.
+fn lap(world: BuiltInWorld, seed: u32) -> Recording {
+    let drive = DriveConfig {
+        seed,
+        ..DriveConfig::default()
+    };
+    Recording::of_drive(&Drive::simulate(&drive.on_course(&world.course())))
 }

@@ -142,8 +142,14 @@ impl Slam {
 
     /// Keyframes within so much of the way before a node.
     fn nodes_since(&self, way_m: f64, node: usize) -> usize {
-        let within = |old: &usize| self.way_between_m(*old, node) <= way_m;
-        (0..node).rev().take_while(within).count()
+        let way = &self.graph.poses()[..=node];
+        let steps = way.windows(2).rev();
+        let lengths = steps.map(|pair| position_error_m(&pair[0], &pair[1]));
+        let ways = lengths.scan(0.0, |sum_m, step_m| {
+            *sum_m += step_m;
+            Some(*sum_m)
+        });
+        ways.take_while(|sum_m| *sum_m <= way_m).count()
     }
 
     /// Length of the way of the keyframes since the last loop, m.

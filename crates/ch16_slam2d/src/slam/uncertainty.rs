@@ -28,7 +28,7 @@ impl Slam {
     /// # Errors
     /// Where the normal equations are not positive definite.
     pub fn keyframe_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
-        let factor = CHAINED * variance_factor(&self.graph);
+        let factor = CHAINED * self.variance_factor();
         let stated = self.graph.pose_covariances()?;
         Ok(stated.into_iter().map(|stated| stated * factor).collect())
     }

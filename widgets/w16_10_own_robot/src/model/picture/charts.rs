@@ -8,15 +8,7 @@ use crate::model::{OwnRobot, panel};
 /// The share of each scan that fits.
 pub fn fit(own: &OwnRobot) -> Panel {
     let fits: Vec<f64> = own.robot.keyframes.iter().map(|k| k.fit).collect();
-    let chart = TimeChart {
-        id: panel::FIT,
-        title: "How well each scan fits",
-        x_label: "keyframe",
-        last: own.last(),
-        y_label: "share",
-        now: own.keyframe(),
-    };
-    chart.panel(&[Series {
+    over_keyframes(own, panel::FIT, "How well each scan fits", "share").panel(&[Series {
         label: "share of the scan that fits",
         values: &fits,
         tone: Tone::Measurement,
@@ -27,14 +19,7 @@ pub fn fit(own: &OwnRobot) -> Panel {
 /// The standard deviation of each keyframe, and its error where it is known.
 pub fn sure(own: &OwnRobot) -> Panel {
     let sigmas: Vec<f64> = own.robot.keyframes.iter().map(|k| k.sigma_m).collect();
-    let chart = TimeChart {
-        id: panel::SURE,
-        title: "How sure the graph is",
-        x_label: "keyframe",
-        last: own.last(),
-        y_label: "m",
-        now: own.keyframe(),
-    };
+    let chart = over_keyframes(own, panel::SURE, "How sure the graph is", "m");
     let sigma = Series {
         label: "σ of the position",
         values: &sigmas,
@@ -53,4 +38,20 @@ pub fn sure(own: &OwnRobot) -> Panel {
             mark: Mark::Plus,
         },
     ])
+}
+
+fn over_keyframes(
+    own: &OwnRobot,
+    id: &'static str,
+    title: &'static str,
+    y_label: &'static str,
+) -> TimeChart<'static> {
+    TimeChart {
+        id,
+        title,
+        x_label: "keyframe",
+        last: own.last(),
+        y_label,
+        now: own.keyframe(),
+    }
 }
