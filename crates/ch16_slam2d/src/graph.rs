@@ -17,6 +17,7 @@ mod marginalize;
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
+use pr_optim::robust::{Belief, GncSettings, believe};
 use pr_optim::{
     Between, JacobianModel, Method, OptimizeError, Optimizer, Problem, Report, Settings,
 };
@@ -112,6 +113,9 @@ pub struct EdgeView {
     /// The measurement.
     pub edge: PoseEdge,
 }
+
+/// What [`PoseGraph::believed`] says.
+pub type LoopBeliefs = Result<Belief, OptimizeError>;
 
 /// Poses and measurements, with the solver's workspace beside them.
 #[derive(Debug)]
@@ -325,6 +329,31 @@ impl PoseGraph {
         self.optimizer.settings.kernel = RobustKernel::Huber { width: huber };
         let step = self.optimizer.step(&mut self.problem);
         step.map_or(f64::NAN, |step| step.largest_step)
+    }
+
+    /// Which edges are believed where each loop may be false: see [`believe`].
+    ///
+    /// # Errors
+    /// Where the normal equations cannot be solved.
+    pub fn believed(&self) -> LoopBeliefs {
+        let trusted: Vec<bool> = self
+            .kinds
+            .iter()
+            .map(|kind| *kind != EdgeKind::Loop)
+            .collect();
+        let solver = Settings {
+            jacobians: JacobianModel::Exact,
+            ..Settings::default()
+        };
+        believe(&self.problem, &trusted, solver, &GncSettings::default())
+    }
+
+    /// The same graph with only those edges for which `keep` says so, by their order.
+    #[must_use]
+    pub fn with_edges(&self, mut keep: impl FnMut(usize) -> bool) -> Self {
+        let nodes: Vec<PoseNode> = self.nodes().map(|(_, node)| node).collect();
+        let edges: Vec<EdgeView> = self.edges().filter(|view| keep(view.id.index())).collect();
+        Self::of(&nodes, &edges)
     }
 
     /// Exact covariance of the relative pose `T_i⁻¹ T_j`, as all edges together know it.

@@ -22,6 +22,6 @@ pub use config::{Detection, DetectorKind, GateModel, LoopConfig, WideSearch};
 pub use detector::{CloneDetector, LoopDetector, LoopQuery, NearbyDetector};
 pub use gate::{GateTest, chi_squared_gate, marginal_information, path_information};
 pub(crate) use guard::widest_variance;
-pub use guard::{HeldLoop, LoopGuard};
+pub use guard::{HeldLoop, LoopGuard, Referee};
 pub(crate) use verify::rejection;
 pub use verify::{KeyframeView, LoopRejection, LoopVerification, LoopWorkspace, verify_loop};

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use pr_geom::{SE2, math};
 
 use super::LoopVerification;
+use crate::graph::{LoopBeliefs, PoseGraph};
 
 /// A guard against places that look alike.
 ///
@@ -33,6 +34,41 @@ pub struct LoopGuard {
     pub apart_m: f64,
     /// Loops wait for others on so much of the way, m.
     pub patience_m: f64,
+    /// Who says which loops to believe once the graph contradicts itself.
+    pub referee: Referee,
+}
+
+/// Says which edges of a graph are believed where each loop may be false; by default nobody does.
+///
+/// A function, so that a program that asks nobody does not carry it. It is no value of the guard: guards with
+/// the same values are equal.
+#[derive(Clone, Copy, Default)]
+pub struct Referee(Option<fn(&PoseGraph) -> LoopBeliefs>);
+
+impl Referee {
+    /// By the truncated cost: [`PoseGraph::believed`].
+    #[must_use]
+    pub fn by_truncated_cost() -> Self {
+        Self(Some(PoseGraph::believed))
+    }
+
+    /// What is believed; none where nobody is asked.
+    #[must_use]
+    pub fn judge(&self, graph: &PoseGraph) -> Option<LoopBeliefs> {
+        self.0.map(|judge| judge(graph))
+    }
+}
+
+impl PartialEq for Referee {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl core::fmt::Debug for Referee {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("Referee")
+    }
 }
 
 impl Default for LoopGuard {
@@ -47,6 +83,7 @@ impl Default for LoopGuard {
             agreeing_outside: 3,
             apart_m: 1.0,
             patience_m: 12.0,
+            referee: Referee::default(),
         }
     }
 }

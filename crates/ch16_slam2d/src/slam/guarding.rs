@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 use pr_geom::{SE2, math};
-use pr_optim::OptimizeError;
+use pr_optim::{OptimizeError, StopReason};
 
 use super::Slam;
 use crate::graph::EdgeKind;
@@ -12,6 +12,9 @@ use crate::loops::{
 };
 use crate::matching::{MatcherKind, SearchMatcherConfig};
 use crate::metrics::position_error_m;
+
+/// Where the graph's errors vary at least so many times as much as stated, loops may contradict each other.
+const CONTRADICTION: f64 = 1.0;
 
 /// Two searches found the same place where they end so near, m and rad.
 const SAME_PLACE: (f64, f64) = (0.5, 0.35);
@@ -205,6 +208,39 @@ impl Slam {
         (is_most && self.optimize_with(&found).is_ok()).then_some(found)
     }
 
+    /// Takes loops out again that the newest one refutes together with others.
+    ///
+    /// One place may look like another until the way around a corner shows which is right. Then the loops on
+    /// either side contradict each other, and the truncated cost says which side has more to show. While
+    /// that is the older one, both stay: the newest loop waits for others in the graph.
+    pub(super) fn take_back_refuted(&mut self) {
+        let Some(guard) = self.config.loops.guard else {
+            return;
+        };
+        let newest = self.graph.edge_count().checked_sub(1);
+        let Some(newest) = newest.filter(|_| self.variance_factor() >= CONTRADICTION) else {
+            return;
+        };
+        let Some(Ok(belief)) = guard.referee.judge(&self.graph) else {
+            return;
+        };
+        if !belief.believed[newest] || belief.believed.iter().all(|believed| *believed) {
+            return;
+        }
+        let mut graph = self.graph.with_edges(|edge| belief.believed[edge]);
+        for (node, pose) in belief.poses.iter().enumerate() {
+            graph.set_pose(node, *pose);
+        }
+        let report = graph.optimize_robust(
+            self.config.optimizer_iterations,
+            self.config.optimizer_tolerance,
+            self.config.huber,
+        );
+        if !matches!(report.stop, StopReason::Failed { .. }) {
+            self.graph = graph;
+        }
+    }
+
     /// Drift of what goes one way between two nodes, a standard deviation, m.
     ///
     /// Each step counts by the share of it that the wheels alone tell: where the scans say where the robot
@@ -264,5 +300,72 @@ fn rejected(found: LoopVerification, rejection: LoopRejection) -> LoopVerificati
     LoopVerification {
         rejection: Some(rejection),
         ..found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::graph::{EdgeView, PoseGraph, PoseNode};
+    use crate::loops::Referee;
+    use crate::slam::test_room::{frame, truth};
+    use crate::slam::{LoopClosure, SlamConfig};
+
+    /// Two laps without a loop, each step known to 5 cm and 2°.
+    fn two_laps() -> Slam {
+        let mut config = SlamConfig::for_robot(&frame(0).scan);
+        config.start = truth(0);
+        config.loop_closure = LoopClosure::Off;
+        let guard = config.loops.guard.as_mut().expect("robots have a guard");
+        guard.referee = Referee::by_truncated_cost();
+        let mut slam = Slam::new(config);
+        for step in 0..=210 {
+            slam.step(&frame(step)).unwrap();
+        }
+        let nodes: Vec<PoseNode> = slam.graph.nodes().map(|(_, node)| node).collect();
+        let mut edges: Vec<EdgeView> = slam.graph.edges().collect();
+        for view in &mut edges {
+            view.edge.information = Matrix3::from_diagonal(&Vector3::new(400.0, 400.0, 820.0));
+        }
+        slam.graph = PoseGraph::of(&nodes, &edges);
+        slam
+    }
+
+    /// Closes a loop whose new node is found `off_m` beside where it is.
+    fn close(slam: &mut Slam, old: usize, off_m: f64) {
+        let at = |node: usize| truth(slam.keyframes[node].frame);
+        let new = old + slam.keyframes.len() / 2;
+        let measured = at(old).between(&(SE2::translation(off_m, 0.0) * at(new)));
+        let trust = Matrix3::identity() * 1e4;
+        slam.graph
+            .add_edge(old, new, measured, trust, EdgeKind::Loop);
+        slam.graph.optimize(30, 1e-9);
+        slam.take_back_refuted();
+    }
+
+    fn closed(slam: &Slam) -> Vec<usize> {
+        let loops = slam
+            .graph
+            .edges()
+            .filter(|view| view.edge.kind == EdgeKind::Loop);
+        loops.map(|view| view.from.index()).collect()
+    }
+
+    #[test]
+    fn false_loops_that_agree_are_taken_back_once_right_ones_contradict_them() {
+        let mut slam = two_laps();
+        for old in 0..3 {
+            close(&mut slam, old, 1.5);
+        }
+        assert_eq!(closed(&slam), [0, 1, 2]);
+        for old in 8..13 {
+            close(&mut slam, old, 0.0);
+        }
+        assert_eq!(closed(&slam), [8, 9, 10, 11, 12]);
+        // Nor does a false one take right ones back.
+        close(&mut slam, 5, 1.5);
+        assert_eq!(closed(&slam), [8, 9, 10, 11, 12, 5]);
     }
 }

@@ -253,6 +253,7 @@ impl Slam {
             }
             return Err(rejection);
         }
+        self.take_back_refuted();
         self.chi2 = self.graph.chi2();
         self.last_loop_node = verification.from_node;
         self.held.clear();

@@ -639,6 +639,7 @@ fn guard(config: &mut Option<LoopGuard>, f: &mut impl Fields) {
         agreeing_outside,
         apart_m,
         patience_m,
+        referee: _,
     } = config.get_or_insert_default();
     for (name, value) in [
         ("floor_m", floor_m),
