@@ -15,7 +15,8 @@ import * as h from './harness.mjs';
 
 const CELLS = [
   ['from slam_widgets import Basin, Robot', 'basin = Basin(heading=60)', 'basin'],
-  ['print("kernel has", basin.value["heading"], basin.outcome["verdict"] != "")', 'basin.heading = 120'],
+  ['print("kernel has", basin.value["heading"], basin.outcome["verdict"] != "")'],
+  ['basin.heading = 120'],
   ['robot = Robot("ring.log", reference="ring-truth.tum", where="ring-another-day.log", colour="error")', 'robot'],
   ['robot.save("trajectory.tum")', 'robot.save("map.png", "kept.png")', 'robot.save("nothing.txt")'],
   ['print("came:", *(f"{path.name} {path.stat().st_size > 1000}" for path in robot.saved), "| refused:", robot.refused,',
@@ -82,9 +83,11 @@ test('the wheel lives in JupyterLab without a network, and values and results go
         await commands.execute('notebook:run-cell');
       }, at);
     };
-    const says = (pattern) => tab.waitForFunction(
-      (source) => [...document.querySelectorAll('.jp-OutputArea-output')].some((out) => new RegExp(source).test(out.textContent)),
-      pattern.source);
+    /** Runs a cell until it says so: what the page sends comes when it comes. */
+    const asks = async (at, pattern) => {
+      const cell = tab.locator(`.jp-Cell >> nth=${at}`);
+      while (!pattern.test(await cell.innerText())) await run(at);
+    };
     const widget = (at) => tab.locator(`.jp-Cell >> nth=${at} >> slam-widget`);
     const verdict = (at, pattern) => tab.waitForFunction(([cell, source]) => {
       const found = document.querySelectorAll('.jp-Cell')[cell]?.querySelector('slam-widget');
@@ -100,16 +103,15 @@ test('the wheel lives in JupyterLab without a network, and values and results go
       it.addEventListener('slam-result', () => done(), { once: true });
       it.set('heading', 90);
     }));
-    await run(1);
-    await says(/kernel has 90 True/);
+    await asks(1, /kernel has 90 True/);
+    await run(2);
     await tab.waitForFunction(() => document.querySelector('slam-widget').get('heading') === 120);
 
-    await run(2);
-    await verdict(2, /^(mapped|loops contradict): ring\.log.*off the truth.*The robot of ring-another-day\.log is found/);
-    // Files come when the page has written them: the kernel is asked until they are there.
     await run(3);
-    const told = /came: trajectory\.tum True kept\.png True \| refused: .*nothing\.txt.* \| tables: .*loops.*/;
-    while (!told.test(await tab.locator('.jp-Cell >> nth=4').innerText())) await run(4);
+    await verdict(3, /^(mapped|loops contradict): ring\.log.*off the truth.*The robot of ring-another-day\.log is found/);
+    // Files come when the page has written them.
+    await run(4);
+    await asks(5, /came: trajectory\.tum True kept\.png True \| refused: .*nothing\.txt.* \| tables: .*loops.*/);
     assert.ok(statSync(join(folder, 'work', 'kept.png')).size > 1000);
   } finally {
     await browser?.close();
