@@ -13,7 +13,6 @@ const slider = (tab) => tab.locator('.lap-controls input');
 const button = (tab) => tab.locator('.lap-controls button');
 const tick = (tab) => tab.evaluate(() => Number(document.querySelector('#lap').dataset.tick));
 const act = (tab) => tab.locator('.lap-acts li[aria-current]').textContent();
-/** The share of the canvas that is drawn on. */
 /** Once a hundredth of the canvas has ink: it is painted in the frame after its size is known. */
 const inked = (tab) => tab.waitForFunction(() => {
   const canvas = document.querySelector('.lap-picture canvas');
