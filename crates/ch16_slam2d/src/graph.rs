@@ -348,11 +348,11 @@ impl PoseGraph {
         believe(&self.problem, &trusted, solver, &GncSettings::default())
     }
 
-    /// The same graph with only those edges for which `keep` says so, by their order.
+    /// The same graph with only those edges for which `keep` says so.
     #[must_use]
-    pub fn with_edges(&self, mut keep: impl FnMut(usize) -> bool) -> Self {
+    pub fn with_edges(&self, keep: impl FnMut(&EdgeView) -> bool) -> Self {
         let nodes: Vec<PoseNode> = self.nodes().map(|(_, node)| node).collect();
-        let edges: Vec<EdgeView> = self.edges().filter(|view| keep(view.id.index())).collect();
+        let edges: Vec<EdgeView> = self.edges().filter(keep).collect();
         Self::of(&nodes, &edges)
     }
 

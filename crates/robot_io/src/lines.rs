@@ -28,12 +28,7 @@ pub fn next_line(
     loop {
         let buffer = filled(source)?;
         if buffer.is_empty() {
-            let end = if is_kept {
-                LineEnd::CutOff
-            } else {
-                LineEnd::TooLong
-            };
-            return Ok((bytes > 0).then_some((end, bytes)));
+            return Ok((bytes > 0).then_some((ended(LineEnd::CutOff, is_kept), bytes)));
         }
         let end = buffer.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
         let part = &buffer[..end.unwrap_or(buffer.len())];
@@ -49,14 +44,14 @@ pub fn next_line(
                 source.consume(1);
                 bytes += 1;
             }
-            let end = if is_kept {
-                LineEnd::Whole
-            } else {
-                LineEnd::TooLong
-            };
-            return Ok(Some((end, bytes)));
+            return Ok(Some((ended(LineEnd::Whole, is_kept), bytes)));
         }
     }
+}
+
+/// How a line ended of which all was kept, or not.
+fn ended(end: LineEnd, is_kept: bool) -> LineEnd {
+    if is_kept { end } else { LineEnd::TooLong }
 }
 
 /// What can be read without waiting, at least a byte of it; nothing at the end.

@@ -1,6 +1,6 @@
 //! A log through the estimator, one scan at a time.
 
-use ch16_slam2d::loops::{LoopVerification, Referee};
+use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::scan::{Frame, FrameError, LaserScan};
 use ch16_slam2d::slam::parameters::Parameter;
 use ch16_slam2d::slam::{Refinement, Slam, SlamConfig, SlamReport, SlamSnapshot, SnapshotError};
@@ -135,7 +135,7 @@ impl LogRun {
     /// Where the session contradicts itself, or was mapped on submaps.
     pub fn resume(session: &Session, odometry_use: OdometryUse) -> Result<Self, SnapshotError> {
         let mut driven = session.driven.clone();
-        ask_referee(&mut driven.config);
+        driven.config = driven.config.with_referee();
         let slam = Slam::restore(&driven)?;
         Ok(Self::holding(session, slam, odometry_use))
     }
@@ -210,8 +210,7 @@ impl LogRun {
             if front_end == FrontEndChoice::Submaps {
                 config = front_end.of(config);
             }
-            ask_referee(&mut config);
-            Slam::new(config)
+            Slam::new(config.with_referee())
         });
         let report = match slam.step(&frame) {
             Ok(report) => report,
@@ -416,13 +415,6 @@ impl LogRun {
             pose: poses[scan.keyframe] * scan.keyframe_from_body,
         });
         Trajectory::new(places.collect())
-    }
-}
-
-/// Loops of a recorded log are judged once more where they contradict each other.
-fn ask_referee(config: &mut SlamConfig) {
-    if let Some(guard) = &mut config.loops.guard {
-        guard.referee = Referee::by_truncated_cost();
     }
 }
 

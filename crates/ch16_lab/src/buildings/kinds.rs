@@ -2,7 +2,6 @@
 
 use core::f64::consts::TAU;
 
-use ch16_slam2d::loops::Referee;
 use ch16_slam2d::slam::SlamConfig;
 
 use super::plan::{BuildingConfig, BuildingPlan, Layout, Rooms};
@@ -132,11 +131,8 @@ pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, SlamConf
 }
 
 fn with_defaults(recording: Recording) -> (Recording, SlamConfig) {
-    let mut config = SlamConfig::for_robot(&recording.frames[0].scan);
     // As runs of recorded logs do.
-    if let Some(guard) = &mut config.loops.guard {
-        guard.referee = Referee::by_truncated_cost();
-    }
+    let config = SlamConfig::for_robot(&recording.frames[0].scan).with_referee();
     (recording, config)
 }
 

@@ -4,7 +4,7 @@ use pr_geom::SE2;
 
 use super::scales::NORMAL_RADIUS_CELLS;
 use super::{MotionNoise, RefinementConfig};
-use crate::loops::LoopConfig;
+use crate::loops::{LoopConfig, Referee};
 use crate::matching::{InformationFrame, MapConfig, MatcherKind, TrustConfig};
 use crate::scan::ScanConfig;
 use crate::submaps::FrontEndKind;
@@ -232,6 +232,16 @@ impl SlamConfig {
     pub fn with_matcher(mut self, matcher: MatcherKind) -> Self {
         self.matcher = matcher;
         self.loops.matcher = matcher;
+        self
+    }
+
+    /// The same estimator, whose loops are judged anew once they contradict each other: what recorded logs
+    /// are mapped with. Without a guard of loops nobody is asked.
+    #[must_use]
+    pub fn with_referee(mut self) -> Self {
+        if let Some(guard) = &mut self.loops.guard {
+            guard.referee = Referee::by_truncated_cost();
+        }
         self
     }
 }

@@ -227,7 +227,9 @@ impl Slam {
         if !belief.believed[newest] || belief.believed.iter().all(|believed| *believed) {
             return;
         }
-        let mut graph = self.graph.with_edges(|edge| belief.believed[edge]);
+        let mut graph = self
+            .graph
+            .with_edges(|view| belief.believed[view.id.index()]);
         for (node, pose) in belief.poses.iter().enumerate() {
             graph.set_pose(node, *pose);
         }
@@ -309,7 +311,6 @@ mod tests {
 
     use super::*;
     use crate::graph::{EdgeView, PoseGraph, PoseNode};
-    use crate::loops::Referee;
     use crate::slam::test_room::{frame, truth};
     use crate::slam::{LoopClosure, SlamConfig};
 
@@ -318,9 +319,7 @@ mod tests {
         let mut config = SlamConfig::for_robot(&frame(0).scan);
         config.start = truth(0);
         config.loop_closure = LoopClosure::Off;
-        let guard = config.loops.guard.as_mut().expect("robots have a guard");
-        guard.referee = Referee::by_truncated_cost();
-        let mut slam = Slam::new(config);
+        let mut slam = Slam::new(config.with_referee());
         for step in 0..=210 {
             slam.step(&frame(step)).unwrap();
         }

@@ -8,7 +8,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{LoopClosure, Slam};
-use crate::graph::{EdgeKind, EdgeView, PoseGraph, PoseNode};
+use crate::graph::{EdgeKind, EdgeView};
 use crate::loops::{
     Detection, KeyframeView, LoopConfig, LoopVerification, LoopWorkspace, detect_visits,
     verify_loop,
@@ -161,13 +161,8 @@ impl Slam {
 
     /// The graph with its odometry and these links, optimized.
     fn replace_loops(&mut self, links: &[LoopVerification]) {
-        let nodes: Vec<PoseNode> = self.graph.nodes().map(|(_, node)| node).collect();
-        let odometry: Vec<EdgeView> = self
-            .graph
-            .edges()
-            .filter(|view| view.edge.kind == EdgeKind::Odometry)
-            .collect();
-        let mut graph = PoseGraph::of(&nodes, &odometry);
+        let is_odometry = |view: &EdgeView| view.edge.kind == EdgeKind::Odometry;
+        let mut graph = self.graph.with_edges(is_odometry);
         for link in links.iter().filter(|link| link.accepted()) {
             graph.add_edge(
                 link.candidate.node,

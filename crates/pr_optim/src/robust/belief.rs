@@ -76,13 +76,7 @@ pub fn believe(
     solver: Settings,
     settings: &GncSettings,
 ) -> Result<Belief, OptimizeError> {
-    assert_eq!(trusted.len(), problem.factors().len());
-    let search = Search {
-        problem,
-        trusted,
-        solver,
-        max_chi2: settings.max_chi2,
-    };
+    let search = Search::new(problem, trusted, solver, settings.max_chi2);
     let all = vec![true; trusted.len()];
     let ways = [
         (Direction::Forwards, BeliefStart::Forwards),
@@ -136,13 +130,7 @@ pub fn believe_consistent(
     solver: Settings,
     settings: &ConsistencySettings,
 ) -> Result<Belief, OptimizeError> {
-    assert_eq!(trusted.len(), problem.factors().len());
-    let search = Search {
-        problem,
-        trusted,
-        solver,
-        max_chi2: settings.max_chi2,
-    };
+    let search = Search::new(problem, trusted, solver, settings.max_chi2);
     let agreeing = consistent_set(problem, settings);
     let ways = [Direction::Forwards, Direction::Backwards].map(|direction| {
         let way = search.along(&agreeing, direction, BeliefStart::PairwiseConsistency);
@@ -166,7 +154,17 @@ struct Search<'a> {
     max_chi2: f64,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn new(problem: &'a Problem, trusted: &'a [bool], solver: Settings, max_chi2: f64) -> Self {
+        assert_eq!(trusted.len(), problem.factors().len());
+        Self {
+            problem,
+            trusted,
+            solver,
+            max_chi2,
+        }
+    }
+
     /// The belief along the way; none where there is no such way, or it cannot be solved.
     fn along(
         &self,
