@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { SMOOTH_MS } from './clock.mjs';
 import * as h from './harness.mjs';
-import { canvasBox, draggingSpot, restingSpot, sliderRail } from './spots.mjs';
+import { canvasBox, cloudSpot, draggingSpot, restingSpot, sliderRail } from './spots.mjs';
 
 const TALL = '<p style="height: 3000px">Much text.</p>';
 const ONE = '<slam-widget name="w16.1"></slam-widget>';
@@ -136,18 +136,26 @@ describe('touch', () => {
   it('that is cancelled leaves no drag behind', async () => {
     await on(ONE + TALL, async (tab) => {
       await h.ready(tab);
-      const [x, y] = await draggingSpot(tab);
       const session = await tab.context().newCDPSession(tab);
       const touch = (type, points) =>
         session.send('Input.dispatchTouchEvent', { type, touchPoints: points });
-      await touch('touchStart', [{ x, y }]);
-      await touch('touchMove', [{ x: x + 15, y }]);
-      await touch('touchCancel', []);
-      await h.moreFrames(tab, 3);
-      const before = await tab.evaluate(() => document.querySelector('slam-widget').query);
-      await tab.mouse.move(x + 90, y + 40, { steps: 4 });
-      await h.moreFrames(tab, 3);
-      assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').query), before);
+      const query = () => tab.evaluate(() => document.querySelector('slam-widget').query);
+      const rail = await sliderRail(tab, 'heading');
+      const onRail = [rail.x + 0.3 * rail.width, rail.y];
+      for (const [x, y] of [await cloudSpot(tab), onRail]) {
+        const untouched = await query();
+        await touch('touchStart', [{ x, y }]);
+        await touch('touchMove', [{ x: x + 15, y }]);
+        await tab.waitForFunction((old) => document.querySelector('slam-widget').query !== old, untouched);
+        await h.moreFrames(tab, 3);
+        const before = await query();
+        await touch('touchCancel', []);
+        await h.moreFrames(tab, 3);
+        assert.equal(await query(), before);
+        await tab.mouse.move(x + 90, y + 40, { steps: 4 });
+        await h.moreFrames(tab, 3);
+        assert.equal(await query(), before);
+      }
     }, TOUCH);
   });
 });

@@ -105,7 +105,7 @@ impl eframe::App for WidgetApp {
         egui::Color32::from_rgb(red, green, blue).to_normalized_gamma_f32()
     }
 
-    fn raw_input_hook(&mut self, _ctx: &egui::Context, input: &mut RawInput) {
+    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut RawInput) {
         if self.shared.engaged.get() {
             input.events.iter_mut().for_each(zoom_by_wheel);
         }
@@ -120,6 +120,8 @@ impl eframe::App for WidgetApp {
             )
         });
         if touch_cancelled || self.shared.cancelled.take() {
+            // First: a slider would follow the pointer to where it is released.
+            ctx.stop_dragging();
             release_pointer(input);
             self.shared.dragging.set(false);
             self.shared.shell.borrow_mut().release_drags();

@@ -19,9 +19,10 @@ impl Hot {
         }
     }
 
-    /// Remembers something that follows a pressed pointer.
+    /// Remembers something that follows a pressed pointer, with the room around it where egui takes hold as well.
     pub fn drag(&mut self, response: &Response) {
-        self.drags.push(response.rect);
+        let reach = response.ctx.global_style().interaction.interact_radius;
+        self.drags.push(response.rect.expand(reach));
     }
 
     /// Where a control lies.

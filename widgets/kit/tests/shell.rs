@@ -197,6 +197,31 @@ fn only_what_drags_keeps_a_touch_from_scrolling_the_page() {
 }
 
 #[test]
+fn what_does_not_say_that_it_drags_does_not_follow_a_pointer() {
+    let mut harness = harness(390.0);
+    let slider = harness
+        .get_by_role_and_label(Role::Slider, "place along x")
+        .rect();
+    let before = value(&harness, "x");
+    let mut beside = 0;
+    for off in 0..12 {
+        // Above it: below lies the next control.
+        let from = slider.center_top() - vec2(0.0, off as f32);
+        if harness.state().drags_at(from) {
+            continue;
+        }
+        drag(&mut harness, from, from + vec2(40.0, 0.0));
+        assert_eq!(
+            value(&harness, "x"),
+            before,
+            "{off} points above the slider"
+        );
+        beside += 1;
+    }
+    assert!(beside > 3, "{beside}");
+}
+
+#[test]
 fn a_press_on_the_timeline_goes_there_and_play_runs_to_the_end() {
     let mut harness = harness(1100.0);
     let rail = harness.get_by_role_and_label(Role::Slider, "tick").rect();
