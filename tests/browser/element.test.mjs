@@ -161,6 +161,34 @@ describe('values', () => {
     });
   });
 
+  it('that come in while the reader types leave what is typed, until it is set or the reader goes', async () => {
+    await on('<slam-widget name="w16.1"></slam-widget>', async (tab) => {
+      await h.ready(tab);
+      const field = tab.getByRole('spinbutton', { name: 'Heading' });
+      const heading = () => tab.evaluate(() => document.querySelector('slam-widget').heading);
+      const comesIn = (value) => tab.evaluate((now) => (document.querySelector('slam-widget').heading = now), value);
+      await field.focus();
+      await tab.keyboard.press('ControlOrMeta+a');
+      await tab.keyboard.type('1');
+      await comesIn(40);
+      await tab.keyboard.type('2');
+      assert.equal(await field.inputValue(), '12');
+      await tab.keyboard.press('Enter');
+      assert.equal(await heading(), 12);
+      // Nothing is left of it once the reader set it.
+      await comesIn(50);
+      assert.equal(await field.inputValue(), '50');
+      await tab.keyboard.type('3');
+      await comesIn(60);
+      await field.evaluate((typed) => {
+        // What a reader types back to the old text is no change to set.
+        typed.value = '50';
+        typed.blur();
+      });
+      assert.equal(await field.inputValue(), '60');
+    });
+  });
+
   it('beyond the end of a run come back as its end', async () => {
     await on('<slam-widget name="w16.2"></slam-widget>', async (tab) => {
       await h.ready(tab);

@@ -127,20 +127,21 @@ export class Controls {
           const problem = this.#host.set(spec.id, field.value);
           field.setAttribute('aria-invalid', String(problem !== undefined));
         });
-        return [[field], (text) => showUnlessTyping(field, text)];
+        return [[field], this.#typed(field, spec)];
       }
       case 'seed': {
         const field = this.#numberField(spec);
-        return [[field], (text) => showUnlessTyping(field, text)];
+        return [[field], this.#typed(field, spec)];
       }
       default: {
         const range = this.#range(spec);
         const field = this.#numberField(spec);
         field.setAttribute('aria-label', `${spec.label}, number`);
+        const showTyped = this.#typed(field, spec);
         const show = (text: string): void => {
           range.value = text;
           range.setAttribute('aria-valuetext', toLabel(spec, text));
-          showUnlessTyping(field, text);
+          showTyped(text);
         };
         return [[range, field], show];
       }
@@ -177,6 +178,26 @@ export class Controls {
       field.setAttribute('aria-invalid', String(problem !== undefined));
     });
     return field;
+  }
+
+  /** Shows a value in a field, but where the reader has begun to type another one. */
+  #typed(field: HTMLInputElement, { id }: ParamSpec): (text: string) => void {
+    let isBegun = false;
+    const show = (text: string): void => {
+      const isSame = field.value === text || (field.type === 'number' && Number(field.value) === Number(text));
+      if (isBegun || (isSame && hasFocus(field))) return;
+      field.value = text;
+      field.setAttribute('aria-invalid', 'false');
+    };
+    field.addEventListener('input', () => (isBegun = true));
+    // Before what was typed is set: what it is taken for shows at once.
+    field.addEventListener('change', () => (isBegun = false), { capture: true });
+    field.addEventListener('blur', () => {
+      if (!isBegun) return;
+      isBegun = false;
+      show(this.#texts.get(id) ?? field.value);
+    });
+    return show;
   }
 
   #button(spec: ButtonSpec, kind: 'try' | 'do'): HTMLElement {
@@ -230,13 +251,8 @@ function tidy(value: number): string {
   return String(Number(value.toPrecision(10)));
 }
 
-function showUnlessTyping(field: HTMLInputElement, text: string): void {
-  // A value that comes in while the reader types would take the text away.
-  const root = field.getRootNode() as ShadowRoot | Document;
-  const isTyped = field.value === text || (field.type === 'number' && Number(field.value) === Number(text));
-  if (root.activeElement === field && isTyped) return;
-  field.value = text;
-  field.setAttribute('aria-invalid', 'false');
+function hasFocus(field: HTMLInputElement): boolean {
+  return (field.getRootNode() as ShadowRoot | Document).activeElement === field;
 }
 
 function unitOf(spec: ParamSpec): HTMLElement {
