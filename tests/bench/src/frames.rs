@@ -4,7 +4,6 @@ use std::hint::black_box;
 
 use ch16_slam2d::digest::Digest;
 use egui::{Context, Pos2, RawInput, Rect, vec2};
-use kit::model::Activity;
 use kit::palette::Theme;
 use kit::shell::Shell;
 
@@ -116,7 +115,7 @@ struct Frames {
 
 impl Frames {
     fn of(mut shell: Shell, param: &'static str, values: [f64; 2]) -> Box<dyn Run> {
-        while shell.model_mut().work() == Activity::Busy {}
+        while shell.model_mut().work().goes_on() {}
         let mut frames = Self {
             shell,
             param,

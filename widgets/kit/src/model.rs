@@ -48,7 +48,7 @@ pub trait Model {
     fn advance(&mut self, elapsed_s: f64) -> Activity;
 
     /// Does one small piece (well under a millisecond) of work that fills in progressively: busy
-    /// where it did one, idle where nothing was left to do.
+    /// where it did one, unseen where nothing that is shown changed by it, idle where nothing was left to do.
     fn work(&mut self) -> Activity {
         Activity::Idle
     }
@@ -133,6 +133,16 @@ pub enum Activity {
     Idle,
     /// Call again.
     Busy,
+    /// Call again; what is shown is as it was.
+    Unseen,
+}
+
+impl Activity {
+    /// Whether to call again.
+    #[must_use]
+    pub fn goes_on(self) -> bool {
+        self != Self::Idle
+    }
 }
 
 /// How much may move by itself.
@@ -302,7 +312,7 @@ pub fn apply_preset(model: &mut dyn Model, preset: &Preset) -> Result<(), ParamE
 /// Does all the [`Model::work`] that is left: a [`Model::settle`] where the picture waits for all of it.
 pub fn finish_work(model: &mut dyn Model) -> Activity {
     let first = model.work();
-    while model.work() == Activity::Busy {}
+    while model.work().goes_on() {}
     first
 }
 

@@ -31,8 +31,9 @@ const SIDE_WIDTH: f32 = 300.0;
 const MARGIN: f32 = 12.0;
 /// Space between blocks.
 const GAP: f32 = 14.0;
-/// Part of a frame that [`Model::work`] may take while the pointer drags something.
-const WORK_WHILE_DRAGGING: Duration = Duration::from_millis(4);
+/// Part of a frame that [`Model::work`] may take while the pointer drags something, or values come in from
+/// outside: the picture follows them.
+const WORK_WHILE_CHANGING: Duration = Duration::from_millis(4);
 /// Part of a frame that it may take otherwise: a frame at 60 Hz has 16 ms.
 const WORK_AT_REST: Duration = Duration::from_millis(9);
 /// Where drawing is slow, it may take this share of the time from one frame to the next.
@@ -61,6 +62,8 @@ pub struct Shell {
     stale: bool,
     moving: Moving,
     working: bool,
+    /// Whether something was changed since the last frame.
+    changed: bool,
     pointer: Pointer,
     panels: Vec<(&'static str, Transform)>,
     textures: Textures,
@@ -112,6 +115,7 @@ impl Shell {
             stale: false,
             moving: Moving::Perhaps,
             working: true,
+            changed: false,
             pointer: Pointer::default(),
             panels: Vec::new(),
             textures: Textures::default(),
@@ -141,7 +145,7 @@ impl Shell {
 
     /// Finishes what the picture waits for, see [`Model::settle`]; says whether there was anything.
     pub fn settle(&mut self) -> bool {
-        let settled = self.model.settle() == Activity::Busy;
+        let settled = self.model.settle().goes_on();
         if settled {
             self.touch();
         }
@@ -278,9 +282,10 @@ impl Shell {
         };
         self.room.learn(width, column - whole.top() + MARGIN - GAP);
 
-        let (dragging, frame_s) = ui.input(|input| (input.pointer.any_down(), input.stable_dt));
-        self.work(if dragging {
-            WORK_WHILE_DRAGGING
+        let (pressed, frame_s) = ui.input(|input| (input.pointer.any_down(), input.stable_dt));
+        let changed = core::mem::take(&mut self.changed);
+        self.work(if pressed || changed {
+            WORK_WHILE_CHANGING
         } else {
             work_at_rest(frame_s)
         });
@@ -325,7 +330,7 @@ impl Shell {
             // The last step of a run changes the picture and says idle already.
             self.stale |= activity == Activity::Busy || self.moving == Moving::Yes;
             self.moving = match activity {
-                Activity::Busy => Moving::Yes,
+                Activity::Busy | Activity::Unseen => Moving::Yes,
                 Activity::Idle => Moving::No,
             };
         }
@@ -335,8 +340,9 @@ impl Shell {
     fn work(&mut self, budget: Duration) {
         let start = Instant::now();
         while self.working && start.elapsed() < budget {
-            self.working = self.model.work() == Activity::Busy;
-            self.stale |= self.working;
+            let activity = self.model.work();
+            self.working = activity.goes_on();
+            self.stale |= activity == Activity::Busy;
         }
     }
 
@@ -353,6 +359,7 @@ impl Shell {
     fn touch(&mut self) {
         self.stale = true;
         self.working = true;
+        self.changed = true;
         if self.moving == Moving::No {
             self.moving = Moving::Perhaps;
         }

@@ -413,11 +413,13 @@ impl Model for FullLap {
     /// One tick of the lap that is being computed.
     fn work(&mut self) -> Activity {
         match self.laps.step() {
-            NewestStep::Idle => return Activity::Idle,
-            NewestStep::Tick => {}
-            NewestStep::Finished(record) => self.show(*record),
+            NewestStep::Idle => Activity::Idle,
+            NewestStep::Tick => Activity::Unseen,
+            NewestStep::Finished(record) => {
+                self.show(*record);
+                Activity::Busy
+            }
         }
-        Activity::Busy
     }
 
     fn settle(&mut self) -> Activity {

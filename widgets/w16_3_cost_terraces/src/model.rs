@@ -183,7 +183,7 @@ impl Model for CostTerraces {
 
     fn settle(&mut self) -> Activity {
         let first = self.work();
-        while self.work() == Activity::Busy {}
+        while self.work().goes_on() {}
         first
     }
 

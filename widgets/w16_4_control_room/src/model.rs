@@ -219,11 +219,13 @@ impl Model for ControlRoom {
     /// One tick of the run that is being computed.
     fn work(&mut self) -> Activity {
         match self.laps.step() {
-            NewestStep::Idle => return Activity::Idle,
-            NewestStep::Tick => {}
-            NewestStep::Finished(record) => self.take(*record),
+            NewestStep::Idle => Activity::Idle,
+            NewestStep::Tick => Activity::Unseen,
+            NewestStep::Finished(record) => {
+                self.take(*record);
+                Activity::Busy
+            }
         }
-        Activity::Busy
     }
 
     fn settle(&mut self) -> Activity {

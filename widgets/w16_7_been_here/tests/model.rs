@@ -71,7 +71,7 @@ fn the_lap_is_driven_and_compared_in_pieces() {
     let mut pieces = BeenHere::new();
     assert_eq!(pieces.outcome().verdict, "driving");
     let mut count = 0;
-    while pieces.work() == Activity::Busy {
+    while pieces.work().goes_on() {
         count += 1;
     }
     // 129 ticks of the drive and of the lap each, and the pairs.

@@ -54,7 +54,7 @@ fn the_curves_fill_in_seed_by_seed_and_end() {
     let mut moving = MovingBox::new();
     assert!(fact(&moving, "plain_bias_m").is_nan());
     let mut pieces = 0;
-    while moving.work() == Activity::Busy {
+    while moving.work().goes_on() {
         pieces += 1;
     }
     // Seven shares of a hundred seeds: two sweeps and three registrations each.

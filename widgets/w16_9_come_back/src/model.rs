@@ -158,7 +158,10 @@ impl Model for ComeBack {
             return Activity::Idle;
         };
         match work.step(&self.values) {
-            known::Step::GoesOn(work) => self.work = Some(work),
+            known::Step::GoesOn(work) => {
+                self.work = Some(work);
+                return Activity::Unseen;
+            }
             known::Step::Saved(known) => {
                 self.work = Some(Work::morning(&known, &self.values));
                 self.known = Some(*known);

@@ -78,7 +78,7 @@ fn everything_is_computed_in_pieces() {
     let mut pieces = ComeBack::new();
     assert_eq!(pieces.outcome().verdict, "a lap is driven");
     let mut count = 0;
-    while pieces.work() == Activity::Busy {
+    while pieces.work().goes_on() {
         count += 1;
     }
     // The ticks of the lap, driven and mapped, and the morning's.
@@ -104,7 +104,7 @@ fn the_robot_is_put_and_turned_on_the_map_and_the_map_stays() {
     back.drag(turn, [9.3, 9.0]);
     assert_eq!(back.values().get("heading"), 90.0);
     let mut pieces = 0;
-    while back.work() == Activity::Busy {
+    while back.work().goes_on() {
         pieces += 1;
     }
     // No lap is driven again.

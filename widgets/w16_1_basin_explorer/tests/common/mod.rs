@@ -1,6 +1,6 @@
 //! What the tests of the widget's rules ask of it.
 
-use kit::model::{Activity, Model};
+use kit::model::Model;
 use kit::scene::{Cell, Layer, Panel};
 use w16_1_basin_explorer::model::BasinExplorer;
 
@@ -29,7 +29,7 @@ pub fn panel_of(model: &BasinExplorer, id: &str) -> Panel {
 
 pub fn fill(model: &mut BasinExplorer) -> usize {
     let mut pieces = 1;
-    while model.work() == Activity::Busy {
+    while model.work().goes_on() {
         pieces += 1;
     }
     pieces
