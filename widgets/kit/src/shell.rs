@@ -34,6 +34,8 @@ const GAP: f32 = 14.0;
 /// Part of a frame that [`Model::work`] may take while the pointer drags something, or values come in from
 /// outside: the picture follows them.
 const WORK_WHILE_CHANGING: Duration = Duration::from_millis(4);
+/// After a change another one is expected for so long, s: where drawing is slow, not every frame brings one.
+const CHANGES_FOR_S: f64 = 0.2;
 /// Part of a frame that it may take otherwise: a frame at 60 Hz has 16 ms.
 const WORK_AT_REST: Duration = Duration::from_millis(9);
 /// Where drawing is slow, it may take this share of the time from one frame to the next.
@@ -64,6 +66,8 @@ pub struct Shell {
     working: bool,
     /// Whether something was changed since the last frame.
     changed: bool,
+    /// So long more changes are expected, s of egui's clock.
+    changes_until_s: f64,
     pointer: Pointer,
     panels: Vec<(&'static str, Transform)>,
     textures: Textures,
@@ -116,6 +120,7 @@ impl Shell {
             moving: Moving::Perhaps,
             working: true,
             changed: false,
+            changes_until_s: 0.0,
             pointer: Pointer::default(),
             panels: Vec::new(),
             textures: Textures::default(),
@@ -282,9 +287,11 @@ impl Shell {
         };
         self.room.learn(width, column - whole.top() + MARGIN - GAP);
 
-        let (pressed, frame_s) = ui.input(|input| (input.pointer.any_down(), input.stable_dt));
-        let changed = core::mem::take(&mut self.changed);
-        self.work(if pressed || changed {
+        let (now_s, frame_s) = ui.input(|input| (input.time, input.stable_dt));
+        if core::mem::take(&mut self.changed) || ui.input(|input| input.pointer.any_down()) {
+            self.changes_until_s = now_s + CHANGES_FOR_S;
+        }
+        self.work(if now_s < self.changes_until_s {
             WORK_WHILE_CHANGING
         } else {
             work_at_rest(frame_s)
