@@ -145,9 +145,12 @@ describe('touch', () => {
       for (const [x, y] of [await cloudSpot(tab), onRail]) {
         const untouched = await query();
         await touch('touchStart', [{ x, y }]);
-        await touch('touchMove', [{ x: x + 15, y }]);
+        // The first move tells whose the touch is, the next ones move.
+        for (const on of [12, 24, 36]) {
+          await touch('touchMove', [{ x: x + on, y }]);
+          await h.moreFrames(tab, 1);
+        }
         await tab.waitForFunction((old) => document.querySelector('slam-widget').query !== old, untouched);
-        await h.moreFrames(tab, 3);
         const before = await query();
         await touch('touchCancel', []);
         await h.moreFrames(tab, 3);
