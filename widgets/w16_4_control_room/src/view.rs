@@ -1,4 +1,4 @@
-//! Where the control room's panels stand: the map over the lanes, the registration beside both.
+//! Where the control room's panels stand: the map beside the registration, the lanes over the whole width below.
 
 use kit::layout::PlotHeight;
 use kit::scene::Scene;
@@ -30,17 +30,17 @@ impl View for ControlRoomView {
                 below: rows(&[plot("tau"), plot("errors")]),
             };
         }
-        let column = |share, slots: &[Slot]| Column {
+        let column = |share, panel| Column {
             share,
-            slots: slots.to_vec(),
+            slots: vec![natural(panel)],
         };
         Arrangement {
-            stage: vec![Row {
-                columns: vec![
-                    column(3.0, &[natural("map"), lanes]),
-                    column(2.0, &[natural("registration")]),
-                ],
-            }],
+            stage: vec![
+                Row {
+                    columns: vec![column(3.0, "map"), column(2.0, "registration")],
+                },
+                Row::of(&[lanes]),
+            ],
             below: vec![Row::of(&[plot("tau"), plot("errors")])],
         }
     }
