@@ -1,11 +1,9 @@
 // Measures the first frame of each widget in Chromium, beside a bare canvas with the same WebGL start:
 // `node tests/bench/first_frame.mjs [PAGE.md] [ROUNDS]`. Prints a table, and writes it into the page.
 
-import { execFileSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
-import { cpus, platform } from 'node:os';
 import { writeMarked } from '../../web/marked.mjs';
 import { bare, launch, schema, serve } from '../browser/harness.mjs';
+import { machine, quantile } from './in_chromium.mjs';
 
 /** From the navigation to the first frame of a widget: the project's own limit. */
 const LIMIT_MS = 1500;
@@ -85,11 +83,8 @@ function table(found) {
     const cells = [what, ...[Math.min(...ms), median(ms)].map(told), isBare ? '–' : told(over), isBare ? '–' : told(LIMIT_MS)];
     return `| ${cells.join(' | ')} |`;
   });
-  const browser = execFileSync(process.env.CHROMIUM ?? '/usr/bin/chromium', ['--version'], {
-    encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'],
-  });
   return [
-    `Measured on ${processor()}, ${cpus().length} cores, ${platform()}, ${browser.trim()}, WebGL by software, ${rounds} rounds.`,
+    `Measured on ${machine()}, ${rounds} rounds.`,
     '',
     '| page | fastest | median | over the bare canvas | limit |',
     '|---|--:|--:|--:|--:|',
@@ -98,18 +93,9 @@ function table(found) {
 }
 
 function median(values) {
-  const sorted = [...values].sort((a, b) => a - b);
-  return sorted[Math.floor(sorted.length / 2)];
+  return quantile(values, 0.5);
 }
 
 function told(ms) {
   return `${Math.round(ms)} ms`;
-}
-
-function processor() {
-  try {
-    return readFileSync('/proc/cpuinfo', 'utf8').match(/^model name\s*: (.*)$/m)?.[1] ?? process.arch;
-  } catch {
-    return process.arch;
-  }
 }

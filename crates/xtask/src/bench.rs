@@ -12,6 +12,17 @@ use crate::tools;
 
 /// Where the tables stand.
 pub const PAGE: &str = "docs/performance.md";
+/// What is measured of the site in Chromium, and by which script.
+const IN_CHROMIUM: [(&str, &str); 2] = [
+    (
+        "The first frame of each widget",
+        "tests/bench/first_frame.mjs",
+    ),
+    (
+        "The script of a frame while a slider changes",
+        "tests/bench/changing.mjs",
+    ),
+];
 
 /// Measures, prints the tables, writes them into `docs/performance.md`, and the figures of the
 /// workloads to `json` where one is named.
@@ -88,12 +99,14 @@ pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
             .arg(PAGE),
     )?;
     site::build(Speed::SmallAndFast)?;
-    show(
-        "The first frame of each widget",
-        program("node")
-            .args(["tests/bench/first_frame.mjs", PAGE])
-            .env("CHROMIUM", chromium),
-    )?;
+    for (what, script) in IN_CHROMIUM {
+        show(
+            what,
+            program("node")
+                .args([script, PAGE])
+                .env("CHROMIUM", &chromium),
+        )?;
+    }
     // Last, so that every table is written.
     show(
         "The limits",

@@ -1,0 +1,27 @@
+// What the measurements in Chromium share: the machine that they name, and what they say of a list of times.
+
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { cpus, platform } from 'node:os';
+
+/** Processor, system and browser, as a table names them. */
+export function machine() {
+  const browser = execFileSync(process.env.CHROMIUM ?? '/usr/bin/chromium', ['--version'], {
+    encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'],
+  });
+  return `${processor()}, ${cpus().length} cores, ${platform()}, ${browser.trim()}, WebGL by software`;
+}
+
+function processor() {
+  try {
+    return readFileSync('/proc/cpuinfo', 'utf8').match(/^model name\s*: (.*)$/m)?.[1] ?? process.arch;
+  } catch {
+    return process.arch;
+  }
+}
+
+/** The value that so large a share of the others does not reach; at 0.5 the median. */
+export function quantile(values, share) {
+  const sorted = [...values].sort((a, b) => a - b);
+  return sorted[Math.min(Math.floor(share * sorted.length), sorted.length - 1)];
+}
