@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use ch16_lab::lap::{LapConfig, LapRunner};
 use ch16_slam2d::submaps::FrontEndChoice;
-use kit::model::Motion;
+use kit::model::{Motion, finish_work};
 use kit::outside::Delivery;
 use kit::palette::Theme;
 use kit::param::{ParamError, ParamKind, ParamSpec};
@@ -439,7 +439,7 @@ impl Widget {
     /// Does all the work that fills in piece by piece: for a picture of the finished state.
     pub fn finish(&self) {
         let mut shell = self.shared.shell.borrow_mut();
-        while shell.model_mut().work().goes_on() {}
+        finish_work(shell.model_mut());
     }
 
     /// The picture as SVG, for print and for pages where the widget cannot run.

@@ -4,6 +4,7 @@ use std::hint::black_box;
 
 use ch16_slam2d::digest::Digest;
 use egui::{Context, Pos2, RawInput, Rect, vec2};
+use kit::model::finish_work;
 use kit::palette::Theme;
 use kit::shell::Shell;
 
@@ -115,7 +116,7 @@ struct Frames {
 
 impl Frames {
     fn of(mut shell: Shell, param: &'static str, values: [f64; 2]) -> Box<dyn Run> {
-        while shell.model_mut().work().goes_on() {}
+        finish_work(shell.model_mut());
         let mut frames = Self {
             shell,
             param,

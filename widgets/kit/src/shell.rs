@@ -287,8 +287,9 @@ impl Shell {
         };
         self.room.learn(width, column - whole.top() + MARGIN - GAP);
 
-        let (now_s, frame_s) = ui.input(|input| (input.time, input.stable_dt));
-        if core::mem::take(&mut self.changed) || ui.input(|input| input.pointer.any_down()) {
+        let (now_s, frame_s, pressed) =
+            ui.input(|input| (input.time, input.stable_dt, input.pointer.any_down()));
+        if core::mem::take(&mut self.changed) || pressed {
             self.changes_until_s = now_s + CHANGES_FOR_S;
         }
         self.work(if now_s < self.changes_until_s {
@@ -336,9 +337,10 @@ impl Shell {
             let activity = self.model.advance(elapsed_s);
             // The last step of a run changes the picture and says idle already.
             self.stale |= activity == Activity::Busy || self.moving == Moving::Yes;
-            self.moving = match activity {
-                Activity::Busy | Activity::Unseen => Moving::Yes,
-                Activity::Idle => Moving::No,
+            self.moving = if activity.goes_on() {
+                Moving::Yes
+            } else {
+                Moving::No
             };
         }
         self.refresh();

@@ -14,7 +14,8 @@ mod terrains;
 mod words;
 
 use kit::model::{
-    Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
+    Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, finish_work,
+    press_preset,
 };
 use kit::param::{Changed, ParamError, Values};
 use kit::playback::{Playback, speed_factor};
@@ -182,9 +183,7 @@ impl Model for CostTerraces {
     }
 
     fn settle(&mut self) -> Activity {
-        let first = self.work();
-        while self.work().goes_on() {}
-        first
+        finish_work(self)
     }
 
     fn scene(&self) -> Scene {
