@@ -91,3 +91,35 @@ fn report(dist: &Path) {
     let shown = dist.strip_prefix(root()).unwrap_or(dist);
     println!("The site is in {}/", shown.display());
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::run::cargo;
+    use crate::tools::output;
+
+    /// What a module of the site is made of: crates with versions and features.
+    fn crates_of(package: &str) -> BTreeSet<String> {
+        let tree = output(
+            cargo()
+                .args(["tree", "--package", package, "--target", tools::TARGET])
+                .args(["--edges", "normal", "--prefix", "none"])
+                .args(["--no-dedupe", "--format", "{p} with {f}"]),
+        );
+        let tree = tree.expect("cargo knows the workspace");
+        tree.lines().map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn one_compilation_serves_both_modules() {
+        let widgets = crates_of("slam_web");
+        let robot = crates_of("slam_robot");
+        let alone: Vec<&String> = robot.difference(&widgets).collect();
+        assert!(
+            matches!(alone[..], [itself] if itself.starts_with("slam_robot ")),
+            "only the worker that maps logs needs these, with these features: {alone:#?}"
+        );
+    }
+}
