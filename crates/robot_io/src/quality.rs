@@ -9,6 +9,8 @@
 //!
 //! Source: Cook & Weisberg, "Residuals and influence in regression", 1982, §2.1.2.
 
+mod doubts;
+
 use ch16_slam2d::graph::{EdgeKind, EdgeView};
 use ch16_slam2d::loops::{LoopRejection, LoopVerification};
 use ch16_slam2d::slam::Slam;
@@ -19,12 +21,6 @@ use crate::run::{PoorFit, TriedLoop};
 
 /// The largest χ² of a loop that is not doubted: of three degrees of freedom, 999 of 1,000 lie below.
 pub const GATE_CHI2: f64 = 16.266;
-/// Keyframes that are known so many times worse than the median one are doubted.
-const UNSURE_TIMES: f64 = 3.0;
-/// Better known keyframes are not doubted, m.
-const UNSURE_M: f64 = 0.1;
-/// Most doubts of one kind that are spelled out.
-const MOST_DOUBTS: usize = 10;
 
 /// What is known of a map's quality.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -109,7 +105,7 @@ impl Quality {
                 ..LinkQuality::new(link, true)
             });
         }
-        quality.doubt(poor);
+        quality.doubts = doubts::of(&quality, &doubts::disputed(slam, tried), poor);
         quality
     }
 
@@ -122,54 +118,6 @@ impl Quality {
             math::norm2(bx - ax, by - ay)
         });
         steps.sum()
-    }
-
-    fn doubt(&mut self, poor: &[PoorFit]) {
-        let mut sorted: Vec<f64> = self
-            .keyframes
-            .iter()
-            .map(KeyframeQuality::sigma_m)
-            .collect();
-        sorted.sort_by(f64::total_cmp);
-        let median_m = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
-        let limit_m = (UNSURE_TIMES * median_m).max(UNSURE_M);
-        let is_unsure = |number: &usize| self.keyframes[*number].sigma_m() > limit_m;
-        let unsure: Vec<usize> = (0..self.keyframes.len()).filter(is_unsure).collect();
-        let mut said = Vec::new();
-        for run in unsure.chunk_by(|a, b| b - a == 1) {
-            let (first, last) = (run[0], run[run.len() - 1]);
-            let worst_m = run.iter().map(|k| self.keyframes[*k].sigma_m());
-            let worst_m = worst_m.fold(0.0, f64::max);
-            said.push(format!(
-                "keyframes {first} to {last} are known to {worst_m:.2} m only, the median one to {median_m:.2} m"
-            ));
-        }
-        let mut contradict: Vec<(f64, String)> = Vec::new();
-        for link in &self.links {
-            let Some(chi2) = link.chi2.filter(|chi2| *chi2 > link.gate_chi2) else {
-                continue;
-            };
-            let sentence = format!(
-                "the loop from keyframe {} to {} contradicts the rest of the graph: chi-squared {chi2:.1} above {:.1}",
-                link.from, link.to, link.gate_chi2
-            );
-            contradict.push((chi2, sentence));
-        }
-        contradict.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let contradict = contradict.into_iter().map(|(_, sentence)| sentence);
-        let mut poor = poor.to_vec();
-        poor.sort_by(|a, b| a.score.total_cmp(&b.score));
-        let poor = poor.iter().map(|poor| {
-            let (stamp_s, share) = (poor.stamp_s, 100.0 * poor.score);
-            format!("of the scan at {stamp_s:.3} s only {share:.0} % fits the map")
-        });
-        for kind in [said, contradict.collect(), poor.collect()] {
-            let more = kind.len().saturating_sub(MOST_DOUBTS);
-            self.doubts.extend(kind.into_iter().take(MOST_DOUBTS));
-            if more > 0 {
-                self.doubts.push(format!("and {more} more of this kind"));
-            }
-        }
     }
 }
 
@@ -346,47 +294,5 @@ mod tests {
         assert!((a - 0.3).abs() < 1e-12 && (b - 0.1).abs() < 1e-12);
         assert!((heading.to_degrees() - 120.0).abs() < 1e-9);
         assert!((keyframe.sigma_deg() - 0.01f64.to_degrees()).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_scan_that_hardly_fits_and_a_loop_that_contradicts_are_doubted() {
-        let keyframe = |sigma_m: f64| KeyframeQuality {
-            stamp_s: 0.0,
-            pose: [0.0; 3],
-            covariance: [
-                [sigma_m * sigma_m, 0.0, 0.0],
-                [0.0, 1e-4, 0.0],
-                [0.0, 0.0, 1e-6],
-            ],
-        };
-        let link = |chi2| LinkQuality {
-            from: 9,
-            to: 2,
-            score: Some(0.8),
-            rmse_m: Some(0.02),
-            inliers: 90,
-            margin: None,
-            chi2: Some(chi2),
-            gate_chi2: GATE_CHI2,
-            accepted: true,
-            reason: None,
-        };
-        let mut quality = Quality {
-            keyframes: [0.02, 0.02, 0.02, 0.4, 0.5].map(keyframe).to_vec(),
-            links: vec![link(3.0), link(40.0)],
-            ..Quality::default()
-        };
-        quality.doubt(&[PoorFit {
-            stamp_s: 12.5,
-            score: 0.31,
-        }]);
-        assert_eq!(
-            quality.doubts,
-            [
-                "keyframes 3 to 4 are known to 0.50 m only, the median one to 0.02 m",
-                "the loop from keyframe 9 to 2 contradicts the rest of the graph: chi-squared 40.0 above 16.3",
-                "of the scan at 12.500 s only 31 % fits the map",
-            ]
-        );
     }
 }
