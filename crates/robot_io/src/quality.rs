@@ -59,7 +59,7 @@ pub struct LinkQuality {
     pub rmse_m: Option<f64>,
     /// Points that fit.
     pub inliers: usize,
-    /// By how much the best other place was behind, where one was looked for.
+    /// By how much the best other place was behind, as far as one was looked for; null where nobody looked.
     pub margin: Option<f64>,
     /// Squared innovation; null where it is not to be had.
     pub chi2: Option<f64>,

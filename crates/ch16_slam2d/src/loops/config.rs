@@ -1,5 +1,7 @@
 //! The constants of loop closure; the defaults are the chapter's.
 
+use pr_geom::math;
+
 use super::LoopGuard;
 use crate::chi_squared::CHAPTER_GATE;
 use crate::matching::{MapConfig, MatcherKind, SearchMatcherConfig, TrustConfig};
@@ -106,6 +108,18 @@ pub struct LoopConfig {
     pub drift_sigma_rad: f64,
     /// The largest squared innovation that is believed; see [`CHAPTER_GATE`].
     pub gate_chi2: f64,
+}
+
+impl LoopConfig {
+    /// Other places are looked for so far behind the best one: three times as far as they have to be.
+    ///
+    /// The farther, the more of a window has to be searched, for a number that decides nothing.
+    #[must_use]
+    pub fn max_margin(&self) -> f64 {
+        let search = self.search.map_or(0.0, |search| search.min_margin);
+        let guard = self.guard.map_or(0.0, |guard| guard.min_margin);
+        3.0 * math::max(search, guard)
+    }
 }
 
 impl Default for LoopConfig {

@@ -5,11 +5,12 @@ use pr_geom::SE2;
 use pr_optim::{OptimizeError, StopReason};
 
 use super::gate::{GateTest, chi_squared_gate};
-use super::{LoopCandidate, LoopConfig};
+use super::{LoopCandidate, LoopConfig, WideSearch};
 use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
 use crate::matching::{
-    InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information, without_aperture,
+    InformationFrame, MatchRequest, MatchSummary, Matcher, SearchMatcher, SearchMatcherConfig,
+    chapter_information, without_aperture,
 };
 use crate::slam::Keyframe;
 
@@ -87,7 +88,8 @@ pub struct LoopVerification {
     pub iterations: usize,
     /// The matcher's score of it, where it has one.
     pub score: Option<f64>,
-    /// By how much the best other place was behind, in the unit of the matcher's score.
+    /// By how much the best other place was behind, in the unit of the matcher's score, as far as it was
+    /// looked for; none where nobody looked.
     pub margin: Option<f64>,
     /// `log(T₀⁻¹ T̂)`, in m, m, rad.
     pub innovation: Vector3<f64>,
@@ -143,6 +145,18 @@ impl LoopWorkspace {
             matcher,
             pairs: Vec::new(),
         }
+    }
+
+    /// A workspace that searches the window of ± `half_width_m`, and for other places as far as
+    /// [`LoopConfig::max_margin`].
+    #[must_use]
+    pub fn searching(loops: &LoopConfig, wide: &WideSearch, half_width_m: f64) -> Self {
+        let config = SearchMatcherConfig {
+            half_width_m,
+            ..wide.matcher
+        };
+        let matcher = SearchMatcher::new(config, &loops.submap);
+        Self::new(Box::new(matcher.with_max_margin(loops.max_margin())))
     }
 
     /// The submap of the last attempt in the candidate's frame.

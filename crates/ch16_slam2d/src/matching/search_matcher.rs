@@ -55,6 +55,8 @@ impl Default for SearchMatcherConfig {
 #[derive(Clone)]
 pub struct SearchMatcher {
     config: SearchMatcherConfig,
+    /// A runner-up that is farther behind is not looked for.
+    max_margin: f64,
     map: Option<Arc<SearchMap>>,
     icp: IcpMatcher,
 }
@@ -65,9 +67,19 @@ impl SearchMatcher {
     pub fn new(config: SearchMatcherConfig, map: &MapConfig) -> Self {
         Self {
             config,
+            max_margin: 1.0,
             map: None,
             icp: IcpMatcher::new(config.refine, map),
         }
+    }
+
+    /// The same matcher without runners-up that are behind by more than `max_margin`, 0 to 1.
+    ///
+    /// Where the scan fits well, most of a search is to find out how badly it fits elsewhere.
+    #[must_use]
+    pub fn with_max_margin(mut self, max_margin: f64) -> Self {
+        self.max_margin = max_margin;
+        self
     }
 
     /// The target as the search sees it.
@@ -90,7 +102,8 @@ impl SearchMatcher {
             &window,
             &neighborhood,
         );
-        Some(search.ok()?.with_min_score(self.config.min_score))
+        let search = search.ok()?.with_min_score(self.config.min_score);
+        Some(search.with_margin(self.max_margin))
     }
 }
 
@@ -178,6 +191,19 @@ mod tests {
         assert_eq!(found.inliers, target.len());
         assert!(found.margin().unwrap() > 0.1);
         assert!(matches!(found.stop, MatchStop::Searched { poses } if poses > 0));
+
+        // The runner-up is more than 0.1 behind: with a smaller margin it is left out, and work with it.
+        let mut near =
+            SearchMatcher::new(SearchMatcherConfig::default(), &MAP).with_max_margin(0.1);
+        near.set_target(&target);
+        let alone = near.register(&source, &request);
+        assert_eq!((alone.pose, alone.score), (found.pose, found.score));
+        assert_eq!(alone.runner_up, None);
+        let poses = |stop| match stop {
+            MatchStop::Searched { poses } => poses,
+            other => panic!("{other:?}"),
+        };
+        assert!(poses(alone.stop) < poses(found.stop));
     }
 
     #[test]

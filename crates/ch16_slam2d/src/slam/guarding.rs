@@ -8,9 +8,8 @@ use super::Slam;
 use crate::graph::EdgeKind;
 use crate::loops::{
     Detection, HeldLoop, KeyframeView, LoopConfig, LoopGuard, LoopRejection, LoopVerification,
-    LoopWorkspace, WideSearch, chi_squared_gate, verify_loop, widest_variance,
+    LoopWorkspace, chi_squared_gate, verify_loop, widest_variance,
 };
-use crate::matching::{MatcherKind, SearchMatcherConfig};
 use crate::metrics::position_error_m;
 
 /// Where the graph's errors vary at least so many times as much as stated, loops may contradict each other.
@@ -94,15 +93,10 @@ impl Slam {
     }
 
     /// By how much the registered place is ahead of any other in a window of ± `half_width_m` around
-    /// the graph's belief; none where the best place is another one.
+    /// the graph's belief, as far as it is looked for; none where the best place is another one.
     fn lead(&self, found: &LoopVerification, half_width_m: f64) -> Option<f64> {
         let loops = self.config.loops;
-        let WideSearch { matcher, .. } = loops.search?;
-        let matcher = MatcherKind::Search(SearchMatcherConfig {
-            half_width_m,
-            ..matcher
-        });
-        let mut workspace = LoopWorkspace::new(matcher.build(&loops.submap));
+        let mut workspace = LoopWorkspace::searching(&loops, &loops.search?, half_width_m);
         let wider = LoopConfig {
             detection: Detection::Visits,
             radius_m: half_width_m,
@@ -128,7 +122,7 @@ impl Slam {
         let apart = best.registered.between(&found.registered);
         let is_same = math::norm2(apart.x(), apart.y()) <= SAME_PLACE.0
             && apart.theta().abs() <= SAME_PLACE.1;
-        is_same.then(|| best.margin.unwrap_or(f64::INFINITY))
+        is_same.then(|| best.margin.unwrap_or(loops.max_margin()))
     }
 
     /// Holds a loop back until enough others agree.

@@ -12,7 +12,6 @@ use crate::loops::{
     LoopVerification, LoopWorkspace, detect_visits, marginal_information, path_information,
     verify_loop,
 };
-use crate::matching::{MatcherKind, SearchMatcherConfig};
 use crate::metrics::position_error_m;
 
 impl Slam {
@@ -78,11 +77,7 @@ impl Slam {
             max_rmse_m: f64::INFINITY,
             ..loops
         };
-        let matcher = MatcherKind::Search(SearchMatcherConfig {
-            half_width_m,
-            ..wide.matcher
-        });
-        let mut workspace = LoopWorkspace::new(matcher.build(&loops.submap));
+        let mut workspace = LoopWorkspace::searching(&loops, &wide, half_width_m);
         let candidates = detect_visits(self.graph.poses(), node, &wider);
         for candidate in candidates.into_iter().take(wide.candidates) {
             let gate_information = self.gate_information(node, candidate.node);
@@ -99,7 +94,7 @@ impl Slam {
                 &wider,
                 &mut workspace,
             );
-            let margin = verification.margin.unwrap_or(f64::INFINITY);
+            let margin = verification.margin.unwrap_or(loops.max_margin());
             if verification.accepted() && margin < wide.min_margin {
                 verification.rejection = Some(LoopRejection::Ambiguous {
                     margin,
@@ -114,7 +109,7 @@ impl Slam {
                     ..candidate
                 };
                 let decided = LoopVerification {
-                    margin: verification.margin,
+                    margin: Some(margin),
                     ..self.verify(node, proposed)
                 };
                 verification = self.guarded(decided);
