@@ -1,6 +1,6 @@
 //! The pointer over the panels: take hold, drag, hover, zoom, pan.
 
-use egui::{CursorIcon, Response, Sense, Ui};
+use egui::{CursorIcon, Event, PointerButton, Pos2, Response, Sense, Ui};
 
 use crate::hot::Hot;
 use crate::model::{Handle, Model};
@@ -32,6 +32,60 @@ enum Held {
         panel: &'static str,
         spot: [f64; 2],
     },
+}
+
+/// What the primary button did within a frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PrimaryButton {
+    /// Where it went down.
+    pub pressed_at: Option<Pos2>,
+    /// Where it was let go after that.
+    pub released_at: Option<Pos2>,
+    /// Whether it is a finger.
+    pub is_touch: bool,
+}
+
+impl PrimaryButton {
+    pub fn in_this_frame(ui: &Ui) -> Self {
+        ui.input(|input| {
+            let mut button = Self {
+                is_touch: input.any_touches(),
+                ..Self::default()
+            };
+            for event in &input.events {
+                match event {
+                    Event::PointerButton {
+                        pos,
+                        button: PointerButton::Primary,
+                        pressed,
+                        ..
+                    } if *pressed => {
+                        button.pressed_at = Some(*pos);
+                        button.released_at = None;
+                    }
+                    Event::PointerButton {
+                        pos,
+                        button: PointerButton::Primary,
+                        ..
+                    } => button.released_at = Some(*pos),
+                    Event::Touch { .. } => button.is_touch = true,
+                    _ => {}
+                }
+            }
+            button
+        })
+    }
+
+    /// Whether a whole drag from `response` came within the frame: to egui it is no press, and no click.
+    pub fn is_flick_on(&self, ui: &Ui, response: &Response) -> bool {
+        let (Some(from), Some(_)) = (self.pressed_at, self.released_at) else {
+            return false;
+        };
+        let top = ui.ctx().layer_id_at(from);
+        !response.clicked()
+            && response.rect.contains(from)
+            && top.is_none_or(|layer| layer == response.layer_id)
+    }
 }
 
 /// Whether the pointer changed the model.
@@ -88,50 +142,72 @@ impl Pointer {
         to: &Transform,
         model: &mut dyn Model,
     ) -> Touched {
-        if !response.is_pointer_button_down_on() {
-            if self.panel_held() != Some(panel.id) {
-                return Touched::No;
-            }
-            self.release(model);
-            return Touched::Yes;
-        }
-        let Some(at) = response
-            .interact_pointer_pos()
-            .map(|pos| to.from_px([pos.x, pos.y]))
-        else {
+        let button = PrimaryButton::in_this_frame(ui);
+        let is_down = response.is_pointer_button_down_on();
+        let is_flick = button.is_flick_on(ui, response);
+        if !is_down && !is_flick && self.panel_held() != Some(panel.id) {
             return Touched::No;
-        };
-        let (just_pressed, touch, moved) = ui.input(|input| {
-            let moved = input.pointer.delta() != egui::Vec2::ZERO;
-            (input.pointer.primary_pressed(), input.any_touches(), moved)
-        });
-        if just_pressed {
-            // A fast finger has moved on within the frame of its press.
-            let origin = ui.input(|input| input.pointer.press_origin());
-            let from = origin.map_or(at, |pos| to.from_px([pos.x, pos.y]));
-            self.by_touch = touch;
-            self.held = match model.grab(panel.id, from, reach(to, touch)) {
-                Some(handle) => Some(Held::Thing(handle)),
-                None if self.zoom.is_zoomed(panel.id) => Some(Held::Map {
-                    panel: panel.id,
-                    spot: from,
-                }),
-                None => None,
-            };
         }
+        let world = |pos: Pos2| to.from_px([pos.x, pos.y]);
+        // What lets go has moved on within the same frame, where frames are slow.
+        let pos = if is_down {
+            response.interact_pointer_pos()
+        } else {
+            button.released_at
+        };
+        let mut touched = Touched::No;
+        if let Some(at) = pos.map(world) {
+            let from = button.pressed_at.filter(|_| is_down || is_flick);
+            if let Some(from) = from.map(world) {
+                self.take_hold(panel, to, model, from, button.is_touch);
+            }
+            let moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO);
+            if from.is_some() || moved {
+                touched = self.pull(ui, panel, model, at);
+            }
+        }
+        if is_down {
+            return touched;
+        }
+        self.release(model);
+        Touched::Yes
+    }
+
+    fn take_hold(
+        &mut self,
+        panel: &Panel,
+        to: &Transform,
+        model: &mut dyn Model,
+        from: [f64; 2],
+        is_touch: bool,
+    ) {
+        self.by_touch = is_touch;
+        self.held = match model.grab(panel.id, from, reach(to, is_touch)) {
+            Some(handle) => Some(Held::Thing(handle)),
+            None if self.zoom.is_zoomed(panel.id) => Some(Held::Map {
+                panel: panel.id,
+                spot: from,
+            }),
+            None => None,
+        };
+    }
+
+    fn pull(&mut self, ui: &Ui, panel: &Panel, model: &mut dyn Model, at: [f64; 2]) -> Touched {
+        if self.panel_held() != Some(panel.id) {
+            return Touched::No;
+        }
+        ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
         match self.held {
-            Some(Held::Thing(handle)) if handle.panel == panel.id && (just_pressed || moved) => {
-                ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+            Some(Held::Thing(handle)) => {
                 model.drag(handle, at);
                 Touched::Yes
             }
-            Some(Held::Map { panel: held, spot }) if held == panel.id => {
-                ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+            Some(Held::Map { spot, .. }) => {
                 let shift = [spot[0] - at[0], spot[1] - at[1]];
                 self.zoom.shift(panel, shift);
                 Touched::No
             }
-            _ => Touched::No,
+            None => Touched::No,
         }
     }
 

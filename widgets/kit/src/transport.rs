@@ -11,7 +11,7 @@ use crate::model::{Model, Standing, Timeline};
 use crate::palette::{self, Theme, mix};
 use crate::param::{ParamKind, ParamSpec};
 use crate::playback::SPEED;
-use crate::pointer::Touched;
+use crate::pointer::{PrimaryButton, Touched};
 use crate::scene::Tone;
 use crate::spec::{ButtonSpec, DEFAULTS, PLAY};
 use crate::style::TARGET;
@@ -149,8 +149,15 @@ fn scrubber(
 /// The position that pointer or keys ask for.
 fn new_position(ui: &Ui, response: &Response, rail: Rect, value: f64, last: f64) -> Option<f64> {
     let mut new = value;
-    let pressed = response.is_pointer_button_down_on() || response.clicked();
-    if let Some(pointer) = response.interact_pointer_pos().filter(|_| pressed) {
+    let button = PrimaryButton::in_this_frame(ui);
+    let pressed =
+        response.is_pointer_button_down_on() || response.clicked() || response.drag_stopped();
+    let pointer = if button.is_flick_on(ui, response) {
+        button.released_at
+    } else {
+        response.interact_pointer_pos().filter(|_| pressed)
+    };
+    if let Some(pointer) = pointer {
         let share = f64::from((pointer.x - rail.left()) / rail.width());
         new = (share * last).round();
     }

@@ -460,6 +460,46 @@ fn a_press_takes_hold_of_what_lay_under_it_though_the_pointer_moved_on_in_the_sa
     );
 }
 
+/// So does a whole drag, or its end.
+#[test]
+fn a_drag_that_ends_within_a_frame_ends_where_the_pointer_was_let_go() {
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    for frames_before_the_end in [0, 1] {
+        let mut harness = harness(1100.0);
+        let drag = |harness: &mut Harness<'_, Shell>, [from, to]: [Pos2; 2]| {
+            harness.event(Event::PointerMoved(from));
+            harness.run_steps(1);
+            harness.event(button(from, true));
+            harness.run_steps(frames_before_the_end);
+            harness.event(Event::PointerMoved(to));
+            harness.event(button(to, false));
+            harness.run_steps(2);
+        };
+        let screen = |world: [f64; 2]| harness.state().panel_to_screen("map", world);
+        let ends = [[1.0, 1.0], [2.0, 1.0]]
+            .map(|world| Pos2::from(screen(world).expect("the map is shown")));
+        drag(&mut harness, ends);
+        let x = value(&harness, "x");
+        assert!((x - 2.0).abs() < 0.02, "{frames_before_the_end}: {x}");
+        // It was let go.
+        harness.event(Event::PointerMoved(ends[0]));
+        harness.run_steps(2);
+        assert_eq!(value(&harness, "x"), x);
+
+        let rail = harness.get_by_role_and_label(Role::Slider, "tick").rect();
+        drag(
+            &mut harness,
+            [rail.left_center() + vec2(20.0, 0.0), rail.center()],
+        );
+        assert_eq!(value(&harness, "time"), 10.0);
+    }
+}
+
 #[test]
 fn a_cancelled_touch_lets_go_of_what_it_dragged() {
     let mut harness = harness(1100.0);
