@@ -278,6 +278,17 @@ describe('events', () => {
       assert.ok(result.outcome.sentence.length > 10);
     }, { head });
   });
+
+  it('tell the page of what it asked for at the start, and say it to nobody', async () => {
+    const head = `<script>
+      window.results = [];
+      document.addEventListener('slam-result', ({ detail }) => results.push(detail.value.heading));
+    </script>`;
+    await on('<slam-widget name="w16.1" heading="70"></slam-widget>', async (tab) => {
+      await tab.waitForFunction(() => results.includes(70));
+      assert.equal(await tab.locator('slam-widget [aria-live="polite"]').textContent(), '');
+    }, { head });
+  });
 });
 
 describe('exports', () => {

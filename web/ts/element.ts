@@ -309,6 +309,7 @@ export class SlamWidget extends HTMLElement {
       });
     }
     this.#controls.show(this.#state?.texts ?? []);
+    this.#news.setUp();
   }
 
   /** A reader who pressed a button of an element that then left its page is not there to be told. */

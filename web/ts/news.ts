@@ -26,12 +26,19 @@ export class News {
   readonly #notes: Notes;
   readonly #onSettled: () => void;
   #timer: ReturnType<typeof setTimeout> | undefined;
+  /** Whether a screen reader is told what the timer waits for. */
+  #isNews = false;
 
   constructor(source: NewsSource, parts: Parts, notes: Notes, onSettled: () => void) {
     this.#onSettled = onSettled;
     this.#source = source;
     this.#parts = parts;
     this.#notes = notes;
+  }
+
+  /** The widget was set up: what its attributes and the address ask for is no news. */
+  setUp(): void {
+    this.#isNews = false;
   }
 
   /** The first frame stands on the canvas, so many milliseconds after its start. */
@@ -53,6 +60,7 @@ export class News {
       this.#emit('slam-change', { parameter, value, text, outcome });
     }
     clearTimeout(this.#timer);
+    this.#isNews = true;
     this.#timer = setTimeout(() => this.#settled(), SETTLED_MS);
   }
 
@@ -93,7 +101,7 @@ export class News {
     this.#onSettled();
     this.#describe();
     if (outcome !== undefined) {
-      this.#say(outcome.sentence);
+      if (this.#isNews) this.#say(outcome.sentence);
       this.#emit('slam-result', { value: source.value, outcome });
     }
     if (source.hasAttribute('linked')) keepEntry(source.link);
