@@ -9,6 +9,12 @@ export const SMOOTH_MS = 1000 / 60;
 /** Of a display that is slow: a widget that settles for 0.9 s draws three frames, not sixty. */
 export const COARSE_MS = 300;
 
+/**
+ * A display shows the next frame no sooner, by the clock of the machine: a page that draws all the time, such
+ * as one that plays, would draw as often as it can while its test looks at something, and nobody sees it.
+ */
+export const PAUSE_MS = 30;
+
 /** Of a page that waits for as long as the test does. */
 export const FROZEN_MS = 0;
 
@@ -33,12 +39,13 @@ export function lookMs(stepMs) {
  * Runs in every page before its own scripts. `frameClock` is what tests see of it.
  *
  * It drives what the widgets ask for time: `performance.now`, the time of an animation frame, and
- * `setTimeout` with a delay. A delay of `patienceMs` or more passes only when a test skips it.
+ * `setTimeout` with a delay. A delay of `patienceMs` or more passes only when a test skips it. Between two
+ * frames lie `pauseMs` at least.
  */
-export function install({ stepMs, lookMs, quickLookMs, patienceMs }) {
+export function install({ pauseMs, stepMs, lookMs, quickLookMs, patienceMs }) {
   // A tab that waits for its next test has nothing to do.
   if (location.href === 'about:blank') return;
-  const nextFrame = window.requestAnimationFrame.bind(window);
+  const displayed = window.requestAnimationFrame.bind(window);
   const [soon, forget] = [window.setTimeout.bind(window), window.clearTimeout.bind(window)];
   const timers = new Map();
   const watchers = new Set();
@@ -49,14 +56,38 @@ export function install({ stepMs, lookMs, quickLookMs, patienceMs }) {
   let asked = 0;
   let askedAt = { ms: 0, tick: 0 };
   let ticks = 0;
+  let waiting = new Map();
+  let due = new Map();
+  let lastFrame = 0;
   // Far from the numbers that the browser gives.
   let lastTimer = 1e9;
+
+  const show = () => {
+    [due, waiting] = [waiting, new Map()];
+    for (const callback of due.values()) {
+      try {
+        callback();
+      } catch (error) {
+        reportError(error);
+      }
+    }
+  };
+  const nextFrame = (callback) => {
+    if (waiting.size === 0) soon(() => displayed(show), pauseMs);
+    lastFrame += 1;
+    waiting.set(lastFrame, callback);
+    return lastFrame;
+  };
 
   performance.now = () => (nowMs += isHeld ? 0 : takesMs);
   window.requestAnimationFrame = (callback) => {
     asked += 1;
     askedAt = { ms: nowMs, tick: ticks };
     return nextFrame(() => callback(nowMs));
+  };
+  window.cancelAnimationFrame = (frame) => {
+    // Also one that is due: another one before it may have called it off.
+    if (!waiting.delete(frame)) due.delete(frame);
   };
   window.setTimeout = (callback, delay, ...given) => {
     if (typeof callback !== 'function' || !(delay > 0)) return soon(callback, delay, ...given);

@@ -91,7 +91,7 @@ async function newTab(browser, { stepMs = clock.COARSE_MS, sees = false, ...opti
   context.setDefaultTimeout(LAST_RESORT_MS);
   context.setDefaultNavigationTimeout(LAST_RESORT_MS);
   await context.addInitScript(clock.install, {
-    stepMs, lookMs: clock.lookMs(stepMs), quickLookMs: clock.QUICK_LOOK_MS, patienceMs: clock.PATIENCE_MS,
+    pauseMs: clock.PAUSE_MS, stepMs, lookMs: clock.lookMs(stepMs), quickLookMs: clock.QUICK_LOOK_MS, patienceMs: clock.PATIENCE_MS,
   });
   await context.addInitScript(drawCheaply, { sees });
   const tab = await context.newPage();
