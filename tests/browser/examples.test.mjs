@@ -129,6 +129,24 @@ it('jupyter.html: the anywidget module in step with its model, both ways', async
   });
 });
 
+it('jupyter.html: what the kernel says again takes nothing back, and what it says anew is taken', async () => {
+  await example('jupyter.html', async (tab) => {
+    await h.ready(tab);
+    await tab.waitForFunction(() => traits.value.seed !== undefined);
+    const noise = () => tab.evaluate(() => document.querySelector('slam-widget').noise);
+    await tab.evaluate(() => {
+      document.querySelector('slam-widget').noise = 3;
+      assign({ noise: 2 });
+    });
+    assert.equal(await noise(), 3);
+    await tab.waitForFunction(() => traits.value.noise === 3);
+    for (const said of [2, 1, 2]) {
+      await tab.evaluate((value) => assign({ noise: value }), said);
+      assert.equal(await noise(), said);
+    }
+  });
+});
+
 it('jupyter.html: a value that does not fit is named in the cell, and the others are set', async () => {
   await example('jupyter.html', async (tab) => {
     const cell = tab.locator('#cell');

@@ -16,14 +16,18 @@ function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
   widget.setAttribute('name', String(model.get('name') ?? ''));
   el.append(widget, refused);
 
+  // What kernel and widget agree on.
+  const agreed = new Map<string, Value>();
   // Some hosts call back for what the widget itself wrote: that asks for nothing.
   let isGiving = false;
   const take = (): void => {
-    if (!isGiving) refused.textContent = setAll(widget, model.get('value')).join(' ');
+    if (!isGiving) refused.textContent = setNews(widget, model.get('value'), agreed).join(' ');
   };
   const give = (): void => {
     isGiving = true;
-    model.set('value', widget.value);
+    const value = widget.value;
+    for (const [id, given] of Object.entries(value)) agreed.set(id, given);
+    model.set('value', value);
     model.set('outcome', widget.outcome ?? null);
     isGiving = false;
     model.save_changes();
@@ -42,16 +46,23 @@ function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
   };
 }
 
-/** Sets what fits; returns a sentence for each value that does not. */
-function setAll(widget: SlamWidget, wanted: unknown): string[] {
+/**
+ * Sets what fits and was not agreed on before; returns a sentence for each value that does not fit.
+ *
+ * JupyterLab asks the kernel for all values as the first cell shows. The answer may come after the reader has
+ * moved on, and holds nothing that is new.
+ */
+function setNews(widget: SlamWidget, wanted: unknown, agreed: Map<string, Value>): string[] {
   if (wanted === undefined || wanted === null) return [];
   if (typeof wanted !== 'object' || Array.isArray(wanted)) {
     return ['`value` takes an object of parameters, such as {"noise": 2}.'];
   }
   const problems: string[] = [];
   for (const [id, value] of Object.entries(wanted) as [string, Value][]) {
+    if (agreed.get(id) === value) continue;
     try {
       if (widget.get(id) !== value) widget.set(id, value);
+      agreed.set(id, value);
     } catch (error) {
       const stands = widget.get(id) === undefined ? '' : ' It keeps its value.';
       problems.push(`${(error as Error).message}.${stands}`);
