@@ -11,6 +11,8 @@ export interface ControlHost {
   /** Returns what was wrong. */
   set(id: string, text: string): string | undefined;
   press(id: string): void;
+  /** Ends what decides on how long the run is, and shows it. */
+  finishRun(): void;
   focus(id: string | undefined): void;
 }
 
@@ -157,6 +159,8 @@ export class Controls {
       this.#host.set(spec.id, tidy(min + steps * spec.step));
     });
     range.addEventListener('keydown', (event) => {
+      // A run that is still computed would end the way where it stands.
+      if (spec.kind === 'timeline') this.#host.finishRun();
       const now = Number(range.value);
       const last = Number(range.max);
       const step = event.shiftKey && spec.kind === 'slider' ? spec.step / 10 : spec.step;

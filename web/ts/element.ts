@@ -291,6 +291,10 @@ export class SlamWidget extends HTMLElement {
     this.#controls = new Controls(spec, {
       set: (id, text) => this.#tryToSet(id, text),
       press: (id) => void this.press(id).catch((error: unknown) => this.#pressFailed(error)),
+      finishRun: () => {
+        this.#settle();
+        this.#showTimeline();
+      },
       focus: (id) => this.#looks.showFocus(id),
     });
     const look = lookBar((way) => this.look(way));
