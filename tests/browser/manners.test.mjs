@@ -108,7 +108,9 @@ describe('touch', () => {
   });
 
   it('up or down moves the page, also where it starts on a slider or on the map', async () => {
-    await on(ONE + TALL, async (tab) => {
+    // However far the swipe carries, the widget stays in sight: it draws nowhere else.
+    const toItsEnd = '<p style="height: 60vh">Little text.</p>';
+    await on(ONE + toItsEnd, async (tab) => {
       await h.ready(tab);
       const before = await tab.evaluate(() => document.querySelector('slam-widget').query);
       const rail = await sliderRail(tab, 'heading');
