@@ -13,7 +13,7 @@ export const COARSE_MS = 300;
  * A display shows the next frame no sooner, by the clock of the machine: a page that draws all the time, such
  * as one that plays, would draw as often as it can while its test looks at something, and nobody sees it.
  */
-export const PAUSE_MS = 30;
+export const PAUSE_MS = 60;
 
 /** Of a page that waits for as long as the test does. */
 export const FROZEN_MS = 0;
