@@ -190,6 +190,28 @@ describe('a wasm file', () => {
     }, { server, options: { stepMs: FROZEN_MS } });
   });
 
+  it('that comes after the values have settled has their result told all the same, to programs alone', async () => {
+    let heard;
+    const asked = new Promise((resolve) => (heard = resolve));
+    const server = { answer: (path, response) => path.endsWith('.wasm') && (heard(response), true) };
+    const head = `<script>
+      window.heard = [];
+      for (const type of ['slam-ready', 'slam-result'])
+        document.addEventListener(type, ({ detail }) => heard.push([type, detail.value.heading]));
+    </script>`;
+    await on('<slam-widget name="w16.1" heading="70"></slam-widget>', async (tab) => {
+      const response = await asked;
+      await tab.evaluate(() => frameClock.pass(900));
+      assert.deepEqual(await tab.evaluate(() => heard), []);
+      response.setHeader('Content-Type', 'application/wasm');
+      createReadStream(join(h.DIST, WASM)).pipe(response);
+      await h.ready(tab);
+      await h.quiet(tab);
+      assert.deepEqual(await tab.evaluate(() => heard), [['slam-ready', 70], ['slam-result', 70]]);
+      assert.equal(await tab.locator('slam-widget [aria-live="polite"]').textContent(), '');
+    }, { server, head });
+  });
+
   it('of another build is told in a sentence, and fetched afresh', async () => {
     // It has all that the glue links to, and lacks one of the names that the glue calls.
     const bytes = readFileSync(join(h.DIST, WASM));

@@ -28,6 +28,8 @@ export class News {
   #timer: ReturnType<typeof setTimeout> | undefined;
   /** Whether a screen reader is told what the timer waits for. */
   #isNews = false;
+  /** Values rested before the widget had run: their result is told as soon as there is one. */
+  #isOwed = false;
 
   constructor(source: NewsSource, parts: Parts, notes: Notes, onSettled: () => void) {
     this.#onSettled = onSettled;
@@ -39,12 +41,14 @@ export class News {
   /** The widget was set up: what its attributes and the address ask for is no news. */
   setUp(): void {
     this.#isNews = false;
+    this.#isOwed = false;
   }
 
   /** The first frame stands on the canvas, so many milliseconds after its start. */
   ready(milliseconds: number): void {
     this.#describe();
     this.#emit('slam-ready', { value: this.#source.value, ms: milliseconds });
+    if (this.#isOwed) this.#tellResult();
   }
 
   /** What the widget went on computing is done: the summary is that of the whole picture. */
@@ -61,6 +65,7 @@ export class News {
     }
     clearTimeout(this.#timer);
     this.#isNews = true;
+    this.#isOwed = false;
     this.#timer = setTimeout(() => this.#settled(), SETTLED_MS);
   }
 
@@ -93,18 +98,23 @@ export class News {
   /** The element left its page: what has not settled is no news any more. */
   stop(): void {
     clearTimeout(this.#timer);
+    this.#isOwed = false;
   }
 
   #settled(): void {
     const source = this.#source;
-    const { outcome } = source;
     this.#onSettled();
+    this.#tellResult();
     this.#describe();
-    if (outcome !== undefined) {
-      if (this.#isNews) this.#say(outcome.sentence);
-      this.#emit('slam-result', { value: source.value, outcome });
-    }
     if (source.hasAttribute('linked')) keepEntry(source.link);
+  }
+
+  #tellResult(): void {
+    const { value, outcome } = this.#source;
+    this.#isOwed = outcome === undefined;
+    if (outcome === undefined) return;
+    if (this.#isNews) this.#say(outcome.sentence);
+    this.#emit('slam-result', { value, outcome });
   }
 
   #describe(): void {
