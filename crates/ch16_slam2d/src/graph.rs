@@ -18,12 +18,10 @@ mod marginalize;
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::robust::{Belief, GncSettings, believe};
-use pr_optim::{
-    Between, JacobianModel, Method, OptimizeError, Optimizer, Problem, Report, Settings,
-};
+use pr_optim::{Between, Method, OptimizeError, Optimizer, Problem, Report, Settings};
 
 pub use marginalize::{MarginalizeError, Marginalized};
-pub use pr_optim::{RobustKernel, StopReason};
+pub use pr_optim::{JacobianModel, RobustKernel, StopReason};
 
 /// Handle of a node. Nodes are numbered from 0 in the order in which they were added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -185,6 +183,19 @@ impl PoseGraph {
             graph.add_edge(*from, *to, edge.measurement, edge.information, edge.kind);
         }
         graph
+    }
+
+    /// The same graph, solved with the given Jacobians from now on.
+    #[must_use]
+    pub fn solved_with(mut self, jacobians: JacobianModel) -> Self {
+        self.optimizer.settings.jacobians = jacobians;
+        self
+    }
+
+    /// The Jacobians that it is solved with.
+    #[must_use]
+    pub fn jacobians(&self) -> JacobianModel {
+        self.optimizer.settings.jacobians
     }
 
     /// Adds a node that the solver may move.
@@ -353,7 +364,7 @@ impl PoseGraph {
     pub fn with_edges(&self, keep: impl FnMut(&EdgeView) -> bool) -> Self {
         let nodes: Vec<PoseNode> = self.nodes().map(|(_, node)| node).collect();
         let edges: Vec<EdgeView> = self.edges().filter(keep).collect();
-        Self::of(&nodes, &edges)
+        Self::of(&nodes, &edges).solved_with(self.jacobians())
     }
 
     /// Exact covariance of the relative pose `T_i⁻¹ T_j`, as all edges together know it.

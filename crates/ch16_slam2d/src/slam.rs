@@ -93,7 +93,7 @@ impl Slam {
                 FrontEndKind::Submaps(submaps) => Some(SubmapLoops::new(submaps)),
             },
             detector: parts.detector,
-            graph: PoseGraph::new(),
+            graph: PoseGraph::with_jacobians(config.jacobians),
             keyframes: Vec::new(),
             preparer: ScanPreparer::new(),
             frames: 0,

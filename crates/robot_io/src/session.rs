@@ -137,8 +137,10 @@ impl Session {
     /// The graph of the map.
     #[must_use]
     pub fn graph(&self) -> PoseGraph {
+        let jacobians = self.driven.config.jacobians;
         let Some(mapped) = &self.mapped else {
-            return PoseGraph::of(&self.driven.nodes, &self.driven.edges);
+            let graph = PoseGraph::of(&self.driven.nodes, &self.driven.edges);
+            return graph.solved_with(jacobians);
         };
         let poses = self.driven.nodes.iter().zip(&mapped.poses);
         let nodes: Vec<PoseNode> = poses
@@ -146,7 +148,7 @@ impl Session {
             .collect();
         let edges = self.driven.edges.iter();
         let driven = edges.filter(|view| view.edge.kind == EdgeKind::Odometry);
-        PoseGraph::of(&nodes, driven.chain(&mapped.loops))
+        PoseGraph::of(&nodes, driven.chain(&mapped.loops)).solved_with(jacobians)
     }
 
     /// The scans of the keyframes with their poses, as rays from the sensor to what it saw.

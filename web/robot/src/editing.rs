@@ -28,7 +28,7 @@ pub fn rebuilt(
     links: &[Link],
     pins: &BTreeMap<usize, SE2>,
 ) -> PoseGraph {
-    let mut graph = PoseGraph::new();
+    let mut graph = PoseGraph::with_jacobians(base.jacobians());
     for ((node, old), &is_fixed) in base.nodes().zip(fixed) {
         match pins.get(&node.index()) {
             Some(pin) => graph.add_fixed_node(*pin),

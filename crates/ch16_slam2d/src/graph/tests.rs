@@ -118,3 +118,34 @@ fn a_closed_loop_makes_the_relative_pose_more_certain() {
     assert_eq!(covariances[0], Matrix3::zeros());
     assert!((covariances[1][(0, 0)] - 1.0 / 100.0).abs() < 1e-7);
 }
+
+/// A square that its last step misses by 0.3 m and a tenth of a turn, tied together by a loop.
+fn torn_square(graph: PoseGraph) -> PoseGraph {
+    let mut graph = graph;
+    let information = Matrix3::identity();
+    let step = SE2::new(1.0, 0.0, core::f64::consts::FRAC_PI_2);
+    let mut pose = SE2::identity();
+    let mut last = graph.add_fixed_node(pose);
+    for _ in 0..4 {
+        pose = pose * SE2::new(1.1, 0.05, core::f64::consts::FRAC_PI_2 + 0.15);
+        let next = graph.add_node(pose);
+        graph.add_edge(last, next, step, information, EdgeKind::Odometry);
+        last = next;
+    }
+    let off = SE2::new(0.3, 0.0, 0.6);
+    graph.add_edge(0, last, off, information, EdgeKind::Loop);
+    graph
+}
+
+#[test]
+fn exact_jacobians_take_fewer_steps_and_stay_with_the_graph() {
+    let iterations = |mut graph: PoseGraph| graph.optimize(50, 1e-9).iterations;
+    let chapter = iterations(torn_square(PoseGraph::new()));
+    let exact = || torn_square(PoseGraph::with_jacobians(JacobianModel::Exact));
+    let fewest = iterations(exact());
+    assert!(fewest < chapter, "{fewest} and {chapter}");
+    assert_eq!(iterations(exact().with_edges(|_| true)), fewest);
+    assert_eq!(iterations(exact().clone()), fewest);
+    let named = torn_square(PoseGraph::new()).solved_with(JacobianModel::Exact);
+    assert_eq!(iterations(named), fewest);
+}

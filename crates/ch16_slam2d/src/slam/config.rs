@@ -4,6 +4,7 @@ use pr_geom::SE2;
 
 use super::scales::NORMAL_RADIUS_CELLS;
 use super::{MotionNoise, RefinementConfig};
+use crate::graph::JacobianModel;
 use crate::loops::{LoopConfig, Referee};
 use crate::matching::{InformationFrame, MapConfig, MatcherKind, TrustConfig};
 use crate::scan::ScanConfig;
@@ -136,6 +137,9 @@ pub struct SlamConfig {
     pub loops: LoopConfig,
     /// How keyframes are linked once more after the last frame.
     pub refinement: RefinementConfig,
+    /// Jacobians of the optimizer: with the chapter's the last steps shrink by a constant factor, with
+    /// exact ones by their square.
+    pub jacobians: JacobianModel,
     /// Most Gauss–Newton iterations after a loop.
     pub optimizer_iterations: usize,
     /// The optimizer stops where no node moves farther than this (m + rad).
@@ -205,6 +209,7 @@ impl SlamConfig {
             prediction_noise: MotionNoise::without_odometry(),
             loops: LoopConfig::default(),
             refinement: RefinementConfig::default(),
+            jacobians: JacobianModel::Chapter,
             optimizer_iterations: 15,
             optimizer_tolerance: 1e-7,
             huber: 12.0,

@@ -2,6 +2,7 @@
 
 use super::config::{PredictionUse, SlamConfig, ThresholdConfig};
 use super::{MotionNoise, RefinementConfig};
+use crate::graph::JacobianModel;
 use crate::icp::{IcpConfig, IcpVariant};
 use crate::loops::{Detection, LoopConfig, LoopGuard, WideSearch};
 use crate::matching::{
@@ -110,6 +111,7 @@ impl SlamConfig {
                 radius_m: 4.0,
                 ..default.refinement
             },
+            jacobians: JacobianModel::Exact,
             ..default
         }
     }

@@ -284,7 +284,8 @@ impl Slam {
         let mut slam = Self::with_parts(snapshot.config.clone(), parts);
         slam.frames = snapshot.frames;
         slam.last_stamp_s = snapshot.last_stamp_s;
-        slam.graph = PoseGraph::of(&snapshot.nodes, &snapshot.edges);
+        slam.graph =
+            PoseGraph::of(&snapshot.nodes, &snapshot.edges).solved_with(snapshot.config.jacobians);
         slam.keyframes = snapshot.keyframes.clone();
         slam.last_attempt_node = snapshot.last_attempt_node;
         slam.last_loop_node = snapshot.last_loop_node;

@@ -8,6 +8,7 @@ use std::fmt::Write as _;
 use std::str::FromStr;
 
 use ch16_slam2d::field::ClimbConfig;
+use ch16_slam2d::graph::JacobianModel;
 use ch16_slam2d::icp::{IcpConfig, IcpVariant};
 use ch16_slam2d::loops::{Detection, DetectorKind, GateModel, LoopConfig, LoopGuard, WideSearch};
 use ch16_slam2d::matching::{
@@ -69,6 +70,9 @@ trait Fields {
     /// One of several names: the number of the one that is, or that is to be.
     fn one_of(&mut self, name: &str, names: &[&str], chosen: usize) -> usize;
 
+    /// Whether there is a field of that name: a session of an older program may lack one.
+    fn knows(&self, name: &str) -> bool;
+
     /// Any number.
     fn number(&mut self, name: &str, value: &mut f64) {
         self.within(name, value, f64::NEG_INFINITY..=f64::INFINITY);
@@ -103,6 +107,10 @@ impl Fields for Lines {
     fn one_of(&mut self, name: &str, names: &[&str], chosen: usize) -> usize {
         let _ = writeln!(self.text, "{name} {}", names[chosen]);
         chosen
+    }
+
+    fn knows(&self, _: &str) -> bool {
+        true
     }
 }
 
@@ -151,6 +159,10 @@ impl Fields for Known<'_> {
         let read = read.and_then(|text| names.iter().position(|name| *name == text));
         read.unwrap_or(chosen)
     }
+
+    fn knows(&self, name: &str) -> bool {
+        self.values.contains_key(name)
+    }
 }
 
 /// A field that is one of several values without further fields.
@@ -192,6 +204,7 @@ fn slam(config: &mut SlamConfig, f: &mut impl Fields) {
         prediction_noise,
         loops,
         refinement,
+        jacobians,
         optimizer_iterations,
         optimizer_tolerance,
         huber,
@@ -261,6 +274,13 @@ fn slam(config: &mut SlamConfig, f: &mut impl Fields) {
     noise("prediction_noise", prediction_noise, f);
     loop_config(loops, f);
     refinement_config(refinement, f);
+    let models = [
+        ("chapter", JacobianModel::Chapter),
+        ("exact", JacobianModel::Exact),
+    ];
+    if f.knows("jacobians") {
+        choose(f, "jacobians", jacobians, &models);
+    }
     f.count("optimizer_iterations", optimizer_iterations);
     f.number("optimizer_tolerance", optimizer_tolerance);
     f.number("huber", huber);

@@ -306,6 +306,25 @@ fn every_parameter_is_written_and_read() {
 }
 
 #[test]
+fn a_session_without_jacobians_was_solved_with_the_chapters() {
+    let robot = SlamConfig::for_robot(&frame(0, 180).scan);
+    let text = config_text(&robot);
+    let lines = text.lines().filter(|line| !line.starts_with("jacobians "));
+    let older: String = lines.map(|line| format!("{line}\n")).collect();
+    assert!(older.len() < text.len());
+    let read = config_text::read_config(&older).unwrap();
+    let chapter = SlamConfig::chapter().jacobians;
+    assert_ne!(robot.jacobians, chapter);
+    assert_eq!(
+        read,
+        SlamConfig {
+            jacobians: chapter,
+            ..robot
+        }
+    );
+}
+
+#[test]
 fn rays_to_a_thinned_wall_end_on_it_and_leave_gaps_open() {
     let wall = (-20..=20).map(|k| Point2::new(2.0, 0.06 * f64::from(k)));
     let behind = [Point2::new(-3.0, 0.0)];
