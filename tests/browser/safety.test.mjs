@@ -82,6 +82,19 @@ it('stores nothing: no cookie, no local storage, no database', async () => {
   });
 });
 
+/** A server that has the core wait: `asked` is kept once a page asks for it, and `send` sends it. */
+function heldBack() {
+  let hear;
+  const asked = new Promise((resolve) => (hear = resolve));
+  const send = async () => {
+    const response = await asked;
+    response.setHeader('Content-Type', 'application/wasm');
+    createReadStream(join(h.DIST, WASM)).pipe(response);
+  };
+  const answer = (path, response) => path.endsWith('.wasm') && (hear(response), true);
+  return { asked, send, server: { answer } };
+}
+
 describe('a wasm file', () => {
   const answerWasm = (answer) => ({
     answer: (path, response) => path.endsWith('.wasm') && (answer(response), true),
@@ -165,19 +178,16 @@ describe('a wasm file', () => {
   }
 
   it('that comes late reaches a widget that moved meanwhile, and the preset that was pressed', async () => {
-    let heard;
-    const asked = new Promise((resolve) => (heard = resolve));
-    const server = { answer: (path, response) => path.endsWith('.wasm') && (heard(response), true) };
+    const { asked, send, server } = heldBack();
     const [{ id: preset }] = h.schema.find(({ id }) => id === 'w16.2').presets;
     await on(`${ONE}<div id="there"></div>`, async (tab) => {
-      const response = await asked;
+      await asked;
       await tab.evaluate((button) => {
         const widget = document.querySelector('slam-widget');
         widget.shadowRoot.querySelector(`[data-control="${button}"]`).click();
         document.querySelector('#there').append(widget);
       }, preset);
-      response.setHeader('Content-Type', 'application/wasm');
-      createReadStream(join(h.DIST, WASM)).pipe(response);
+      await send();
       await h.ready(tab);
       assert.equal(await failure(tab).count(), 0);
       const [shown, expected] = await tab.evaluate(async (button) => {
@@ -191,20 +201,17 @@ describe('a wasm file', () => {
   });
 
   it('that comes after the values have settled has their result told all the same, to programs alone', async () => {
-    let heard;
-    const asked = new Promise((resolve) => (heard = resolve));
-    const server = { answer: (path, response) => path.endsWith('.wasm') && (heard(response), true) };
+    const { asked, send, server } = heldBack();
     const head = `<script>
       window.heard = [];
       for (const type of ['slam-ready', 'slam-result'])
         document.addEventListener(type, ({ detail }) => heard.push([type, detail.value.heading]));
     </script>`;
     await on('<slam-widget name="w16.1" heading="70"></slam-widget>', async (tab) => {
-      const response = await asked;
+      await asked;
       await tab.evaluate(() => frameClock.pass(900));
       assert.deepEqual(await tab.evaluate(() => heard), []);
-      response.setHeader('Content-Type', 'application/wasm');
-      createReadStream(join(h.DIST, WASM)).pipe(response);
+      await send();
       await h.ready(tab);
       await h.quiet(tab);
       assert.deepEqual(await tab.evaluate(() => heard), [['slam-ready', 70], ['slam-result', 70]]);
