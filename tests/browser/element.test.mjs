@@ -289,6 +289,32 @@ describe('events', () => {
       assert.equal(await tab.locator('slam-widget [aria-live="polite"]').textContent(), '');
     }, { head });
   });
+
+  it('tell the result of what was set out of sight once the widget runs again, and no older one', async () => {
+    const head = `<script>
+      window.results = [];
+      document.addEventListener('slam-result', ({ detail }) => results.push(detail));
+    </script>`;
+    await on('<slam-widget name="w16.1"></slam-widget><div style="height: 30000px"></div>', async (tab) => {
+      await h.ready(tab);
+      const before = await tab.evaluate(() => document.querySelector('slam-widget').outcome);
+      await tab.evaluate(() => scrollTo(0, document.body.scrollHeight));
+      await tab.waitForFunction(() => document.querySelector('slam-widget').state === 'resting');
+      const resting = await tab.evaluate(() => {
+        const widget = document.querySelector('slam-widget');
+        const kept = widget.outcome;
+        widget.heading = 70;
+        frameClock.pass(900);
+        return { kept, outcome: widget.outcome ?? 'none yet', results };
+      });
+      assert.deepEqual(resting, { kept: before, outcome: 'none yet', results: [] });
+      await tab.evaluate(() => scrollTo(0, 0));
+      await tab.waitForFunction(() => results.length > 0);
+      const [told, shown] = await tab.evaluate(() => [results, document.querySelector('slam-widget').outcome]);
+      assert.deepEqual(told.map(({ value, outcome }) => [value.heading, outcome]), [[70, shown]]);
+      assert.notDeepEqual(shown, before);
+    }, { head });
+  });
 });
 
 describe('exports', () => {

@@ -160,7 +160,7 @@ export class SlamWidget extends HTMLElement {
     this.#life.wake();
   }
 
-  /** The latest result, once the widget has run. */
+  /** The result of the values that are set, once the widget has run with them. */
   get outcome(): Outcome | undefined {
     this.#settle();
     return this.#shownOutcome();
@@ -485,6 +485,8 @@ export class SlamWidget extends HTMLElement {
       return running.text(id);
     });
     if (problem !== undefined) return problem;
+    // What was found for the old values is no result of these.
+    if (kept === undefined) this.#lastOutcome = undefined;
     this.#told(new Map([[id, kept ?? parsed.text], ...this.#takeChanges()]));
     this.#carryOrders();
     this.#life.wake();
