@@ -63,9 +63,12 @@ pub fn record_counts() -> Result<(), Failure> {
 }
 
 /// The programs that are counted, timed, or compared with the module in Node.
+const PROGRAMS: [&str; 3] = ["slam2d", "states", "slam2d_bench"];
+
+/// How [`PROGRAMS`] are compiled.
 #[derive(Clone, Copy, Debug)]
 pub enum Tools {
-    /// Profile `dev`, which shares the crates of others with the tests.
+    /// Profile `dev`, whose crates are those of the tests.
     BesideTests,
     /// Profile `release`: what is timed.
     AsShipped,
@@ -78,15 +81,16 @@ impl Tools {
     /// Where they do not compile.
     pub fn compile(self) -> Result<(), Failure> {
         let mut command = cargo();
-        unincremental(&mut command)
-            .args(["build", "--quiet"])
-            .args(["--package=slam2d_bench", "--package=slam2d_cli"])
-            .args(["--package=slam_web", "--bins"]);
+        unincremental(&mut command).args(["build", "--quiet"]);
         match self {
-            // With a bench cargo counts in what only tests need, so that the crates of others have
-            // the features, and the one build, that the tests have.
-            Self::BesideTests => command.arg("--bench=workloads"),
-            Self::AsShipped => command.arg("--release"),
+            // Of the whole workspace, with a bench: then the crates have the features that they have for
+            // the tests, and no other build of them is made.
+            Self::BesideTests => linting(&mut command)?
+                .args(PROGRAMS.map(|name| format!("--bin={name}")))
+                .arg("--bench=workloads"),
+            Self::AsShipped => command
+                .args(["--package=slam2d_bench", "--package=slam2d_cli"])
+                .args(["--package=slam_web", "--bins", "--release"]),
         };
         show(
             "Compiling slam2d, states and slam2d_bench",
