@@ -8,7 +8,7 @@
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpSummary, IcpVariant, IcpWorkspace};
 use nalgebra::Point2;
-use pr_geom::{SE2, math};
+use pr_geom::{SE2, math, sort_numbers};
 use pr_sim::{Rng, Wall, World};
 
 use crate::scenes::{self, NORMAL_RADIUS_M};
@@ -214,7 +214,7 @@ fn sweep(world: &World, from: &SE2, share: f64, rng: &mut Rng) -> PointCloud {
     let walls = SWEEP_POINTS - bearings.len();
     let on_wall = |i: usize| on_walls[(share_of(i, walls) * on_walls.len() as f64) as usize];
     bearings.extend((0..walls).map(|i| on_wall(i) as f64));
-    bearings.sort_by(f64::total_cmp);
+    sort_numbers(&mut bearings);
     let points = bearings.into_iter().map(|k| {
         let range_m = cast(world, k) + rng.normal(0.0, RANGE_SIGMA_M);
         let (sin, cos) = math::sin_cos(bearing(k));

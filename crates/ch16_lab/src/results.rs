@@ -3,6 +3,7 @@
 //! One seed is an anecdote. Everything here is about laps that have been run; who runs them, and on
 //! how many threads, is up to the caller.
 
+use pr_geom::sort_numbers;
 use serde::{Deserialize, Serialize};
 
 use crate::ancestor::{Ancestor, AncestorOutcome, AncestorTrace};
@@ -270,7 +271,7 @@ impl Spread {
     #[must_use]
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut sorted: Vec<f64> = values.into_iter().collect();
-        sorted.sort_by(f64::total_cmp);
+        sort_numbers(&mut sorted);
         Some(Self {
             p05: quantile(&sorted, 0.05)?,
             median: quantile(&sorted, 0.5)?,

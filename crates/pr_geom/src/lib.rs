@@ -9,10 +9,12 @@
 
 pub mod angle;
 pub mod math;
+mod order;
 pub mod rng;
 pub mod se2;
 
 pub use angle::wrap_angle;
 pub use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
+pub use order::{sort_numbers, sort_pairs, sort_ranked};
 pub use rng::Rng;
 pub use se2::{Rotation, SE2, Translation};

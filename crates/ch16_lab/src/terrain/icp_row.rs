@@ -6,7 +6,7 @@
 //! sorted by x, yields the intervals (Felzenszwalb & Huttenlocher 2012); the samples of an interval
 //! are then a plain loop.
 
-use pr_geom::math;
+use pr_geom::{math, sort_pairs};
 
 use super::TerrainSettings;
 use ch16_slam2d::cloud::DenseMap;
@@ -158,8 +158,7 @@ impl Slabs {
         self.sorted.clear();
         self.sorted
             .extend(map.xs().iter().copied().zip(map.ys().iter().copied()));
-        self.sorted
-            .sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        sort_pairs(&mut self.sorted);
         let ys = || self.sorted.iter().map(|point| point.1);
         self.south = ys().fold(f64::INFINITY, math::min) - tau_m;
         let north = ys().fold(f64::NEG_INFINITY, math::max) + tau_m;

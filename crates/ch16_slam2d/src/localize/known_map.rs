@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pr_geom::{SE2, math};
+use pr_geom::{SE2, math, sort_ranked};
 
 use super::LocalizeConfig;
 use crate::cloud::PointCloud;
@@ -141,7 +141,7 @@ impl KnownMap {
             .enumerate()
             .map(|(keyframe, context)| (context.key_distance(&here), keyframe))
             .collect();
-        keyed.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        sort_ranked(&mut keyed);
         keyed.truncate(8 * most);
         let guesses = keyed.into_iter().map(|(_, keyframe)| {
             let found = self.contexts[keyframe].compare(&here);
@@ -168,7 +168,7 @@ impl KnownMap {
             .zip(0..)
             .filter(|(distance_m, _)| *distance_m <= near_m)
             .collect();
-        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        sort_ranked(&mut near);
         near.truncate(most);
         let mut near: Vec<usize> = near.into_iter().map(|(_, keyframe)| keyframe).collect();
         near.sort_unstable();

@@ -1,6 +1,6 @@
 //! Detectors that propose what looks alike.
 
-use pr_geom::{SE2, math};
+use pr_geom::{SE2, math, sort_ranked};
 
 use super::{ContextConfig, HistogramConfig, RangeHistogram, ScanContext};
 use crate::cloud::PointCloud;
@@ -152,7 +152,7 @@ impl LoopDetector for PlaceDetector {
             .enumerate()
             .map(|(old, look)| (look.key_distance(here), old))
             .collect();
-        keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_ranked(&mut keyed);
         keyed.truncate(self.config.keys_compared);
         let mut alike: Vec<(f64, usize, Option<f64>)> = keyed
             .into_iter()

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use pr_geom::{SE2, math};
+use pr_geom::{SE2, math, sort_numbers};
 
 use super::{LikelihoodGrid, SearchError, SearchNeighborhood, SearchWindow};
 use crate::cloud::PointCloud;
@@ -199,7 +199,7 @@ fn robust_reach_m(scan: &PointCloud) -> Result<f64, SearchError> {
     if reaches_m.is_empty() {
         return Err(SearchError::EmptyScan);
     }
-    reaches_m.sort_by(f64::total_cmp);
+    sort_numbers(&mut reaches_m);
     let left_out = reaches_m.len().div_ceil(POINTS_FOR_AN_OUTLIER);
     let last = (reaches_m.len() - 1).saturating_sub(left_out);
     Ok(reaches_m[last])

@@ -9,7 +9,7 @@
 use core::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use pr_geom::{Point2, SE2, math};
+use pr_geom::{Point2, SE2, math, sort_pairs};
 
 use super::Slam;
 use crate::cloud::PointCloud;
@@ -91,7 +91,7 @@ impl Sight {
             .iter()
             .map(|point| (math::atan2(point.y, point.x), math::norm2(point.x, point.y)))
             .collect();
-        seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_pairs(&mut seen);
         Self {
             world_from_body,
             seen,

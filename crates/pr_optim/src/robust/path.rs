@@ -1,7 +1,7 @@
 //! The path along the trusted measurements, and how well cycles through it close.
 
 use nalgebra::Matrix3;
-use pr_geom::SE2;
+use pr_geom::{SE2, sort_numbers};
 
 use super::is_sequential;
 use crate::factor::Between;
@@ -134,7 +134,7 @@ pub fn variance_share(problem: &Problem, trusted: &[bool], path: &Path) -> f64 {
     loops.sort_by_key(|factor| factor.from.abs_diff(factor.to));
     loops.truncate((loops.len() / ONE_IN).max(AT_LEAST));
     let mut squares: Vec<f64> = loops.iter().filter_map(|f| path.cycle_chi2(f)).collect();
-    squares.sort_by(f64::total_cmp);
+    sort_numbers(&mut squares);
     let median = squares.get(squares.len() / 2);
     median.map_or(1.0, |median| {
         (median / MEDIAN_CHI2).clamp(LEAST_VARIANCE, 1.0)

@@ -1,6 +1,6 @@
 //! A list of errors in a few numbers.
 
-use pr_geom::math;
+use pr_geom::{math, sort_numbers};
 use serde::Serialize;
 
 /// Mean, spread and percentiles of some errors.
@@ -21,7 +21,7 @@ impl Spread {
     #[must_use]
     pub fn of(errors: &[f64]) -> Self {
         let mut sorted = errors.to_vec();
-        sorted.sort_by(f64::total_cmp);
+        sort_numbers(&mut sorted);
         let (mean, std) = mean_and_std(errors);
         Self {
             mean,
@@ -56,7 +56,7 @@ impl PoseErrors {
     #[must_use]
     pub fn of(errors: &[f64]) -> Self {
         let mut sorted = errors.to_vec();
-        sorted.sort_by(f64::total_cmp);
+        sort_numbers(&mut sorted);
         let (mean, std) = mean_and_std(errors);
         let sse: f64 = errors.iter().map(|e| e * e).sum();
         Self {

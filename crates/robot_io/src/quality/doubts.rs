@@ -2,7 +2,7 @@
 //! hardly fit.
 
 use ch16_slam2d::slam::Slam;
-use pr_geom::math;
+use pr_geom::{math, sort_numbers};
 
 use super::{KeyframeQuality, LinkQuality, Quality};
 use crate::run::{PoorFit, TriedLoop};
@@ -69,7 +69,7 @@ pub(super) fn of(quality: &Quality, disputed: &[Disputed], poor: &[PoorFit]) -> 
 
 fn unsure(keyframes: &[KeyframeQuality]) -> Vec<String> {
     let mut sorted: Vec<f64> = keyframes.iter().map(KeyframeQuality::sigma_m).collect();
-    sorted.sort_by(f64::total_cmp);
+    sort_numbers(&mut sorted);
     let median_m = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
     let limit_m = (UNSURE_TIMES * median_m).max(UNSURE_M);
     let is_unsure = |number: &usize| keyframes[*number].sigma_m() > limit_m;

@@ -7,7 +7,7 @@
 use core::f64::consts::TAU;
 
 use ch16_slam2d::scan::LaserScan;
-use pr_geom::math;
+use pr_geom::{math, sort_numbers, sort_pairs};
 
 use super::messages::{Header, header};
 use super::wire::{WireError, WireReader};
@@ -115,11 +115,11 @@ fn ring(fields: &mut WireReader<'_>) -> Result<(Header, Vec<(f64, f64)>), String
 
 /// The scan whose beams pass through these bearings and ranges.
 fn scan_of(mut points: Vec<(f64, f64)>) -> Option<LaserScan> {
-    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    sort_pairs(&mut points);
     let (first, last) = (points.first()?.0, points.last()?.0);
     let mut steps: Vec<f64> = points.windows(2).map(|two| two[1].0 - two[0].0).collect();
     steps.retain(|&step| step > TAU / MOST_BEAMS);
-    steps.sort_by(f64::total_cmp);
+    sort_numbers(&mut steps);
     let median = *steps.get(steps.len() / 2)?;
     let count = ((last - first) / median).round();
     let step = (last - first) / count;

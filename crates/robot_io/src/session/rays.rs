@@ -4,7 +4,7 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::scan::LaserScan;
-use pr_geom::math;
+use pr_geom::{math, sort_pairs};
 
 /// Points of a wall are at most so many cells of the thinned scan apart.
 const NEIGHBOR_CELLS: f64 = 2.5;
@@ -41,7 +41,7 @@ pub fn rays(scan: &PointCloud, sensor: &LaserScan, cell_m: f64) -> LaserScan {
         .map(|point| (math::atan2(point.y, point.x), math::norm2(point.x, point.y)))
         .filter(|(_, range_m)| *range_m > 0.0)
         .collect();
-    seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_pairs(&mut seen);
     for (index, &(bearing, range_m)) in seen.iter().enumerate() {
         shorten(((bearing + PI) / step_rad).round() as usize, range_m);
         let Some(&(next, next_m)) = seen.get(index + 1) else {

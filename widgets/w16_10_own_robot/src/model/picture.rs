@@ -6,7 +6,7 @@ mod visitor;
 use kit::scene::{
     Aspect, Axis, Bounds, ColorBar, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
-use pr_geom::math;
+use pr_geom::{math, sort_numbers};
 
 use super::robot::{Robot, Stage};
 use super::settings::{Colour, shows};
@@ -220,7 +220,7 @@ fn way(own: &OwnRobot) -> (Vec<Layer>, Option<ColorBar>) {
     let colour = Colour::of(&own.values);
     let values = colour.values(robot);
     let mut known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    known.sort_by(f64::total_cmp);
+    sort_numbers(&mut known);
     let places: Vec<[f64; 2]> = robot
         .keyframes
         .iter()

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use kit::scene::{Bounds, Cell, Raster};
+use pr_geom::sort_numbers;
 
 use super::settings::Colors;
 use crate::spec::HALF_SPAN_M;
@@ -149,7 +150,7 @@ impl Landscape {
             }
             Colors::ByRank => {
                 let mut sorted = self.heights.clone();
-                sorted.sort_unstable_by(f64::total_cmp);
+                sort_numbers(&mut sorted);
                 // Equal heights share a rank, so that level ground has one colour.
                 let below = |height: &f64| sorted.partition_point(|other| other < height);
                 let scale = 1.0 / sorted.len() as f32;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use ch16_lab::lap::{DriveSimulation, Lap, LapConfig};
 use ch16_lab::places::{OperatingPoint, PlaceCurve, PlaceStudy, place_curves};
+use pr_geom::sort_numbers;
 
 /// Pairs in one piece of work: some tenths of a millisecond.
 const PAIRS_PER_PIECE: usize = 5;
@@ -67,7 +68,7 @@ impl Places {
         let ranked = core::array::from_fn(|detector| {
             let distances = graded.iter().map(|pair| pair.distances[detector]);
             let mut distances: Vec<f64> = distances.collect();
-            distances.sort_by(f64::total_cmp);
+            sort_numbers(&mut distances);
             distances
         });
         Self {

@@ -1,7 +1,7 @@
 //! The sweep over what it is matched with: ICP's partners, and NDT's bells.
 
 use kit::scene::{Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
-use pr_geom::math;
+use pr_geom::{math, sort_numbers};
 
 use super::{Looked, Moment};
 use crate::model::terrains::{Bell, Pairing, Terrains};
@@ -181,7 +181,7 @@ pub(super) fn frame(terrains: &Terrains, most_m: f64) -> Bounds {
 /// From where to where the points lie along an axis, but for the strays, with the margin, m.
 fn walls(points: &[[f64; 2]], axis: usize) -> (f64, f64) {
     let mut sorted: Vec<f64> = points.iter().map(|at| at[axis]).collect();
-    sorted.sort_unstable_by(f64::total_cmp);
+    sort_numbers(&mut sorted);
     let stray = (STRAY_SHARE * sorted.len() as f64) as usize;
     let end = |index: Option<usize>| index.and_then(|k| sorted.get(k)).copied().unwrap_or(0.0);
     let (first, last) = (end(Some(stray)), end(sorted.len().checked_sub(stray + 1)));
