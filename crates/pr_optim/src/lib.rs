@@ -38,6 +38,7 @@ mod settings;
 pub mod structure;
 pub mod supernodes;
 pub mod system;
+mod tail;
 
 pub use custom::CustomGaussNewton;
 pub use error::OptimizeError;

@@ -73,16 +73,24 @@ pub(crate) fn joint_covariance(
         column
     });
     let list = &cholesky.supernodes().list;
-    let product = |a: usize, b: usize| -> f64 {
-        path.iter()
-            .flat_map(|&number| 3 * list[number].columns().start..3 * list[number].columns().end)
-            .map(|row| columns[a][row] * columns[b][row])
-            .sum()
-    };
+    let mut products = [[0.0; 6]; 6];
+    for row in path.iter().flat_map(|&number| {
+        let columns = list[number].columns();
+        3 * columns.start..3 * columns.end
+    }) {
+        let entries: [f64; 6] = core::array::from_fn(|k| columns[k][row]);
+        for (sums, a) in products.iter_mut().zip(entries) {
+            for (sum, b) in sums.iter_mut().zip(entries) {
+                *sum += a * b;
+            }
+        }
+    }
+    let block =
+        |at: [usize; 2]| Matrix3::from_fn(|row, column| products[at[0] + row][at[1] + column]);
     JointCovariance {
-        first: Matrix3::from_fn(product),
-        cross: Matrix3::from_fn(|row, column| product(row, 3 + column)),
-        second: Matrix3::from_fn(|row, column| product(3 + row, 3 + column)),
+        first: block([0, 0]),
+        cross: block([0, 3]),
+        second: block([3, 3]),
     }
 }
 

@@ -12,21 +12,22 @@
 //!
 //! Source: Nocedal & Wright, "Numerical Optimization", 2006, chapter 10.
 
-use nalgebra::{Matrix3, Vector3};
+mod covariances;
+
+use nalgebra::Vector3;
 use pr_geom::{SE2, math};
 
 use crate::best::BestPoses;
 use crate::damping::{DAMPING_LIMIT, Damping};
 use crate::error::OptimizeError;
-use crate::factor::{JacobianModel, PreparedPose};
-use crate::kernel::RobustKernel;
+use crate::factor::PreparedPose;
 use crate::linear::{Factorization, LinearSolver};
-use crate::marginals::JointCovariance;
 use crate::problem::Problem;
 use crate::report::{Report, StepReport, StopReason};
 use crate::settings::{Method, Settings};
 use crate::structure::Structure;
 use crate::system::NormalEquations;
+use covariances::PlainFactor;
 
 /// A solver with its workspace, which is kept from one solve to the next.
 ///
@@ -36,6 +37,8 @@ pub struct Optimizer {
     /// May be changed between iterations; a damping begins anew with [`restart`](Self::restart).
     pub settings: Settings,
     linear: Option<LinearSolver>,
+    /// Says what `linear` holds the factor of, where that is good for covariances.
+    plain: Option<PlainFactor>,
     equations: NormalEquations,
     delta: Vec<f64>,
     trial: Vec<SE2>,
@@ -87,6 +90,7 @@ impl Optimizer {
 
     /// The first half of a step: adds up the normal equations, and so knows the cost.
     fn linearize(&mut self, problem: &Problem) -> Result<f64, OptimizeError> {
+        self.plain = None;
         let linear = analysed(&mut self.linear, problem, self.settings.factorization);
         let settings = &self.settings;
         self.equations.assemble(
@@ -279,70 +283,8 @@ impl Optimizer {
 
     /// The linear solver that the settings name for the graph of `problem`, analysed if need be.
     pub fn linear_for(&mut self, problem: &Problem) -> &mut LinearSolver {
+        self.plain = None;
         analysed(&mut self.linear, problem, self.settings.factorization)
-    }
-
-    /// Covariance blocks of two nodes at the present poses, exact to first order.
-    ///
-    /// The measurements count unweighted by any kernel, with their exact Jacobians. The factor is
-    /// this crate's own, whatever the settings name.
-    ///
-    /// # Errors
-    /// Where the normal equations are not positive definite.
-    ///
-    /// # Panics
-    /// Where a node does not exist.
-    pub fn joint_covariance(
-        &mut self,
-        problem: &Problem,
-        first: usize,
-        second: usize,
-    ) -> Result<JointCovariance, OptimizeError> {
-        let linear = self.factorize_plain(problem)?;
-        let joint = linear.joint_covariance(problem, first, second);
-        Ok(joint.expect("the block factorization shows its factor"))
-    }
-
-    /// Covariance block of every node at the present poses, exact to first order; zero for fixed ones.
-    ///
-    /// By the rules of [`joint_covariance`](Self::joint_covariance).
-    ///
-    /// # Errors
-    /// Where the normal equations are not positive definite.
-    pub fn marginals(&mut self, problem: &Problem) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
-        let marginals = self.factorize_plain(problem)?.marginals(problem);
-        Ok(marginals.expect("the block factorization shows its factor"))
-    }
-
-    /// Covariance blocks of the two ends of every measurement, in the order of [`Problem::factors`].
-    ///
-    /// By the rules of [`joint_covariance`](Self::joint_covariance), but all at once.
-    ///
-    /// # Errors
-    /// Where the normal equations are not positive definite.
-    pub fn measured_covariances(
-        &mut self,
-        problem: &Problem,
-    ) -> Result<Vec<JointCovariance>, OptimizeError> {
-        let measured = self.factorize_plain(problem)?.measured_covariances(problem);
-        Ok(measured.expect("the block factorization shows its factor"))
-    }
-
-    /// Factorizes H at the present poses without kernel or damping, by blocks.
-    pub(crate) fn factorize_plain(
-        &mut self,
-        problem: &Problem,
-    ) -> Result<&mut LinearSolver, OptimizeError> {
-        let linear = analysed(&mut self.linear, problem, Factorization::Block);
-        self.equations.assemble(
-            problem,
-            linear.structure(),
-            JacobianModel::Exact,
-            RobustKernel::None,
-            self.settings.ridge,
-        );
-        linear.factorize(&self.equations, 0.0)?;
-        Ok(linear)
     }
 
     /// `Σ ρ(eᵀΩe)` at other poses of the same graph, with the kernel of the settings.

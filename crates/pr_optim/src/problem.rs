@@ -110,6 +110,23 @@ impl Problem {
         &self.prepared
     }
 
+    /// The first so many poses, and the measurements that were added first, all of them between those.
+    pub(crate) fn beginning(&self, nodes: usize, factors: usize) -> Self {
+        Self {
+            poses: self.poses[..nodes].to_vec(),
+            fixed: self.fixed[..nodes].to_vec(),
+            factors: self.factors[..factors].to_vec(),
+            prepared: self.prepared[..factors].to_vec(),
+        }
+    }
+
+    /// Whether that is the [`beginning`](Self::beginning) of this problem, at the same poses.
+    pub(crate) fn begins_with(&self, beginning: &Self) -> bool {
+        self.poses.starts_with(&beginning.poses)
+            && self.fixed.starts_with(&beginning.fixed)
+            && self.factors.starts_with(&beginning.factors)
+    }
+
     /// The first pose that no chain of measurements ties to a fixed one, `None` where all are tied.
     ///
     /// With a loose pose the normal equations are singular, but for the ridge.

@@ -151,3 +151,82 @@ fn along_a_chain_the_relative_covariance_is_that_of_the_one_measurement() {
     assert!((relative - expected).amax() < 1e-8);
     assert!(joint.first.trace() > 3.0 * expected.trace());
 }
+
+/// A graph whose end hangs on one measurement each: two branches, one of them measured backwards.
+fn grid_with_tail() -> Problem {
+    let mut problem = grid(24);
+    for (from, to) in [(23, 24), (25, 24), (20, 26), (26, 27), (25, 28)] {
+        let parent = problem.poses()[usize::min(from, to)];
+        problem.add_pose(parent * SE2::new(0.8, -0.1 * from as f64, 0.2 * to as f64));
+        let [start, end] = [from, to].map(|node| problem.poses()[node]);
+        problem.add_factor(Between {
+            from,
+            to,
+            measurement: start
+                .between(&end)
+                .boxplus(&Vector3::new(0.02, 0.01, -0.03)),
+            information: Matrix3::new(25.0, -2.0, 1.0, -2.0, 40.0, 3.0, 1.0, 3.0, 90.0),
+        });
+    }
+    problem
+}
+
+#[test]
+fn behind_the_last_loop_covariances_follow_from_those_before_it() {
+    let problem = grid_with_tail();
+    let nodes = problem.node_count();
+    let dense = dense_covariance(&problem);
+    let block = |a: usize, b: usize| dense.fixed_view::<3, 3>(3 * a, 3 * b).into_owned();
+    let mut optimizer = Optimizer::new(Settings {
+        ridge: 0.0,
+        ..Settings::default()
+    });
+    for a in 0..nodes {
+        for b in 0..nodes {
+            let joint = optimizer.joint_covariance(&problem, a, b).unwrap();
+            // 1e-10: as above.
+            assert!((joint.first - block(a, a)).amax() < 1e-10, "{a} {b}");
+            assert!((joint.cross - block(a, b)).amax() < 1e-10, "{a} {b}");
+            assert!((joint.second - block(b, b)).amax() < 1e-10, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_covariance_has_the_same_bits_whatever_was_asked_for_before() {
+    let whole = grid_with_tail();
+    let mut problem = grid(24);
+    let mut kept = Optimizer::new(Settings::default());
+    let fresh = |problem: &Problem, a, b| {
+        Optimizer::new(Settings::default()).joint_covariance(problem, a, b)
+    };
+    let new = problem.factors().len()..;
+    for (&pose, &factor) in whole.poses()[24..].iter().zip(&whole.factors()[new]) {
+        let newest = problem.add_pose(pose);
+        problem.add_factor(factor);
+        for old in [2, newest - 3] {
+            let joint = kept.joint_covariance(&problem, old, newest);
+            assert_eq!(joint, fresh(&problem, old, newest), "{old} {newest}");
+        }
+    }
+    // What was kept is of other poses, of other values, or of another ridge.
+    kept.step(&mut problem).unwrap();
+    assert_eq!(
+        kept.joint_covariance(&problem, 2, 28),
+        fresh(&problem, 2, 28)
+    );
+    problem.poses_mut()[7] = SE2::new(3.0, 1.2, 0.4);
+    assert_eq!(
+        kept.joint_covariance(&problem, 2, 28),
+        fresh(&problem, 2, 28)
+    );
+    kept.linear_for(&problem);
+    kept.marginals(&problem).unwrap();
+    assert_eq!(
+        kept.joint_covariance(&problem, 2, 28),
+        fresh(&problem, 2, 28)
+    );
+    kept.settings.ridge = 0.5;
+    let ridged = kept.joint_covariance(&problem, 2, 28).unwrap();
+    assert!(ridged.second.trace() < 0.9 * fresh(&problem, 2, 28).unwrap().second.trace());
+}
