@@ -121,6 +121,8 @@ pub struct PoseGraph {
     problem: Problem,
     /// Where each factor of the problem comes from.
     kinds: Vec<EdgeKind>,
+    /// χ² at the present poses, to which every new edge adds; none since a pose was moved.
+    chi2: Option<f64>,
     optimizer: Optimizer,
 }
 
@@ -136,6 +138,7 @@ impl Clone for PoseGraph {
         Self {
             problem: self.problem.clone(),
             kinds: self.kinds.clone(),
+            chi2: self.chi2,
             optimizer: Optimizer::new(self.optimizer.settings),
         }
     }
@@ -154,6 +157,7 @@ impl PoseGraph {
         Self {
             problem: Problem::new(),
             kinds: Vec::new(),
+            chi2: Some(0.0),
             optimizer: Optimizer::new(Settings {
                 method: Method::GaussNewton,
                 jacobians,
@@ -227,12 +231,15 @@ impl PoseGraph {
             information,
         });
         self.kinds.push(kind);
-        EdgeId(self.kinds.len() - 1)
+        let edge = EdgeId(self.kinds.len() - 1);
+        self.chi2 = self.chi2.map(|chi2| chi2 + self.edge_chi2(edge));
+        edge
     }
 
     /// Takes the newest edge out again and returns it; none where there is none.
     pub fn pop_edge(&mut self) -> Option<PoseEdge> {
         let factor = self.problem.pop_factor()?;
+        self.chi2 = None;
         Some(PoseEdge::new(&factor, self.kinds.pop()?))
     }
 
@@ -251,6 +258,7 @@ impl PoseGraph {
     /// Where the node does not exist.
     pub fn set_pose(&mut self, node: impl Into<NodeId>, pose: SE2) {
         self.problem.poses_mut()[node.into().index()] = pose;
+        self.chi2 = None;
     }
 
     /// Number of nodes.
@@ -302,7 +310,7 @@ impl PoseGraph {
     /// `χ² = Σ eᵀΩe` over all edges at the present poses: no kernel, no factor ½.
     #[must_use]
     pub fn chi2(&self) -> f64 {
-        self.problem.chi2()
+        self.chi2.unwrap_or_else(|| self.problem.chi2())
     }
 
     /// Gauss–Newton until the largest step of a node is below `tolerance` (m and rad added).
@@ -330,7 +338,9 @@ impl PoseGraph {
         self.optimizer.settings.kernel = kernel;
         self.optimizer.settings.max_iterations = max_iters;
         self.optimizer.settings.step_tolerance = tolerance;
-        self.optimizer.run(&mut self.problem)
+        let report = self.optimizer.run(&mut self.problem);
+        self.chi2 = Some(report.chi2);
+        report
     }
 
     /// One Gauss–Newton iteration; returns the largest step of a node (m and rad added).
@@ -338,6 +348,7 @@ impl PoseGraph {
     /// NaN where the step could not be computed: an indefinite information matrix.
     pub fn optimize_once(&mut self, huber: f64) -> f64 {
         self.optimizer.settings.kernel = RobustKernel::Huber { width: huber };
+        self.chi2 = None;
         let step = self.optimizer.step(&mut self.problem);
         step.map_or(f64::NAN, |step| step.largest_step)
     }

@@ -55,6 +55,38 @@ fn chi2_is_the_sum_over_the_edges() {
 }
 
 #[test]
+fn chi2_that_is_kept_has_the_bits_of_a_new_sum() {
+    let mut graph = chapter_example();
+    let mut compared = 0;
+    let mut compare = |graph: &PoseGraph| {
+        let sum = graph.edges().map(|view| graph.edge_chi2(view.id)).sum();
+        assert_eq!(f64::to_bits(sum), graph.chi2().to_bits(), "{compared}");
+        compared += 1;
+    };
+    graph.optimize_robust(10, 1e-9, 0.1);
+    compare(&graph);
+    let node = graph.add_node(SE2::new(2.9, 0.1, 0.2));
+    let step = SE2::translation(1.0, 0.0);
+    graph.add_edge(2, node, step, Matrix3::identity(), EdgeKind::Odometry);
+    compare(&graph);
+    compare(&graph.clone());
+    graph.add_edge(0, node, step, Matrix3::identity(), EdgeKind::Loop);
+    compare(&graph);
+    graph.pop_edge();
+    compare(&graph);
+    graph.set_pose(1, SE2::new(1.1, 0.2, -0.1));
+    compare(&graph);
+    graph.optimize_once(f64::INFINITY);
+    compare(&graph);
+    graph.optimize(10, 1e-9);
+    compare(&graph);
+    // An indefinite measurement: the solver gives up.
+    graph.add_edge(0, node, step, -Matrix3::identity() * 9.0, EdgeKind::Loop);
+    graph.optimize(10, 1e-9);
+    compare(&graph);
+}
+
+#[test]
 fn huber_lets_a_false_loop_pull_less() {
     let mut plain = chapter_example();
     let mut robust = chapter_example();
