@@ -99,6 +99,24 @@ pub struct HeldLoop {
     pub is_expected: bool,
 }
 
+impl HeldLoop {
+    /// How many loops have to agree before it is closed, itself among them.
+    #[must_use]
+    pub fn needed(&self, guard: &LoopGuard) -> usize {
+        if self.is_expected {
+            guard.agreeing
+        } else {
+            guard.agreeing_outside
+        }
+    }
+
+    /// Whether two loops lie so far apart on the way that they count as two.
+    #[must_use]
+    pub fn is_apart(&self, other: &Self, guard: &LoopGuard) -> bool {
+        (self.way_m - other.way_m).abs() >= guard.apart_m
+    }
+}
+
 /// Variance of the position along its widest direction, m².
 pub(crate) fn widest_variance(covariance: &Matrix3<f64>) -> f64 {
     let (xx, xy, yy) = (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]);

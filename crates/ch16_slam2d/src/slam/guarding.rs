@@ -57,6 +57,10 @@ impl Slam {
             return found;
         }
         if found.margin.is_none() {
+            let held = self.as_held(found);
+            if let Some(rejection) = self.says_nothing_new(&held, &guard) {
+                return rejected(found, rejection);
+            }
             let shift_m = math::norm2(found.innovation.x, found.innovation.y);
             let half_m = math::max(reach_m, shift_m + 2.0 * SAME_PLACE.0);
             let half_m = math::min(half_m, self.config.loops.max_radius_m);
@@ -125,49 +129,59 @@ impl Slam {
         is_same.then(|| best.margin.unwrap_or(loops.max_margin()))
     }
 
+    /// Why a loop waits that is beside a held one, agrees with it and does not bring enough of them together.
+    ///
+    /// Loops beside each other count as one, so nothing is lost where the window is not searched again.
+    fn says_nothing_new(&mut self, found: &HeldLoop, guard: &LoopGuard) -> Option<LoopRejection> {
+        let beside = self.held.clone();
+        let mut beside = beside.iter().filter(|held| !held.is_apart(found, guard));
+        if !beside.any(|held| self.do_agree(held, found, guard)) {
+            return None;
+        }
+        let agreeing = self.agreeing(found, guard).len();
+        let needed = found.needed(guard);
+        (agreeing < needed).then_some(LoopRejection::Waiting { agreeing, needed })
+    }
+
     /// Holds a loop back until enough others agree.
     fn hold(&mut self, found: LoopVerification, guard: &LoopGuard) -> LoopVerification {
-        let way_m = self.way_between_m(0, found.from_node);
+        let held = self.as_held(found);
         self.held
-            .retain(|held| way_m - held.way_m <= guard.patience_m);
-        let held = HeldLoop {
-            verification: found,
-            way_m,
-            is_expected: found.gate.passes(),
-        };
+            .retain(|older| held.way_m - older.way_m <= guard.patience_m);
         let agreeing = self.agreeing(&held, guard).len();
         self.held.push(held);
-        let needed = if held.is_expected {
-            guard.agreeing
-        } else {
-            guard.agreeing_outside
-        };
+        let needed = held.needed(guard);
         if agreeing >= needed {
             return found;
         }
         rejected(found, LoopRejection::Waiting { agreeing, needed })
     }
 
+    fn as_held(&self, verification: LoopVerification) -> HeldLoop {
+        HeldLoop {
+            verification,
+            way_m: self.way_between_m(0, verification.from_node),
+            is_expected: verification.gate.passes(),
+        }
+    }
+
     /// Of the held loops those that agree with this one and with each other, itself among them.
     fn agreeing(&mut self, held: &HeldLoop, guard: &LoopGuard) -> Vec<HeldLoop> {
         let mut set = vec![*held];
         for other in self.held.clone().iter().rev() {
-            let apart_m = |one: &HeldLoop| (one.way_m - other.way_m).abs();
-            if set.iter().any(|one| apart_m(one) < guard.apart_m) {
-                continue;
-            }
-            let agree = set.iter().all(|one| {
-                let (a, b) = (other.verification, one.verification);
-                let Ok(way) = self.way_covariance(a.from_node, b.from_node, guard) else {
-                    return false;
-                };
-                guard.agree(self.graph.poses(), &a, &b, &way)
-            });
-            if agree {
+            if set.iter().all(|one| one.is_apart(other, guard))
+                && set.iter().all(|one| self.do_agree(other, one, guard))
+            {
                 set.push(*other);
             }
         }
         set
+    }
+
+    fn do_agree(&mut self, first: &HeldLoop, second: &HeldLoop, guard: &LoopGuard) -> bool {
+        let (first, second) = (first.verification, second.verification);
+        let way = self.way_covariance(first.from_node, second.from_node, guard);
+        way.is_ok_and(|way| guard.agree(self.graph.poses(), &first, &second, &way))
     }
 
     fn way_covariance(

@@ -43,12 +43,10 @@ impl Slam {
         for candidate in candidates.into_iter().take(loops.candidates_tried) {
             let verification = self.verify(node, candidate);
             let verification = self.guarded(verification);
-            let is_searched = verification.margin.is_some();
-            if self.report_attempt(verification, pending) {
-                return;
-            }
-            if is_searched {
-                // The whole window is searched once at a node.
+            // The whole window is searched once at a node, if it tells anything new.
+            let is_settled = verification.margin.is_some()
+                || matches!(verification.rejection, Some(LoopRejection::Waiting { .. }));
+            if self.report_attempt(verification, pending) || is_settled {
                 return;
             }
         }
