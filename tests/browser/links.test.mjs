@@ -61,6 +61,29 @@ describe('a link in the text', () => {
     });
   });
 
+  it('stands in the address, also where another widget settles after it', async () => {
+    await reading(async (tab) => {
+      await tab.locator(widget('w16.1')).scrollIntoViewIfNeeded();
+      await h.ready(tab, widget('w16.1'));
+      const addresses = await link(tab, '119').evaluate((a, [one, other]) => {
+        const result = (css, param, value) => new Promise((told) => {
+          document.querySelector(css).addEventListener('slam-result', ({ detail }) => {
+            if (detail.value[param] === value) told();
+          });
+        });
+        const seen = [];
+        document.querySelector(one).set('tau', 1.1);
+        a.click();
+        window.navigation.addEventListener('currententrychange', () => seen.push(location.search));
+        return Promise.all([result(one, 'tau', 1.1), result(other, 't', 119)]).then(() => seen);
+      }, [widget('w16.1'), widget('w16.2')]);
+      assert.ok(addresses.length > 0);
+      for (const address of addresses) assert.match(address, /w=16.2&t=119/);
+      await tab.evaluate(([css, tau]) => document.querySelector(css).set('tau', tau), [widget('w16.1'), 1.3]);
+      await tab.waitForURL(/w=16.1.*tau=1.3/);
+    });
+  });
+
   it('that leads elsewhere offers the way back to its sentence', async () => {
     await reading(async (tab) => {
       const here = link(tab, 'τ = 0.1 m');

@@ -49,16 +49,27 @@ interface Kept {
 interface Linked extends HTMLElement {
   readonly name: string;
   readonly query: string;
+  readonly link: string;
 }
 
-/** Writes the state of now into the present entry of the history. */
-export function keepEntry(address = location.href): void {
+/** The linked widget that the address tells of: the one that changed last. */
+let told: Linked | undefined;
+
+/** A widget that is linked has changed: the address tells of it from its next entry on. */
+export function tellOf(widget: Linked): void {
+  if (widget.hasAttribute('linked')) told = widget;
+}
+
+/** Writes the state of now into the present entry of the history; the address, where `settled` is what it tells of. */
+export function keepEntry(settled?: Linked): void {
+  const address = settled !== undefined && settled === told ? settled.link : location.href;
   history.replaceState(withStates(), '', address);
 }
 
-/** Begins a new entry with the state of now. */
-export function pushEntry(address: string): void {
-  history.pushState(withStates(), '', address);
+/** Begins a new entry with the state of now, whose address tells of that widget. */
+export function pushEntry(widget: Linked): void {
+  told = widget;
+  history.pushState(withStates(), '', widget.link);
 }
 
 /** The query of each linked widget in an entry, by its name. */

@@ -1,6 +1,6 @@
 // What is told of a widget: events for programs, sentences for a screen reader, the page's address.
 
-import { keepEntry } from './address';
+import { keepEntry, tellOf } from './address';
 import { CrashError, type Outcome, type Timeline } from './instance';
 import type { Notes } from './notes';
 import { failureBox, type Parts } from './parts';
@@ -63,6 +63,7 @@ export class News {
       const value = this.#source.get(parameter);
       this.#emit('slam-change', { parameter, value, text, outcome });
     }
+    tellOf(this.#source);
     clearTimeout(this.#timer);
     this.#isNews = true;
     this.#isOwed = false;
@@ -106,7 +107,7 @@ export class News {
     this.#onSettled();
     this.#tellResult();
     this.#describe();
-    if (source.hasAttribute('linked')) keepEntry(source.link);
+    if (source.hasAttribute('linked')) keepEntry(source);
   }
 
   #tellResult(): void {

@@ -31,7 +31,7 @@ function follow(link: HTMLAnchorElement): boolean {
   const isKept = widget.hasAttribute('linked');
   if (isKept) keepEntry();
   setWhole(widget, linked);
-  if (isKept) pushEntry(widget.link);
+  if (isKept) pushEntry(widget);
   endWayBack();
   if (bringIntoView(widget)) offerWayBack(link);
   return true;
