@@ -26,9 +26,16 @@ pub fn detect_loop_candidates(
     node: usize,
     config: &LoopConfig,
 ) -> Vec<LoopCandidate> {
+    let mut candidates = nearby(poses, node, config);
+    sort_by(&mut candidates, &|candidate| candidate.distance_m);
+    candidates
+}
+
+/// The same by number.
+fn nearby(poses: &[SE2], node: usize, config: &LoopConfig) -> Vec<LoopCandidate> {
     let here = poses[node];
     let old_enough = (node + 1).saturating_sub(config.min_gap_nodes);
-    let mut candidates: Vec<_> = poses[..old_enough.min(node)]
+    poses[..old_enough.min(node)]
         .iter()
         .enumerate()
         .map(|(node, pose)| LoopCandidate {
@@ -37,9 +44,12 @@ pub fn detect_loop_candidates(
             proposal: None,
         })
         .filter(|candidate| candidate.distance_m <= config.radius_m)
-        .collect();
-    candidates.sort_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
-    candidates
+        .collect()
+}
+
+/// The cheapest first, and the older first where two cost the same.
+fn sort_by(candidates: &mut [LoopCandidate], cost: &dyn Fn(&LoopCandidate) -> f64) {
+    candidates.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
 }
 
 /// A gap of so many nodes between two near ones ends a visit.
@@ -58,11 +68,9 @@ pub fn detect_visits(poses: &[SE2], node: usize, config: &LoopConfig) -> Vec<Loo
         let turn_rad = here.between(&poses[candidate.node]).theta().abs();
         candidate.distance_m + METRES_PER_RADIAN * turn_rad
     };
-    let mut near = detect_loop_candidates(poses, node, config);
-    near.sort_by_key(|candidate| candidate.node);
     let mut visits: Vec<LoopCandidate> = Vec::new();
     let mut last_node = None;
-    for candidate in near {
+    for candidate in nearby(poses, node, config) {
         let is_same = last_node.is_some_and(|last| candidate.node - last <= VISIT_GAP_NODES);
         last_node = Some(candidate.node);
         match visits.last_mut() {
@@ -74,7 +82,7 @@ pub fn detect_visits(poses: &[SE2], node: usize, config: &LoopConfig) -> Vec<Loo
             _ => visits.push(candidate),
         }
     }
-    visits.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+    sort_by(&mut visits, &cost);
     visits
 }
 
