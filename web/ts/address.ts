@@ -45,8 +45,8 @@ interface Kept {
   slam?: Record<string, string>;
 }
 
-/** A linked widget, as far as the history is concerned. */
-interface Linked extends HTMLElement {
+/** A widget that may be linked, as far as the history is concerned. */
+export interface Linked extends HTMLElement {
   readonly name: string;
   readonly query: string;
   readonly link: string;

@@ -1,6 +1,6 @@
 // What is told of a widget: events for programs, sentences for a screen reader, the page's address.
 
-import { keepEntry, tellOf } from './address';
+import { keepEntry, type Linked, tellOf } from './address';
 import { CrashError, type Outcome, type Timeline } from './instance';
 import type { Notes } from './notes';
 import { failureBox, type Parts } from './parts';
@@ -10,13 +10,11 @@ import type { Value } from './values';
 const SETTLED_MS = 350;
 
 /** The widget that is told of. */
-export interface NewsSource extends HTMLElement {
-  readonly name: string;
+export interface NewsSource extends Linked {
   readonly value: Record<string, Value>;
   readonly outcome: Outcome | undefined;
   readonly summary: string;
   readonly timeline: Timeline | null;
-  readonly link: string;
   get(id: string): Value | undefined;
 }
 
