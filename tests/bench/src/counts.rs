@@ -2,15 +2,16 @@
 //!
 //! A workload runs twice in one process under callgrind (Nethercote & Seward 2007), which collects
 //! during the second run only: without preparation, start and end of the process, and with the
-//! workspaces that the first run has grown.
+//! workspaces that the first run has grown. Until then it translates the process without counters,
+//! which takes a third of the time.
 
 use std::collections::BTreeMap;
 use std::env::{self, consts::ARCH};
 use std::fs;
-use std::hint::black_box;
+use std::hint::{self, black_box};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{self, Command, Stdio};
 
 use measuring::skip::tell;
 use slam2d_bench::measure::find;
@@ -50,12 +51,35 @@ pub fn count_all(said: &dyn Fn(&str, u64) -> Result<(), String>) -> Result<Count
 /// Runs a workload twice; callgrind knows the second time by the name of [`counted_run`].
 ///
 /// # Errors
-/// Where there is no such workload.
+/// Where there is no such workload, or no callgrind around this process.
 pub fn run_twice(id: &str) -> Result<(), String> {
     let mut run = (find(id)?.prepare)();
     run.once();
+    start_counting()?;
     counted_run(run.as_mut());
     Ok(())
+}
+
+/// Has the callgrind around this process count from here on, by valgrind's own remote control.
+fn start_counting() -> Result<(), String> {
+    let failed = |error: std::io::Error| format!("vgdb, a part of valgrind: {error}");
+    let mut request = Command::new("vgdb")
+        .arg(format!("--pid={}", process::id()))
+        // It may not stop this process from outside: some containers forbid that.
+        .arg("--max-invoke-ms=0")
+        .args(["instrumentation", "on"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .map_err(failed)?;
+    // Callgrind listens while this process computes, and not while it waits.
+    loop {
+        match request.try_wait().map_err(failed)? {
+            None => hint::spin_loop(),
+            Some(status) if status.success() => return Ok(()),
+            Some(_) => return Err("a workload is counted under callgrind only".to_owned()),
+        }
+    }
 }
 
 #[inline(never)]
@@ -132,6 +156,7 @@ fn count(id: &str) -> Result<u64, String> {
     let program = env::current_exe().map_err(|error| error.to_string())?;
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg("--instr-atstart=no")
         .arg("--toggle-collect=*counted_run*")
         .arg(program)
         .args(["--run", id])

@@ -44,7 +44,7 @@ slam2d_bench sweep SLAM2D PAGE.md        run the sweep of 4,000 laps with the pr
                                          print its distribution and write it into a page
 slam2d_bench --counts check              fail where a workload takes 10 % more instructions than recorded
 slam2d_bench --counts accept             record the instruction counts
-slam2d_bench --run ID                    run one workload twice, without a clock";
+slam2d_bench --run ID                    run one workload twice; callgrind counts the second time";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
