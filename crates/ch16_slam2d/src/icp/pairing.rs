@@ -50,7 +50,7 @@ pub fn correspondences<M: NearestMap>(
     config: &IcpConfig,
 ) -> Vec<Pair> {
     let mut workspace = IcpWorkspace::new();
-    workspace.forget(cloud.len());
+    workspace.forget();
     workspace.associate(cloud, map, &target_from_source, config);
     workspace.pairs(map).collect()
 }
@@ -93,6 +93,7 @@ impl RawPair {
 /// The memory of a registration, kept between calls so that none allocates.
 #[derive(Clone, Default)]
 pub struct IcpWorkspace {
+    /// What is known of the neighbour of each cloud point; empty where nothing is.
     memory: Vec<Memory>,
     pairs: Vec<RawPair>,
     distances: Vec<f64>,
@@ -133,11 +134,9 @@ impl IcpWorkspace {
         self.pairs.len()
     }
 
-    /// Starts over with a cloud of `points` points: nothing is known of any neighbour.
-    pub(super) fn forget(&mut self, points: usize) {
+    /// Forgets the neighbours: another cloud follows, or another map.
+    pub(crate) fn forget(&mut self) {
         self.memory.clear();
-        self.memory.resize(points, Memory::default());
-        self.trace.clear();
     }
 
     /// Pairs every cloud point, moved by `target_from_source`, with its nearest map point.
@@ -152,7 +151,8 @@ impl IcpWorkspace {
         let tau_squared = config.tau * config.tau;
         let with_normals = config.variant == IcpVariant::PointToPlane;
         let (mut cost, mut last_found) = (0.0, None);
-        let is_first = self.trace.is_empty();
+        let is_first = self.memory.is_empty();
+        self.memory.resize(cloud.len(), Memory::default());
         self.pairs.clear();
         self.sum_of_squares_m2 = 0.0;
         let points = cloud.xs().iter().zip(cloud.ys()).zip(&mut self.memory);

@@ -124,7 +124,7 @@ impl StagedMatcher {
         let mut pose = start;
         let mut made = 0;
         for tau_m in taus_m.iter().copied().take_while(|tau_m| *tau_m > 0.0) {
-            let stage = self.points.register(
+            let stage = self.points.register_again(
                 source,
                 &MatchRequest {
                     guess: pose,
@@ -139,9 +139,11 @@ impl StagedMatcher {
     }
 
     /// The fit at a pose; the pairs are those that fit.
+    ///
+    /// All registrations of one scan share what is known of its points' neighbours.
     fn fit(&mut self, source: &PointCloud, pose: SE2, iterations: usize) -> MatchSummary {
         let fit_m = self.config.fit_m;
-        let fit = self.points.fit(source, pose, fit_m);
+        let fit = self.points.fit_again(source, pose, fit_m);
         let missed = self.points.truncated_cost_m2() / (fit_m * fit_m);
         MatchSummary {
             iterations,
@@ -190,6 +192,7 @@ impl Matcher for StagedMatcher {
     }
 
     fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
+        self.points.forget();
         if request.max_iterations == 0 {
             return self.fit(source, request.guess, 0);
         }
@@ -219,6 +222,7 @@ impl Matcher for StagedMatcher {
     }
 
     fn register_near(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
+        self.points.forget();
         if request.max_iterations == 0 {
             return self.fit(source, request.guess, 0);
         }
