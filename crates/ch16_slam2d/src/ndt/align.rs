@@ -12,8 +12,6 @@ const RIDGE: f64 = 1e-9;
 const MIN_DAMPING: f64 = 1e-6;
 /// Terms smaller than this add nothing to gradient and Hessian.
 const MIN_TERM: f64 = 1e-9;
-/// `−ln` of [`MIN_TERM`], rounded up: beyond it no exponential has to be worked out.
-const MAX_EXPONENT: f64 = 20.73;
 
 /// The settings of [`ndt_align`]; the defaults are the chapter's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,21 +119,32 @@ pub struct NdtAlign<'a> {
     config: NdtConfig,
     pose: SE2,
     score: f64,
+    /// At the pose, where the score was worked out together with it.
+    slope: Option<Slope>,
     damping: f64,
     iterations: usize,
     stop: Option<NdtStop>,
+}
+
+/// Gradient and Gauss–Newton Hessian of the negative score over `(t_x, t_y, θ)`.
+#[derive(Clone, Copy, Debug)]
+struct Slope {
+    gradient: Vector3<f64>,
+    hessian: Matrix3<f64>,
 }
 
 impl<'a> NdtAlign<'a> {
     /// Scores the guess `init = map_from_cloud`; no step is made yet.
     #[must_use]
     pub fn new(cloud: &'a PointCloud, map: &'a NdtMap, init: SE2, config: &NdtConfig) -> Self {
+        let (score, slope) = score_with_slope(cloud, map, &init);
         Self {
             cloud,
             map,
             config: *config,
             pose: init,
-            score: map.score(cloud, &init),
+            score,
+            slope: Some(slope),
             damping: config.initial_damping,
             iterations: 0,
             stop: None,
@@ -171,7 +180,9 @@ impl<'a> NdtAlign<'a> {
             return Some(NdtStop::IterationLimit { max_iters });
         }
         self.iterations += 1;
-        let (gradient, hessian) = linearize(self.cloud, self.map, &self.pose);
+        let at_pose = self.slope.take();
+        let Slope { gradient, hessian } =
+            at_pose.unwrap_or_else(|| score_with_slope(self.cloud, self.map, &self.pose).1);
         let size = math::norm2(gradient.x, gradient.y) + gradient.z.abs();
         if size < tolerance {
             return Some(NdtStop::SmallGradient {
@@ -179,7 +190,7 @@ impl<'a> NdtAlign<'a> {
                 tolerance,
             });
         }
-        for _ in 0..max_tries {
+        for tried in 0..max_tries {
             let mut damped = hessian;
             for k in 0..3 {
                 damped[(k, k)] = hessian[(k, k)] * (1.0 + self.damping) + RIDGE;
@@ -191,10 +202,17 @@ impl<'a> NdtAlign<'a> {
                     self.pose.y() + step.y,
                     self.pose.theta() + step.z,
                 );
-                let score = self.map.score(self.cloud, &pose);
+                // The first try is nearly always taken, and the next step begins with its slope.
+                let (score, slope) = if tried == 0 {
+                    let (score, slope) = score_with_slope(self.cloud, self.map, &pose);
+                    (score, Some(slope))
+                } else {
+                    (self.map.score(self.cloud, &pose), None)
+                };
                 if score > self.score {
                     self.pose = pose;
                     self.score = score;
+                    self.slope = slope;
                     self.damping = (0.5 * self.damping).max(MIN_DAMPING);
                     return (self.iterations >= max_iters)
                         .then_some(NdtStop::IterationLimit { max_iters });
@@ -208,20 +226,17 @@ impl<'a> NdtAlign<'a> {
     }
 }
 
-/// Gradient and Gauss–Newton Hessian of the negative score over `(t_x, t_y, θ)`.
-fn linearize(cloud: &PointCloud, map: &NdtMap, pose: &SE2) -> (Vector3<f64>, Matrix3<f64>) {
+/// The score as [`NdtMap::score`] adds it up, and its slope, in one pass over the cloud.
+fn score_with_slope(cloud: &PointCloud, map: &NdtMap, pose: &SE2) -> (f64, Slope) {
     let Rotation { cos, sin } = pose.rotation();
+    let mut score = 0.0;
     let (mut gx, mut gy, mut gw) = (0.0, 0.0, 0.0);
     let (mut xx, mut xy, mut yy, mut xw, mut yw, mut ww) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     for (&px, &py) in cloud.xs().iter().zip(cloud.ys()) {
         let (rx, ry) = (cos * px - sin * py, sin * px + cos * py);
         let (x, y) = (rx + pose.x(), ry + pose.y());
-        for gaussian in map.around(x, y) {
-            let exponent = gaussian.exponent(x, y);
-            if exponent > MAX_EXPONENT {
-                continue;
-            }
-            let e = math::exp(-exponent);
+        for (gaussian, e) in map.scores_around(x, y) {
+            score += e;
             if e < MIN_TERM {
                 continue;
             }
@@ -241,10 +256,11 @@ fn linearize(cloud: &PointCloud, map: &NdtMap, pose: &SE2) -> (Vector3<f64>, Mat
             ww += e * (uy * rx - ux * ry);
         }
     }
-    (
-        Vector3::new(gx, gy, gw),
-        Matrix3::new(xx, xy, xw, xy, yy, yw, xw, yw, ww),
-    )
+    let slope = Slope {
+        gradient: Vector3::new(gx, gy, gw),
+        hessian: Matrix3::new(xx, xy, xw, xy, yy, yw, xw, yw, ww),
+    };
+    (score, slope)
 }
 
 #[cfg(test)]

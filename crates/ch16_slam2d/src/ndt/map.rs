@@ -73,6 +73,7 @@ impl NdtMap {
             .filter(|point| point.x.is_finite() && point.y.is_finite());
         let mut slots = FxHashMap::<(i32, i32), usize>::default();
         let mut moments: Vec<Moments> = Vec::new();
+        let mut slot_of = Vec::with_capacity(cloud.len());
         for point in finite.clone() {
             let cell = (cell_index(point.x, cell_m), cell_index(point.y, cell_m));
             let slot = *slots.entry(cell).or_insert_with(|| {
@@ -80,10 +81,10 @@ impl NdtMap {
                 moments.len() - 1
             });
             moments[slot].count_in(point);
+            slot_of.push(slot);
         }
-        for point in finite {
-            let cell = (cell_index(point.x, cell_m), cell_index(point.y, cell_m));
-            moments[slots[&cell]].spread(point);
+        for (point, slot) in finite.zip(slot_of) {
+            moments[slot].spread(point);
         }
         let gaussians: Vec<NdtCell> = moments
             .iter()
@@ -266,62 +267,60 @@ fn floored(xx: f64, xy: f64, yy: f64) -> (Matrix2<f64>, Matrix2<f64>) {
 impl Lookup {
     /// Lists, for every cell that touches a Gaussian's, the Gaussians around it.
     fn build(gaussians: &[NdtCell]) -> (Self, Vec<u32>) {
-        let mut index_of = FxHashMap::<(i32, i32), u32>::default();
         let (mut low, mut high) = ((i32::MAX, i32::MAX), (i32::MIN, i32::MIN));
-        for (index, gaussian) in gaussians.iter().enumerate() {
-            let (i, j) = gaussian.cell;
-            index_of.insert(gaussian.cell, index as u32);
-            low = (low.0.min(i), low.1.min(j));
-            high = (high.0.max(i), high.1.max(j));
+        for NdtCell { cell: (i, j), .. } in gaussians {
+            low = (low.0.min(*i), low.1.min(*j));
+            high = (high.0.max(*i), high.1.max(*j));
         }
         let side = |low: i32, high: i32| (i64::from(high) - i64::from(low) + 3).max(0);
         let (columns, rows) = (side(low.0, high.0), side(low.1, high.1));
         let budget = TABLE_CELLS_PER_GAUSSIAN * gaussians.len() as i64;
-        let mut near = Vec::new();
-        let mut run_around = |(i, j): (i32, i32)| {
-            let start = near.len() as u32;
-            for di in -1..=1 {
-                for dj in -1..=1 {
-                    let cell = (i.saturating_add(di), j.saturating_add(dj));
-                    near.extend(index_of.get(&cell));
-                }
-            }
-            (start, near.len() as u32)
-        };
-        let lookup = if columns.saturating_mul(rows) <= budget {
-            let origin = (low.0.saturating_sub(1), low.1.saturating_sub(1));
-            let mut runs = Vec::with_capacity((columns * rows) as usize);
-            for i in 0..columns as i32 {
-                for j in 0..rows as i32 {
-                    // The last cells of all have no neighbours beyond.
-                    let cell = (origin.0.saturating_add(i), origin.1.saturating_add(j));
-                    runs.push(run_around(cell));
-                }
-            }
+        let is_dense = columns.saturating_mul(rows) <= budget;
+        let mut index_of = FxHashMap::<(i32, i32), u32>::default();
+        let mut lookup = if is_dense {
             Self::Dense {
-                origin,
+                origin: (low.0.saturating_sub(1), low.1.saturating_sub(1)),
                 columns: columns as i32,
                 rows: rows as i32,
-                runs,
+                runs: vec![(0, 0); (columns * rows) as usize],
             }
         } else {
-            let mut runs = FxHashMap::default();
-            for gaussian in gaussians {
-                let (i, j) = gaussian.cell;
-                for di in -1..=1 {
-                    for dj in -1..=1 {
-                        let cell = (i.saturating_add(di), j.saturating_add(dj));
-                        runs.entry(cell).or_insert_with(|| run_around(cell));
-                    }
+            Self::Hashed(FxHashMap::default())
+        };
+        for (index, gaussian) in gaussians.iter().enumerate() {
+            index_of.insert(gaussian.cell, index as u32);
+        }
+        let mut near = Vec::new();
+        for gaussian in gaussians {
+            for cell in cells_around(gaussian.cell) {
+                let Some(run) = lookup.run_mut(cell) else {
+                    continue;
+                };
+                if *run == (0, 0) {
+                    let start = near.len() as u32;
+                    near.extend(cells_around(cell).filter_map(|cell| index_of.get(&cell)));
+                    *run = (start, near.len() as u32);
                 }
             }
-            Self::Hashed(runs)
-        };
+        }
         (lookup, near)
     }
 
+    /// Where the run of a cell is written, of a cell around a Gaussian.
+    fn run_mut(&mut self, cell: (i32, i32)) -> Option<&mut (u32, u32)> {
+        match self {
+            Self::Dense {
+                origin,
+                columns,
+                rows,
+                runs,
+            } => runs.get_mut(slot(cell, *origin, *columns, *rows)?),
+            Self::Hashed(runs) => Some(runs.entry(cell).or_insert((0, 0))),
+        }
+    }
+
     #[inline]
-    fn run(&self, (i, j): (i32, i32)) -> (u32, u32) {
+    fn run(&self, cell: (i32, i32)) -> (u32, u32) {
         match self {
             Self::Dense {
                 origin,
@@ -329,14 +328,24 @@ impl Lookup {
                 rows,
                 runs,
             } => {
-                let (column, row) = (i.wrapping_sub(origin.0), j.wrapping_sub(origin.1));
-                if (0..*columns).contains(&column) && (0..*rows).contains(&row) {
-                    runs[(column * rows + row) as usize]
-                } else {
-                    (0, 0)
-                }
+                let slot = slot(cell, *origin, *columns, *rows);
+                slot.map_or((0, 0), |slot| runs[slot])
             }
-            Self::Hashed(runs) => runs.get(&(i, j)).copied().unwrap_or((0, 0)),
+            Self::Hashed(runs) => runs.get(&cell).copied().unwrap_or((0, 0)),
         }
     }
+}
+
+/// The 3×3 cells around a cell; the last cells of all have no neighbours beyond.
+fn cells_around((i, j): (i32, i32)) -> impl Iterator<Item = (i32, i32)> {
+    (-1..=1)
+        .flat_map(move |di| (-1..=1).map(move |dj| (i.saturating_add(di), j.saturating_add(dj))))
+}
+
+/// Where a cell stands in a table of columns, if it does.
+#[inline]
+fn slot((i, j): (i32, i32), origin: (i32, i32), columns: i32, rows: i32) -> Option<usize> {
+    let (column, row) = (i.wrapping_sub(origin.0), j.wrapping_sub(origin.1));
+    let is_inside = (0..columns).contains(&column) && (0..rows).contains(&row);
+    is_inside.then(|| (column * rows + row) as usize)
 }
