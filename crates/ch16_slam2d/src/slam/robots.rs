@@ -32,7 +32,7 @@ impl SlamConfig {
             max_per_cell,
         };
         let near = StagedMatcherConfig {
-            good_score: 0.6,
+            good_score: 0.0,
             turns: 0,
             ..StagedMatcherConfig::default()
         };
