@@ -113,6 +113,25 @@ describe('a log of one’s own', () => {
     });
   });
 
+  it('maps and saves in a frame with a sandbox, which has no origin', async () => {
+    const frame = '<iframe title="A robot" src="/embed.html?w=16.10" sandbox="allow-scripts allow-downloads" ' +
+      'style="width: 800px; height: 900px"></iframe>';
+    await visit(frame, async (tab) => {
+      const inside = await (await tab.waitForSelector('iframe')).contentFrame();
+      await inside.waitForFunction(() => document.querySelector('slam-widget')?.state === 'running');
+      const download = tab.waitForEvent('download');
+      await inside.evaluate(async (log) => {
+        const widget = document.querySelector('slam-widget');
+        widget.openFile(new File([log], 'framed.log'));
+        widget.file = 'trajectory';
+      }, SAMPLE.split('\n').slice(0, 80).join('\n'));
+      await inside.waitForFunction(() => /^(mapped|no map)/.test(document.querySelector('slam-widget').outcome.verdict));
+      assert.match((await outcome(inside)).sentence, /^framed\.log: 80 scans/);
+      await press(inside, 'save');
+      assert.equal((await h.bytesOf(await download)).toString().trim().split('\n').length, 80);
+    });
+  });
+
   it('is stopped half way, and keeps what was read', async () => {
     await page(async (tab) => {
       const log = longLog(40);
