@@ -14,6 +14,11 @@ import * as h from './harness.mjs';
 const BODY = '<slam-widget name="w16.10" more="on"></slam-widget>';
 const SAMPLE = readFileSync(join(h.DIST, 'samples', 'ring.log'), 'utf8');
 const OTHER_DAY = readFileSync(join(h.DIST, 'samples', 'ring-another-day.log'), 'utf8');
+/** Four poses and a loop: a map without scans. */
+const SQUARE = [
+  ...[[0, 0, 0], [4, 0, 1.5707963], [4, 4, 3.1415926], [0, 4, -1.5707963]].map((pose, k) => `VERTEX_SE2 ${k} ${pose.join(' ')}`),
+  ...[[0, 1], [1, 2], [2, 3], [3, 0]].map((ends) => `EDGE_SE2 ${ends.join(' ')} 4 0 1.5707963 100 0 0 100 0 100`),
+].join('\n');
 const RECORDINGS = fileURLToPath(new URL('../../crates/robot_io/recordings/', import.meta.url));
 const LOGS = fileURLToPath(new URL('../../../shared/data/logs/', import.meta.url));
 
@@ -130,6 +135,48 @@ describe('a log of one’s own', () => {
       await press(inside, 'save');
       assert.equal((await h.bytesOf(await download)).toString().trim().split('\n').length, 80);
     });
+  });
+
+  it('is zoomed by two fingers wherever they start, and drags nothing then', async () => {
+    await page(async (tab) => {
+      await give(tab, 'square.g2o', SQUARE);
+      await says(tab, /mapped: square\.g2o: 4 poses/);
+      await tab.evaluate(() => { document.querySelector('slam-widget').value = { keyframe: 2 }; });
+      await h.moreFrames(tab, 2);
+      const session = await tab.context().newCDPSession(tab);
+      const touch = (type, spots) => session.send('Input.dispatchTouchEvent', {
+        type, touchPoints: spots.map(([x, y], id) => ({ x, y, id })),
+      });
+      const size = async () => {
+        const [[left], [right]] = [await h.pointOf(tab, 'map', 0, 0), await h.pointOf(tab, 'map', 1, 0)];
+        return right - left;
+      };
+      const before = await table(tab, 'keyframes');
+      // On another keyframe, on the one that is shown and can be dragged, and on nothing: zoomed, all of it can be moved.
+      for (const [x, y] of [[0, 0], [4, 4], [3.5, 3.5]]) {
+        if (x !== 3.5) await tab.evaluate(() => document.querySelector('slam-widget').look('whole'));
+        await h.moreFrames(tab, 2);
+        const small = await size();
+        const [left, top] = await h.pointOf(tab, 'map', x, y);
+        const fingers = (apart) => [[left, top], [left + (left > 200 ? -apart : apart), top]];
+        // The first finger does not lie there for so long that it takes hold.
+        await tab.evaluate(() => frameClock.hold(true));
+        await touch('touchStart', fingers(40).slice(0, 1));
+        await touch('touchStart', fingers(40));
+        await tab.evaluate(() => frameClock.hold(false));
+        await h.moreFrames(tab, 2);
+        for (const apart of [50, 60]) {
+          await touch('touchMove', fingers(apart));
+          await h.moreFrames(tab, 1);
+        }
+        await touch('touchEnd', []);
+        await h.moreFrames(tab, 2);
+        const large = await size();
+        assert.ok(large > 1.2 * small && large < 2 * small, `${small} and ${large}`);
+      }
+      assert.deepEqual(await table(tab, 'keyframes'), before);
+      assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').get('keyframe')), 2);
+    }, { options: { viewport: { width: 390, height: 844 }, hasTouch: true } });
   });
 
   it('is stopped half way, and keeps what was read', async () => {
