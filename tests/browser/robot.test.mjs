@@ -113,6 +113,11 @@ describe('a log of one’s own', () => {
         }
       }, SAMPLE);
       await says(tab, /(mapped|contradict): second\.log/);
+      // What grades a map does not take its place, whichever button it came by.
+      const picked = tab.waitForEvent('filechooser');
+      await press(tab, 'open');
+      await (await picked).setFiles(join(h.DIST, 'samples', 'ring-truth.tum'));
+      await says(tab, /(mapped|contradict): second\.log.*off the truth/);
       await give(tab, 'third.log', SAMPLE.split('\n').slice(0, 80).join('\n'));
       await says(tab, /(mapped|contradict): third\.log: 80 scans/);
     });

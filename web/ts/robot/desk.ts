@@ -97,7 +97,8 @@ export class Desk {
     const [name = '', ...words] = order.split(' ');
     switch (name) {
       case 'open':
-        this.#host.choose(LOGS, (file) => this.open(file));
+        // A reference that the reader picked here all the same grades the map that is there.
+        this.#host.choose(LOGS, (file) => this.take([file], 'map'));
         break;
       case 'reference':
         this.#host.choose(REFERENCES.join(), (file) => void this.#grade(file));
