@@ -189,11 +189,37 @@ describe('a log of one’s own', () => {
       const log = longLog(40);
       await give(tab, 'long.log', log);
       await tab.waitForFunction(() => document.querySelector('slam-widget').outcome.facts.scans > 0);
+      // A screen reader is told how far it is, although changes come without a rest.
+      await tab.evaluate(() => {
+        frameClock.hold(true);
+        const now = performance.now;
+        performance.now = () => now() + 11_000;
+      });
+      await tab.waitForFunction(() => {
+        const { textContent } = document.querySelector('slam-widget').shadowRoot.querySelector('[aria-live]');
+        return /^long\.log: \d+ % done/.test(textContent);
+      });
+      await tab.evaluate(() => frameClock.hold(false));
       await press(tab, 'cancel');
       await says(tab, /Stopped after \d+ scans/);
       await isMapped(tab);
       const { facts } = await outcome(tab);
       assert.ok(facts.scans > 0 && facts.scans < log.split('\n').length, String(facts.scans));
+    });
+  });
+
+  it('leaves the address to what the reader set meanwhile', async () => {
+    const two = '<slam-widget name="w16.10" linked></slam-widget><slam-widget name="w16.1" linked hidden></slam-widget>';
+    await visit(two, async (tab) => {
+      await h.ready(tab);
+      await tab.evaluate(() => frameClock.hold(true));
+      await give(tab, 'some.log', SAMPLE.split('\n').slice(0, 80).join('\n'));
+      await says(tab, /^(opening|reading): some\.log/);
+      await tab.evaluate(() => document.querySelector('[name="w16.1"]').set('heading', 77));
+      await isMapped(tab);
+      await tab.evaluate(() => frameClock.hold(false));
+      await tab.evaluate(() => frameClock.pass(1000));
+      assert.match(await tab.evaluate(() => location.search), /w=16\.1&.*heading=77/);
     });
   });
 
