@@ -421,6 +421,8 @@ describe('a log of one’s own', () => {
       await drop([['day.log', OTHER_DAY], ['monday.slam2d', session]]);
       await says(tab, /^(mapped|loops contradict): monday\.slam2d.*The robot of day\.log is found/);
       await tab.evaluate(() => Object.assign(document.querySelector('slam-widget'), { drop: 'where' }));
+      // A picture that rests is made to say where the robot may be.
+      await widget(tab, (it) => it.suspend());
       await drop([['again.log', OTHER_DAY]]);
       await says(tab, /monday\.slam2d.*The robot of again\.log is found/);
       // Around the keyframe that is shown, which is not where it is.

@@ -76,7 +76,9 @@ export class SlamWidget extends HTMLElement {
       listen(this, 'focusin', () => this.#life.askAgain()),
     ];
     if (this.#takesFiles) {
-      this.#unwatch.push(takeDrops(this.#parts.frame, (files) => this.#takeFiles(files)));
+      // A widget that rests has to be there to say where the robot of a log may be.
+      const take = (files: File[]): void => void this.#act(() => this.#takeFiles(files));
+      this.#unwatch.push(takeDrops(this.#parts.frame, take));
     }
     this.#place.fit();
     watchVisibility(this, this.#life);
