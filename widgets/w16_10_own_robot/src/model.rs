@@ -19,7 +19,7 @@ use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::{DEFAULTS, WidgetSpec};
 
-use crate::spec::{MOST_KEYFRAMES, MOST_SCANS, PARAMS, SPEC};
+use crate::spec::{KEYS, MOST_KEYFRAMES, MOST_SCANS, PARAMS, SPEC};
 use robot::{Robot, Stage};
 use whereabouts::Place;
 
@@ -256,6 +256,10 @@ impl Model for OwnRobot {
         if delivery.kind == "stage" && self.robot.stage == Stage::Done {
             self.look();
         }
+    }
+
+    fn keys(&self) -> &'static [(&'static str, &'static str)] {
+        KEYS
     }
 
     fn take_orders(&mut self) -> Vec<String> {

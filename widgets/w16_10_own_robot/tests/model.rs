@@ -177,8 +177,39 @@ fn a_press_shows_a_keyframe_and_a_drag_moves_the_one_that_is_shown() {
     let orders = robot.take_orders();
     assert_eq!(orders.len(), 1);
     assert!(orders[0].starts_with("pin 2 2 1"), "{orders:?}");
+    let said = robot.outcome().sentence;
+    assert!(
+        said.contains("Keyframe 2 is held at x 2.00 m, y 1.00 m."),
+        "{said}"
+    );
     robot.drag(handle, [f64::NAN, 1e300]);
     assert_eq!(robot.take_orders(), Vec::<String>::new());
+}
+
+#[test]
+fn arrow_keys_move_the_keyframe_that_is_shown_as_a_drag_does() {
+    let mut robot = mapped();
+    robot.set("keyframe", 2.0).unwrap();
+    robot.take_orders();
+    for (key, button) in robot.keys() {
+        robot.press(button).unwrap();
+        let orders = robot.take_orders();
+        let expected = match *key {
+            "ArrowLeft" => "pin 2 1.95 0 0",
+            "ArrowUp" => "pin 2 2 0.05 0",
+            // Back again.
+            _ => "pin 2 2 0 0",
+        };
+        assert_eq!(orders, [expected], "{key}");
+    }
+    assert_eq!(robot.keys().len(), 4);
+    tell(&mut robot, "stage", "", &[1.0, 0.5, 20.0, 2.0, 1.0]);
+    robot.press("north").unwrap();
+    let none = Vec::<String>::new();
+    assert_eq!(robot.take_orders(), none, "the graph is not there yet");
+    let mut robot = OwnRobot::new();
+    robot.press("north").unwrap();
+    assert_eq!(robot.take_orders(), none);
 }
 
 #[test]
