@@ -150,8 +150,10 @@ impl OwnRobot {
 
     /// Goes to the newer keyframe of the loop that is shown.
     fn show_link(&mut self) {
-        let ends = self.link().map(|link| self.robot.links[link].new);
-        if let Some(new) = ends.filter(|new| *new < self.robot.keyframes.len()) {
+        let link = self.link().map(|link| &self.robot.links[link]);
+        if let Some(link) = link.filter(|link| link.new < self.robot.keyframes.len()) {
+            let new = link.new;
+            self.robot.answer = words::evidence(link);
             self.playback.pause();
             self.show(new);
         }

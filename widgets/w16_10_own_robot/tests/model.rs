@@ -213,6 +213,27 @@ fn arrow_keys_move_the_keyframe_that_is_shown_as_a_drag_does() {
 }
 
 #[test]
+fn a_loop_that_is_gone_to_is_told_with_its_evidence() {
+    let mut robot = mapped();
+    let first = "The loop of the list goes from keyframe 3 to 0: closed; 0.80 of the scan fits, 0.020 m off; χ² 20.0 of 16.3.";
+    assert!(robot.summary().ends_with(first), "{}", robot.summary());
+    robot.press("next").unwrap();
+    let second = "from keyframe 4 to 1: turned away, because 12 points fit, 30 are asked; 0.30 of the scan fits";
+    let said = robot.outcome().sentence;
+    assert!(said.contains(second), "{said}");
+    assert_eq!(robot.summary().matches(second).count(), 1);
+    // A loop of a graph from a file has no registration, and may have no χ².
+    let nan = f64::NAN;
+    tell(
+        &mut robot,
+        "loops",
+        "",
+        &[3.0, 0.0, nan, nan, nan, nan, nan, 16.3, 0.0, 0.0],
+    );
+    assert!(robot.summary().ends_with("from keyframe 3 to 0: closed."));
+}
+
+#[test]
 fn what_a_worker_tells_wrongly_changes_nothing() {
     let mut robot = mapped();
     let before = robot.robot().clone();
