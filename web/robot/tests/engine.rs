@@ -178,7 +178,7 @@ fn a_loop_is_added_where_two_scans_fit_and_told_why_not_where_they_do_not() {
 
 #[test]
 fn a_reading_that_is_stopped_keeps_what_was_read() {
-    let (log, _) = files();
+    let (log, truth) = files();
     let mut engine = open(log, "ring.log").unwrap();
     for _ in 0..60 {
         engine.step();
@@ -186,6 +186,17 @@ fn a_reading_that_is_stopped_keeps_what_was_read() {
     engine.order("turn 0");
     engine.order("cancel");
     while engine.step() {}
+
+    let mut unread = open(log, "ring.log").unwrap();
+    unread.order("cancel");
+    unread.take_reference(truth, "ring-truth.tum").unwrap();
+    let updates = unread.updates();
+    assert_eq!(
+        of(&updates, "stage").text,
+        "ring.log was stopped before its first scan"
+    );
+    assert!(updates.iter().all(|update| update.kind != "answer"));
+
     let updates = engine.updates();
     assert_eq!(engine.stage(), Stage::Done);
     assert_eq!(of(&updates, "stage").numbers[2], 60.0);

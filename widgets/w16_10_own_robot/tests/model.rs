@@ -234,6 +234,37 @@ fn a_loop_that_is_gone_to_is_told_with_its_evidence() {
 }
 
 #[test]
+fn what_is_asked_where_there_is_no_map_is_answered() {
+    let mut robot = mapped();
+    tell(
+        &mut robot,
+        "answer",
+        "The loop 3 to 0 is in the graph.",
+        &[],
+    );
+    tell(
+        &mut robot,
+        "failed",
+        "x.log is empty; give a recorded log",
+        &[],
+    );
+    assert_eq!(
+        robot.outcome().sentence,
+        "x.log is empty; give a recorded log"
+    );
+    tell(
+        &mut robot,
+        "answer",
+        "truth.tum waits for a log to be opened.",
+        &[],
+    );
+    assert_eq!(
+        robot.outcome().sentence,
+        "x.log is empty; give a recorded log. truth.tum waits for a log to be opened."
+    );
+}
+
+#[test]
 fn what_a_worker_tells_wrongly_changes_nothing() {
     let mut robot = mapped();
     let before = robot.robot().clone();

@@ -90,8 +90,10 @@ impl<'a> Engine<'a> {
         match core::mem::replace(&mut self.work, Work::Idle) {
             Work::Reading(reader) => {
                 self.end_of_log(reader.as_ref(), None);
-                if let Work::Linking(..) = self.work {
-                    self.begin_editing(super::links_of(&self.run));
+                match self.work {
+                    Work::Linking(..) => self.begin_editing(super::links_of(&self.run)),
+                    // It says itself that nothing was read.
+                    _ => return Ok(String::new()),
                 }
                 Ok(format!("Stopped after {} scans.", self.run.scans()))
             }

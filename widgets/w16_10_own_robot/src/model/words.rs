@@ -45,7 +45,10 @@ fn sentence(own: &OwnRobot) -> String {
     let done = (100.0 * robot.share).round();
     let said = match robot.stage {
         Stage::Empty => "Drop a log, open one, or map the sample.".to_owned(),
-        Stage::Failed => return robot.problem.clone(),
+        Stage::Failed if robot.answer.is_empty() => return robot.problem.clone(),
+        Stage::Failed => {
+            return format!("{}. {}", robot.problem.trim_end_matches('.'), robot.answer);
+        }
         Stage::Opening => format!("{name} is opened."),
         Stage::Reading => format!(
             "{name}: {done:.0} % done, {:.0} scans, {} keyframes, {:.0} loops closed.",
