@@ -242,7 +242,12 @@ impl<'a> Engine<'a> {
         let notes = reader.notes();
         self.tell_offers(&notes.offers);
         self.remarks.clone_from(&notes.about);
-        self.remarks.extend(notes.sentences(&self.name));
+        let said = notes.sentences(&self.name);
+        // A map of a part of the file must not look like one of all of it.
+        let is_cut = notes.half_written.is_some() || notes.ended_early.is_some();
+        let missing = problem.as_ref().or(said.first().filter(|_| is_cut));
+        let missing = missing.map_or(String::new(), |missing| format!("{missing}."));
+        self.remarks.extend(said);
         match self.run.finishing() {
             Some(_) if !self.run.has_seen() => {
                 let said = format!("{}: no scan could be used: {NOTHING_SEEN}", self.name);
@@ -251,6 +256,9 @@ impl<'a> Engine<'a> {
             Some(refinement) => {
                 self.remarks.extend(problem);
                 self.remarks.extend(self.run.sentences(&self.name));
+                if !missing.is_empty() {
+                    self.waiting.push(Update::text("answer", missing));
+                }
                 self.work = Work::Linking(Box::new(refinement), 0);
             }
             None => {

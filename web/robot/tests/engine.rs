@@ -232,6 +232,36 @@ fn every_file_that_can_be_saved_is_what_its_name_says() {
     }
 }
 
+/// A file that was moved or changed by another program while it was read.
+struct Torn<'a> {
+    bytes: &'a [u8],
+}
+
+impl std::io::Read for Torn<'_> {
+    fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
+        match self.bytes.read(into)? {
+            0 => Err(std::io::Error::other("it is gone")),
+            count => Ok(count),
+        }
+    }
+}
+
+#[test]
+fn a_file_that_goes_while_it_is_read_leaves_a_map_of_a_part_and_says_so() {
+    let (log, _) = files();
+    let half = log[..log.len() / 2].iter().rposition(|&byte| byte == b'\n');
+    let torn = Torn {
+        bytes: &log[..=half.unwrap()],
+    };
+    let source = std::io::BufReader::new(torn);
+    let options = LogOptions::default();
+    let mut engine = Engine::open(source, "ring.log", log.len() as u64, &options).unwrap();
+    while engine.step() {}
+    assert_eq!(engine.stage(), Stage::Done);
+    let said = of(&engine.updates(), "answer").text.clone();
+    assert!(said.contains("it is gone"), "{said}");
+}
+
 #[test]
 fn a_graph_is_solved_and_edited_without_scans() {
     let (log, _) = files();
@@ -257,8 +287,14 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
     let mut engine = open(half, "half.log").unwrap();
     while engine.step() {}
     assert_eq!(engine.stage(), Stage::Done);
-    let said = of(&engine.updates(), "remarks").text.clone();
+    let updates = engine.updates();
+    let said = &of(&updates, "remarks").text;
     assert!(said.contains("half written"), "{said}");
+    let said = &of(&updates, "answer").text;
+    assert!(
+        said.contains("half written"),
+        "it is no map of all of it: {said}"
+    );
 
     assert_eq!(
         open(b"", "x.log").err().unwrap(),
