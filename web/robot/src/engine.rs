@@ -20,6 +20,7 @@ use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
 use robot_io::session::{self, Session};
 use robot_io::trajectory::{StampedPose, Trajectory};
 
+use crate::files;
 use crate::grade::Reference;
 use crate::graph_log::{self, GraphSolving, loops_of};
 use crate::links::Link;
@@ -72,6 +73,8 @@ pub struct Engine<'a> {
     doubts: Vec<String>,
     look_into: Vec<usize>,
     reference: Option<(String, Reference)>,
+    /// The picture of the map that was saved last, which `map.yaml` names.
+    image: &'static str,
     /// Another log on this map.
     whereabouts: Option<Whereabouts<'a>>,
     has_scans: bool,
@@ -170,6 +173,7 @@ impl<'a> Engine<'a> {
             doubts: Vec::new(),
             look_into: Vec::new(),
             reference: None,
+            image: files::MAP_IMAGES[0],
             news: News {
                 file: true,
                 ..News::default()

@@ -215,8 +215,8 @@ fn every_file_that_can_be_saved_is_what_its_name_says() {
     let mut engine = finished(log);
     for (name, start) in [
         ("map.pgm", "P5\n"),
-        ("map.png", "\u{fffd}PNG"),
         ("map.yaml", "image: map.pgm\n"),
+        ("map.png", "\u{fffd}PNG"),
         ("trajectory.tum", "0 "),
         ("graph.g2o", "VERTEX_SE2 0 "),
         ("report.html", "<!doctype html>"),
@@ -260,6 +260,22 @@ fn a_file_that_goes_while_it_is_read_leaves_a_map_of_a_part_and_says_so() {
     assert_eq!(engine.stage(), Stage::Done);
     let said = of(&engine.updates(), "answer").text.clone();
     assert!(said.contains("it is gone"), "{said}");
+}
+
+#[test]
+fn the_map_s_text_names_the_picture_that_was_saved_with_it() {
+    let (log, _) = files();
+    let mut engine = finished(log);
+    let names = |engine: &mut Engine<'_>, image: &str| {
+        let text = engine.file("map.yaml").unwrap();
+        text.starts_with(format!("image: {image}\n").as_bytes())
+    };
+    assert!(names(&mut engine, "map.pgm"));
+    engine.file("map.png").unwrap();
+    engine.file("trajectory.tum").unwrap();
+    assert!(names(&mut engine, "map.png"));
+    engine.file("map.pgm").unwrap();
+    assert!(names(&mut engine, "map.pgm"));
 }
 
 #[test]

@@ -320,7 +320,9 @@ impl<'a> Engine<'a> {
             _ => {
                 let lines = self.recorder.map_lines(&self.run);
                 let map = map_of(&lines, MAP_CELL_M).map_err(|problem| problem.to_string())?;
-                files::map_file(&map, name)
+                let saved = files::MAP_IMAGES.into_iter().find(|image| *image == name);
+                self.image = saved.unwrap_or(self.image);
+                files::map_file(&map, name, self.image)
             }
         }
     }
