@@ -265,6 +265,14 @@ fn what_is_asked_where_there_is_no_map_is_answered() {
 }
 
 #[test]
+fn a_way_of_one_keyframe_is_no_metre_long() {
+    let mut robot = mapped();
+    tell(&mut robot, "keyframes", "", &[0.0; 6]);
+    let said = robot.outcome().sentence;
+    assert!(said.contains("on a way of 0 m"), "{said}");
+}
+
+#[test]
 fn what_a_worker_tells_wrongly_changes_nothing() {
     let mut robot = mapped();
     let before = robot.robot().clone();

@@ -152,7 +152,8 @@ fn way_m(robot: &Robot) -> f64 {
         let [a, b] = [two[0].pose, two[1].pose];
         math::norm2(b[0] - a[0], b[1] - a[1])
     });
-    steps.sum()
+    // The sum of nothing is -0.
+    steps.fold(0.0, |sum, step| sum + step)
 }
 
 /// A loop with its evidence.
