@@ -404,7 +404,7 @@ export interface WidgetButtons {
   'w16.7': 'play' | 'step' | 'reset' | 'defaults' | 'lap' | 'ranges' | 'nearby' | 'drifted' | 'ring';
   'w16.8': 'play' | 'step' | 'reset' | 'defaults' | 'fifth' | 'most' | 'none' | 'gate';
   'w16.9': 'play' | 'step' | 'reset' | 'defaults' | 'room' | 'corridor' | 'forget' | 'twins';
-  'w16.10': 'open' | 'play' | 'sample' | 'cancel' | 'doubt' | 'previous' | 'next' | 'turn' | 'mark' | 'add' | 'unpin' | 'reference' | 'locate' | 'locate-sample' | 'change' | 'other' | 'save' | 'defaults' | 'sure' | 'error' | 'where' | 'evidence';
+  'w16.10': 'open' | 'play' | 'sample' | 'cancel' | 'doubt' | 'previous' | 'next' | 'turn' | 'mark' | 'add' | 'west' | 'east' | 'north' | 'south' | 'unpin' | 'reference' | 'locate' | 'locate-sample' | 'change' | 'other' | 'save' | 'defaults' | 'sure' | 'error' | 'where' | 'evidence';
   'w16.11': 'play' | 'step' | 'reset' | 'defaults' | 'corners' | 'two-points' | 'bare-wall' | 'upside-down';
   'w16.12': 'play' | 'step' | 'reset' | 'defaults' | 'four' | 'agree' | 'left' | 'half';
 }

@@ -227,6 +227,23 @@ describe('the chapter', () => {
     });
   });
 
+  it('stays where a file is dropped beside a widget, which takes one that is dropped on it', async () => {
+    await reading(async (tab) => {
+      const isKept = (css) => tab.evaluate((target) => {
+        const files = new DataTransfer();
+        files.items.add(new File(['{}'], 'flat.json'));
+        const drop = (type) => new DragEvent(type, { dataTransfer: files, bubbles: true, composed: true, cancelable: true });
+        const place = document.querySelector(target).shadowRoot?.querySelector('.frame') ?? document.querySelector(target);
+        return ['dragover', 'drop'].every((type) => !place.dispatchEvent(drop(type)));
+      }, css);
+      assert.ok(await isKept('h1'));
+      assert.ok(await isKept(widget('w16.10')));
+      // Text that is dragged over the page goes where it would.
+      assert.ok(await tab.evaluate(() => document.body.dispatchEvent(
+        new DragEvent('dragover', { dataTransfer: new DataTransfer(), bubbles: true, cancelable: true }))));
+    });
+  });
+
   it('lists code as it stands in the tested files, and copies it', async () => {
     await reading(async (tab) => {
       const listings = await tab.evaluate(() => [...document.querySelectorAll('figure.listing')].map((figure) => ({

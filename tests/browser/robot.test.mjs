@@ -14,6 +14,11 @@ import * as h from './harness.mjs';
 const BODY = '<slam-widget name="w16.10" more="on"></slam-widget>';
 const SAMPLE = readFileSync(join(h.DIST, 'samples', 'ring.log'), 'utf8');
 const OTHER_DAY = readFileSync(join(h.DIST, 'samples', 'ring-another-day.log'), 'utf8');
+/** Four poses and a loop: a map without scans. */
+const SQUARE = [
+  ...[[0, 0, 0], [4, 0, 1.5707963], [4, 4, 3.1415926], [0, 4, -1.5707963]].map((pose, k) => `VERTEX_SE2 ${k} ${pose.join(' ')}`),
+  ...[[0, 1], [1, 2], [2, 3], [3, 0]].map((ends) => `EDGE_SE2 ${ends.join(' ')} 4 0 1.5707963 100 0 0 100 0 100`),
+].join('\n');
 const RECORDINGS = fileURLToPath(new URL('../../crates/robot_io/recordings/', import.meta.url));
 const LOGS = fileURLToPath(new URL('../../../shared/data/logs/', import.meta.url));
 
@@ -108,9 +113,75 @@ describe('a log of one’s own', () => {
         }
       }, SAMPLE);
       await says(tab, /(mapped|contradict): second\.log/);
+      // What grades a map does not take its place, whichever button it came by.
+      const picked = tab.waitForEvent('filechooser');
+      await press(tab, 'open');
+      await (await picked).setFiles(join(h.DIST, 'samples', 'ring-truth.tum'));
+      await says(tab, /(mapped|contradict): second\.log.*off the truth/);
       await give(tab, 'third.log', SAMPLE.split('\n').slice(0, 80).join('\n'));
       await says(tab, /(mapped|contradict): third\.log: 80 scans/);
     });
+  });
+
+  it('maps and saves in a frame with a sandbox, which has no origin', async () => {
+    const frame = '<iframe title="A robot" src="/embed.html?w=16.10" sandbox="allow-scripts allow-downloads" ' +
+      'style="width: 800px; height: 900px"></iframe>';
+    await visit(frame, async (tab) => {
+      const inside = await (await tab.waitForSelector('iframe')).contentFrame();
+      await inside.waitForFunction(() => document.querySelector('slam-widget')?.state === 'running');
+      const download = tab.waitForEvent('download');
+      await inside.evaluate(async (log) => {
+        const widget = document.querySelector('slam-widget');
+        widget.openFile(new File([log], 'framed.log'));
+        widget.file = 'trajectory';
+      }, SAMPLE.split('\n').slice(0, 80).join('\n'));
+      await inside.waitForFunction(() => /^(mapped|no map)/.test(document.querySelector('slam-widget').outcome.verdict));
+      assert.match((await outcome(inside)).sentence, /^framed\.log: 80 scans/);
+      await press(inside, 'save');
+      assert.equal((await h.bytesOf(await download)).toString().trim().split('\n').length, 80);
+    });
+  });
+
+  it('is zoomed by two fingers wherever they start, and drags nothing then', async () => {
+    await page(async (tab) => {
+      await give(tab, 'square.g2o', SQUARE);
+      await says(tab, /mapped: square\.g2o: 4 poses/);
+      await tab.evaluate(() => { document.querySelector('slam-widget').value = { keyframe: 2 }; });
+      await h.moreFrames(tab, 2);
+      const session = await tab.context().newCDPSession(tab);
+      const touch = (type, spots) => session.send('Input.dispatchTouchEvent', {
+        type, touchPoints: spots.map(([x, y], id) => ({ x, y, id })),
+      });
+      const size = async () => {
+        const [[left], [right]] = [await h.pointOf(tab, 'map', 0, 0), await h.pointOf(tab, 'map', 1, 0)];
+        return right - left;
+      };
+      const before = await table(tab, 'keyframes');
+      // On another keyframe, on the one that is shown and can be dragged, and on nothing: zoomed, all of it can be moved.
+      for (const [x, y] of [[0, 0], [4, 4], [3.5, 3.5]]) {
+        if (x !== 3.5) await tab.evaluate(() => document.querySelector('slam-widget').look('whole'));
+        await h.moreFrames(tab, 2);
+        const small = await size();
+        const [left, top] = await h.pointOf(tab, 'map', x, y);
+        const fingers = (apart) => [[left, top], [left + (left > 200 ? -apart : apart), top]];
+        // The first finger does not lie there for so long that it takes hold.
+        await tab.evaluate(() => frameClock.hold(true));
+        await touch('touchStart', fingers(40).slice(0, 1));
+        await touch('touchStart', fingers(40));
+        await tab.evaluate(() => frameClock.hold(false));
+        await h.moreFrames(tab, 2);
+        for (const apart of [50, 60]) {
+          await touch('touchMove', fingers(apart));
+          await h.moreFrames(tab, 1);
+        }
+        await touch('touchEnd', []);
+        await h.moreFrames(tab, 2);
+        const large = await size();
+        assert.ok(large > 1.2 * small && large < 2 * small, `${small} and ${large}`);
+      }
+      assert.deepEqual(await table(tab, 'keyframes'), before);
+      assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').get('keyframe')), 2);
+    }, { options: { viewport: { width: 390, height: 844 }, hasTouch: true } });
   });
 
   it('is stopped half way, and keeps what was read', async () => {
@@ -118,11 +189,37 @@ describe('a log of one’s own', () => {
       const log = longLog(40);
       await give(tab, 'long.log', log);
       await tab.waitForFunction(() => document.querySelector('slam-widget').outcome.facts.scans > 0);
+      // A screen reader is told how far it is, although changes come without a rest.
+      await tab.evaluate(() => {
+        frameClock.hold(true);
+        const now = performance.now;
+        performance.now = () => now() + 11_000;
+      });
+      await tab.waitForFunction(() => {
+        const { textContent } = document.querySelector('slam-widget').shadowRoot.querySelector('[aria-live]');
+        return /^long\.log: \d+ % done/.test(textContent);
+      });
+      await tab.evaluate(() => frameClock.hold(false));
       await press(tab, 'cancel');
       await says(tab, /Stopped after \d+ scans/);
       await isMapped(tab);
       const { facts } = await outcome(tab);
       assert.ok(facts.scans > 0 && facts.scans < log.split('\n').length, String(facts.scans));
+    });
+  });
+
+  it('leaves the address to what the reader set meanwhile', async () => {
+    const two = '<slam-widget name="w16.10" linked></slam-widget><slam-widget name="w16.1" linked hidden></slam-widget>';
+    await visit(two, async (tab) => {
+      await h.ready(tab);
+      await tab.evaluate(() => frameClock.hold(true));
+      await give(tab, 'some.log', SAMPLE.split('\n').slice(0, 80).join('\n'));
+      await says(tab, /^(opening|reading): some\.log/);
+      await tab.evaluate(() => document.querySelector('[name="w16.1"]').set('heading', 77));
+      await isMapped(tab);
+      await tab.evaluate(() => frameClock.hold(false));
+      await tab.evaluate(() => frameClock.pass(1000));
+      assert.match(await tab.evaluate(() => location.search), /w=16\.1&.*heading=77/);
     });
   });
 
@@ -324,6 +421,8 @@ describe('a log of one’s own', () => {
       await drop([['day.log', OTHER_DAY], ['monday.slam2d', session]]);
       await says(tab, /^(mapped|loops contradict): monday\.slam2d.*The robot of day\.log is found/);
       await tab.evaluate(() => Object.assign(document.querySelector('slam-widget'), { drop: 'where' }));
+      // A picture that rests is made to say where the robot may be.
+      await widget(tab, (it) => it.suspend());
       await drop([['again.log', OTHER_DAY]]);
       await says(tab, /monday\.slam2d.*The robot of again\.log is found/);
       // Around the keyframe that is shown, which is not where it is.

@@ -19,6 +19,7 @@ type ThemeChoice = 'auto' | 'light' | 'dark';
 document.documentElement.dataset['script'] = 'on';
 listenToThemeButtons();
 letKeyboardScroll(document.querySelectorAll<HTMLElement>('.math, .scroll'));
+keepFromFiles();
 addCopyButtons(document.querySelectorAll<HTMLElement>('figure.listing'));
 void replayLap();
 driveLaps();
@@ -77,6 +78,18 @@ function chooseTheme(choice: ThemeChoice): void {
     delete document.documentElement.dataset['theme'];
   } else {
     document.documentElement.dataset['theme'] = choice;
+  }
+}
+
+/** A log that is dropped beside its widget must not take the place of the page, and of the map that stands there. */
+function keepFromFiles(): void {
+  for (const type of ['dragover', 'drop'] as const) {
+    document.addEventListener(type, (event) => {
+      const { dataTransfer } = event;
+      if (event.defaultPrevented || dataTransfer?.types.includes('Files') !== true) return;
+      event.preventDefault();
+      dataTransfer.dropEffect = 'none';
+    });
   }
 }
 

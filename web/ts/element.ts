@@ -76,7 +76,9 @@ export class SlamWidget extends HTMLElement {
       listen(this, 'focusin', () => this.#life.askAgain()),
     ];
     if (this.#takesFiles) {
-      this.#unwatch.push(takeDrops(this.#parts.frame, (files) => this.#takeFiles(files)));
+      // A widget that rests has to be there to say where the robot of a log may be.
+      const take = (files: File[]): void => void this.#act(() => this.#takeFiles(files));
+      this.#unwatch.push(takeDrops(this.#parts.frame, take));
     }
     this.#place.fit();
     watchVisibility(this, this.#life);
@@ -437,7 +439,7 @@ export class SlamWidget extends HTMLElement {
   }
 
   /** Keeps changes, and tells controls and page of them. */
-  #told(changes: Iterable<[string, string]>): void {
+  #told(changes: readonly [string, string][]): void {
     for (const [id, text] of changes) this.#state?.keep(id, text);
     this.#controls?.show(changes);
     this.#showTimeline();
@@ -487,7 +489,7 @@ export class SlamWidget extends HTMLElement {
     if (problem !== undefined) return problem;
     // What was found for the old values is no result of these.
     if (kept === undefined) this.#lastOutcome = undefined;
-    this.#told(new Map([[id, kept ?? parsed.text], ...this.#takeChanges()]));
+    this.#told([...new Map([[id, kept ?? parsed.text], ...this.#takeChanges()])]);
     this.#carryOrders();
     this.#life.wake();
     return undefined;

@@ -8,6 +8,8 @@ import type { Value } from './values';
 
 /** After the last change, before the result is told: not every frame of a drag is news. */
 const SETTLED_MS = 350;
+/** While changes never rest, as where a log is mapped, a screen reader is told so often how far it is. */
+const UNDER_WAY_MS = 10_000;
 
 /** The widget that is told of. */
 export interface NewsSource extends Linked {
@@ -28,6 +30,8 @@ export class News {
   #isNews = false;
   /** Values rested before the widget had run: their result is told as soon as there is one. */
   #isOwed = false;
+  /** When changes began that have not rested since, or something was said of them. */
+  #saidAt = 0;
 
   constructor(source: NewsSource, parts: Parts, notes: Notes, onSettled: () => void) {
     this.#onSettled = onSettled;
@@ -55,16 +59,20 @@ export class News {
   }
 
   /** Values changed; the outcome is that of the picture so far. The result follows once they rest. */
-  changed(changes: Iterable<[string, string]>, outcome: Outcome | undefined): void {
+  changed(changes: readonly [string, string][], outcome: Outcome | undefined): void {
+    if (this.#timer === undefined) this.#saidAt = performance.now();
     for (const [parameter, text] of changes) {
       this.#notes.settle(parameter);
       const value = this.#source.get(parameter);
       this.#emit('slam-change', { parameter, value, text, outcome });
     }
-    tellOf(this.#source);
+    // What goes on by itself leaves the address to the widget that the reader has set.
+    if (changes.length > 0) tellOf(this.#source);
     clearTimeout(this.#timer);
     this.#isNews = true;
     this.#isOwed = false;
+    const isLong = performance.now() - this.#saidAt > UNDER_WAY_MS;
+    if (isLong && outcome !== undefined) this.#say(outcome.sentence);
     this.#timer = setTimeout(() => this.#settled(), SETTLED_MS);
   }
 
@@ -97,11 +105,13 @@ export class News {
   /** The element left its page: what has not settled is no news any more. */
   stop(): void {
     clearTimeout(this.#timer);
+    this.#timer = undefined;
     this.#isOwed = false;
   }
 
   #settled(): void {
     const source = this.#source;
+    this.#timer = undefined;
     this.#onSettled();
     this.#tellResult();
     this.#describe();
@@ -121,6 +131,7 @@ export class News {
   }
 
   #say(sentence: string): void {
+    this.#saidAt = performance.now();
     this.#parts.live.textContent = sentence;
   }
 

@@ -70,7 +70,7 @@ export class Stage {
     const element = this.#element;
     const dragsAt = (x: number, y: number): boolean =>
       this.#instance.crash() === undefined && this.#instance.use((widget) => widget.dragsAt(x, y));
-    new TouchGate(element, this.canvas, dragsAt, signal);
+    new TouchGate(element, this.canvas, { dragsAt, letGo: () => this.#release() }, signal);
     for (const type of ['pointerdown', 'pointermove', 'pointerleave', 'touchstart', 'wheel', 'focusin']) {
       element.addEventListener(type, wake, capture);
     }

@@ -1,31 +1,43 @@
 // Whose a touch is that starts on something that drags: a swipe up or down is the page's, which
-// scrolls; a swipe across, a tap, and a finger that stays for a moment are the widget's.
+// scrolls; a swipe across, a tap, and a finger that stays for a moment are the widget's. Two fingers zoom a map
+// that is all of a widget, wherever they start, and drag nothing.
 
 /** A finger that lies still moves by less. */
 const SLACK_PX = 6;
 /** So long a finger stays that means to drag upwards or downwards. */
 const HOLD_MS = 220;
 
+/** Far outside, where a press is one on nothing. */
+const NOWHERE_PX = -1e4;
+/** No finger of a browser's has that number. */
+const NO_FINGER = 1e6;
+
 interface Held {
   touch: Touch;
   timer: ReturnType<typeof setTimeout>;
 }
 
+/** The widget that is touched. */
+export interface Touched {
+  /** Whether something that drags lies there, in CSS pixels from the canvas's corner. */
+  dragsAt(x: number, y: number): boolean;
+  /** Lets go of what is dragged. */
+  letGo(): void;
+}
+
 export class TouchGate {
   readonly #canvas: HTMLCanvasElement;
-  readonly #dragsAt: (x: number, y: number) => boolean;
+  readonly #widget: Touched;
+  /** Whether two fingers are the widget's. */
+  readonly #isPinched: boolean;
   #held: Held | undefined;
   /** Who has the touch until its end. */
   #owner: 'page' | 'widget' | undefined;
 
-  constructor(
-    stage: HTMLElement,
-    canvas: HTMLCanvasElement,
-    dragsAt: (x: number, y: number) => boolean,
-    signal: AbortSignal,
-  ) {
+  constructor(stage: HTMLElement, canvas: HTMLCanvasElement, widget: Touched, signal: AbortSignal) {
     this.#canvas = canvas;
-    this.#dragsAt = dragsAt;
+    this.#widget = widget;
+    this.#isPinched = stage.closest('.takes-files') !== null;
     const early = { capture: true, passive: true, signal };
     stage.addEventListener('pointerdown', (event) => this.#press(event), early);
     stage.addEventListener('touchstart', (event) => this.#start(event), early);
@@ -44,21 +56,42 @@ export class TouchGate {
 
   #isHandle({ clientX, clientY }: Touch | PointerEvent): boolean {
     const { left, top } = this.#canvas.getBoundingClientRect();
-    return this.#dragsAt(clientX - left, clientY - top);
+    return this.#widget.dragsAt(clientX - left, clientY - top);
   }
 
   #start(event: TouchEvent): void {
     const [touch] = event.changedTouches;
     // One of ours, sent on.
     if (!event.isTrusted || touch === undefined || event.target !== this.#canvas) return;
-    this.#owner = undefined;
     if (event.touches.length > 1) {
-      this.#forget();
+      this.#pinch(event, touch);
       return;
     }
+    this.#owner = undefined;
     if (!this.#isHandle(touch)) return;
     event.stopPropagation();
     this.#held = { touch, timer: setTimeout(() => this.#sendOn(), HOLD_MS) };
+  }
+
+  /** A second finger: what the first one held is let go, and what it may have meant to hold is not taken. */
+  #pinch(event: TouchEvent, second: Touch): void {
+    const first = this.#held?.touch;
+    const isOurs = this.#isPinched && this.#owner !== 'page' && event.touches.length === 2;
+    this.#forget();
+    this.#owner = isOurs ? 'widget' : undefined;
+    if (!isOurs) return;
+    event.stopPropagation();
+    if (first === undefined) this.#widget.letGo();
+    // eframe presses where the first finger is that it hears of: that one is nowhere. A press that lasts ends a pinch.
+    const nowhere = new Touch({
+      identifier: NO_FINGER,
+      target: this.#canvas,
+      clientX: NOWHERE_PX,
+      clientY: NOWHERE_PX,
+    });
+    const changedTouches = first === undefined ? [second] : [first, second];
+    const options = { touches: [nowhere], changedTouches, bubbles: true, cancelable: true };
+    this.#canvas.dispatchEvent(new TouchEvent('touchstart', options));
   }
 
   #move(event: TouchEvent): void {

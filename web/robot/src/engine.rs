@@ -20,6 +20,7 @@ use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
 use robot_io::session::{self, Session};
 use robot_io::trajectory::{StampedPose, Trajectory};
 
+use crate::files;
 use crate::grade::Reference;
 use crate::graph_log::{self, GraphSolving, loops_of};
 use crate::links::Link;
@@ -72,6 +73,8 @@ pub struct Engine<'a> {
     doubts: Vec<String>,
     look_into: Vec<usize>,
     reference: Option<(String, Reference)>,
+    /// The picture of the map that was saved last, which `map.yaml` names.
+    image: &'static str,
     /// Another log on this map.
     whereabouts: Option<Whereabouts<'a>>,
     has_scans: bool,
@@ -170,6 +173,7 @@ impl<'a> Engine<'a> {
             doubts: Vec::new(),
             look_into: Vec::new(),
             reference: None,
+            image: files::MAP_IMAGES[0],
             news: News {
                 file: true,
                 ..News::default()
@@ -242,7 +246,12 @@ impl<'a> Engine<'a> {
         let notes = reader.notes();
         self.tell_offers(&notes.offers);
         self.remarks.clone_from(&notes.about);
-        self.remarks.extend(notes.sentences(&self.name));
+        let said = notes.sentences(&self.name);
+        // A map of a part of the file must not look like one of all of it.
+        let is_cut = notes.half_written.is_some() || notes.ended_early.is_some();
+        let missing = problem.as_ref().or(said.first().filter(|_| is_cut));
+        let missing = missing.map_or(String::new(), |missing| format!("{missing}."));
+        self.remarks.extend(said);
         match self.run.finishing() {
             Some(_) if !self.run.has_seen() => {
                 let said = format!("{}: no scan could be used: {NOTHING_SEEN}", self.name);
@@ -251,6 +260,9 @@ impl<'a> Engine<'a> {
             Some(refinement) => {
                 self.remarks.extend(problem);
                 self.remarks.extend(self.run.sentences(&self.name));
+                if !missing.is_empty() {
+                    self.waiting.push(Update::text("answer", missing));
+                }
                 self.work = Work::Linking(Box::new(refinement), 0);
             }
             None => {

@@ -25,21 +25,24 @@ pub const NAMES: [&str; 8] = [
     "where.tum",
 ];
 
+/// The pictures of the map; the first is what `map.yaml` names before any was saved.
+pub const MAP_IMAGES: [&str; 2] = ["map.pgm", "map.png"];
+
 /// What goes wrong where memory takes what is written: nothing that a writer could tell.
 fn in_words(problem: &io::Error) -> String {
     format!("the file cannot be written: {problem}")
 }
 
-/// The map's image, or the text that names it.
+/// The map's image, or the text that names `image`.
 ///
 /// # Errors
 /// Where it cannot be written.
-pub fn map_file(map: &MapImage, name: &str) -> Result<Vec<u8>, String> {
+pub fn map_file(map: &MapImage, name: &str, image: &str) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let written = match name {
         "map.pgm" => map.write_pgm(&mut bytes),
         "map.png" => map.write_png(&mut bytes, MapMode::Trinary),
-        _ => return Ok(map.yaml("map.pgm", MapMode::Trinary).into_bytes()),
+        _ => return Ok(map.yaml(image, MapMode::Trinary).into_bytes()),
     };
     written.map_err(|problem| in_words(&problem))?;
     Ok(bytes)

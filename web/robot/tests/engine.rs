@@ -178,7 +178,7 @@ fn a_loop_is_added_where_two_scans_fit_and_told_why_not_where_they_do_not() {
 
 #[test]
 fn a_reading_that_is_stopped_keeps_what_was_read() {
-    let (log, _) = files();
+    let (log, truth) = files();
     let mut engine = open(log, "ring.log").unwrap();
     for _ in 0..60 {
         engine.step();
@@ -186,6 +186,17 @@ fn a_reading_that_is_stopped_keeps_what_was_read() {
     engine.order("turn 0");
     engine.order("cancel");
     while engine.step() {}
+
+    let mut unread = open(log, "ring.log").unwrap();
+    unread.order("cancel");
+    unread.take_reference(truth, "ring-truth.tum").unwrap();
+    let updates = unread.updates();
+    assert_eq!(
+        of(&updates, "stage").text,
+        "ring.log was stopped before its first scan"
+    );
+    assert!(updates.iter().all(|update| update.kind != "answer"));
+
     let updates = engine.updates();
     assert_eq!(engine.stage(), Stage::Done);
     assert_eq!(of(&updates, "stage").numbers[2], 60.0);
@@ -204,8 +215,8 @@ fn every_file_that_can_be_saved_is_what_its_name_says() {
     let mut engine = finished(log);
     for (name, start) in [
         ("map.pgm", "P5\n"),
-        ("map.png", "\u{fffd}PNG"),
         ("map.yaml", "image: map.pgm\n"),
+        ("map.png", "\u{fffd}PNG"),
         ("trajectory.tum", "0 "),
         ("graph.g2o", "VERTEX_SE2 0 "),
         ("report.html", "<!doctype html>"),
@@ -219,6 +230,52 @@ fn every_file_that_can_be_saved_is_what_its_name_says() {
         // No other log was looked for.
         assert_eq!(engine.file(name).is_ok(), name != "where.tum", "{name}");
     }
+}
+
+/// A file that was moved or changed by another program while it was read.
+struct Torn<'a> {
+    bytes: &'a [u8],
+}
+
+impl std::io::Read for Torn<'_> {
+    fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
+        match self.bytes.read(into)? {
+            0 => Err(std::io::Error::other("it is gone")),
+            count => Ok(count),
+        }
+    }
+}
+
+#[test]
+fn a_file_that_goes_while_it_is_read_leaves_a_map_of_a_part_and_says_so() {
+    let (log, _) = files();
+    let half = log[..log.len() / 2].iter().rposition(|&byte| byte == b'\n');
+    let torn = Torn {
+        bytes: &log[..=half.unwrap()],
+    };
+    let source = std::io::BufReader::new(torn);
+    let options = LogOptions::default();
+    let mut engine = Engine::open(source, "ring.log", log.len() as u64, &options).unwrap();
+    while engine.step() {}
+    assert_eq!(engine.stage(), Stage::Done);
+    let said = of(&engine.updates(), "answer").text.clone();
+    assert!(said.contains("it is gone"), "{said}");
+}
+
+#[test]
+fn the_map_s_text_names_the_picture_that_was_saved_with_it() {
+    let (log, _) = files();
+    let mut engine = finished(log);
+    let names = |engine: &mut Engine<'_>, image: &str| {
+        let text = engine.file("map.yaml").unwrap();
+        text.starts_with(format!("image: {image}\n").as_bytes())
+    };
+    assert!(names(&mut engine, "map.pgm"));
+    engine.file("map.png").unwrap();
+    engine.file("trajectory.tum").unwrap();
+    assert!(names(&mut engine, "map.png"));
+    engine.file("map.pgm").unwrap();
+    assert!(names(&mut engine, "map.pgm"));
 }
 
 #[test]
@@ -246,8 +303,14 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
     let mut engine = open(half, "half.log").unwrap();
     while engine.step() {}
     assert_eq!(engine.stage(), Stage::Done);
-    let said = of(&engine.updates(), "remarks").text.clone();
+    let updates = engine.updates();
+    let said = &of(&updates, "remarks").text;
     assert!(said.contains("half written"), "{said}");
+    let said = &of(&updates, "answer").text;
+    assert!(
+        said.contains("half written"),
+        "it is no map of all of it: {said}"
+    );
 
     assert_eq!(
         open(b"", "x.log").err().unwrap(),

@@ -97,7 +97,8 @@ export class Desk {
     const [name = '', ...words] = order.split(' ');
     switch (name) {
       case 'open':
-        this.#host.choose(LOGS, (file) => this.open(file));
+        // A reference that the reader picked here all the same grades the map that is there.
+        this.#host.choose(LOGS, (file) => this.take([file], 'map'));
         break;
       case 'reference':
         this.#host.choose(REFERENCES.join(), (file) => void this.#grade(file));
@@ -409,14 +410,20 @@ export function hand(widget: Widget, { kind, text, numbers, bytes }: Delivery): 
   widget.deliver(kind, text, numbers, bytes);
 }
 
-/** A page from elsewhere may not start our script as a worker, but one of its own that takes ours in. */
+/**
+ * A page from elsewhere may not start our script as a worker, but one of its own that takes ours in. A sandboxed frame
+ * is from elsewhere whatever its address says, and what it makes itself may be no module but in an address.
+ */
 async function startWorker(): Promise<Worker> {
   const address = addressOf(ROBOT_WORKER_FILE);
-  if (address !== undefined && new URL(address).origin === location.origin) {
+  if (address !== undefined && new URL(address).origin === self.origin) {
     return new Worker(address, { type: 'module' });
   }
   const text = address === undefined ? await (await ask(ROBOT_WORKER_FILE)).text() : `import ${JSON.stringify(address)};`;
-  const script = URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
+  const script =
+    self.origin === 'null'
+      ? `data:text/javascript,${encodeURIComponent(text)}`
+      : URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
   return new Worker(script, { type: 'module' });
 }
 

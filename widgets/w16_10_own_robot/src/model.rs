@@ -19,7 +19,7 @@ use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::{DEFAULTS, WidgetSpec};
 
-use crate::spec::{MOST_KEYFRAMES, MOST_SCANS, PARAMS, SPEC};
+use crate::spec::{KEYS, MOST_KEYFRAMES, MOST_SCANS, PARAMS, SPEC};
 use robot::{Robot, Stage};
 use whereabouts::Place;
 
@@ -150,8 +150,10 @@ impl OwnRobot {
 
     /// Goes to the newer keyframe of the loop that is shown.
     fn show_link(&mut self) {
-        let ends = self.link().map(|link| self.robot.links[link].new);
-        if let Some(new) = ends.filter(|new| *new < self.robot.keyframes.len()) {
+        let link = self.link().map(|link| &self.robot.links[link]);
+        if let Some(link) = link.filter(|link| link.new < self.robot.keyframes.len()) {
+            let new = link.new;
+            self.robot.answer = words::evidence(link);
             self.playback.pause();
             self.show(new);
         }
@@ -256,6 +258,10 @@ impl Model for OwnRobot {
         if delivery.kind == "stage" && self.robot.stage == Stage::Done {
             self.look();
         }
+    }
+
+    fn keys(&self) -> &'static [(&'static str, &'static str)] {
+        KEYS
     }
 
     fn take_orders(&mut self) -> Vec<String> {

@@ -166,6 +166,14 @@ const fn button(id: &'static str, label: &'static str, help: &'static str) -> Bu
     ButtonSpec { id, label, help }
 }
 
+/// Keys of the buttons that move a keyframe.
+pub const KEYS: &[(&str, &str)] = &[
+    ("ArrowLeft", "west"),
+    ("ArrowRight", "east"),
+    ("ArrowUp", "north"),
+    ("ArrowDown", "south"),
+];
+
 /// What never changes.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.10",
@@ -226,9 +234,29 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             "Registers the keyframe that is shown on the place of the marked one, and closes the loop if it passes its tests.",
         ),
         button(
+            "west",
+            "Left",
+            "Moves the keyframe that is shown 5 cm to the left; also the arrow key.",
+        ),
+        button(
+            "east",
+            "Right",
+            "Moves the keyframe that is shown 5 cm to the right; also the arrow key.",
+        ),
+        button(
+            "north",
+            "Up",
+            "Moves the keyframe that is shown 5 cm up; also the arrow key.",
+        ),
+        button(
+            "south",
+            "Down",
+            "Moves the keyframe that is shown 5 cm down; also the arrow key.",
+        ),
+        button(
             "unpin",
             "Let go",
-            "Lets go of the keyframes that you dragged.",
+            "Lets go of the keyframes that you moved.",
         ),
         button(
             "reference",

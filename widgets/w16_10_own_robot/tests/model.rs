@@ -177,8 +177,99 @@ fn a_press_shows_a_keyframe_and_a_drag_moves_the_one_that_is_shown() {
     let orders = robot.take_orders();
     assert_eq!(orders.len(), 1);
     assert!(orders[0].starts_with("pin 2 2 1"), "{orders:?}");
+    let said = robot.outcome().sentence;
+    assert!(
+        said.contains("Keyframe 2 is held at x 2.00 m, y 1.00 m."),
+        "{said}"
+    );
     robot.drag(handle, [f64::NAN, 1e300]);
     assert_eq!(robot.take_orders(), Vec::<String>::new());
+}
+
+#[test]
+fn arrow_keys_move_the_keyframe_that_is_shown_as_a_drag_does() {
+    let mut robot = mapped();
+    robot.set("keyframe", 2.0).unwrap();
+    robot.take_orders();
+    for (key, button) in robot.keys() {
+        robot.press(button).unwrap();
+        let orders = robot.take_orders();
+        let expected = match *key {
+            "ArrowLeft" => "pin 2 1.95 0 0",
+            "ArrowUp" => "pin 2 2 0.05 0",
+            // Back again.
+            _ => "pin 2 2 0 0",
+        };
+        assert_eq!(orders, [expected], "{key}");
+    }
+    assert_eq!(robot.keys().len(), 4);
+    tell(&mut robot, "stage", "", &[1.0, 0.5, 20.0, 2.0, 1.0]);
+    robot.press("north").unwrap();
+    let none = Vec::<String>::new();
+    assert_eq!(robot.take_orders(), none, "the graph is not there yet");
+    let mut robot = OwnRobot::new();
+    robot.press("north").unwrap();
+    assert_eq!(robot.take_orders(), none);
+}
+
+#[test]
+fn a_loop_that_is_gone_to_is_told_with_its_evidence() {
+    let mut robot = mapped();
+    let first = "The loop of the list goes from keyframe 3 to 0: closed; 0.80 of the scan fits, 0.020 m off; χ² 20.0 of 16.3.";
+    assert!(robot.summary().ends_with(first), "{}", robot.summary());
+    robot.press("next").unwrap();
+    let second = "from keyframe 4 to 1: turned away, because 12 points fit, 30 are asked; 0.30 of the scan fits";
+    let said = robot.outcome().sentence;
+    assert!(said.contains(second), "{said}");
+    assert_eq!(robot.summary().matches(second).count(), 1);
+    // A loop of a graph from a file has no registration, and may have no χ².
+    let nan = f64::NAN;
+    tell(
+        &mut robot,
+        "loops",
+        "",
+        &[3.0, 0.0, nan, nan, nan, nan, nan, 16.3, 0.0, 0.0],
+    );
+    assert!(robot.summary().ends_with("from keyframe 3 to 0: closed."));
+}
+
+#[test]
+fn what_is_asked_where_there_is_no_map_is_answered() {
+    let mut robot = mapped();
+    tell(
+        &mut robot,
+        "answer",
+        "The loop 3 to 0 is in the graph.",
+        &[],
+    );
+    tell(
+        &mut robot,
+        "failed",
+        "x.log is empty; give a recorded log",
+        &[],
+    );
+    assert_eq!(
+        robot.outcome().sentence,
+        "x.log is empty; give a recorded log"
+    );
+    tell(
+        &mut robot,
+        "answer",
+        "truth.tum waits for a log to be opened.",
+        &[],
+    );
+    assert_eq!(
+        robot.outcome().sentence,
+        "x.log is empty; give a recorded log. truth.tum waits for a log to be opened."
+    );
+}
+
+#[test]
+fn a_way_of_one_keyframe_is_no_metre_long() {
+    let mut robot = mapped();
+    tell(&mut robot, "keyframes", "", &[0.0; 6]);
+    let said = robot.outcome().sentence;
+    assert!(said.contains("on a way of 0 m"), "{said}");
 }
 
 #[test]

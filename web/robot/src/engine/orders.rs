@@ -90,8 +90,10 @@ impl<'a> Engine<'a> {
         match core::mem::replace(&mut self.work, Work::Idle) {
             Work::Reading(reader) => {
                 self.end_of_log(reader.as_ref(), None);
-                if let Work::Linking(..) = self.work {
-                    self.begin_editing(super::links_of(&self.run));
+                match self.work {
+                    Work::Linking(..) => self.begin_editing(super::links_of(&self.run)),
+                    // It says itself that nothing was read.
+                    _ => return Ok(String::new()),
                 }
                 Ok(format!("Stopped after {} scans.", self.run.scans()))
             }
@@ -318,7 +320,9 @@ impl<'a> Engine<'a> {
             _ => {
                 let lines = self.recorder.map_lines(&self.run);
                 let map = map_of(&lines, MAP_CELL_M).map_err(|problem| problem.to_string())?;
-                files::map_file(&map, name)
+                let saved = files::MAP_IMAGES.into_iter().find(|image| *image == name);
+                self.image = saved.unwrap_or(self.image);
+                files::map_file(&map, name, self.image)
             }
         }
     }

@@ -32,7 +32,7 @@ impl Engine<'_> {
             doubts.numbers = self.look_into.iter().map(|&k| k as f64).collect();
             updates.push(doubts);
         }
-        if news.grade && self.stage() != Stage::Reading {
+        if news.grade && !matches!(self.stage(), Stage::Reading | Stage::Failed) {
             updates.extend(self.grade_updates());
         }
         if self.has_scans {

@@ -3,6 +3,7 @@
 use kit::spec::PLAY;
 
 use super::OwnRobot;
+use super::hands::nudge;
 use super::robot::{Robot, Stage};
 use crate::spec::{FILES, MOST_SCANS, OPTIONS};
 
@@ -37,6 +38,10 @@ impl OwnRobot {
                 // What is added comes first.
                 self.values.store("loop", 0.0);
             }
+            "west" => nudge(self, [-1.0, 0.0]),
+            "east" => nudge(self, [1.0, 0.0]),
+            "north" => nudge(self, [0.0, 1.0]),
+            "south" => nudge(self, [0.0, -1.0]),
             "save" => {
                 let file = FILES[self.values.get("file") as usize].label;
                 self.ask(format!("save {file}"));

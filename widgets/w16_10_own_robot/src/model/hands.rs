@@ -7,6 +7,8 @@ use super::{OwnRobot, panel};
 
 /// Keyframes are dragged no farther from the middle of the world, m.
 const FARTHEST_M: f64 = 1e6;
+/// A key moves a keyframe by as much, m.
+const NUDGE_M: f64 = 0.05;
 /// A press that moves a keyframe by less does not drag it, m.
 const STILL_M: f64 = 1e-6;
 
@@ -21,6 +23,11 @@ fn nearest(robot: &OwnRobot, at: [f64; 2], reach: [f64; 2]) -> Option<(usize, [f
     spots
         .filter(|(_, spot)| share(*spot) <= 1.0)
         .min_by(|a, b| share(a.1).total_cmp(&share(b.1)))
+}
+
+/// Whether keyframes can be moved.
+fn may_move(robot: &OwnRobot) -> bool {
+    matches!(robot.robot.stage, Stage::Done | Stage::Checking)
 }
 
 /// The keyframe that is shown is held itself; another one is shown.
@@ -41,16 +48,30 @@ pub fn grab(robot: &OwnRobot, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Opt
     let (keyframe, spot) = nearest(robot, at, reach)?;
     let shown = robot.robot.keyframes[robot.keyframe()].pose;
     let is_shown = keyframe == robot.keyframe() || spot == [shown[0], shown[1]];
-    let may_move = matches!(robot.robot.stage, Stage::Done | Stage::Checking);
     Some(Handle {
         panel: panel::MAP,
-        id: if is_shown && may_move {
+        id: if is_shown && may_move(robot) {
             "held"
         } else {
             "keyframe"
         },
         offset: [at[0] - spot[0], at[1] - spot[1]],
     })
+}
+
+/// Moves the keyframe that is shown by so many steps, as a drag would.
+pub fn nudge(robot: &mut OwnRobot, steps: [f64; 2]) {
+    let shown = robot.robot.keyframes.get(robot.keyframe());
+    if let Some(at) = shown.map(|shown| [shown.pose[0], shown.pose[1]])
+        && may_move(robot)
+    {
+        let handle = Handle {
+            panel: panel::MAP,
+            id: "held",
+            offset: steps.map(|steps| -NUDGE_M * steps),
+        };
+        drag(robot, handle, at);
+    }
 }
 
 /// Shows the keyframe at the pointer, or moves the one that is held.
@@ -77,6 +98,7 @@ pub fn drag(robot: &mut OwnRobot, handle: Handle, at: [f64; 2]) {
             // It follows the pointer at once; the others follow when the graph answers.
             (keyframe.pose[0], keyframe.pose[1]) = (spot[0], spot[1]);
             let [x, y, theta] = keyframe.pose;
+            robot.robot.answer = format!("Keyframe {shown} is held at x {x:.2} m, y {y:.2} m.");
             robot.ask(format!("pin {shown} {x} {y} {theta}"));
         }
         _ => {

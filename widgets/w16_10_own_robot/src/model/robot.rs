@@ -207,6 +207,8 @@ impl Robot {
             "failed" => {
                 self.stage = Stage::Failed;
                 self.problem = text.to_owned();
+                // What was said before is about a log that is no more.
+                self.answer.clear();
             }
             "paused" => self.paused = numbers.first() == Some(&1.0),
             "file" => {

@@ -45,7 +45,10 @@ fn sentence(own: &OwnRobot) -> String {
     let done = (100.0 * robot.share).round();
     let said = match robot.stage {
         Stage::Empty => "Drop a log, open one, or map the sample.".to_owned(),
-        Stage::Failed => return robot.problem.clone(),
+        Stage::Failed if robot.answer.is_empty() => return robot.problem.clone(),
+        Stage::Failed => {
+            return format!("{}. {}", robot.problem.trim_end_matches('.'), robot.answer);
+        }
         Stage::Opening => format!("{name} is opened."),
         Stage::Reading => format!(
             "{name}: {done:.0} % done, {:.0} scans, {} keyframes, {:.0} loops closed.",
@@ -149,7 +152,35 @@ fn way_m(robot: &Robot) -> f64 {
         let [a, b] = [two[0].pose, two[1].pose];
         math::norm2(b[0] - a[0], b[1] - a[1])
     });
-    steps.sum()
+    // The sum of nothing is -0.
+    steps.fold(0.0, |sum, step| sum + step)
+}
+
+/// A loop with its evidence.
+pub fn evidence(link: &Link) -> String {
+    let why = match link.reason.as_str() {
+        "" => String::new(),
+        reason => format!(", because {reason}"),
+    };
+    let fits = if link.share.is_finite() {
+        format!(
+            "; {:.2} of the scan fits, {:.3} m off",
+            link.share, link.rmse_m
+        )
+    } else {
+        String::new()
+    };
+    let chi2 = if link.chi2.is_finite() {
+        format!("; χ² {:.1} of {:.1}", link.chi2, link.gate_chi2)
+    } else {
+        String::new()
+    };
+    format!(
+        "The loop of the list goes from keyframe {} to {}: {}{why}{fits}{chi2}.",
+        link.new,
+        link.old,
+        verdict(link)
+    )
 }
 
 /// What was decided on a loop.
@@ -217,22 +248,13 @@ pub fn summary(own: &OwnRobot) -> String {
     }
     let shown = own.keyframe();
     let [x, y, theta] = robot.keyframes[shown].pose;
-    let link = own.link().map_or(String::new(), |link| {
-        let link = &robot.links[link];
-        let why = match link.reason.as_str() {
-            "" => String::new(),
-            reason => format!(", because {reason}"),
-        };
-        format!(
-            " The loop of the list goes from keyframe {} to {}: {}{why}.",
-            link.new,
-            link.old,
-            verdict(link)
-        )
-    });
+    let link = own.link().map(|link| evidence(&robot.links[link]));
+    // Who has just gone to it has its words in the sentence.
+    let link = link.filter(|link| *link != robot.answer);
     format!(
-        "A map with the way of the robot. {} Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°.{link}",
+        "A map with the way of the robot. {} Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°. {}",
         sentence(own),
-        theta.to_degrees()
+        theta.to_degrees(),
+        link.unwrap_or_default()
     )
 }
