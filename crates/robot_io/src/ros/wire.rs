@@ -119,9 +119,19 @@ impl<'a> WireReader<'a> {
         Ok(u8::from_le_bytes(self.number(what)?))
     }
 
+    /// The next whole number of two bytes.
+    pub fn u16(&mut self, what: &str) -> Result<u16, WireError> {
+        Ok(u16::from_le_bytes(self.number(what)?))
+    }
+
     /// The next whole number.
     pub fn u32(&mut self, what: &str) -> Result<u32, WireError> {
         Ok(u32::from_le_bytes(self.number(what)?))
+    }
+
+    /// The next whole number of eight bytes.
+    pub fn u64(&mut self, what: &str) -> Result<u64, WireError> {
+        Ok(u64::from_le_bytes(self.number(what)?))
     }
 
     /// The next number of four bytes.
@@ -150,6 +160,11 @@ impl<'a> WireReader<'a> {
     pub fn bytes(&mut self, what: &str) -> Result<&'a [u8], WireError> {
         let count = self.u32(what)? as usize;
         self.take(count, what)
+    }
+
+    /// All that is left.
+    pub fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
     }
 
     /// The length of a list whose things have `smallest` bytes at least.
