@@ -17,6 +17,7 @@ use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 
 use crate::line_log::{LineFormat, LineReader};
+use crate::lines::json_words;
 use crate::log::{LogFrame, LogNotes};
 use crate::place::checked;
 
@@ -154,12 +155,10 @@ impl LineFormat for JsonLines {
 
 /// What serde expects, without its own place in the line.
 fn in_words(problem: &serde_json::Error) -> String {
-    let said = problem.to_string();
-    let end = said.find(" at line ").unwrap_or(said.len());
     format!(
         "a frame as JSON was expected, but at column {}: {}",
         problem.column(),
-        &said[..end]
+        json_words(problem)
     )
 }
 

@@ -101,7 +101,7 @@ impl<R: BufRead> Container for BagFile<R> {
 /// The records of a chunk with this header.
 fn unpacked(fields: &Fields<'_>, data: Vec<u8>) -> Result<Vec<u8>, String> {
     let size = (fields.u32("size")? as usize).min(MOST_BYTES);
-    match fields.text("compression")?.as_str() {
+    match fields.name("compression")?.as_str() {
         "none" => Ok(data),
         "lz4" => Packing::Lz4.unpack(&data, size),
         "bz2" => Packing::Bzip2.unpack(&data, size),

@@ -144,8 +144,8 @@ impl<'a> WireReader<'a> {
         Ok(f64::from_le_bytes(self.number(what)?))
     }
 
-    /// The next text; bytes that are no text become question marks.
-    pub fn text(&mut self, what: &str) -> Result<String, WireError> {
+    /// The next text, as a name that can be printed; bytes that are no text become question marks.
+    pub fn name(&mut self, what: &str) -> Result<String, WireError> {
         let count = self.u32(what)? as usize;
         let bytes = self.take(count, what)?;
         let bytes = match self.wire {
@@ -153,7 +153,7 @@ impl<'a> WireReader<'a> {
             Wire::Cdr => bytes.strip_suffix(&[0]).unwrap_or(bytes),
             Wire::Ros1 => bytes,
         };
-        Ok(String::from_utf8_lossy(bytes).into_owned())
+        Ok(crate::lines::name(&String::from_utf8_lossy(bytes)))
     }
 
     /// A list of bytes.
@@ -221,7 +221,7 @@ mod tests {
         let bytes = [7, 2, 0, 0, 0, b'a', b'b', 0, 0, 192, 63];
         let mut reader = WireReader::new(Wire::Ros1, &bytes).unwrap();
         assert_eq!(reader.u8("a"), Ok(7));
-        assert_eq!(reader.text("b").unwrap(), "ab");
+        assert_eq!(reader.name("b").unwrap(), "ab");
         assert_eq!(reader.f32("c"), Ok(1.5));
         let past = reader.u32("d").unwrap_err();
         assert_eq!(

@@ -38,8 +38,8 @@ impl Connections {
 
     fn take_connection(&mut self, named: &Fields<'_>, data: &[u8]) -> Result<(), String> {
         let number = named.u32("conn")?;
-        let topic = named.text("topic")?;
-        let kind = Fields::of(data)?.text("type")?;
+        let topic = named.name("topic")?;
+        let kind = Fields::of(data)?.name("type")?;
         if self.0.len() < MOST_CONNECTIONS {
             let kind = kind_of(&kind);
             self.0.insert(number, Connection { topic, kind });
@@ -121,8 +121,9 @@ impl<'a> Fields<'a> {
         Ok(u32::from_le_bytes(value))
     }
 
-    /// A text; bytes that are no text become question marks.
-    pub fn text(&self, name: &str) -> Result<String, String> {
-        Ok(String::from_utf8_lossy(self.value(name)?).into_owned())
+    /// A text, as a name that can be printed; bytes that are no text become question marks.
+    pub fn name(&self, name: &str) -> Result<String, String> {
+        let text = String::from_utf8_lossy(self.value(name)?);
+        Ok(crate::lines::name(&text))
     }
 }

@@ -69,7 +69,7 @@ fn head(fields: &mut WireReader<'_>) -> Result<Head, WireError> {
     Ok(Head {
         size: fields.u64("a chunk's size")?,
         sum: fields.u32("a chunk's checksum")?,
-        packing: fields.text("a chunk's packing")?,
+        packing: fields.name("a chunk's packing")?,
         packed: fields.u64("a chunk's packed size")?,
     })
 }

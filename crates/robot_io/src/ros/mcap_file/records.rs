@@ -63,7 +63,7 @@ impl Records {
     fn take_schema(&mut self, body: &[u8]) -> Result<(), WireError> {
         let mut fields = WireReader::new(Wire::Ros1, body)?;
         let number = fields.u16("a schema's number")?;
-        let name = fields.text("a schema's name")?;
+        let name = fields.name("a schema's name")?;
         self.kinds.insert(number, kind_of(&name));
         Ok(())
     }
@@ -72,8 +72,8 @@ impl Records {
         let mut fields = WireReader::new(Wire::Ros1, body)?;
         let number = fields.u16("a channel's number")?;
         let schema = fields.u16("a schema's number")?;
-        let topic = fields.text("a topic")?;
-        let wire = match fields.text("an encoding")?.as_str() {
+        let topic = fields.name("a topic")?;
+        let wire = match fields.name("an encoding")?.as_str() {
             "cdr" => Some(Wire::Cdr),
             "ros1" => Some(Wire::Ros1),
             _ => None,
