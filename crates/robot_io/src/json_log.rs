@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use crate::line_log::{LineFormat, LineReader};
 use crate::lines::json_words;
 use crate::log::{LogFrame, LogNotes};
-use crate::place::checked;
+use crate::place::{checked, checked_stamp_s};
 
 /// One line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -145,6 +145,7 @@ impl LineFormat for JsonLines {
         }
         let line: FrameLine = serde_json::from_slice(line).map_err(|problem| in_words(&problem))?;
         let frame = LogFrame::from(line);
+        checked_stamp_s(frame.stamp_s)?;
         for pose in [Some(frame.scan.body_from_sensor), frame.odometry] {
             pose.map(checked).transpose()?;
         }
