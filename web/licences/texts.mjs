@@ -12,8 +12,6 @@ const NOTICE_FILE = /^(copying|copyright|notice|authors)/i;
 
 /** Texts that packages lack; `README.md` beside them says where each comes from. */
 const SUPPLIED = [
-  { file: 'binrw-MIT.txt', id: 'MIT', packages: ['binrw', 'binrw_derive'] },
-  { file: 'mcap-MIT.txt', id: 'MIT', packages: ['mcap'] },
   { file: 'faer-MIT.txt', id: 'MIT', packages: ['faer', 'faer-traits'] },
   { file: 'nano-gemm-MIT.txt', id: 'MIT', packages: /^nano-gemm(-\w+)?$/ },
   { file: 'katex-fonts-OFL-1.1.txt', id: 'OFL-1.1', packages: ['KaTeX fonts'] },

@@ -111,3 +111,26 @@ fn no_frame_makes_the_estimator_panic_or_leaves_it_without_a_pose() {
         assert!(taken > 100 && refused > 100 && unbelieved > 10);
     }
 }
+
+#[test]
+fn a_jump_between_stamps_that_all_but_coincide_tells_no_velocity() {
+    let scan = LaserScan {
+        angle_step_rad: 0.15,
+        ranges_m: vec![2.0; 40],
+        ..LaserScan::default()
+    };
+    let mut slam = Slam::new(SlamConfig::for_robot(&scan));
+    let frame = |stamp_s, odometry| Frame {
+        stamp_s,
+        odometry,
+        scan: scan.clone(),
+    };
+    let jump = SE2::new(3e7, 0.0, 0.0);
+    slam.step(&frame(0.0, None)).unwrap();
+    slam.step(&frame(f64::from_bits(1), Some(jump))).unwrap();
+    let snapshot = slam.snapshot();
+    assert_eq!(snapshot.check(), Ok(()));
+    let mut slam = Slam::restore(&snapshot).unwrap();
+    let here = slam.step(&frame(1.0, None)).unwrap().estimate;
+    assert!((here.x() - 3e7).abs() < 1.0, "{here:?}");
+}

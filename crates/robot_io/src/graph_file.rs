@@ -18,6 +18,8 @@ use pr_optim::g2o::{G2oError, G2oFile};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::lines::json_words;
+
 /// A pose graph with the ids of its file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GraphFile {
@@ -138,7 +140,7 @@ impl GraphFile {
         if bytes.trim_ascii_start().starts_with(b"{") {
             let graph: Self = serde_json::from_slice(bytes).map_err(|e| GraphError::Json {
                 name: name.to_owned(),
-                problem: e.to_string(),
+                problem: in_words(&e),
             })?;
             // The rules of g2o hold for every graph: ids, ends, information, and what is tied.
             G2oFile::parse(graph.to_g2o()).map_err(|e| GraphError::Json {
@@ -185,6 +187,16 @@ impl GraphFile {
         }
         text
     }
+}
+
+/// What is wrong with JSON, and where.
+fn in_words(problem: &serde_json::Error) -> String {
+    format!(
+        "line {}, column {}: {}",
+        problem.line(),
+        problem.column(),
+        json_words(problem)
+    )
 }
 
 /// What a format calls its records.

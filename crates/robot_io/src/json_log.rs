@@ -17,8 +17,9 @@ use pr_geom::SE2;
 use serde::{Deserialize, Serialize};
 
 use crate::line_log::{LineFormat, LineReader};
+use crate::lines::json_words;
 use crate::log::{LogFrame, LogNotes};
-use crate::place::checked;
+use crate::place::{checked, checked_stamp_s};
 
 /// One line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -144,6 +145,7 @@ impl LineFormat for JsonLines {
         }
         let line: FrameLine = serde_json::from_slice(line).map_err(|problem| in_words(&problem))?;
         let frame = LogFrame::from(line);
+        checked_stamp_s(frame.stamp_s)?;
         for pose in [Some(frame.scan.body_from_sensor), frame.odometry] {
             pose.map(checked).transpose()?;
         }
@@ -154,12 +156,10 @@ impl LineFormat for JsonLines {
 
 /// What serde expects, without its own place in the line.
 fn in_words(problem: &serde_json::Error) -> String {
-    let said = problem.to_string();
-    let end = said.find(" at line ").unwrap_or(said.len());
     format!(
         "a frame as JSON was expected, but at column {}: {}",
         problem.column(),
-        &said[..end]
+        json_words(problem)
     )
 }
 

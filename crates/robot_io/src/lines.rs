@@ -66,8 +66,41 @@ fn filled(source: &mut impl BufRead) -> io::Result<&[u8]> {
 
 /// A field fit to be printed: short, and without control characters.
 pub fn printable(field: &str) -> String {
-    let clean: String = field.chars().filter(|c| !c.is_control()).take(24).collect();
-    clean
+    clipped(field, 24)
+}
+
+/// A name from a file: of a topic, a type, a frame. ROS 2 allows it 255 characters.
+pub fn name(text: &str) -> String {
+    clipped(text, 255)
+}
+
+/// What the reader of JSON expects, without its own place in the text, of which it may quote any words.
+pub fn json_words(problem: &serde_json::Error) -> String {
+    let said = problem.to_string();
+    let end = said.find(" at line ").unwrap_or(said.len());
+    clipped(&said[..end], 200)
+}
+
+/// Names one after the other, up to a length that can be read.
+pub fn listed(names: impl Iterator<Item = String>) -> String {
+    let mut list = String::new();
+    for name in names {
+        if list.len() + name.len() > 1000 {
+            list.push_str(", …");
+            break;
+        }
+        if !list.is_empty() {
+            list.push_str(", ");
+        }
+        list.push_str(&name);
+    }
+    list
+}
+
+/// At most so many characters of a text, none of which moves a cursor.
+fn clipped(text: &str, most: usize) -> String {
+    let clean = text.chars().filter(|c| !c.is_control());
+    clean.take(most).collect()
 }
 
 /// A finite number, or what stands there instead.
@@ -120,6 +153,17 @@ mod tests {
                 assert_eq!(read, text.len() as u64);
             }
         }
+    }
+
+    #[test]
+    fn words_of_a_file_are_told_on_one_line_of_a_readable_length() {
+        assert_eq!(name("/sc\nan\u{7f}"), "/scan");
+        let other: Result<u8, _> = serde_json::from_str(&format!("\"{}\"", "x".repeat(10_000)));
+        assert_eq!(json_words(&other.unwrap_err()).len(), 200);
+        let names = (0..1000).map(|number| format!("/topic_{number}"));
+        let list = listed(names);
+        assert!(list.starts_with("/topic_0, /topic_1, ") && list.ends_with(", …"));
+        assert!(list.len() < 1010, "{list}");
     }
 
     #[test]

@@ -1,9 +1,26 @@
-//! Where a robot can be: numbers beyond that are garbage, and would make poses that are none.
+//! Where and when a robot can be: numbers beyond that are garbage, and would make poses that are none.
 
 use pr_geom::SE2;
 
 /// Once round the Earth, m: no frame of odometry, mounting or map has its origin farther away.
 const FARTHEST_M: f64 = 4.1e7;
+
+/// Thirty thousand years, s: no clock of a robot counts from so long ago.
+const LONGEST_S: f64 = 1e12;
+
+/// A time that a robot's clock may tell, s.
+///
+/// # Errors
+/// Where it is not finite, or lies out of all time.
+pub fn checked_stamp_s(stamp_s: f64) -> Result<f64, String> {
+    if stamp_s.abs() <= LONGEST_S {
+        Ok(stamp_s)
+    } else {
+        Err(format!(
+            "a time has to lie within {LONGEST_S:e} s of zero, and is {stamp_s:e} s"
+        ))
+    }
+}
 
 /// Whether a length is one that a robot may have.
 pub fn is_length(value_m: f64) -> bool {
@@ -39,6 +56,20 @@ mod tests {
             let said = checked(SE2::new(x, 0.0, 0.0)).unwrap_err();
             assert!(
                 said.starts_with("a pose has to lie within 41000 km"),
+                "{said}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_time_of_any_clock_is_taken_and_one_beyond_is_told() {
+        // Nanoseconds since 1970 that were taken for milliseconds are none.
+        assert_eq!(checked_stamp_s(1.7e9), Ok(1.7e9));
+        assert_eq!(checked_stamp_s(-1.0), Ok(-1.0));
+        for stamp_s in [1.7e15, f64::NAN] {
+            let said = checked_stamp_s(stamp_s).unwrap_err();
+            assert!(
+                said.starts_with("a time has to lie within 1e12 s"),
                 "{said}"
             );
         }

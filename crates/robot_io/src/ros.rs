@@ -23,6 +23,7 @@ mod bag_file;
 mod collector;
 mod container;
 mod decompress;
+mod file_bytes;
 mod mcap_file;
 mod messages;
 mod point_cloud;

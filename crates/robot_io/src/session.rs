@@ -260,10 +260,21 @@ impl Session {
         if let Some(sensor) = &self.sensor {
             sensor.validate().map_err(|problem| problem.to_string())?;
         }
-        let keyframes = self.driven.keyframes.len();
-        let mut in_order = self.places.windows(2);
-        let is_in_order = in_order.all(|two| two[0].stamp_s < two[1].stamp_s);
-        if !is_in_order || self.places.iter().any(|place| place.keyframe >= keyframes) {
+        // The next scan is after all of them.
+        let (keyframes, end_s) = (&self.driven.keyframes, self.driven.last_stamp_s);
+        let is_before_end = |last_s: Option<f64>| last_s.is_none_or(|last_s| last_s <= end_s);
+        if !keyframes.is_sorted_by(|a, b| a.stamp_s < b.stamp_s)
+            || !is_before_end(keyframes.last().map(|keyframe| keyframe.stamp_s))
+        {
+            return Err("the stamps of keyframes are not in order".to_owned());
+        }
+        let last_place = self.places.last();
+        if !self
+            .places
+            .is_sorted_by(|a, b| a.stamp_s < b.stamp_s && a.keyframe <= b.keyframe)
+            || !is_before_end(last_place.map(|place| place.stamp_s))
+            || last_place.is_some_and(|place| place.keyframe >= keyframes.len())
+        {
             return Err("the places of scans are not in order".to_owned());
         }
         let Some(mapped) = &self.mapped else {

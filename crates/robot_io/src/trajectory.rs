@@ -6,6 +6,7 @@ use pr_geom::{SE2, math};
 use thiserror::Error;
 
 use crate::lines::{LineEnd, finite, next_line};
+use crate::place::{checked, checked_stamp_s};
 
 /// Poses in the order of time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -90,11 +91,12 @@ impl Trajectory {
             }
             let sin = 2.0 * (qw * qz + qx * qy);
             let cos = qw * qw + qx * qx - qy * qy - qz * qz;
-            let theta = math::atan2(sin, cos);
-            poses.push(StampedPose {
-                stamp_s,
-                pose: SE2::new(x, y, theta),
+            let pose = SE2::new(x, y, math::atan2(sin, cos));
+            let stamped = checked_stamp_s(stamp_s).and_then(|stamp_s| {
+                let pose = checked(pose)?;
+                Ok(StampedPose { stamp_s, pose })
             });
+            poses.push(stamped.map_err(|problem| numbers.refuse(problem))?);
         }
         numbers.at_least_one(poses.len())?;
         Ok(Self { poses })
@@ -288,6 +290,7 @@ mod tests {
             ),
             ("1 0 0 0 0 0 0\n", "t.tum: line 1: qw is missing"),
             ("1 0 0 0 0 0 0 0\n", "line 1: the quaternion is zero"),
+            ("1 1e9 0 0 0 0 0 1\n", "line 1: a pose has to lie within"),
             (
                 "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n",
                 "line 2: the stamp is not after",

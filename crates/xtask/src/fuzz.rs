@@ -8,6 +8,7 @@
 mod coverage;
 mod run;
 mod tally;
+mod targets;
 
 use std::fs;
 use std::path::PathBuf;
@@ -16,62 +17,7 @@ use crate::run::{Failure, cargo, root, step};
 use crate::tools;
 use run::TargetRun;
 use tally::Tally;
-
-/// A fuzz target with the sources whose coverage counts.
-pub struct Target {
-    /// Name of the target and of its door.
-    pub name: &'static str,
-    /// Files, or folders with a slash at the end, of what the door leads to.
-    pub sources: &'static [&'static str],
-}
-
-/// Every target, the fast ones first.
-pub const TARGETS: [Target; 7] = [
-    Target {
-        name: "links",
-        sources: &["widgets/kit/src/param.rs"],
-    },
-    Target {
-        name: "messages",
-        sources: &["widgets/kit/src/param.rs", "widgets/kit/src/model.rs"],
-    },
-    Target {
-        name: "g2o",
-        sources: &[
-            "crates/pr_optim/src/g2o.rs",
-            "crates/pr_optim/src/g2o/record.rs",
-        ],
-    },
-    Target {
-        name: "clouds",
-        sources: &["crates/ch16_slam2d/src/cloud/csv.rs"],
-    },
-    Target {
-        name: "graphs",
-        sources: &["crates/pr_optim/src/"],
-    },
-    Target {
-        name: "registration",
-        sources: &["crates/ch16_slam2d/src/icp/", "crates/ch16_slam2d/src/ndt/"],
-    },
-    Target {
-        name: "hands",
-        sources: &[
-            "widgets/w16_1_basin_explorer/src/model",
-            "widgets/w16_2_full_lap/src/model",
-            "widgets/w16_3_cost_terraces/src/model",
-            "widgets/w16_4_control_room/src/model",
-            "widgets/w16_5_pose_graph_toy/src/model",
-            "widgets/w16_6_whole_window/src/model",
-            "widgets/w16_7_been_here/src/model",
-            "widgets/w16_8_moving_box/src/model",
-            "widgets/w16_9_come_back/src/model",
-            "widgets/w16_10_own_robot/src/model",
-            "widgets/w16_11_procrustes/src/model",
-            "widgets/w16_12_jacobians/src/model",
-        ],
-    },
-];
+use targets::{TARGETS, Target};
 
 /// What to fuzz, and for how long.
 #[derive(Debug, PartialEq)]
@@ -246,19 +192,6 @@ mod tests {
             ("now", "`now`"),
         ] {
             assert!(parse_line(line).unwrap_err().contains(word), "{line}");
-        }
-    }
-
-    #[test]
-    fn every_target_has_a_file_and_sources_that_exist() {
-        for target in &TARGETS {
-            let file = format!("fuzz/fuzz_targets/{}.rs", target.name);
-            assert!(root().join(file).exists(), "{}", target.name);
-            for source in target.sources {
-                // A model may be a file with a folder beside it.
-                let path = root().join(source);
-                assert!(path.exists(), "{source}");
-            }
         }
     }
 }

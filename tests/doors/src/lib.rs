@@ -4,13 +4,19 @@
 //! keeping lies in `fuzz/corpus` and `fuzz/found`, and the tests of this package replay it.
 
 pub mod clouds;
+pub mod files;
 pub mod g2o;
 pub mod graphs;
 pub mod hands;
 pub mod links;
+pub mod logs;
 pub mod messages;
 mod numbers;
 pub mod registration;
+mod runs;
+mod sealed;
+mod sentences;
+pub mod sessions;
 mod solve;
 mod widgets;
 
@@ -18,11 +24,14 @@ mod widgets;
 pub type Door = fn(&[u8]);
 
 /// Every door with the name of its fuzz target.
-pub const DOORS: [(&str, Door); 7] = [
+pub const DOORS: [(&str, Door); 10] = [
     ("links", links::door),
     ("messages", messages::door),
     ("g2o", g2o::door),
     ("clouds", clouds::door),
+    ("files", files::door),
+    ("logs", logs::door),
+    ("sessions", sessions::door),
     ("graphs", graphs::door),
     ("registration", registration::door),
     ("hands", hands::door),

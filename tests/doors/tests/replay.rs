@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 
 use slam2d_doors::DOORS;
 
-/// The inputs are part of the repository: a few hundred small files at most.
-const MAX_FILES: usize = 600;
-const MAX_BYTES: usize = 100_000;
+/// The inputs are part of the repository: hundreds of small files at most.
+const MAX_FILES: usize = 800;
+const MAX_BYTES: usize = 200_000;
 
 fn fuzz() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz")

@@ -19,6 +19,11 @@ use crate::metrics::position_error_m;
 use crate::scan::{PreparedFrame, is_finite};
 use crate::submaps::{ActiveSubmaps, FinishedSubmap, FrontEndKind};
 
+/// Stamps that are closer all but coincide, s: a motion between them tells no velocity.
+const SHORTEST_S: f64 = 1e-6;
+/// A velocity that leads farther leads nowhere, m: no map is so large.
+const FARTHEST_M: f64 = 1e9;
+
 /// A sweep of the local map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowSweep {
@@ -192,8 +197,10 @@ impl FrontEnd {
         let motion = frame
             .odometry
             .unwrap_or_else(|| SE2::exp(&(self.velocity * self.extrapolated_s(dt_s, config))));
-        // A velocity from two stamps that all but coincide may lead anywhere: then it is none.
-        let motion = if is_finite(&(before * motion)) {
+        // The velocity of a jump may lead anywhere: then it is none.
+        let is_motion =
+            frame.odometry.is_some() || position_error_m(&SE2::identity(), &motion) <= FARTHEST_M;
+        let motion = if is_motion && is_finite(&(before * motion)) {
             motion
         } else {
             SE2::identity()
@@ -222,7 +229,7 @@ impl FrontEnd {
         }
         self.remember_trust(accepted, &motion, frame.odometry.is_some(), config);
         self.last_dt_s = dt_s;
-        self.velocity = before.between(&self.estimate).log() / dt_s;
+        self.velocity = before.between(&self.estimate).log() / dt_s.max(SHORTEST_S);
         self.threshold.update(&prediction, &self.estimate);
         Registration {
             prediction,

@@ -10,6 +10,9 @@ use crate::world::{Bounds, Wall, World};
 /// What editors of Windows put before a text.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
+/// So many characters of what the reader of JSON says are told.
+const MOST_QUOTED: usize = 200;
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CourseFile {
@@ -88,7 +91,10 @@ fn refusal(error: &serde_json::Error) -> CourseError {
     let (line, column) = (error.line(), error.column());
     let words = error.to_string();
     let place = format!(" at line {line} column {column}");
-    let problem = words.strip_suffix(&place).unwrap_or(&words).to_owned();
+    let words = words.strip_suffix(&place).unwrap_or(&words);
+    // It may quote any words of the file.
+    let printable = words.chars().filter(|c| !c.is_control());
+    let problem: String = printable.take(MOST_QUOTED).collect();
     match error.classify() {
         Category::Data => CourseError::NotACourse {
             line,

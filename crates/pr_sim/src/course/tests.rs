@@ -120,6 +120,13 @@ fn what_is_wrong_is_one_sentence_that_says_what_where_and_what_to_do() {
             "line 5, column 2: EOF while parsing",
             "last item",
         ),
+        // What moves a terminal's cursor is not told.
+        (
+            "\"turn_at\"",
+            "\"turn\u{7f}at\u{9b}\"",
+            "line 5, column 13: unknown field `turnat`, expected one of `walls_m`",
+            "[[x, y], …]",
+        ),
         (
             "\"turn_at\"",
             "\"turnat\"",

@@ -5,7 +5,7 @@ use pr_geom::SE2;
 
 use crate::lines::{finite, printable};
 use crate::log::LogFrame;
-use crate::place::checked;
+use crate::place::{checked, checked_stamp_s};
 
 /// More beams than any planar laser has.
 const MOST_BEAMS: usize = 100_000;
@@ -80,7 +80,7 @@ impl<'a> Fields<'a> {
         let ipc_s = self.number("ipc_time")?;
         self.word();
         let logger_s = self.number("logger_time")?;
-        Ok(if ipc_s > 0.0 {
+        checked_stamp_s(if ipc_s > 0.0 {
             ipc_s
         } else if logger_s > 0.0 {
             logger_s

@@ -12,6 +12,7 @@ use super::point_cloud::point_cloud;
 use super::transforms::{Mount, Transforms, planar};
 use super::waiting::{WaitingScan, WaitingScans, WheelPoses};
 use super::wire::WireReader;
+use crate::lines::listed;
 use crate::log::{LogFrame, LogNotes, LogOptions};
 use crate::place::checked;
 
@@ -330,22 +331,15 @@ impl Collector {
         if let Some(problem) = &self.other_clouds {
             return problem.clone();
         }
-        let topics: Vec<String> = self
-            .counts
-            .keys()
-            .take(20)
-            .map(|(topic, kind)| format!("{topic} ({kind})"))
-            .collect();
+        let topics = self.counts.keys().take(20);
+        let topics = listed(topics.map(|(topic, kind)| format!("{topic} ({kind})")));
         if let Some(topic) = &self.options.scan_topic {
-            return format!("{topic} is not one of {}", topics.join(", "));
+            return format!("{topic} is not one of {topics}");
         }
         if topics.is_empty() {
             return "it has no message".to_owned();
         }
-        format!(
-            "it has {}; record a topic of type sensor_msgs/LaserScan as well",
-            topics.join(", ")
-        )
+        format!("it has {topics}; record a topic of type sensor_msgs/LaserScan as well")
     }
 }
 

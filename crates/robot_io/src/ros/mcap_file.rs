@@ -1,116 +1,156 @@
-//! MCAP: records with channels and schemas, in chunks. The `mcap` crate knows the format.
+//! MCAP: records, of which some are chunks of records.
+//!
+//! Source: "MCAP format specification", version 0, mcap.dev/spec. The crate `mcap` believes the length of
+//! a record inside of a chunk, which costs memory or overflows; the format is small.
+
+mod chunk;
+mod records;
 
 use std::io::BufRead;
 
-use mcap::sans_io::{LinearReaderOptions, MessageReadEvent, MessageReader};
-use mcap::{McapError, McapResult};
+use super::container::{Container, ContainerError, Recorded};
+use super::file_bytes::FileBytes;
+use records::{HEAD_BYTES, Records, head, op};
 
-use super::container::{Container, ContainerError, MOST_BYTES, Recorded, kind_of};
-use super::decompress::{ChunkUnpacker, Packing};
-use super::wire::Wire;
-
-/// So much is asked of the file at once: a length that is a lie costs no more.
-const PIECE_BYTES: usize = 1 << 16;
+/// A file begins and ends with it.
+const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
 /// Messages of an MCAP file, in the order of the file.
 pub struct McapFile<R> {
-    source: R,
-    reader: MessageReader,
-    offset: u64,
+    file: FileBytes<R>,
+    is_started: bool,
     is_done: bool,
+    records: Records,
+    /// Records of the chunk under way, from `chunk_at` on.
+    chunk: Vec<u8>,
+    chunk_at: usize,
 }
 
 impl<R: BufRead> McapFile<R> {
     /// A reader at the file's start.
     pub fn new(source: R) -> Self {
-        let options = LinearReaderOptions::default()
-            .with_validate_chunk_crcs(true)
-            .with_record_length_limit(MOST_BYTES);
-        let mut reader = MessageReader::new_with_options(options);
-        for packing in [Packing::Lz4, Packing::Zstd] {
-            reader
-                .add_decompressor(ChunkUnpacker::new(packing))
-                .expect("they have names");
-        }
         Self {
-            source,
-            reader,
-            offset: 0,
+            file: FileBytes::new(source),
+            is_started: false,
             is_done: false,
+            records: Records::default(),
+            chunk: Vec::new(),
+            chunk_at: 0,
         }
     }
 
-    fn next_event(&mut self) -> Result<Option<McapResult<MessageReadEvent>>, ContainerError> {
-        loop {
-            let wanted = match self.reader.next_event() {
-                Some(Ok(MessageReadEvent::ReadRequest(wanted))) => wanted,
-                other => return Ok(other),
-            };
-            let there = self.source.fill_buf().map_err(ContainerError::Io)?;
-            let count = wanted.min(there.len()).min(PIECE_BYTES);
-            self.reader.insert(count)[..count].copy_from_slice(&there[..count]);
-            self.reader.notify_read(count);
-            self.source.consume(count);
-            self.offset += count as u64;
+    fn magic(&mut self) -> Result<(), ContainerError> {
+        if self.file.take(MAGIC.len() as u64, "MCAP's magic")? == MAGIC {
+            return Ok(());
         }
+        Err(ContainerError::Broken(
+            "MCAP's magic was expected".to_owned(),
+        ))
+    }
+
+    /// Takes the next record of the file; answers with its message where it is one that can be read.
+    fn next_record(&mut self) -> Result<Option<Recorded>, ContainerError> {
+        let bytes = self.file.take(HEAD_BYTES as u64, "a record's head")?;
+        let (op, length) = head(&bytes).expect("as many bytes as were taken");
+        match op {
+            op::CHUNK => {
+                let bytes = self.file.up_to(length, "a chunk")?;
+                self.chunk = chunk::records(&bytes, (bytes.len() as u64) < length)?;
+                self.chunk_at = 0;
+                Ok(None)
+            }
+            op::SCHEMA | op::CHANNEL | op::MESSAGE => {
+                let body = self.file.take(length, "a record")?;
+                self.records.take(op, &body)
+            }
+            op::FOOTER => {
+                self.file.skip(length, "the footer")?;
+                self.is_done = true;
+                self.magic().map(|()| None)
+            }
+            _ => self.file.skip(length, "a record").map(|()| None),
+        }
+    }
+
+    /// Takes the next record of the chunk.
+    fn next_of_chunk(&mut self) -> Result<Option<Recorded>, ContainerError> {
+        let rest = &self.chunk[self.chunk_at..];
+        let body = head(rest).and_then(|(op, length)| {
+            let length = usize::try_from(length).ok()?;
+            let body = rest[HEAD_BYTES..].get(..length)?;
+            Some((op, body))
+        });
+        let (op, body) = body.ok_or_else(|| {
+            ContainerError::CutOff("the end of a record inside of a chunk was expected".to_owned())
+        })?;
+        self.chunk_at += HEAD_BYTES + body.len();
+        self.records.take(op, body)
     }
 }
 
 impl<R: BufRead> Container for McapFile<R> {
     fn next_message(&mut self) -> Result<Option<Recorded>, ContainerError> {
+        if !self.is_started {
+            self.magic()?;
+            self.is_started = true;
+        }
         while !self.is_done {
-            let message = match self.next_event()? {
-                Some(Ok(MessageReadEvent::Message(message))) => message,
-                Some(Ok(MessageReadEvent::ReadRequest(_))) => continue,
-                None => {
-                    self.is_done = true;
-                    break;
-                }
-                Some(Err(problem)) => {
-                    self.is_done = true;
-                    return Err(in_words(problem));
-                }
+            let message = if self.chunk_at < self.chunk.len() {
+                self.next_of_chunk()?
+            } else {
+                self.next_record()?
             };
-            let channel = &message.channel;
-            let wire = match channel.message_encoding.as_str() {
-                "cdr" => Wire::Cdr,
-                "ros1" => Wire::Ros1,
-                // Other encodings are other systems' messages.
-                _ => continue,
-            };
-            let schema = channel.schema.as_ref();
-            return Ok(Some(Recorded {
-                topic: channel.topic.clone(),
-                kind: kind_of(schema.map_or("", |schema| &schema.name)),
-                wire,
-                recorded_s: message.log_time as f64 * 1e-9,
-                bytes: message.data.into_owned(),
-            }));
+            if message.is_some() {
+                return Ok(message);
+            }
         }
         Ok(None)
     }
 
     fn offset(&self) -> u64 {
-        self.offset
+        self.file.offset()
     }
 }
 
-fn in_words(problem: McapError) -> ContainerError {
-    match problem {
-        McapError::UnexpectedEof => {
-            ContainerError::CutOff("the end of a record was expected".to_owned())
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(op: u8, body: &[u8]) -> Vec<u8> {
+        [&[op][..], &(body.len() as u64).to_le_bytes(), body].concat()
+    }
+
+    /// A file with one chunk that is not packed.
+    fn file(records: &[u8], packed: u64) -> Vec<u8> {
+        let size = (records.len() as u64).to_le_bytes();
+        let head = [&[0; 16], &size[..], &[0; 8], &packed.to_le_bytes()].concat();
+        [MAGIC, &record(op::CHUNK, &[&head, records].concat())].concat()
+    }
+
+    #[test]
+    fn a_length_inside_of_a_chunk_is_not_believed_beyond_the_chunk() {
+        let whole = record(15, &[0; 4]);
+        for length in [1, 200_000_000, u64::MAX] {
+            let mut records = whole.clone();
+            records.push(op::MESSAGE);
+            records.extend_from_slice(&length.to_le_bytes());
+            let bytes = file(&records, records.len() as u64);
+            // What follows the chunk is none of it.
+            let bytes = [bytes, record(15, &[0; 40])].concat();
+            let said = McapFile::new(&bytes[..]).next_message().unwrap_err();
+            let is_told =
+                matches!(&said, ContainerError::CutOff(said) if said.contains("inside of a chunk"));
+            assert!(is_told, "{length}: {said:?}");
         }
-        McapError::UnsupportedCompression(name) => ContainerError::Broken(format!(
-            "a chunk packed by lz4, by zstd or not at all was expected, and it is packed by ‘{}’; convert it with mcap compress",
-            crate::lines::printable(&name)
-        )),
-        McapError::DecompressionError(problem) => ContainerError::Broken(problem),
-        other => {
-            let mut said = other.to_string();
-            if let McapError::Parse(_) = other {
-                said = "a record of MCAP was expected".to_owned();
-            }
-            ContainerError::Broken(said)
-        }
+        let lie = file(&whole, 1000);
+        let said = McapFile::new(&lie[..]).next_message().unwrap_err();
+        assert!(matches!(said, ContainerError::Broken(said) if said.contains("1000 bytes")));
+    }
+
+    #[test]
+    fn a_record_that_nobody_needs_may_be_longer_than_memory() {
+        let bytes = [MAGIC, &[9], &(1_u64 << 40).to_le_bytes(), &[0; 100]].concat();
+        let said = McapFile::new(&bytes[..]).next_message().unwrap_err();
+        assert!(matches!(said, ContainerError::CutOff(said) if said.contains("100 are there")));
     }
 }

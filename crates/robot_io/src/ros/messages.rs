@@ -44,7 +44,7 @@ pub fn header(fields: &mut WireReader<'_>) -> Result<Header, WireError> {
     Ok(Header {
         stamp_s: fields.stamp_s()?,
         // ROS 1 has names with a slash in front.
-        frame: fields.text("the frame")?.trim_start_matches('/').to_owned(),
+        frame: fields.name("the frame")?.trim_start_matches('/').to_owned(),
     })
 }
 
@@ -87,7 +87,7 @@ pub fn laser_scan(fields: &mut WireReader<'_>) -> Result<(Header, LaserScan), Wi
 /// `nav_msgs/Odometry`.
 pub fn odometry(fields: &mut WireReader<'_>) -> Result<OdometryMessage, WireError> {
     let header = header(fields)?;
-    let child = fields.text("child_frame_id")?;
+    let child = fields.name("child_frame_id")?;
     Ok(OdometryMessage {
         header,
         child: child.trim_start_matches('/').to_owned(),
@@ -102,7 +102,7 @@ pub fn transforms(fields: &mut WireReader<'_>) -> Result<Vec<TransformMessage>, 
     let mut all = Vec::with_capacity(count);
     for _ in 0..count {
         let header = header(fields)?;
-        let child = fields.text("child_frame_id")?;
+        let child = fields.name("child_frame_id")?;
         all.push(TransformMessage {
             header,
             child: child.trim_start_matches('/').to_owned(),

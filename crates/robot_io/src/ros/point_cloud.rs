@@ -64,7 +64,7 @@ fn ring(fields: &mut WireReader<'_>) -> Result<(Header, Vec<(f64, f64)>), String
     let count = fields.count("fields", 10).map_err(told)?;
     let (mut x, mut y, mut ring) = (None, None, None);
     for _ in 0..count {
-        let name = fields.text("a field's name").map_err(told)?;
+        let name = fields.name("a field's name").map_err(told)?;
         let field = Field {
             offset: fields.u32("a field's offset").map_err(told)? as usize,
             kind: fields.u8("a field's type").map_err(told)?,

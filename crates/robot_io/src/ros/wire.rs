@@ -119,9 +119,19 @@ impl<'a> WireReader<'a> {
         Ok(u8::from_le_bytes(self.number(what)?))
     }
 
+    /// The next whole number of two bytes.
+    pub fn u16(&mut self, what: &str) -> Result<u16, WireError> {
+        Ok(u16::from_le_bytes(self.number(what)?))
+    }
+
     /// The next whole number.
     pub fn u32(&mut self, what: &str) -> Result<u32, WireError> {
         Ok(u32::from_le_bytes(self.number(what)?))
+    }
+
+    /// The next whole number of eight bytes.
+    pub fn u64(&mut self, what: &str) -> Result<u64, WireError> {
+        Ok(u64::from_le_bytes(self.number(what)?))
     }
 
     /// The next number of four bytes.
@@ -134,8 +144,8 @@ impl<'a> WireReader<'a> {
         Ok(f64::from_le_bytes(self.number(what)?))
     }
 
-    /// The next text; bytes that are no text become question marks.
-    pub fn text(&mut self, what: &str) -> Result<String, WireError> {
+    /// The next text, as a name that can be printed; bytes that are no text become question marks.
+    pub fn name(&mut self, what: &str) -> Result<String, WireError> {
         let count = self.u32(what)? as usize;
         let bytes = self.take(count, what)?;
         let bytes = match self.wire {
@@ -143,13 +153,18 @@ impl<'a> WireReader<'a> {
             Wire::Cdr => bytes.strip_suffix(&[0]).unwrap_or(bytes),
             Wire::Ros1 => bytes,
         };
-        Ok(String::from_utf8_lossy(bytes).into_owned())
+        Ok(crate::lines::name(&String::from_utf8_lossy(bytes)))
     }
 
     /// A list of bytes.
     pub fn bytes(&mut self, what: &str) -> Result<&'a [u8], WireError> {
         let count = self.u32(what)? as usize;
         self.take(count, what)
+    }
+
+    /// All that is left.
+    pub fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
     }
 
     /// The length of a list whose things have `smallest` bytes at least.
@@ -206,7 +221,7 @@ mod tests {
         let bytes = [7, 2, 0, 0, 0, b'a', b'b', 0, 0, 192, 63];
         let mut reader = WireReader::new(Wire::Ros1, &bytes).unwrap();
         assert_eq!(reader.u8("a"), Ok(7));
-        assert_eq!(reader.text("b").unwrap(), "ab");
+        assert_eq!(reader.name("b").unwrap(), "ab");
         assert_eq!(reader.f32("c"), Ok(1.5));
         let past = reader.u32("d").unwrap_err();
         assert_eq!(

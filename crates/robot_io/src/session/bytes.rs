@@ -2,6 +2,9 @@
 
 use pr_geom::{Matrix3, SE2};
 
+/// Larger numbers are no measurement, and their products would be none at all.
+const LARGEST: f64 = 1e50;
+
 /// Where bytes are not what they have to be.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Broken {
@@ -140,6 +143,17 @@ impl<'a> Cursor<'a> {
         Ok(f64::from_le_bytes(self.array()?))
     }
 
+    /// A number that can be calculated with.
+    pub fn number(&mut self) -> Result<f64, Broken> {
+        let value = self.f64()?;
+        if value.abs() <= LARGEST {
+            return Ok(value);
+        }
+        Err(self.broken(format!(
+            "a number within ±{LARGEST:e} was expected, not {value:e}"
+        )))
+    }
+
     /// A number of things that take at least `bytes_each`: no more than fit into what is left.
     pub fn count(&mut self, bytes_each: usize) -> Result<usize, Broken> {
         let count = self.u32()? as usize;
@@ -154,8 +168,8 @@ impl<'a> Cursor<'a> {
 
     /// A pose whose heading is within a half turn, as it is written.
     pub fn pose(&mut self) -> Result<SE2, Broken> {
-        let [x, y, theta] = [self.f64()?, self.f64()?, self.f64()?];
-        if theta.is_nan() || theta.abs() > core::f64::consts::PI {
+        let [x, y, theta] = [self.number()?, self.number()?, self.number()?];
+        if theta.abs() > core::f64::consts::PI {
             return Err(self.broken(format!("a heading within ±π was expected, not {theta}")));
         }
         Ok(SE2::new(x, y, theta))
@@ -165,7 +179,7 @@ impl<'a> Cursor<'a> {
         let mut matrix = Matrix3::zeros();
         for row in 0..3 {
             for column in 0..3 {
-                matrix[(row, column)] = self.f64()?;
+                matrix[(row, column)] = self.number()?;
             }
         }
         Ok(matrix)

@@ -26,6 +26,8 @@ use ch16_slam2d::slam::{
 use ch16_slam2d::submaps::{FrontEndKind, GridConfig, SubmapConfig};
 use pr_geom::SE2;
 
+use crate::lines::printable;
+
 /// Larger counts are no settings.
 const MOST: usize = 1_000_000;
 /// Lengths within this are settings, m.
@@ -53,10 +55,10 @@ pub fn read_config(text: &str) -> Result<SlamConfig, String> {
     let mut config = SlamConfig::default();
     slam(&mut config, &mut known);
     if let Some((name, _)) = known.values.first_key_value() {
-        let shown: String = name.chars().take(40).filter(|c| !c.is_control()).collect();
-        known
-            .problem
-            .get_or_insert(format!("the estimator has no parameter ‘{shown}’"));
+        known.problem.get_or_insert(format!(
+            "the estimator has no parameter ‘{}’",
+            printable(name)
+        ));
     }
     known.problem.map_or(Ok(config), Err)
 }

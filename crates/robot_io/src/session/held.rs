@@ -60,7 +60,7 @@ pub fn write(held: &HeldLoop, out: &mut Writer) {
 }
 
 pub fn read(from: &mut Cursor<'_>) -> Result<HeldLoop, Broken> {
-    let way_m = from.f64()?;
+    let way_m = from.number()?;
     let is_expected = from.flag()?;
     let from_node = from.u32()? as usize;
     let candidate = LoopCandidate {
@@ -79,7 +79,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<HeldLoop, Broken> {
         iterations: from.u32()? as usize,
         score: from.maybe(Cursor::f64)?,
         margin: from.maybe(Cursor::f64)?,
-        innovation: Vector3::new(from.f64()?, from.f64()?, from.f64()?),
+        innovation: Vector3::new(from.number()?, from.number()?, from.number()?),
         gate_information: from.matrix()?,
         gate: GateTest {
             chi2: from.f64()?,

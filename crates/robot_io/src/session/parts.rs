@@ -196,8 +196,10 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
     })?;
     let front_end = from.section(b"FRNT", |from| {
         let estimate = from.pose()?;
-        let velocity = Vector3::new(from.f64()?, from.f64()?, from.f64()?);
-        let [last_dt_s, deviations_m2] = [from.f64()?, from.f64()?];
+        let velocity = Vector3::new(from.number()?, from.number()?, from.number()?);
+        // Infinite before the first motion.
+        let last_dt_s = from.f64()?;
+        let deviations_m2 = from.number()?;
         let deviations = read_number(from)?;
         let driven = from.matrix()?;
         let unregistered = from.maybe(Cursor::matrix)?;

@@ -242,7 +242,7 @@ pub fn read(from: &mut Cursor<'_>, radius_m: f64) -> Result<PointCloud, Broken> 
     for _ in 0..count {
         let mut value = || -> Result<f64, Broken> {
             Ok(match precision {
-                Precision::Exact => from.f64()?,
+                Precision::Exact => from.number()?,
                 Precision::Single => f64::from(from.f32()?),
                 Precision::Fixed(shift) => f64::from(from.i16()?) / steps(shift),
             })

@@ -263,6 +263,37 @@ fn bytes_that_nobody_wrote_are_a_sentence_or_a_session_that_can_be_used() {
 }
 
 #[test]
+fn what_no_run_can_have_left_is_refused() {
+    let good = run(40, 0..12).session().unwrap();
+    let refused = |change: &dyn Fn(&mut Session), said: &str| {
+        let mut session = good.clone();
+        change(&mut session);
+        let told = Session::of_bytes(&session.to_bytes(), "x").unwrap_err();
+        assert!(told.to_string().contains(said), "{told}");
+    };
+    let far = SE2::new(1e60, 0.0, 0.0);
+    refused(&|x| x.driven.nodes[0].pose = far, "within ±1e50");
+    refused(
+        &|x| x.driven.edges[0].edge.information *= 1e60,
+        "within ±1e50",
+    );
+    refused(
+        &|x| x.driven.last_stamp_s = 0.0,
+        "keyframes are not in order",
+    );
+    refused(&|x| x.driven.keyframes[1].stamp_s = 0.0, "not in order");
+    let last_s = good.driven.last_stamp_s;
+    refused(
+        &|x| x.places.last_mut().unwrap().stamp_s = last_s + 1.0,
+        "places of scans are not in order",
+    );
+    refused(
+        &|x| x.places[0].keyframe = 1,
+        "places of scans are not in order",
+    );
+}
+
+#[test]
 fn what_is_no_session_is_told_from_what_was_one() {
     let bytes = saved(&run(40, 0..3));
     let mut newer = bytes.clone();

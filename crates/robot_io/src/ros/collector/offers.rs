@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{Collector, TRANSFORMS, WheelSource};
+use crate::lines::listed;
 use crate::log::{LogOffer, LogOption};
 
 /// So many topics or frames are offered for an option.
@@ -45,12 +46,10 @@ impl Collector {
                     }
                     LogOption::BodyFrame => (Some(self.body().to_owned()), bodies.clone()),
                 };
-                let names = names.into_iter();
-                let printable = names.filter(|name| !name.contains(char::is_control));
                 LogOffer {
                     option,
                     taken,
-                    names: printable.take(MOST_OFFERED).collect(),
+                    names: names.into_iter().take(MOST_OFFERED).collect(),
                 }
             })
             .to_vec()
@@ -81,14 +80,11 @@ impl Collector {
     pub fn instead_of(&self, option: LogOption) -> String {
         let offers = self.offers();
         let offer = offers.iter().find(|offer| offer.option == option);
-        let names: Vec<&str> = offer.map_or_else(Vec::new, |offer| {
-            let names = offer.names.iter().take(20);
-            names.map(String::as_str).collect()
-        });
+        let names = offer.map_or(&[][..], |offer| &offer.names);
         if names.is_empty() {
             "it has none, so leave the option out".to_owned()
         } else {
-            format!("it has {}", names.join(", "))
+            format!("it has {}", listed(names.iter().take(20).cloned()))
         }
     }
 }

@@ -1,0 +1,129 @@
+//! Records of a bag: a header with named fields, and data.
+
+use std::collections::BTreeMap;
+
+use crate::ros::container::{Recorded, kind_of};
+use crate::ros::wire::Wire;
+
+/// More topics than any robot has.
+const MOST_CONNECTIONS: usize = 10_000;
+
+/// Kinds of records, by their field `op`.
+pub mod op {
+    pub const MESSAGE: u8 = 2;
+    pub const CHUNK: u8 = 5;
+    pub const CONNECTION: u8 = 7;
+}
+
+/// Topic and type of a connection.
+#[derive(Clone, Debug)]
+struct Connection {
+    topic: String,
+    kind: String,
+}
+
+/// The connections that were announced so far, by their numbers.
+#[derive(Debug, Default)]
+pub struct Connections(BTreeMap<u32, Connection>);
+
+impl Connections {
+    /// Takes a record that is no chunk; answers with its message where it is one.
+    pub fn take(&mut self, fields: &Fields<'_>, data: &[u8]) -> Result<Option<Recorded>, String> {
+        match fields.op()? {
+            op::CONNECTION => self.take_connection(fields, data).map(|()| None),
+            op::MESSAGE => self.message(fields, data).map(Some),
+            _ => Ok(None),
+        }
+    }
+
+    fn take_connection(&mut self, named: &Fields<'_>, data: &[u8]) -> Result<(), String> {
+        let number = named.u32("conn")?;
+        let topic = named.name("topic")?;
+        let kind = Fields::of(data)?.name("type")?;
+        if self.0.len() < MOST_CONNECTIONS {
+            let kind = kind_of(&kind);
+            self.0.insert(number, Connection { topic, kind });
+        }
+        Ok(())
+    }
+
+    fn message(&self, named: &Fields<'_>, data: &[u8]) -> Result<Recorded, String> {
+        let number = named.u32("conn")?;
+        let Some(connection) = self.0.get(&number) else {
+            return Err(format!(
+                "a message names connection {number}, which is unknown"
+            ));
+        };
+        let [seconds, nanoseconds] = [named.time(0)?, named.time(4)?];
+        Ok(Recorded {
+            topic: connection.topic.clone(),
+            kind: connection.kind.clone(),
+            wire: Wire::Ros1,
+            bytes: data.to_vec(),
+            recorded_s: f64::from(seconds) + f64::from(nanoseconds) * 1e-9,
+        })
+    }
+}
+
+/// A length and as many bytes.
+pub fn piece<'a>(rest: &mut &'a [u8], what: &str) -> Result<&'a [u8], String> {
+    let short = || format!("{what} was expected, and the bytes end");
+    let (length, after) = rest.split_first_chunk::<4>().ok_or_else(short)?;
+    let length = u32::from_le_bytes(*length) as usize;
+    let (piece, after) = after.split_at_checked(length).ok_or_else(short)?;
+    *rest = after;
+    Ok(piece)
+}
+
+/// The named fields of a header.
+pub struct Fields<'a> {
+    named: BTreeMap<&'a [u8], &'a [u8]>,
+}
+
+impl<'a> Fields<'a> {
+    /// The fields of these bytes.
+    pub fn of(mut header: &'a [u8]) -> Result<Self, String> {
+        let mut named = BTreeMap::new();
+        while !header.is_empty() {
+            let field = piece(&mut header, "a field")?;
+            let equals = field.iter().position(|&byte| byte == b'=');
+            let equals = equals.ok_or("a field ‘name=value’ was expected")?;
+            named.insert(&field[..equals], &field[equals + 1..]);
+        }
+        Ok(Self { named })
+    }
+
+    fn value(&self, name: &str) -> Result<&'a [u8], String> {
+        let value = self.named.get(name.as_bytes()).copied();
+        value.ok_or_else(|| format!("a field ‘{name}’ was expected"))
+    }
+
+    /// What kind of record it is.
+    pub fn op(&self) -> Result<u8, String> {
+        match self.value("op")? {
+            &[op] => Ok(op),
+            _ => Err("a field ‘op’ of one byte was expected".to_owned()),
+        }
+    }
+
+    /// A whole number.
+    pub fn u32(&self, name: &str) -> Result<u32, String> {
+        let value = self.value(name)?.try_into();
+        let value = value.map_err(|_| format!("a field ‘{name}’ of four bytes was expected"))?;
+        Ok(u32::from_le_bytes(value))
+    }
+
+    /// Half of the field `time`, which starts at byte `from`.
+    fn time(&self, from: usize) -> Result<u32, String> {
+        let value = self.value("time")?.get(from..from + 4);
+        let value = value.and_then(|value| value.try_into().ok());
+        let value = value.ok_or("a field ‘time’ of eight bytes was expected")?;
+        Ok(u32::from_le_bytes(value))
+    }
+
+    /// A text, as a name that can be printed; bytes that are no text become question marks.
+    pub fn name(&self, name: &str) -> Result<String, String> {
+        let text = String::from_utf8_lossy(self.value(name)?);
+        Ok(crate::lines::name(&text))
+    }
+}

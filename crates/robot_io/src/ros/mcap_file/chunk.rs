@@ -1,0 +1,75 @@
+//! The records of a chunk, unpacked.
+
+use super::records::{broken, fields};
+use crate::ros::container::{ContainerError, MOST_BYTES};
+use crate::ros::decompress::Packing;
+use crate::ros::wire::{WireError, WireReader};
+
+/// What stands before the records.
+struct Head {
+    /// Bytes of the records.
+    size: u64,
+    /// Their checksum; 0 where there is none.
+    sum: u32,
+    packing: String,
+    /// Bytes that they are packed in.
+    packed: u64,
+}
+
+/// The records of a chunk. Of one that is cut off, those that are there, unless they are packed.
+pub fn records(chunk: &[u8], is_cut_off: bool) -> Result<Vec<u8>, ContainerError> {
+    let cut_off = || ContainerError::CutOff("the end of a chunk was expected".to_owned());
+    let mut fields = fields(chunk)?;
+    let head = head(&mut fields).map_err(|problem| match is_cut_off {
+        true => cut_off(),
+        false => broken(problem),
+    })?;
+    let there = fields.rest();
+    let packed = usize::try_from(head.packed).ok();
+    let Some(packed) = packed.and_then(|packed| there.get(..packed)) else {
+        return match (is_cut_off, head.packing.as_str()) {
+            (true, "") => Ok(there.to_vec()),
+            (true, _) => Err(cut_off()),
+            (false, _) => Err(ContainerError::Broken(format!(
+                "a chunk of {} bytes was expected, and {} are there",
+                head.packed,
+                there.len()
+            ))),
+        };
+    };
+    let size = head.size.min(MOST_BYTES as u64) as usize;
+    let records = match head.packing.as_str() {
+        "" => Ok(packed.to_vec()),
+        "lz4" => Packing::Lz4.unpack(packed, size),
+        "zstd" => Packing::Zstd.unpack(packed, size),
+        other => Err(format!(
+            "a chunk packed by lz4, by zstd or not at all was expected, and it is packed by ‘{}’; convert it with mcap compress",
+            crate::lines::printable(other)
+        )),
+    };
+    let records = records.map_err(ContainerError::Broken)?;
+    if records.len() as u64 != head.size {
+        return Err(ContainerError::Broken(format!(
+            "a chunk of {} bytes was expected, and it unpacks to {}",
+            head.size,
+            records.len()
+        )));
+    }
+    if head.sum != 0 && head.sum != crc32fast::hash(&records) {
+        return Err(ContainerError::Broken(
+            "a chunk is damaged: another checksum was expected".to_owned(),
+        ));
+    }
+    Ok(records)
+}
+
+fn head(fields: &mut WireReader<'_>) -> Result<Head, WireError> {
+    fields.u64("a chunk's first time")?;
+    fields.u64("a chunk's last time")?;
+    Ok(Head {
+        size: fields.u64("a chunk's size")?,
+        sum: fields.u32("a chunk's checksum")?,
+        packing: fields.name("a chunk's packing")?,
+        packed: fields.u64("a chunk's packed size")?,
+    })
+}

@@ -1,0 +1,5 @@
+//! The door `logs` of `tests/doors`.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_doors::logs::door(data));

@@ -1,0 +1,76 @@
+//! Recorded logs of every format: read, told of, written in other formats, and mapped.
+
+use robot_io::carmen::{CarmenReader, write_carmen};
+use robot_io::info::LogInfo;
+use robot_io::json_log::{FrameLine, JsonLogReader};
+use robot_io::log::{LogFormat, LogFrame, LogNotes, LogOptions, LogReader};
+use robot_io::run::{LogRun, OdometryUse};
+
+use crate::runs::{assert_finite, assert_loads, drive};
+use crate::sentences::{NAME, assert_refusal, assert_sentence};
+
+/// More frames are read, but not mapped: the door is about the readers.
+const MAX_MAPPED: usize = 6;
+/// Nor are scans with more beams.
+const MAX_BEAMS: usize = 64;
+
+/// A log is refused in one sentence, or yields frames of finite numbers, which can be written and mapped.
+pub fn door(bytes: &[u8]) {
+    let Some((frames, notes)) = read(bytes, &LogOptions::default()) else {
+        return;
+    };
+    for offer in &notes.offers {
+        for name in offer.names.iter().rev().take(1) {
+            read(bytes, &LogOptions::default().with(offer.option, name));
+        }
+    }
+    let mut info = LogInfo::default();
+    frames.iter().for_each(|frame| info.take(frame));
+    assert!(info.duration_s.is_finite(), "{info:?}");
+    assert!(info.odometry_way_m.is_none_or(f64::is_finite), "{info:?}");
+    frames.iter().for_each(assert_written);
+    let is_small = |frame: &LogFrame| frame.scan.ranges_m.len() <= MAX_BEAMS;
+    let small = frames.into_iter().filter(is_small).take(MAX_MAPPED);
+    let saved = drive(&mut LogRun::new(OdometryUse::Log), small);
+    saved.iter().for_each(|saved| assert_loads(saved));
+}
+
+fn read(bytes: &[u8], options: &LogOptions) -> Option<(Vec<LogFrame>, LogNotes)> {
+    let told = |refusal: robot_io::log::LogError| assert_refusal(&refusal.to_string());
+    let mut reader = LogFormat::open(bytes, NAME, options).map_err(told).ok()?;
+    let mut frames = Vec::new();
+    while let Some(frame) = reader.next_frame().map_err(told).ok()? {
+        assert!(frame.stamp_s.is_finite(), "{frame:?}");
+        frame.odometry.iter().for_each(assert_finite);
+        assert_finite(&frame.scan.body_from_sensor);
+        frames.push(frame);
+    }
+    let notes = reader.notes();
+    assert!(notes.bytes <= bytes.len() as u64);
+    notes
+        .sentences(NAME)
+        .iter()
+        .for_each(|said| assert_refusal(said));
+    notes.about.iter().for_each(|said| assert_sentence(said));
+    Some((frames, notes.clone()))
+}
+
+/// A frame reads back from a line of JSON to the same bits, and from one of CARMEN with as many beams.
+fn assert_written(frame: &LogFrame) {
+    let mut line = Vec::new();
+    FrameLine::from(frame)
+        .write(&mut line)
+        .expect("memory takes it");
+    let back = only(JsonLogReader::new(&line[..], NAME));
+    assert_eq!(FrameLine::from(&back), FrameLine::from(frame));
+    line.clear();
+    write_carmen(frame, &mut line).expect("memory takes it");
+    let back = only(CarmenReader::new(&line[..], NAME));
+    assert_eq!(back.scan.ranges_m.len(), frame.scan.ranges_m.len());
+    assert_eq!(back.odometry, frame.odometry);
+}
+
+fn only(mut reader: impl LogReader) -> LogFrame {
+    let frame = reader.next_frame().expect("what was written can be read");
+    frame.expect("a line was written")
+}

@@ -1,0 +1,120 @@
+//! Saved sessions: loaded, written back, gone on from, mapped, and localized on.
+//!
+//! The first byte says how much of the file is put right, see [`crate::sealed`]; the rest is the file,
+//! or its sections.
+
+use std::f64::consts::TAU;
+
+use ch16_slam2d::localize::StartPose;
+use ch16_slam2d::scan::LaserScan;
+use pr_geom::SE2;
+use robot_io::localize::LocalizeRun;
+use robot_io::log::LogFrame;
+use robot_io::map_image::map_of_session;
+use robot_io::run::{LogRun, OdometryUse};
+use robot_io::session::{Session, config_text};
+
+use crate::runs::{assert_finite, assert_loads, drive};
+use crate::sealed::{sealed, with_lengths};
+use crate::sentences::{NAME, assert_refusal, assert_sentence};
+
+/// Larger sessions are loaded and written, but not gone on from: the door is about the file.
+const MAX_KEYFRAMES: usize = 6;
+/// Nor are those with more points of a scan.
+const MAX_POINTS: usize = 64;
+/// Nor are those with larger numbers in their parameters: iterations, say, take the time they are given.
+const MAX_SETTING: f64 = 100.0;
+/// Side of a map's cells, m.
+const CELL_M: f64 = 0.5;
+
+/// A file is refused in one sentence, or writes back to what loads to the same, and can be used.
+pub fn door(data: &[u8]) {
+    let Some((&how, text)) = data.split_first() else {
+        return;
+    };
+    let how = usize::from(how);
+    let file = match how % 4 {
+        0 => text.to_vec(),
+        1 => sealed(text),
+        _ => sealed(&with_lengths(how / 4, text)),
+    };
+    let session = match Session::of_bytes(&file, NAME) {
+        Ok(session) => session,
+        Err(refusal) => return assert_refusal(&refusal.to_string()),
+    };
+    let written = session.to_bytes();
+    let again = Session::of_bytes(&written, NAME).expect("what was written can be loaded");
+    assert!(again.to_bytes() == written);
+    // Debug prints every bit of a number, and of what is none.
+    assert_eq!(format!("{again:?}"), format!("{session:?}"));
+    if is_small(&session) {
+        go_on(&session);
+        localize(&session);
+        look_at(&session);
+    }
+}
+
+fn is_small(session: &Session) -> bool {
+    let driven = &session.driven;
+    let scans = driven.keyframes.iter().map(|keyframe| &keyframe.scan);
+    let mut scans = scans.chain(&driven.front_end.scans);
+    let text = config_text(&driven.config);
+    let values = text.lines().filter_map(|line| line.split(' ').nth(1));
+    // Most of what has no limit is written so.
+    let mut values = values.filter_map(|value| value.parse().ok().filter(|v: &f64| v.is_finite()));
+    driven.keyframes.len() <= MAX_KEYFRAMES
+        && driven.front_end.scans.len() <= MAX_KEYFRAMES
+        && scans.all(|scan| scan.len() <= MAX_POINTS)
+        && values.all(|value| value.abs() <= MAX_SETTING)
+}
+
+/// The next scans: a round room, and the wheels drive on.
+fn frames(session: &Session) -> impl Iterator<Item = LogFrame> + '_ {
+    (1..=2).map(|step| LogFrame {
+        stamp_s: session.driven.last_stamp_s + 0.25 * f64::from(step),
+        odometry: Some(SE2::new(0.5 * f64::from(step), 0.0, 0.1)),
+        scan: LaserScan {
+            angle_step_rad: TAU / 24.0,
+            ranges_m: vec![2.0; 24],
+            ..LaserScan::default()
+        },
+    })
+}
+
+fn go_on(session: &Session) {
+    match LogRun::resume(session, OdometryUse::Log) {
+        // Numbers at the end of what can be loaded may grow beyond it.
+        Ok(mut run) => {
+            let saved = drive(&mut run, frames(session)).expect("a run goes on");
+            if let Err(refusal) = Session::of_bytes(&saved, NAME) {
+                assert_refusal(&refusal.to_string());
+            }
+        }
+        Err(refusal) => assert_sentence(&refusal.to_string()),
+    }
+}
+
+fn localize(session: &Session) {
+    let start = StartPose::Near(session.poses().first().copied().unwrap_or_default());
+    for start in [StartPose::Anywhere, start] {
+        let mut run = match LocalizeRun::new(session, OdometryUse::Log, start) {
+            Ok(run) => run,
+            Err(refusal) => return assert_sentence(&refusal.to_string()),
+        };
+        for report in frames(session).filter_map(|frame| run.step(frame).cloned()) {
+            report.pose.iter().for_each(assert_finite);
+            assert!(report.score.is_none_or(f64::is_finite), "{report:?}");
+        }
+    }
+}
+
+fn look_at(session: &Session) {
+    match LogRun::reopen(session) {
+        Ok(mut run) => assert_loads(&drive(&mut run, []).expect("it has keyframes")),
+        Err(refusal) => assert_sentence(&refusal.to_string()),
+    }
+    match map_of_session(session, CELL_M) {
+        Ok(map) => assert_eq!(map.counts().iter().sum::<usize>(), map.width * map.height),
+        Err(refusal) => assert_sentence(&refusal.to_string()),
+    }
+}
