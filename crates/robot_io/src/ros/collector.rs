@@ -292,7 +292,12 @@ impl Collector {
         notes.about.clear();
         let mut say = |text: String| notes.about.push(text);
         if let (Some(topic), Some(sensor)) = (&self.scan_topic, &self.sensor) {
-            say(format!("scans are those of {topic}, in frame {sensor}"));
+            let frame = if sensor.is_empty() {
+                "without a frame".to_owned()
+            } else {
+                format!("in frame {sensor}")
+            };
+            say(format!("scans are those of {topic}, {frame}"));
         }
         if let (Some(topic), Some((above, body))) = (self.wheel_topic(), &self.wheel_frames) {
             say(format!(

@@ -8,6 +8,7 @@ use mcap::{McapError, McapResult};
 use super::container::{Container, ContainerError, MOST_BYTES, Recorded, kind_of};
 use super::decompress::{ChunkUnpacker, Packing};
 use super::wire::Wire;
+use crate::lines::printable;
 
 /// So much is asked of the file at once: a length that is a lie costs no more.
 const PIECE_BYTES: usize = 1 << 16;
@@ -18,6 +19,9 @@ pub struct McapFile<R> {
     reader: MessageReader,
     offset: u64,
     is_done: bool,
+    /// Topic and encoding of the first message that is not of ROS, as long as none is.
+    other: Option<(String, String)>,
+    has_ros: bool,
 }
 
 impl<R: BufRead> McapFile<R> {
@@ -37,6 +41,8 @@ impl<R: BufRead> McapFile<R> {
             reader,
             offset: 0,
             is_done: false,
+            other: None,
+            has_ros: false,
         }
     }
 
@@ -76,8 +82,13 @@ impl<R: BufRead> Container for McapFile<R> {
                 "cdr" => Wire::Cdr,
                 "ros1" => Wire::Ros1,
                 // Other encodings are other systems' messages.
-                _ => continue,
+                other => {
+                    let named = || (channel.topic.clone(), other.to_owned());
+                    self.other.get_or_insert_with(named);
+                    continue;
+                }
             };
+            self.has_ros = true;
             let schema = channel.schema.as_ref();
             return Ok(Some(Recorded {
                 topic: channel.topic.clone(),
@@ -93,6 +104,14 @@ impl<R: BufRead> Container for McapFile<R> {
     fn offset(&self) -> u64 {
         self.offset
     }
+
+    fn instead(&self) -> Option<String> {
+        let (topic, encoding) = self.other.as_ref().filter(|_| !self.has_ros)?;
+        let [topic, encoding] = [topic, encoding].map(|name| printable(name));
+        Some(format!(
+            "its messages are no messages of ROS, such as those on {topic} in the encoding ‘{encoding}’; record with ros2 bag record -s mcap"
+        ))
+    }
 }
 
 fn in_words(problem: McapError) -> ContainerError {
@@ -102,7 +121,7 @@ fn in_words(problem: McapError) -> ContainerError {
         }
         McapError::UnsupportedCompression(name) => ContainerError::Broken(format!(
             "a chunk packed by lz4, by zstd or not at all was expected, and it is packed by ‘{}’; convert it with mcap compress",
-            crate::lines::printable(&name)
+            printable(&name)
         )),
         McapError::DecompressionError(problem) => ContainerError::Broken(problem),
         other => {
