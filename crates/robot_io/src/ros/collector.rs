@@ -241,7 +241,10 @@ impl Collector {
     }
 
     fn look_for_mount(&self, sensor: &str) -> Option<Result<Mount, String>> {
-        let chain = self.transforms.body_from_sensor(self.body(), sensor)?;
+        let ground = self.wheel_frames.as_ref().map(|(above, _)| above.as_str());
+        let chain = self
+            .transforms
+            .body_from_sensor(self.body(), sensor, ground)?;
         Some(Mount::of(&chain))
     }
 
