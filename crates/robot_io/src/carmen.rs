@@ -88,7 +88,7 @@ impl LineFormat for Carmen {
                 Ok(self.choose(Source::RobotLaser).then_some(frame))
             }
             "RAWLASER1" => {
-                let frame = laser_message(&mut fields, false, frames)?;
+                let frame = laser_message(&mut fields, false, frames + self.raw.waiting())?;
                 count();
                 // A log often has the same scan as ROBOTLASER1 right after it.
                 if matches!(self.chosen, None | Some(Source::RawLaser)) {
@@ -97,7 +97,8 @@ impl LineFormat for Carmen {
                 Ok(None)
             }
             "ODOM" => {
-                let (stamp_s, pose) = odometry_message(&mut fields)?;
+                let scans = frames + self.raw.waiting();
+                let (stamp_s, pose) = odometry_message(&mut fields, scans)?;
                 count();
                 self.raw.take_odometry(stamp_s, pose);
                 Ok(None)

@@ -80,6 +80,30 @@ fn a_raw_scan_takes_the_odometry_of_its_time() {
 }
 
 #[test]
+fn a_raw_scan_that_is_logged_late_takes_the_odometry_of_its_own_time() {
+    let odom = |x: f64, t: f64| format!("ODOM {x} 0 0 0 0 0 {t} h {t}\n");
+    let raw = "RAWLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 1.5 h 4.2\n".to_owned();
+    let wheels = [
+        odom(0.0, 1.0),
+        odom(1.0, 2.0),
+        odom(3.0, 3.0),
+        odom(6.0, 4.0),
+    ];
+    let (frames, _) = read([wheels.concat(), raw].concat()).unwrap();
+    assert_eq!(frames[0].odometry.unwrap().x(), 0.5);
+}
+
+#[test]
+fn a_raw_scan_without_a_time_takes_the_odometry_before_it() {
+    let odom = |x: f64| format!("ODOM {x} 0 0 0 0 0 0 h 0\n");
+    let raw = "RAWLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 0 h 0\n".to_owned();
+    let line = |scan: u32| [odom(f64::from(scan)), raw.clone()].concat();
+    let (frames, _) = read((0..100).map(line).collect::<String>()).unwrap();
+    let xs = frames.iter().map(|frame| frame.odometry.unwrap().x());
+    assert!(xs.eq((0..100).map(f64::from)));
+}
+
+#[test]
 fn raw_scans_without_any_odometry_are_all_read() {
     // More than wait for odometry at a time.
     let raw = |t: usize| format!("RAWLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 {t} h {t}\n");

@@ -10,10 +10,11 @@ use super::container::Recorded;
 use super::messages::{Header, TransformMessage, laser_scan, odometry, transforms};
 use super::point_cloud::point_cloud;
 use super::transforms::{Mount, Transforms, planar};
-use super::waiting::{WaitingScan, WaitingScans, WheelPoses};
+use super::waiting::{WaitingScan, WaitingScans};
 use super::wire::WireReader;
 use crate::log::{LogFrame, LogNotes, LogOptions};
 use crate::place::checked;
+use crate::wheel_poses::WheelPoses;
 
 /// A recording of garbage has no end of topics.
 const MOST_TOPICS: usize = 1000;
