@@ -9,7 +9,9 @@
 //! | `PARAM name value …` | mounting, longest range and field of view of the front laser |
 //!
 //! The first kind of scan that comes with odometry is the one that is read; others are counted. A
-//! raw scan waits for the ODOM line after it and takes the pose in between.
+//! raw scan waits for the ODOM line after it and takes the pose in between. Where the laser sits is
+//! what the two poses of a scan differ by, where they do so by the same all the while, or what PARAM
+//! lines say.
 //!
 //! Source: Roy, Montemerlo, Thrun, "Perspectives on standardization in mobile robot programming: the
 //! Carnegie Mellon navigation (CARMEN) toolkit", 2003, and the header that its logger writes.
@@ -78,9 +80,14 @@ impl LineFormat for Carmen {
         };
         match kind {
             "FLASER" => {
-                let frame = self.front.frame(&mut fields, frames)?;
+                // What is not read waits for nothing.
+                let mut other = FrontLaser::default();
+                let is_read = matches!(self.chosen, None | Some(Source::Flaser));
+                let front = if is_read { &mut self.front } else { &mut other };
+                front.take(&mut fields, frames)?;
                 count();
-                Ok(self.choose(Source::Flaser).then_some(frame))
+                self.choose(Source::Flaser);
+                Ok(None)
             }
             "ROBOTLASER1" => {
                 let frame = laser_message(&mut fields, true, frames)?;
@@ -88,8 +95,9 @@ impl LineFormat for Carmen {
                 Ok(self.choose(Source::RobotLaser).then_some(frame))
             }
             "RAWLASER1" => {
-                let frame = laser_message(&mut fields, false, frames)?;
+                let mut frame = laser_message(&mut fields, false, frames + self.raw.waiting())?;
                 count();
+                frame.scan.body_from_sensor = self.front.told_mount().unwrap_or_default();
                 // A log often has the same scan as ROBOTLASER1 right after it.
                 if matches!(self.chosen, None | Some(Source::RawLaser)) {
                     self.raw.push(frame);
@@ -97,7 +105,8 @@ impl LineFormat for Carmen {
                 Ok(None)
             }
             "ODOM" => {
-                let (stamp_s, pose) = odometry_message(&mut fields)?;
+                let scans = frames + self.raw.waiting();
+                let (stamp_s, pose) = odometry_message(&mut fields, scans)?;
                 count();
                 self.raw.take_odometry(stamp_s, pose);
                 Ok(None)
@@ -128,6 +137,9 @@ impl LineFormat for Carmen {
     }
 
     fn waiting(&mut self, is_done: bool) -> Option<LogFrame> {
+        if let Some(frame) = self.front.pop(is_done) {
+            return Some(frame);
+        }
         let frame = self.raw.pop(is_done)?;
         self.choose(Source::RawLaser).then_some(frame)
     }

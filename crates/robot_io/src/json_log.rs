@@ -140,6 +140,8 @@ impl LineFormat for JsonLines {
         _frames: usize,
         notes: &mut LogNotes,
     ) -> Result<Option<LogFrame>, String> {
+        // What some editors put in front of the first line.
+        let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line);
         if line.trim_ascii().is_empty() {
             return Ok(None);
         }
@@ -166,7 +168,7 @@ fn in_words(problem: &serde_json::Error) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::LogReader;
+    use crate::log::{LogFormat, LogOptions, LogReader};
 
     fn frame() -> LogFrame {
         LogFrame {
@@ -183,11 +185,14 @@ mod tests {
 
     #[test]
     fn what_is_written_reads_back_to_the_same_bits() {
-        let mut bytes = Vec::new();
-        FrameLine::from(&frame()).write(&mut bytes).unwrap();
-        let mut reader = JsonLogReader::new(&bytes[..], "x.jsonl");
-        assert_eq!(reader.next_frame().unwrap(), Some(frame()));
-        assert_eq!(reader.next_frame().unwrap(), None);
+        for mark in [&b""[..], b"\xef\xbb\xbf"] {
+            let mut bytes = mark.to_vec();
+            FrameLine::from(&frame()).write(&mut bytes).unwrap();
+            let options = LogOptions::default();
+            let mut reader = LogFormat::open(&bytes[..], "x.jsonl", &options).unwrap();
+            assert_eq!(reader.next_frame().unwrap(), Some(frame()));
+            assert_eq!(reader.next_frame().unwrap(), None);
+        }
     }
 
     #[test]

@@ -41,3 +41,4 @@ pub mod trajectory;
 
 mod lines;
 mod place;
+mod wheel_poses;

@@ -285,6 +285,8 @@ pub enum LogFormat {
     Json,
     /// A saved session.
     Session,
+    /// Text whose characters have two bytes each.
+    Utf16,
 }
 
 impl LogFormat {
@@ -302,10 +304,12 @@ impl LogFormat {
             Self::Gzip
         } else if starts(b"VERTEX") || starts(b"EDGE") {
             Self::Graph
-        } else if starts(b"{") {
+        } else if starts(b"{") || starts(b"\xef\xbb\xbf{") {
             Self::Json
         } else if Session::begins(start) {
             Self::Session
+        } else if starts(b"\xff\xfe") || starts(b"\xfe\xff") {
+            Self::Utf16
         } else {
             Self::Carmen
         }
@@ -348,6 +352,10 @@ impl LogFormat {
                 "a recording of ROS 2 in SQLite",
                 "convert it to MCAP with ros2 bag convert",
             )),
+            Self::Utf16 => Err(foreign(
+                "text in UTF-16",
+                "save it as UTF-8 and give the result",
+            )),
             Self::Session => Err(foreign(
                 "a saved session, not a log of scans",
                 "give a log; slam2d run LOG --continue takes a session to go on from",
@@ -371,6 +379,10 @@ mod tests {
             (
                 b"\x1f\x8b\x08",
                 "x.log is compressed by gzip; unpack it with gunzip and give the result",
+            ),
+            (
+                b"\xff\xfeF\0L\0",
+                "x.log is text in UTF-16; save it as UTF-8 and give the result",
             ),
             (
                 b"SQLite format 3\0",

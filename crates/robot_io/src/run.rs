@@ -43,6 +43,9 @@ pub struct PoorFit {
     pub score: f64,
 }
 
+/// Wheels that stand still in a log of so many scans are told: they may not have been recorded.
+const STILL_SCANS: usize = 20;
+
 /// Scans of which less than this fits are told.
 const POOR_SCORE: f64 = 0.5;
 
@@ -69,6 +72,8 @@ pub struct LogRun {
     links: Vec<LoopVerification>,
     poor: Vec<PoorFit>,
     late: usize,
+    /// Scans for which the wheels told that they stand still; none once they moved.
+    still: Option<usize>,
     refused: Option<FrameError>,
     /// Where the beams of the log point that a session goes on with, where it is not as in the session.
     other_sensor: Option<LaserScan>,
@@ -102,6 +107,7 @@ impl LogRun {
             links: Vec::new(),
             poor: Vec::new(),
             late: 0,
+            still: Some(0),
             refused: None,
             other_sensor: None,
         }
@@ -221,6 +227,10 @@ impl LogRun {
         };
         self.last_stamp_s = frame.stamp_s;
         self.last_odometry = log.odometry;
+        if let Some(motion) = motion {
+            let stands = motion == SE2::identity();
+            self.still = self.still.filter(|_| stands).map(|scans| scans + 1);
+        }
         self.driven = None;
         let sensor = LaserScan {
             ranges_m: Vec::new(),
@@ -400,7 +410,20 @@ impl LogRun {
             .refused
             .map(|problem| format!("{name}: scans were left out; the first because {problem}"));
         let late = late_scans(name, self.late);
-        [other, late, refused].into_iter().flatten().collect()
+        let still = self.still_wheels(name);
+        [other, late, still, refused]
+            .into_iter()
+            .flatten()
+            .collect()
+    }
+
+    /// What is said of wheels that never moved; nothing where they did.
+    fn still_wheels(&self, name: &str) -> Option<String> {
+        let scans = self.still.filter(|&scans| scans >= STILL_SCANS)?;
+        Some(format!(
+            "{name}: its odometry stands still for all {scans} scans; if the robot moved, leave it out with \
+             slam2d run LOG --no-odometry"
+        ))
     }
 
     /// Where every scan was taken, by the graph as it is now; those of a session come first.

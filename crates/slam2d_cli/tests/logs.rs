@@ -175,6 +175,32 @@ fn without_odometry_the_scans_alone_are_followed() {
 }
 
 #[test]
+fn wheels_that_never_move_are_told() {
+    let folder = TempDir::new().unwrap();
+    let whole = fs::read_to_string(corridor(&folder, 40)).unwrap();
+    let still: Vec<String> = whole
+        .lines()
+        .zip(100..)
+        .map(|(line, stamp_s)| {
+            let scan: Vec<&str> = line.split(' ').take(92).collect();
+            format!("{} 0 0 0 0 0 0 {stamp_s} h 0", scan.join(" "))
+        })
+        .collect();
+    let log = write(&folder, "still.clf", &still.join("\n"));
+    let said = |more: &[&str]| {
+        let output = slam2d(&[&["run", text(&log)], more].concat());
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let told = said(&[]);
+    assert!(
+        told.contains("its odometry stands still for all 39 scans"),
+        "{told}"
+    );
+    assert_eq!(said(&["--no-odometry"]), "");
+}
+
+#[test]
 fn what_is_in_a_log_is_told() {
     let folder = TempDir::new().unwrap();
     let info = json(&["info", text(&corridor(&folder, 5)), "--json"]);

@@ -208,6 +208,40 @@ fn a_log_is_found_on_the_map_of_a_session() {
 }
 
 #[test]
+fn the_log_of_another_building_is_found_nowhere() {
+    let folder = TempDir::new().unwrap();
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    // Two of the same kind: corridors as wide and as long, with other doors and furniture.
+    for seed in ["301", "302"] {
+        let log = file(&format!("{seed}.log"));
+        let drawn = slam2d(&[
+            "buildings",
+            "--kind",
+            "hallway",
+            "--seeds",
+            seed,
+            "--log",
+            &log,
+        ]);
+        assert!(drawn.status.success());
+        let text = fs::read_to_string(&log).unwrap();
+        let start: Vec<&str> = text.lines().take(90).collect();
+        fs::write(file(&format!("start-{seed}.log")), start.join("\n")).unwrap();
+    }
+    let map = file("map");
+    json(&["run", &file("301.log"), "-o", &map, "--json"]);
+    let [own, other] = ["start-301.log", "start-302.log"]
+        .map(|log| json(&["localize", &map, &file(log), "--json"]));
+    assert_eq!(own["found"], 1);
+    assert!(own["tracking"].as_u64().unwrap() > 70, "{own}");
+    assert_eq!(
+        (&other["found"], &other["tracking"]),
+        (&0.into(), &0.into())
+    );
+    assert!(other["lost"].as_u64().unwrap() > 0);
+}
+
+#[test]
 fn lap_after_lap_is_told_in_lines_and_left_as_a_session() {
     let folder = TempDir::new().unwrap();
     let session = folder.path().join("laps.slam2d").display().to_string();

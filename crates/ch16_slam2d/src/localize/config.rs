@@ -52,6 +52,11 @@ pub struct LocalizeConfig {
     pub neighborhood: SearchNeighborhood,
     /// A search whose best score is lower found nothing, 0 to 1.
     pub min_score: f64,
+    /// A best place with a lower score is told and not believed, 0 to 1: walls stand as far apart in
+    /// other buildings, too.
+    pub found_score: f64,
+    /// Where scans usually fit worse, the robot is doubted and looked for everywhere, 0 to 1.
+    pub usual_score: f64,
     /// A best place is believed if the best other one is behind by so much, and the next search
     /// finds it again.
     pub min_margin: f64,
@@ -102,6 +107,8 @@ impl Default for LocalizeConfig {
             most_sums: 200_000,
             neighborhood: SearchNeighborhood::default(),
             min_score: 0.55,
+            found_score: 0.85,
+            usual_score: 0.72,
             min_margin: 0.05,
             sure_margin: 0.15,
             trail_sweeps: 20,

@@ -255,7 +255,7 @@ impl Localizer {
             next.drops = 0;
             next.usual_score += USUAL_RATE * (score - belief.usual_score);
         }
-        let mut is_sure = next.misses == 0 && next.drops == 0;
+        let mut is_sure = next.misses == 0 && next.drops == 0 && self.is_usual(&next);
         if score >= self.config.poor_score {
             let known = self.known(&found, score);
             if let Some(fusion) = fuse(&found.pose, &known, &prediction, &covariance) {
@@ -286,6 +286,11 @@ impl Localizer {
         belief.drops >= self.config.lost_after
     }
 
+    /// Whether scans usually fit here as they do where the robot is.
+    fn is_usual(&self, belief: &Belief) -> bool {
+        belief.usual_score >= self.config.usual_score
+    }
+
     /// Holds what was found around a given start against it.
     fn judge_near(&mut self, start: &SE2, result: Option<SearchResult>, pending: &mut PendingFix) {
         let Some(result) = result else { return };
@@ -304,7 +309,8 @@ impl Localizer {
 
     /// Begins to search the whole map for the trail, where the place is not known and it is time.
     fn plan_search(&mut self, pending: &mut PendingFix) {
-        if self.belief.is_some_and(|belief| !self.is_suspect(&belief)) {
+        let is_settled = |belief: Belief| self.is_usual(&belief) && !self.is_suspect(&belief);
+        if self.belief.is_some_and(is_settled) {
             return;
         }
         self.searched_ago += 1;
@@ -344,8 +350,9 @@ impl Localizer {
         }
         let is_again = self.candidate.as_ref().is_some_and(is_best);
         self.candidate = Some(best);
-        let is_believed =
-            margin >= self.config.sure_margin || (margin >= self.config.min_margin && is_again);
+        let is_believed = result.best.score >= self.config.found_score
+            && (margin >= self.config.sure_margin
+                || (margin >= self.config.min_margin && is_again));
         let found = self.register(&pending.scan, best);
         if (is_believed && self.take(&found, None, report)) || self.belief.is_some() {
             return;
@@ -377,7 +384,11 @@ impl Localizer {
             drops: 0,
         });
         self.candidate = None;
-        report.verdict = Verdict::Found;
+        report.verdict = if score >= self.config.usual_score {
+            Verdict::Found
+        } else {
+            Verdict::Doubtful
+        };
         report.pose = Some(found.pose);
         report.covariance = Some(covariance);
         report.score = Some(score);

@@ -90,13 +90,14 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// The time and the pose of an ODOM line.
-pub fn odometry_message(fields: &mut Fields<'_>) -> Result<(f64, SE2), String> {
+/// The time and the pose of an ODOM line; where the log has no times, that of the scan after it, of which
+/// `scans` came before.
+pub fn odometry_message(fields: &mut Fields<'_>, scans: usize) -> Result<(f64, SE2), String> {
     let pose = fields.pose(["x", "y", "theta"])?;
     for name in ["tv", "rv", "accel"] {
         fields.number(name)?;
     }
-    Ok((fields.stamp_s(0)?, pose))
+    Ok((fields.stamp_s(scans)?, pose))
 }
 
 /// A ROBOTLASER1 line, or a RAWLASER1 line, which has no poses.

@@ -1,7 +1,9 @@
 //! The front laser of FLASER lines: its geometry is not on the line.
 
+use std::collections::VecDeque;
+
 use ch16_slam2d::scan::LaserScan;
-use pr_geom::SE2;
+use pr_geom::{SE2, math};
 
 use super::fields::Fields;
 use crate::log::LogFrame;
@@ -13,8 +15,12 @@ const FARTHEST_M: f64 = 80.0;
 const CODES_M: [f64; 2] = [8.183, 8.1915];
 /// A laser that stands farther from the robot's centre is another map's pose, m.
 const FARTHEST_MOUNT_M: f64 = 1.5;
-/// A front laser stands on the axis of its robot, m and rad.
+/// A front laser stands on the axis of its robot, and another one where every line says it does, to m and rad.
 const MOUNT_OFF_AXIS: [f64; 2] = [0.02, 0.01];
+/// After this way and turn of the robot a pose on a map has moved against the wheels', m and rad.
+const TELLING_WAY: [f64; 2] = [0.3, 0.3];
+/// So many scans wait for that at most.
+const MOST_HELD: usize = 512;
 
 /// What PARAM lines and the first scan say of the front laser.
 #[derive(Clone, Debug, Default)]
@@ -26,6 +32,15 @@ pub struct FrontLaser {
     sideways_m: Option<f64>,
     turned_rad: Option<f64>,
     mount: Option<SE2>,
+    held: VecDeque<Held>,
+}
+
+/// A scan that waits for the mounting, with what its own line says of it.
+#[derive(Clone, Debug)]
+struct Held {
+    frame: LogFrame,
+    odometry: SE2,
+    mount: SE2,
 }
 
 impl FrontLaser {
@@ -53,32 +68,33 @@ impl FrontLaser {
         }
     }
 
-    /// The frame of a FLASER line.
+    /// Takes a FLASER line; its frame comes out of [`pop`](Self::pop).
     ///
     /// Beams stand from −90° counter-clockwise in steps of 180°/n where n is even, 180°/(n − 1) where
     /// it is odd, unless PARAM lines give field of view and step for this number of beams.
-    pub fn frame(&mut self, fields: &mut Fields<'_>, frames: usize) -> Result<LogFrame, String> {
+    pub fn take(&mut self, fields: &mut Fields<'_>, frames: usize) -> Result<(), String> {
         let ranges_m = fields.list("readings")?;
         if ranges_m.len() < 2 {
             return Err("a scan has to have two readings at least".to_owned());
         }
         let laser = fields.pose(["laser_x", "laser_y", "laser_theta"])?;
         let odometry = fields.pose(["odom_x", "odom_y", "odom_theta"])?;
-        let stamp_s = fields.stamp_s(frames)?;
+        let stamp_s = fields.stamp_s(frames + self.held.len())?;
         let (first_angle_rad, angle_step_rad) = self.beams(ranges_m.len());
         let scan = LaserScan {
             first_angle_rad,
             angle_step_rad,
             range_max_m: self.range_max_m.unwrap_or_else(|| farthest_m(&ranges_m)),
-            body_from_sensor: self.mount(&odometry, &laser),
             ranges_m,
             ..LaserScan::default()
         };
-        Ok(LogFrame {
+        let frame = LogFrame {
             stamp_s,
             odometry: Some(odometry),
             scan,
-        })
+        };
+        self.hold(frame, &odometry, &laser);
+        Ok(())
     }
 
     fn beams(&self, count: usize) -> (f64, f64) {
@@ -97,25 +113,82 @@ impl FrontLaser {
         (-half_circle / 2.0, half_circle / steps as f64)
     }
 
-    /// Where the laser sits: by PARAM lines, or by the first line where its two poses agree to a
-    /// mounting on the robot's axis. A log that was corrected has the map's pose in place of the
-    /// laser's.
-    fn mount(&mut self, odometry: &SE2, laser: &SE2) -> SE2 {
-        if self.forward_m.is_some() || self.sideways_m.is_some() || self.turned_rad.is_some() {
-            return SE2::new(
-                self.forward_m.unwrap_or_default(),
-                self.sideways_m.unwrap_or_default(),
-                self.turned_rad.unwrap_or_default(),
-            );
+    /// Where PARAM lines say that the laser sits.
+    pub fn told_mount(&self) -> Option<SE2> {
+        let told = [self.forward_m, self.sideways_m, self.turned_rad];
+        told.iter().any(Option::is_some).then(|| {
+            let [x, y, theta] = told.map(Option::unwrap_or_default);
+            SE2::new(x, y, theta)
+        })
+    }
+
+    /// The oldest scan that waits, once the mounting is known or no line follows.
+    pub fn pop(&mut self, is_done: bool) -> Option<LogFrame> {
+        if self.mount.is_none() && is_done && !self.held.is_empty() {
+            self.settle();
         }
-        *self.mount.get_or_insert_with(|| {
-            let mount = odometry.between(laser);
+        let mount = self.mount?;
+        let mut frame = self.held.pop_front()?.frame;
+        frame.scan.body_from_sensor = mount;
+        Some(frame)
+    }
+
+    /// Takes a scan with the two poses of its line, and looks whether they tell the mounting: PARAM
+    /// lines do, and so does a first line whose poses agree to a mounting on the robot's axis. Else
+    /// the two have to agree to one and the same while the robot drives and turns: a log that was
+    /// corrected has the map's pose in place of the laser's.
+    fn hold(&mut self, frame: LogFrame, odometry: &SE2, laser: &SE2) {
+        let mount = odometry.between(laser);
+        let odometry = *odometry;
+        self.held.push_back(Held {
+            frame,
+            odometry,
+            mount,
+        });
+        if self.mount.is_some() {
+            return;
+        }
+        if let Some(told) = self.told_mount() {
+            self.mount = Some(told);
+        } else if self.held.len() == 1 {
             let [off_m, off_rad] = MOUNT_OFF_AXIS;
             let is_mount = mount.y().abs() <= off_m
                 && mount.theta().abs() <= off_rad
                 && (0.0..=FARTHEST_MOUNT_M).contains(&mount.x());
-            if is_mount { mount } else { SE2::identity() }
-        })
+            self.mount = is_mount.then_some(mount);
+        } else if !self.is_one_mount() || self.has_told() || self.held.len() >= MOST_HELD {
+            self.settle();
+        }
+    }
+
+    /// Whether the robot has driven and turned far enough to tell a mounting from a map's pose.
+    fn has_told(&self) -> bool {
+        let (Some(first), Some(last)) = (self.held.front(), self.held.back()) else {
+            return false;
+        };
+        let way = first.odometry.between(&last.odometry);
+        let [way_m, turn_rad] = TELLING_WAY;
+        math::norm2(way.x(), way.y()) >= way_m && way.theta().abs() >= turn_rad
+    }
+
+    /// Whether all lines that wait agree on one place of the laser on the robot.
+    fn is_one_mount(&self) -> bool {
+        let Some(first) = self.held.front() else {
+            return false;
+        };
+        let is_same = |held: &Held| {
+            let off = first.mount.between(&held.mount);
+            let [off_m, off_rad] = MOUNT_OFF_AXIS;
+            math::norm2(off.x(), off.y()) <= off_m && off.theta().abs() <= off_rad
+        };
+        math::norm2(first.mount.x(), first.mount.y()) <= FARTHEST_MOUNT_M
+            && self.held.iter().all(is_same)
+    }
+
+    fn settle(&mut self) {
+        let is_mount = self.is_one_mount();
+        let first = self.held.front().map(|held| held.mount);
+        self.mount = first.filter(|_| is_mount).or(Some(SE2::identity()));
     }
 }
 

@@ -4,7 +4,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use super::*;
 use crate::log::{LogError, LogReader};
-use pr_geom::SE2;
+use pr_geom::{SE2, Vector3};
 
 /// All frames of a text, and what was noted.
 fn read(text: impl AsRef<[u8]>) -> Result<(Vec<LogFrame>, LogNotes), LogError> {
@@ -77,6 +77,76 @@ fn a_raw_scan_takes_the_odometry_of_its_time() {
     let xs: Vec<f64> = frames.iter().map(|f| f.odometry.unwrap().x()).collect();
     // After the last odometry the wheels are taken to have stood.
     assert_eq!(xs, [0.5, 1.0]);
+}
+
+#[test]
+fn a_raw_scan_that_is_logged_late_takes_the_odometry_of_its_own_time() {
+    let odom = |x: f64, t: f64| format!("ODOM {x} 0 0 0 0 0 {t} h {t}\n");
+    let raw = "RAWLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 1.5 h 4.2\n".to_owned();
+    let wheels = [
+        odom(0.0, 1.0),
+        odom(1.0, 2.0),
+        odom(3.0, 3.0),
+        odom(6.0, 4.0),
+    ];
+    let (frames, _) = read([wheels.concat(), raw].concat()).unwrap();
+    assert_eq!(frames[0].odometry.unwrap().x(), 0.5);
+}
+
+#[test]
+fn a_raw_scan_without_a_time_takes_the_odometry_before_it() {
+    let odom = |x: f64| format!("ODOM {x} 0 0 0 0 0 0 h 0\n");
+    let raw = "RAWLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 0 h 0\n".to_owned();
+    let line = |scan: u32| [odom(f64::from(scan)), raw.clone()].concat();
+    let (frames, _) = read((0..100).map(line).collect::<String>()).unwrap();
+    let xs = frames.iter().map(|frame| frame.odometry.unwrap().x());
+    assert!(xs.eq((0..100).map(f64::from)));
+}
+
+#[test]
+fn parameters_say_where_the_laser_of_raw_scans_sits() {
+    let text = "PARAM robot_frontlaser_offset 0.22 1 h 1\n\
+                RAWLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 1.5 h 1.5\n";
+    let (frames, _) = read(text).unwrap();
+    assert_eq!(frames[0].scan.body_from_sensor, SE2::new(0.22, 0.0, 0.0));
+}
+
+/// Lines of a robot on an arc, without times, with another pose in place of the laser's.
+fn on_an_arc(in_place: impl Fn(SE2) -> SE2) -> String {
+    let line = |step: u32| {
+        let odometry = SE2::exp(&(Vector3::new(0.1, 0.0, 0.05) * f64::from(step)));
+        let [[x, y, theta], [a, b, c]] = [in_place(odometry), odometry].map(|pose| pose.to_array());
+        format!("FLASER 2 1 2 {x} {y} {theta} {a} {b} {c} 0 h 0\n")
+    };
+    (0..20).map(line).collect()
+}
+
+#[test]
+fn a_laser_that_looks_back_or_aside_sits_where_every_line_says() {
+    for mount in [
+        SE2::new(-0.3, 0.0, 3.1),
+        SE2::new(0.1, 0.25, 0.0),
+        SE2::new(0.2, 0.0, FRAC_PI_2),
+    ] {
+        let (frames, _) = read(on_an_arc(|odometry| odometry * mount)).unwrap();
+        assert_eq!(frames.len(), 20);
+        for (number, frame) in frames.iter().enumerate() {
+            let found = frame.scan.body_from_sensor;
+            // 1e-12: a few roundings of numbers about 1.
+            assert!(mount.between(&found).log().norm() < 1e-12, "{found:?}");
+            assert_eq!(frame.stamp_s, number as f64);
+        }
+    }
+}
+
+#[test]
+fn a_pose_on_a_map_in_place_of_the_lasers_is_no_mounting() {
+    for map_from_odometry in [SE2::new(0.4, 0.2, 0.1), SE2::new(0.1, 0.3, 0.0)] {
+        let (frames, _) = read(on_an_arc(|odometry| map_from_odometry * odometry)).unwrap();
+        assert_eq!(frames.len(), 20);
+        let mut mounts = frames.iter().map(|frame| frame.scan.body_from_sensor);
+        assert!(mounts.all(|mount| mount == SE2::identity()));
+    }
 }
 
 #[test]

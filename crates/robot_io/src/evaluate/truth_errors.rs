@@ -21,6 +21,9 @@ pub enum Alignment {
     #[default]
     None,
     /// By the rigid motion of the plane with the least squares (Umeyama 1991).
+    ///
+    /// evo aligns in space. It turns the plane over where the mirror image fits better, as it may with a few
+    /// poses or a way that is nearly straight, and it refuses poses on one line. Neither happens here.
     Se2,
 }
 

@@ -17,7 +17,7 @@ pub fn over_time(title: &str, points: &[[f64; 2]], marks: &[f64]) -> String {
     let x = |at_s: f64| LEFT + (WIDTH - LEFT - 10.0) * at_s / end_s;
     let y = |value: f64| HEIGHT - BOTTOM - (HEIGHT - BOTTOM - TOP) * value / top;
     let mut svg = format!(
-        "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{title} over time\">\n\
+        "<svg class=\"chart\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{title} over time\">\n\
          <text x=\"{LEFT}\" y=\"14\">{title}</text>\n\
          <path class=\"axis\" d=\"M{LEFT} {TOP}V{0}H{1}\"/>\n",
         HEIGHT - BOTTOM,

@@ -10,11 +10,12 @@ use super::container::Recorded;
 use super::messages::{Header, TransformMessage, laser_scan, odometry, transforms};
 use super::point_cloud::point_cloud;
 use super::transforms::{Mount, Transforms, planar};
-use super::waiting::{WaitingScan, WaitingScans, WheelPoses};
+use super::waiting::{WaitingScan, WaitingScans};
 use super::wire::WireReader;
 use crate::lines::listed;
 use crate::log::{LogFrame, LogNotes, LogOptions};
 use crate::place::checked;
+use crate::wheel_poses::WheelPoses;
 
 /// A recording of garbage has no end of topics.
 const MOST_TOPICS: usize = 1000;
@@ -242,7 +243,10 @@ impl Collector {
     }
 
     fn look_for_mount(&self, sensor: &str) -> Option<Result<Mount, String>> {
-        let chain = self.transforms.body_from_sensor(self.body(), sensor)?;
+        let ground = self.wheel_frames.as_ref().map(|(above, _)| above.as_str());
+        let chain = self
+            .transforms
+            .body_from_sensor(self.body(), sensor, ground)?;
         Some(Mount::of(&chain))
     }
 
@@ -293,7 +297,12 @@ impl Collector {
         notes.about.clear();
         let mut say = |text: String| notes.about.push(text);
         if let (Some(topic), Some(sensor)) = (&self.scan_topic, &self.sensor) {
-            say(format!("scans are those of {topic}, in frame {sensor}"));
+            let frame = if sensor.is_empty() {
+                "without a frame".to_owned()
+            } else {
+                format!("in frame {sensor}")
+            };
+            say(format!("scans are those of {topic}, {frame}"));
         }
         if let (Some(topic), Some((above, body))) = (self.wheel_topic(), &self.wheel_frames) {
             say(format!(

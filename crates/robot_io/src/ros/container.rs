@@ -43,6 +43,11 @@ pub trait Container {
 
     /// Bytes read so far: where an error is.
     fn offset(&self) -> u64;
+
+    /// What stands in the file in place of messages of ROS; none where it has such messages or nothing.
+    fn instead(&self) -> Option<String> {
+        None
+    }
 }
 
 /// `package/Name` of a type: ROS 2 writes `package/msg/Name`.

@@ -110,6 +110,10 @@ impl<R: BufRead> Container for McapFile<R> {
     fn offset(&self) -> u64 {
         self.file.offset()
     }
+
+    fn instead(&self) -> Option<String> {
+        self.records.instead()
+    }
 }
 
 #[cfg(test)]

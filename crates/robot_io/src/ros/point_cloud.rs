@@ -2,11 +2,14 @@
 //!
 //! The points of a planar laser stand at multiples of one step. The step is the median one between
 //! points next to each other, made exact by the first and the last of them; each point goes to the
-//! beam nearest to it, the nearer one where two do.
+//! beam nearest to it, the nearer one where two do. One beam that turns sweeps a cone about its axis, or a
+//! plane, however its frame leans: heights are a linear function of x, y and range. A cloud whose
+//! heights are not is one of several rings, whether or not it says so.
 
 use core::f64::consts::TAU;
 
 use ch16_slam2d::scan::LaserScan;
+use nalgebra::{Matrix4, Vector4};
 use pr_geom::{math, sort_numbers, sort_pairs};
 
 use super::messages::{Header, header};
@@ -14,6 +17,11 @@ use super::wire::{WireError, WireReader};
 
 /// More beams than any planar laser has.
 const MOST_BEAMS: f64 = 100_000.0;
+/// Points of one ring lie so near to their cone, as root of the mean square, m: rings a degree apart are
+/// farther from each other beyond 6 m.
+const RING_M: f64 = 0.05;
+
+const SEVERAL_RINGS: &str = "the cloud has several rings; only clouds of one ring are read";
 
 /// Where a number stands in each point.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +70,7 @@ fn ring(fields: &mut WireReader<'_>) -> Result<(Header, Vec<(f64, f64)>), String
     let height = fields.u32("height").map_err(told)?;
     fields.u32("width").map_err(told)?;
     let count = fields.count("fields", 10).map_err(told)?;
-    let (mut x, mut y, mut ring) = (None, None, None);
+    let (mut x, mut y, mut z, mut ring) = (None, None, None, None);
     for _ in 0..count {
         let name = fields.name("a field's name").map_err(told)?;
         let field = Field {
@@ -73,6 +81,7 @@ fn ring(fields: &mut WireReader<'_>) -> Result<(Header, Vec<(f64, f64)>), String
         match name.as_str() {
             "x" => x = Some(field),
             "y" => y = Some(field),
+            "z" => z = Some(field),
             "ring" => ring = Some(field),
             _ => {}
         }
@@ -94,11 +103,12 @@ fn ring(fields: &mut WireReader<'_>) -> Result<(Header, Vec<(f64, f64)>), String
     }
     let mut first_ring = None;
     let mut points = Vec::with_capacity(data.len() / step);
+    let mut cone = Cone::default();
     for point in data.chunks_exact(step) {
         if let Some(this) = ring.and_then(|ring| ring.of(point, is_big))
             && *first_ring.get_or_insert(this) != this
         {
-            return Err("the cloud has several rings; only clouds of one ring are read".to_owned());
+            return Err(SEVERAL_RINGS.to_owned());
         }
         let number = |field: Field| {
             let value = field.of(point, is_big);
@@ -108,9 +118,51 @@ fn ring(fields: &mut WireReader<'_>) -> Result<(Header, Vec<(f64, f64)>), String
         let range_m = math::norm2(x, y);
         if range_m.is_finite() && range_m > 0.0 {
             points.push((math::atan2(y, x), range_m));
+            if let Some(z) = z.and_then(|z| z.of(point, is_big)) {
+                cone.take(x, y, z);
+            }
         }
     }
+    if cone.error_m() > RING_M {
+        return Err(SEVERAL_RINGS.to_owned());
+    }
     Ok((header, points))
+}
+
+/// The cone or plane nearest to points: `z = a x + b y + c r + d`, by least squares.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cone {
+    count: f64,
+    normal: Matrix4<f64>,
+    right: Vector4<f64>,
+    squares: f64,
+}
+
+impl Cone {
+    fn take(&mut self, x: f64, y: f64, z: f64) {
+        if !z.is_finite() {
+            return;
+        }
+        let row = Vector4::new(x, y, math::norm2(x, y), 1.0);
+        self.count += 1.0;
+        self.normal += row * row.transpose();
+        self.right += row * z;
+        self.squares += z * z;
+    }
+
+    /// Root of the mean square of the points' distances from it, upright, m; 0 of none.
+    fn error_m(&self) -> f64 {
+        if self.count == 0.0 {
+            return 0.0;
+        }
+        // Points that say nothing of one of the four leave it at 0; 1e-9 of their number costs nothing.
+        let ridge = Matrix4::identity() * (1e-9 * self.count);
+        let Some(factors) = (self.normal + ridge).cholesky() else {
+            return 0.0;
+        };
+        let left = self.squares - self.right.dot(&factors.solve(&self.right));
+        math::sqrt(math::max(left, 0.0) / self.count)
+    }
 }
 
 /// The scan whose beams pass through these bearings and ranges.
@@ -162,6 +214,34 @@ mod tests {
             assert!(range_m == 0.0 || range_m == 1.0 + beam as f64);
             assert!((scan.bearing_rad(beam) - bearing(beam)).abs() < 1e-12);
         }
+    }
+
+    /// The error of a cloud of a rectangular room, seen at these elevations (rad) from a frame that leans.
+    fn error_of_rings_m(elevations: &[f64]) -> f64 {
+        let mut cone = Cone::default();
+        for &elevation in elevations {
+            for beam in 0..360 {
+                let (sin, cos) = math::sin_cos(f64::from(beam).to_radians());
+                let range_m = math::min(3.0 / cos.abs(), 5.0 / sin.abs());
+                let (x, y) = (range_m * cos, range_m * sin);
+                cone.take(x, y, 0.4 + 0.1 * x + range_m * elevation.tan());
+            }
+        }
+        cone.error_m()
+    }
+
+    #[test]
+    fn rings_are_told_apart_by_their_heights_where_no_field_names_them() {
+        for one in [0.0, 0.2, -0.3] {
+            assert!(error_of_rings_m(&[one]) < 1e-3, "{one}");
+        }
+        // Two degrees apart, as of the usual scanners with sixteen rings.
+        let step = 2_f64.to_radians();
+        let rings: Vec<f64> = (0..16).map(|ring| step * (f64::from(ring) - 7.5)).collect();
+        for several in [&rings[..], &rings[..2]] {
+            assert!(error_of_rings_m(several) > RING_M);
+        }
+        assert_eq!(Cone::default().error_m(), 0.0);
     }
 
     #[test]

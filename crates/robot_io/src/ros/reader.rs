@@ -74,7 +74,10 @@ impl<'a> RosReader<'a> {
             name: self.name.clone(),
             detail: match broken {
                 Some(broken) => format!("{}: {}", broken.place, broken.problem),
-                None => self.collector.without_scans(),
+                None => {
+                    let instead = self.container.instead();
+                    instead.unwrap_or_else(|| self.collector.without_scans())
+                }
             },
         }
     }

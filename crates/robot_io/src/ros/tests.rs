@@ -1,6 +1,6 @@
 //! Recordings that other people's writers made of the simulator's lap, see `recordings/make.py`.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::collector::Collector;
 use super::container::{Container, Recorded};
@@ -213,6 +213,27 @@ fn a_recording_without_transforms_puts_the_laser_at_the_body_and_says_so() {
     assert!(
         said.contains("no transform leads from base_link to laser"),
         "{said}"
+    );
+}
+
+#[test]
+fn a_recording_of_another_system_is_told_by_its_encoding() {
+    let mut writer = mcap::Writer::new(std::io::Cursor::new(Vec::new())).unwrap();
+    let schema = writer.add_schema("foxglove.LaserScan", "jsonschema", b"{}");
+    let channel = writer.add_channel(schema.unwrap(), "/scan", "json", &BTreeMap::new());
+    let header = mcap::records::MessageHeader {
+        channel_id: channel.unwrap(),
+        sequence: 0,
+        log_time: 0,
+        publish_time: 0,
+    };
+    writer.write_to_known_channel(&header, b"{}").unwrap();
+    writer.finish().unwrap();
+    let bytes = writer.into_inner().into_inner();
+    let error = read(&bytes, "x.mcap").unwrap_err().to_string();
+    assert!(
+        error.contains("no messages of ROS, such as those on /scan in the encoding ‘json’"),
+        "{error}"
     );
 }
 

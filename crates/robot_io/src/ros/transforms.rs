@@ -68,19 +68,35 @@ impl Transforms {
         }
     }
 
-    /// Where `sensor` is on `body`; none where no chain of transforms leads from one to the other.
-    pub fn body_from_sensor(&self, body: &str, sensor: &str) -> Option<Isometry3<f64>> {
-        let mut chain = Isometry3::identity();
-        let mut frame = sensor;
-        for _ in 0..LONGEST_CHAIN {
-            if frame == body {
-                return Some(chain);
-            }
-            let (parent, transform) = self.above.get(frame)?;
-            chain = transform * chain;
+    /// Where `sensor` is on `body`, by way of the nearest frame above both; none where they share none.
+    /// `ground` is the frame that the body moves in: what hangs on it is not fixed to the body.
+    pub fn body_from_sensor(
+        &self,
+        body: &str,
+        sensor: &str,
+        ground: Option<&str>,
+    ) -> Option<Isometry3<f64>> {
+        let above_body = self.chain(body, ground);
+        let above_sensor = self.chain(sensor, ground);
+        above_sensor.into_iter().find_map(|(frame, of_sensor)| {
+            let (_, of_body) = above_body.iter().find(|(above, _)| *above == frame)?;
+            Some(of_body.inverse() * of_sensor)
+        })
+    }
+
+    /// A frame and those above it, the nearest first, each with the place of the first one in it.
+    fn chain<'a>(&'a self, frame: &'a str, ground: Option<&str>) -> Vec<(&'a str, Isometry3<f64>)> {
+        let mut chain = vec![(frame, Isometry3::identity())];
+        let (mut frame, mut place) = chain[0];
+        while let Some((parent, transform)) = self.above.get(frame)
+            && chain.len() < LONGEST_CHAIN
+            && ground != Some(parent.as_str())
+        {
+            place = transform * place;
             frame = parent;
+            chain.push((frame, place));
         }
-        None
+        chain
     }
 
     /// Every frame with the frame above it, in the order of names.
@@ -128,7 +144,7 @@ mod tests {
         let quarter = [0.0, 0.0, FRAC_PI_2.sqrt(), FRAC_PI_2.sqrt()];
         frames.take(&message("base", "mast", 1.0, quarter));
         frames.take(&message("mast", "laser", 0.5, [1.0, 0.0, 0.0, 0.0]));
-        let chain = frames.body_from_sensor("base", "laser").unwrap();
+        let chain = frames.body_from_sensor("base", "laser", None).unwrap();
         let mount = Mount::of(&chain).unwrap();
         let [x, y, theta] = mount.body_from_sensor.to_array();
         // 1e-12: a dozen roundings of numbers about 1.
@@ -141,7 +157,29 @@ mod tests {
         };
         mount.place(&mut scan);
         assert_eq!((scan.first_angle_rad, scan.angle_step_rad), (1.0, -0.5));
-        assert_eq!(frames.body_from_sensor("laser", "base"), None);
+        assert_eq!(frames.body_from_sensor("base", "camera", None), None);
+    }
+
+    #[test]
+    fn a_body_below_the_frame_that_the_laser_hangs_on_has_its_laser_all_the_same() {
+        // As where base_footprint hangs on base_link: the wheels move the one, the laser sits on the other.
+        let mut frames = Transforms::default();
+        let straight = [0.0, 0.0, 0.0, 1.0];
+        let quarter = [0.0, 0.0, FRAC_PI_2.sqrt(), FRAC_PI_2.sqrt()];
+        frames.take(&message("link", "footprint", -0.5, quarter));
+        frames.take(&message("link", "laser", 0.25, straight));
+        frames.take(&message("odom", "link", 7.0, quarter));
+        let ground = Some("odom");
+        let chain = frames
+            .body_from_sensor("footprint", "laser", ground)
+            .unwrap();
+        let [x, y, theta] = Mount::of(&chain).unwrap().body_from_sensor.to_array();
+        // 0.75 m ahead on the link, which the footprint sees to its right; 1e-12: a dozen roundings.
+        assert!(x.abs() < 1e-12 && (y + 0.75).abs() < 1e-12, "{x} {y}");
+        assert!((theta + FRAC_PI_2).abs() < 1e-12);
+        // Another robot in the same odometry is no part of this one.
+        frames.take(&message("odom", "camera", 9.0, straight));
+        assert_eq!(frames.body_from_sensor("footprint", "camera", ground), None);
     }
 
     #[test]
@@ -149,7 +187,8 @@ mod tests {
         let mut frames = Transforms::default();
         frames.take(&message("a", "b", 1.0, [0.0, 0.0, 0.0, 1.0]));
         frames.take(&message("b", "a", 1.0, [0.0, 0.0, 0.0, 1.0]));
-        assert_eq!(frames.body_from_sensor("base", "a"), None);
+        assert_eq!(frames.body_from_sensor("base", "a", None), None);
+        assert!(frames.body_from_sensor("b", "a", None).is_some());
     }
 
     #[test]

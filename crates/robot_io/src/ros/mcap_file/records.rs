@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::lines::printable;
 use crate::ros::container::{ContainerError, Recorded, kind_of};
 use crate::ros::wire::{Wire, WireError, WireReader};
 
@@ -38,8 +39,8 @@ pub fn broken(problem: WireError) -> ContainerError {
 struct Channel {
     topic: String,
     kind: String,
-    /// None: other encodings are other systems' messages.
-    wire: Option<Wire>,
+    /// Else the name of an encoding that is another system's.
+    wire: Result<Wire, String>,
 }
 
 /// What was announced so far, by its numbers.
@@ -47,9 +48,21 @@ struct Channel {
 pub struct Records {
     kinds: BTreeMap<u16, String>,
     channels: BTreeMap<u16, Channel>,
+    /// Topic and encoding of the first message that is not of ROS.
+    other: Option<(String, String)>,
+    has_ros: bool,
 }
 
 impl Records {
+    /// What stands in the file in place of messages of ROS; none where it has such messages or nothing.
+    pub fn instead(&self) -> Option<String> {
+        let (topic, encoding) = self.other.as_ref().filter(|_| !self.has_ros)?;
+        let [topic, encoding] = [topic, encoding].map(|name| printable(name));
+        Some(format!(
+            "its messages are no messages of ROS, such as those on {topic} in the encoding ‘{encoding}’; record with ros2 bag record -s mcap"
+        ))
+    }
+
     /// Takes a record; answers with its message where it is one that can be read.
     pub fn take(&mut self, op: u8, body: &[u8]) -> Result<Option<Recorded>, ContainerError> {
         match op {
@@ -73,17 +86,18 @@ impl Records {
         let number = fields.u16("a channel's number")?;
         let schema = fields.u16("a schema's number")?;
         let topic = fields.name("a topic")?;
-        let wire = match fields.name("an encoding")?.as_str() {
-            "cdr" => Some(Wire::Cdr),
-            "ros1" => Some(Wire::Ros1),
-            _ => None,
+        let encoding = fields.name("an encoding")?;
+        let wire = match encoding.as_str() {
+            "cdr" => Ok(Wire::Cdr),
+            "ros1" => Ok(Wire::Ros1),
+            _ => Err(encoding),
         };
         let kind = self.kinds.get(&schema).cloned().unwrap_or_default();
         self.channels.insert(number, Channel { topic, kind, wire });
         Ok(())
     }
 
-    fn message(&self, body: &[u8]) -> Result<Option<Recorded>, ContainerError> {
+    fn message(&mut self, body: &[u8]) -> Result<Option<Recorded>, ContainerError> {
         let mut fields = fields(body)?;
         let number = fields.u16("a channel's number").map_err(broken)?;
         fields.u32("a message's number").map_err(broken)?;
@@ -94,7 +108,16 @@ impl Records {
                 "a message names channel {number}, which is unknown"
             )));
         };
-        Ok(channel.wire.map(|wire| Recorded {
+        let wire = match &channel.wire {
+            Ok(wire) => *wire,
+            Err(encoding) => {
+                let named = || (channel.topic.clone(), encoding.clone());
+                self.other.get_or_insert_with(named);
+                return Ok(None);
+            }
+        };
+        self.has_ros = true;
+        Ok(Some(Recorded {
             topic: channel.topic.clone(),
             kind: channel.kind.clone(),
             wire,
