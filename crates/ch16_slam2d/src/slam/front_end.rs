@@ -7,6 +7,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
 
+use self::weighing::Driven;
 use super::config::{PredictionUse, SlamConfig};
 use super::snapshot::FrontEndSnapshot;
 use crate::cloud::PointCloud;
@@ -224,8 +225,15 @@ impl FrontEnd {
             let noise = config.motion_noise(frame.odometry.is_some());
             self.driven = noise.then(&self.driven, &motion);
         }
-        if accepted && config.prediction_use == PredictionUse::Measurement {
-            self.weigh(&matched, &prediction, &motion, frame, config);
+        let (mut matched, mut accepted) = (matched, accepted);
+        if config.prediction_use == PredictionUse::Measurement {
+            let going_on = SE2::exp(&(self.velocity * self.extrapolated_s(dt_s, config)));
+            let wheels = Driven::new(&before, motion, &going_on, frame);
+            if accepted || wheels.going_on.is_some() {
+                let found = self.weigh(&matched, &wheels, frame, config);
+                accepted |= found.is_some();
+                matched = found.unwrap_or(matched);
+            }
         }
         self.remember_trust(accepted, &motion, frame.odometry.is_some(), config);
         self.last_dt_s = dt_s;

@@ -17,9 +17,50 @@ impl ContradictionConfig {
     }
 }
 
+/// What the wheels tell of a scan's place.
+pub(super) struct Driven {
+    /// Where they lead to.
+    pub prediction: SE2,
+    /// The motion up to there.
+    pub motion: SE2,
+    /// Where the robot would be had it gone on as before, if the wheels say something quite different.
+    pub going_on: Option<SE2>,
+}
+
+/// Wheels that lead so far from where the robot would be had it gone on lead beyond what a registration finds: m and rad.
+const JUMP: (f64, f64) = (1.0, 0.8);
+
+/// A place that needs a jump of the wheels costs as much as so many standard deviations.
+const JUMP_DEVIATIONS: f64 = 2.0;
+
+impl Driven {
+    /// What the wheels tell by a motion from the pose before, where `going_on` would be the motion without them.
+    pub fn new(before: &SE2, motion: SE2, going_on: &SE2, frame: &PreparedFrame) -> Self {
+        let away = going_on.between(&motion);
+        let is_jump = math::norm2(away.x(), away.y()) > JUMP.0 || away.theta().abs() > JUMP.1;
+        Self {
+            prediction: *before * motion,
+            motion,
+            going_on: (is_jump && frame.odometry.is_some()).then(|| *before * *going_on),
+        }
+    }
+}
+
+/// Where a scan may have been taken, and by what it is judged.
+struct Start {
+    /// Where its registration begins; none where it is known.
+    from: Option<SE2>,
+    /// The place that it should be near to.
+    expected: SE2,
+    /// Standard deviations that it costs in any case.
+    deviations: f64,
+}
+
 /// A place that a scan may have been taken from.
 struct Place {
     pose: SE2,
+    /// The place that it should be near to.
+    expected: SE2,
     /// Share of the scan that fits.
     share: f64,
     /// Its share, less what it costs that the wheels have jumped there.
@@ -29,26 +70,28 @@ struct Place {
 impl FrontEnd {
     /// Moves the estimate from the registration towards the prediction, by what both know.
     ///
-    /// Where they disagree by more than both allow, wheels have jumped or the scan was led astray.
+    /// Where they disagree by more than both allow, wheels have jumped or the scan was led astray. Answers with what
+    /// was found instead where the wheels have jumped farther than the registration looked.
     pub(super) fn weigh(
         &mut self,
         matched: &MatchSummary,
-        prediction: &SE2,
-        motion: &SE2,
+        wheels: &Driven,
         frame: &PreparedFrame,
         config: &SlamConfig,
-    ) {
+    ) -> Option<MatchSummary> {
+        let prediction = &wheels.prediction;
         let share = matched.score.unwrap_or(1.0);
         let known = self.claimed(&matched.pose, share, config);
         let noise = config.motion_noise(frame.odometry.is_some());
-        let driven = noise.covariance(motion);
-        let Some(fusion) = fuse(&matched.pose, &known, prediction, &driven) else {
-            return;
-        };
+        let driven = noise.covariance(&wheels.motion);
+        let fusion = fuse(&matched.pose, &known, prediction, &driven)?;
         self.estimate = fusion.pose;
-        if fusion.chi2 > config.contradiction.chi2 {
-            self.settle(matched, prediction, &driven, frame, config);
+        // A scan that hardly fits where wheels lead to that have jumped does not contradict them: it says nothing.
+        let rules = config.contradiction;
+        if fusion.chi2 > rules.chi2 || wheels.going_on.is_some() && share < rules.min_score {
+            return self.settle(matched, wheels, &driven, frame, config);
         }
+        None
     }
 
     /// Decides where the scan and the wheels contradict each other.
@@ -60,17 +103,21 @@ impl FrontEnd {
     /// does not. Elsewhere the scan's information is taken to be less, by the square of how much the
     /// disagreement is too large: a place that is far off moves nothing.
     ///
+    /// Where the wheels lead to quite another place than going on would, that one competes as well: it costs a jump, and how
+    /// far from it the scan is.
+    ///
     /// On submaps the score counts points at walls alone, and so does not compare places: there the found
     /// place stands by itself, without a cost.
     fn settle(
         &mut self,
         matched: &MatchSummary,
-        prediction: &SE2,
+        wheels: &Driven,
         driven: &Matrix3<f64>,
         frame: &PreparedFrame,
         config: &SlamConfig,
-    ) {
+    ) -> Option<MatchSummary> {
         let rules = config.contradiction;
+        let prediction = &wheels.prediction;
         let compares = self.submaps.is_none();
         let jumped = driven + rules.jump();
         let request =
@@ -80,39 +127,56 @@ impl FrontEnd {
         let predicted = predicted.score.unwrap_or(0.0);
         let turned = SE2::new(prediction.x(), prediction.y(), matched.pose.theta());
         let mut best: Option<Place> = None;
-        let starts = [None, Some(*prediction), Some(turned)];
-        for start in starts.into_iter().take(if compares { 3 } else { 1 }) {
-            let found = match start {
+        let by_wheels = [None, Some(*prediction), Some(turned)].map(|from| Start {
+            from,
+            expected: *prediction,
+            deviations: 0.0,
+        });
+        let by_going_on = wheels.going_on.map(|place| Start {
+            from: Some(place),
+            expected: place,
+            deviations: JUMP_DEVIATIONS,
+        });
+        let starts = by_wheels.into_iter().chain(by_going_on);
+        for start in starts.take(if compares { 4 } else { 1 }) {
+            let found = match start.from {
                 None => self.match_near(cloud, &request(matched.pose, 0)),
-                Some(start) => self.match_near(cloud, &request(start, config.max_iterations)),
+                Some(from) => self.match_near(cloud, &request(from, config.max_iterations)),
             };
             let (pose, share) = (found.pose, found.score.unwrap_or(1.0));
             let known = self.claimed(&pose, share, config);
-            let Some(apart) = fuse(&pose, &known, prediction, &jumped) else {
+            let expected = start.expected;
+            let Some(apart) = fuse(&pose, &known, &expected, &jumped) else {
                 continue;
             };
             let cost = match frame.odometry {
-                Some(_) if compares => rules.jump_cost * math::sqrt(apart.chi2),
+                Some(_) if compares => {
+                    rules.jump_cost * (start.deviations + math::sqrt(apart.chi2))
+                }
                 _ => 0.0,
             };
             let worth = share - math::min(cost, rules.max_cost);
             if best.as_ref().is_none_or(|best| worth > best.worth) {
-                best = Some(Place { pose, share, worth });
+                best = Some(Place {
+                    pose,
+                    expected,
+                    share,
+                    worth,
+                });
             }
         }
-        let Some(Place { pose, share, worth }) = best else {
-            return;
-        };
+        let place = best?;
+        let Place { pose, share, .. } = place;
         // The pairs are asked for later: those of the pose that is taken.
         self.match_near(cloud, &request(pose, 0));
         let known = self.claimed(&pose, share, config);
-        let is_jump = worth >= rules.min_score && predicted < share - rules.lead;
+        let is_jump = place.worth >= rules.min_score && predicted < share - rules.lead;
         let fused = if is_jump && !compares {
             self.estimate = pose;
-            return;
+            return None;
         } else if is_jump {
             self.driven += rules.jump();
-            fuse(&pose, &known, prediction, &jumped)
+            fuse(&pose, &known, &place.expected, &jumped)
         } else {
             let apart = fuse(&pose, &known, prediction, driven);
             let chi2 = apart.map_or(f64::INFINITY, |apart| apart.chi2);
@@ -120,10 +184,11 @@ impl FrontEnd {
             self.believed = if compares { doubt * doubt } else { doubt };
             fuse(&pose, &(known * self.believed), prediction, driven)
         };
-        if let Some(fused) = fused {
-            self.estimate = fused.pose;
-            self.match_near(cloud, &request(fused.pose, 0));
-        }
+        let fused = fused?;
+        self.estimate = fused.pose;
+        let found = self.match_near(cloud, &request(fused.pose, 0));
+        let is_going_on = wheels.going_on == Some(place.expected);
+        (is_jump && is_going_on).then_some(found)
     }
 
     /// What the last registration claims to know at a pose.
@@ -143,7 +208,7 @@ mod tests {
     use crate::cloud::PointCloud;
     use crate::icp::Pair;
     use crate::matching::{MatchStop, Matcher, TrustConfig};
-    use crate::slam::test_room;
+    use crate::slam::{Slam, test_room};
 
     /// A scan that fits in one place, and a little everywhere else.
     #[derive(Clone)]
@@ -239,6 +304,32 @@ mod tests {
         });
         assert!((found.x() - pose.x()).abs() < 0.02, "{found:?}");
         assert!((found.theta() - pose.theta()).abs() < 0.02, "{found:?}");
+    }
+
+    #[test]
+    fn wheels_that_jump_by_five_metres_leave_the_robot_where_it_is() {
+        // 5 m and 60°: from there no registration finds back. Not at the first frames, which tell no velocity.
+        for jump in [
+            SE2::new(5.0, 0.0, 0.0),
+            SE2::new(-3.0, 4.0, 1.0),
+            SE2::new(0.0, 0.0, 2.5),
+        ] {
+            let config = SlamConfig::for_robot(&test_room::frame(0).scan);
+            let mut slam = Slam::new(config);
+            let start = test_room::truth(0);
+            for step in 0..20 {
+                let mut frame = test_room::frame(step);
+                if step == 12 {
+                    frame.odometry = frame.odometry.map(|motion| motion * jump);
+                }
+                let report = slam.step(&frame).unwrap();
+                let truth = start.between(&test_room::truth(step));
+                let off = truth.between(&report.estimate);
+                // 5 cm: the noise of the wheels, for a room that four walls tell.
+                let is_there = math::norm2(off.x(), off.y()) < 0.05 && off.theta().abs() < 0.02;
+                assert!(is_there, "{jump:?}, step {step}: {off:?}");
+            }
+        }
     }
 
     #[test]
