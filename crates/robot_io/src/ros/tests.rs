@@ -1,6 +1,6 @@
 //! Recordings that other people's writers made of the simulator's lap, see `recordings/make.py`.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::collector::Collector;
 use super::container::{Container, Recorded};
@@ -218,18 +218,26 @@ fn a_recording_without_transforms_puts_the_laser_at_the_body_and_says_so() {
 
 #[test]
 fn a_recording_of_another_system_is_told_by_its_encoding() {
-    let mut writer = mcap::Writer::new(std::io::Cursor::new(Vec::new())).unwrap();
-    let schema = writer.add_schema("foxglove.LaserScan", "jsonschema", b"{}");
-    let channel = writer.add_channel(schema.unwrap(), "/scan", "json", &BTreeMap::new());
-    let header = mcap::records::MessageHeader {
-        channel_id: channel.unwrap(),
-        sequence: 0,
-        log_time: 0,
-        publish_time: 0,
+    let record = |op: u8, fields: &[&[u8]]| {
+        let body = fields.concat();
+        [&[op][..], &(body.len() as u64).to_le_bytes(), &body].concat()
     };
-    writer.write_to_known_channel(&header, b"{}").unwrap();
-    writer.finish().unwrap();
-    let bytes = writer.into_inner().into_inner();
+    let text = |text: &str| [&(text.len() as u32).to_le_bytes()[..], text.as_bytes()].concat();
+    let magic = b"\x89MCAP0\r\n".to_vec();
+    let kind = [text("foxglove.LaserScan"), text("jsonschema"), text("{}")].concat();
+    let channel = [text("/scan"), text("json"), text("")].concat();
+    // Of the specification of MCAP: header, schema 1, channel 0 of it, a message, end of data, footer.
+    let bytes = [
+        magic.clone(),
+        record(1, &[&text(""), &text("")]),
+        record(3, &[&[1, 0], &kind]),
+        record(4, &[&[0, 0, 1, 0], &channel]),
+        record(5, &[&[0; 22], b"{}"]),
+        record(15, &[&[0; 4]]),
+        record(2, &[&[0; 20]]),
+        magic,
+    ]
+    .concat();
     let error = read(&bytes, "x.mcap").unwrap_err().to_string();
     assert!(
         error.contains("no messages of ROS, such as those on /scan in the encoding ‘json’"),
