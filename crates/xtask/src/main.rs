@@ -12,6 +12,7 @@ mod committed;
 mod fuzz;
 mod http;
 mod ledger;
+mod linted;
 mod load;
 mod package;
 mod run;
@@ -27,6 +28,9 @@ use std::process::ExitCode;
 use args::Command;
 
 fn main() -> ExitCode {
+    if let Some(ended) = linted::before_rustc() {
+        return ended;
+    }
     let command = match args::parse(std::env::args().skip(1)) {
         Ok(command) => command,
         Err(message) => {

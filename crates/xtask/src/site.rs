@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use crate::linted::linted;
 use crate::run::{Failure, program, root, step};
 use crate::tools;
 
@@ -11,7 +12,7 @@ use crate::tools;
 pub enum Speed {
     /// Profile `web-dev`: compiles in a fraction of the time, for trying things out.
     QuickToCompile,
-    /// Profile `web`: what is published.
+    /// Profile `web`: what is published, and linted as it is compiled.
     SmallAndFast,
 }
 
@@ -48,14 +49,20 @@ pub fn build(speed: Speed) -> Result<(), Failure> {
 }
 
 fn compile_wasm(speed: Speed) -> Result<(), Failure> {
-    step(
-        "Compiling the widgets to WebAssembly (the first time takes minutes)",
-        &mut wasm_build("pkg", speed),
-    )?;
-    step(
-        "Compiling the worker that maps logs",
-        &mut robot_build(speed),
-    )
+    let mut modules = [
+        (
+            "Compiling the widgets to WebAssembly (the first time takes minutes)",
+            wasm_build("pkg", speed),
+        ),
+        ("Compiling the worker that maps logs", robot_build(speed)),
+    ];
+    for (what, module) in &mut modules {
+        match speed {
+            Speed::QuickToCompile => step(what, module)?,
+            Speed::SmallAndFast => step(what, linted(module)?)?,
+        }
+    }
+    Ok(())
 }
 
 /// The build of the second module, which a reader's log is mapped in, into `web/pkg-robot`.

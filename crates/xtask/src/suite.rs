@@ -32,14 +32,20 @@ pub fn test(pieces: &[Piece]) -> Result<(), Failure> {
     let done = ledger
         .time("tools", || ensure_tools(pieces))
         .and_then(|chromium| {
-            Piece::ALL
-                .into_iter()
-                .filter(|piece| pieces.contains(piece))
+            in_order(pieces)
                 .try_for_each(|piece| run(piece, chromium.as_ref(), &skipped, &mut ledger))
         });
     println!("\n── What took how long\n{ledger}");
     println!("── {skipped}");
     done
+}
+
+/// The pieces in the order of the suite. What builds the site lints what only WebAssembly compiles.
+fn in_order(pieces: &[Piece]) -> impl Iterator<Item = Piece> {
+    let is_told_twice = |piece| piece == Piece::Lints && pieces.contains(&Piece::Site);
+    Piece::ALL
+        .into_iter()
+        .filter(move |piece| pieces.contains(piece) && !is_told_twice(*piece))
 }
 
 /// What is missing is better known before many minutes of compiling and testing.
@@ -103,6 +109,17 @@ fn test_files(folder: &str) -> Result<Vec<PathBuf>, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lints_have_a_step_of_their_own_where_no_site_is_built() {
+        let steps = |pieces: &[Piece]| {
+            in_order(pieces)
+                .filter(|piece| *piece == Piece::Lints)
+                .count()
+        };
+        assert_eq!(steps(&Piece::QUICK), 1);
+        assert_eq!(steps(&Piece::ALL), 0);
+    }
 
     #[test]
     fn the_test_files_are_found_and_the_helpers_left_out() {

@@ -106,6 +106,14 @@ pub fn clippy_driver() -> Result<PathBuf, Failure> {
     ))
 }
 
+/// Makes every warning of clippy an error, as `cargo clippy -- -D warnings` says it to its driver.
+pub fn deny_warnings(command: &mut Command) -> &mut Command {
+    command.env(
+        "CLIPPY_ARGS",
+        ["-D", "warnings", ""].join("__CLIPPY_HACKERY__"),
+    )
+}
+
 /// Where the toolchain is.
 fn sysroot() -> Result<PathBuf, Failure> {
     output(program("rustc").args(["--print", "sysroot"]))

@@ -133,13 +133,7 @@ pub fn peers() -> Result<(), Failure> {
 /// Makes clippy the compiler of the workspace's crates and every warning an error.
 fn linting(command: &mut Command) -> Result<&mut Command, Failure> {
     let driver = tools::clippy_driver()?;
-    Ok(unincremental(command)
-        .env("RUSTC_WORKSPACE_WRAPPER", driver)
-        // As `cargo clippy -- -D warnings` says it to its driver.
-        .env(
-            "CLIPPY_ARGS",
-            ["-D", "warnings", ""].join("__CLIPPY_HACKERY__"),
-        ))
+    Ok(tools::deny_warnings(unincremental(command)).env("RUSTC_WORKSPACE_WRAPPER", driver))
 }
 
 /// What is kept for the next compilation of a crate costs the first one a tenth more.
