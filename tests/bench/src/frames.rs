@@ -79,7 +79,7 @@ pub fn workloads() -> Vec<Workload> {
         drag(
             "frame-w16.6",
             "a frame of w16.6 while its search is scrubbed",
-            || Frames::of(w16_6_whole_window::widget(), "progress", [200.0, 201.0]),
+            || Frames::of(coarse_search(), "progress", [200.0, 201.0]),
         ),
         drag(
             "frame-w16.7",
@@ -102,6 +102,14 @@ pub fn workloads() -> Vec<Workload> {
             || Frames::of(w16_12_jacobians::widget(), "bias", [5.0, 6.0]),
         ),
     ]
+}
+
+/// The whole window in cells of 10 cm: its searches end soon under the counter, and its picture is drawn alike.
+fn coarse_search() -> Shell {
+    let mut shell = w16_6_whole_window::widget();
+    let model = shell.model_mut();
+    model.set("cell", 0.1).expect("the value is in range");
+    shell
 }
 
 /// A widget that is drawn without a screen.
