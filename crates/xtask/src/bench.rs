@@ -38,10 +38,10 @@ pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
     step(
         "Compiling the workloads to WebAssembly",
         &mut tools::wasm_pack_build(
-            "tests/bench",
+            "tests/bench/module",
             &[
                 "--target=web",
-                "--out-dir=../../target/bench-web",
+                "--out-dir=../../../target/bench-web",
                 "--out-name=slam2d_bench",
                 "--profile=web",
             ],

@@ -52,7 +52,7 @@ fn compile_wasm(speed: Speed) -> Result<(), Failure> {
     let mut modules = [
         (
             "Compiling the widgets to WebAssembly (the first time takes minutes)",
-            wasm_build("pkg", speed),
+            wasm_build("../pkg", speed),
         ),
         ("Compiling the worker that maps logs", robot_build(speed)),
     ];
@@ -68,23 +68,23 @@ fn compile_wasm(speed: Speed) -> Result<(), Failure> {
 /// The build of the second module, which a reader's log is mapped in, into `web/pkg-robot`.
 fn robot_build(speed: Speed) -> Command {
     tools::wasm_pack_build(
-        "web/robot",
+        "web/robot/module",
         &[
             // One instance in a worker of its own: the glue is a module that the worker's script takes in.
             "--target=web",
-            "--out-dir=../pkg-robot",
+            "--out-dir=../../pkg-robot",
             "--out-name=slam_robot",
             &format!("--profile={}", speed.profile()),
         ],
     )
 }
 
-/// The build of the module into a folder, named as seen from `web/`; takes more options of cargo.
+/// The build of the module into a folder, named as seen from `web/module/`; takes more options of cargo.
 pub fn wasm_build(folder: &str, speed: Speed) -> Command {
     // `no-modules`: one function that holds the whole glue, so that the element can make as many
-    // instances as there are widgets. No wasm-opt: see web/Cargo.toml.
+    // instances as there are widgets. No wasm-opt: see web/module/Cargo.toml.
     tools::wasm_pack_build(
-        "web",
+        "web/module",
         &[
             "--target=no-modules",
             &format!("--out-dir={folder}"),
@@ -121,11 +121,11 @@ mod tests {
 
     #[test]
     fn one_compilation_serves_both_modules() {
-        let widgets = crates_of("slam_web");
-        let robot = crates_of("slam_robot");
+        let widgets = crates_of("slam_web_module");
+        let robot = crates_of("slam_robot_module");
         let alone: Vec<&String> = robot.difference(&widgets).collect();
         assert!(
-            matches!(alone[..], [itself] if itself.starts_with("slam_robot ")),
+            alone.iter().all(|name| name.starts_with("slam_robot")),
             "only the worker that maps logs needs these, with these features: {alone:#?}"
         );
     }

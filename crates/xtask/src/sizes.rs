@@ -25,12 +25,12 @@ const VARIANTS: [Variant; 4] = [
     Variant {
         id: "fonts",
         what: "with egui's own fonts besides the subset",
-        options: &["--features", "eframe/default_fonts"],
+        options: &["--features", "eframe_fonts"],
     },
     Variant {
         id: "features",
         what: "with all default features of eframe besides `glow`",
-        options: &["--features", "eframe/default"],
+        options: &["--features", "eframe_default"],
     },
     Variant {
         id: "speed",
@@ -50,7 +50,7 @@ pub fn sizes() -> Result<(), Failure> {
     table.args(["web/size-table.mjs", PAGE]);
     for Variant { id, what, options } in VARIANTS {
         // A target folder of its own: the published build stays compiled.
-        let mut build = wasm_build(&format!("../target/sizes/{id}"), Speed::SmallAndFast);
+        let mut build = wasm_build(&format!("../../target/sizes/{id}"), Speed::SmallAndFast);
         build
             .args(options)
             .env("CARGO_TARGET_DIR", folder.join("cargo"));
