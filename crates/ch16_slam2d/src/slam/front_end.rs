@@ -195,13 +195,9 @@ impl FrontEnd {
     ) -> Registration {
         self.rebuild_local_map();
         let before = self.estimate;
-        let motion = frame
-            .odometry
-            .unwrap_or_else(|| SE2::exp(&(self.velocity * self.extrapolated_s(dt_s, config))));
-        // The velocity of a jump may lead anywhere: then it is none.
-        let is_motion =
-            frame.odometry.is_some() || position_error_m(&SE2::identity(), &motion) <= FARTHEST_M;
-        let motion = if is_motion && is_finite(&(before * motion)) {
+        let going_on = self.going_on(dt_s, config);
+        let motion = frame.odometry.unwrap_or(going_on);
+        let motion = if is_finite(&(before * motion)) {
             motion
         } else {
             SE2::identity()
@@ -227,7 +223,6 @@ impl FrontEnd {
         }
         let (mut matched, mut accepted) = (matched, accepted);
         if config.prediction_use == PredictionUse::Measurement {
-            let going_on = SE2::exp(&(self.velocity * self.extrapolated_s(dt_s, config)));
             let wheels = Driven::new(&before, motion, &going_on, frame);
             if accepted || wheels.going_on.is_some() {
                 let found = self.weigh(&matched, &wheels, frame, config);
@@ -341,9 +336,16 @@ impl FrontEnd {
         }
     }
 
-    /// For how long the velocity is expected to stay, s.
-    fn extrapolated_s(&self, dt_s: f64, config: &SlamConfig) -> f64 {
-        dt_s.min(config.extrapolation * self.last_dt_s)
+    /// The motion with the last velocity, for as long as it is expected to stay.
+    fn going_on(&self, dt_s: f64, config: &SlamConfig) -> SE2 {
+        let stays_s = dt_s.min(config.extrapolation * self.last_dt_s);
+        let motion = SE2::exp(&(self.velocity * stays_s));
+        // The velocity of a jump may lead anywhere: then it is none.
+        if position_error_m(&SE2::identity(), &motion) <= FARTHEST_M {
+            motion
+        } else {
+            SE2::identity()
+        }
     }
 
     fn rebuild_local_map(&mut self) {

@@ -46,18 +46,37 @@ impl Driven {
     }
 }
 
+/// What leads to a place.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Lead {
+    /// The wheels.
+    Wheels,
+    /// The motion before, had the wheels not jumped.
+    GoingOn,
+}
+
+impl Lead {
+    /// Standard deviations that a place costs in any case.
+    fn deviations(self) -> f64 {
+        match self {
+            Self::Wheels => 0.0,
+            Self::GoingOn => JUMP_DEVIATIONS,
+        }
+    }
+}
+
 /// Where a scan may have been taken, and by what it is judged.
 struct Start {
+    lead: Lead,
     /// Where its registration begins; none where it is known.
     from: Option<SE2>,
     /// The place that it should be near to.
     expected: SE2,
-    /// Standard deviations that it costs in any case.
-    deviations: f64,
 }
 
 /// A place that a scan may have been taken from.
 struct Place {
+    lead: Lead,
     pose: SE2,
     /// The place that it should be near to.
     expected: SE2,
@@ -128,14 +147,14 @@ impl FrontEnd {
         let turned = SE2::new(prediction.x(), prediction.y(), matched.pose.theta());
         let mut best: Option<Place> = None;
         let by_wheels = [None, Some(*prediction), Some(turned)].map(|from| Start {
+            lead: Lead::Wheels,
             from,
             expected: *prediction,
-            deviations: 0.0,
         });
         let by_going_on = wheels.going_on.map(|place| Start {
+            lead: Lead::GoingOn,
             from: Some(place),
             expected: place,
-            deviations: JUMP_DEVIATIONS,
         });
         let starts = by_wheels.into_iter().chain(by_going_on);
         for start in starts.take(if compares { 4 } else { 1 }) {
@@ -151,13 +170,14 @@ impl FrontEnd {
             };
             let cost = match frame.odometry {
                 Some(_) if compares => {
-                    rules.jump_cost * (start.deviations + math::sqrt(apart.chi2))
+                    rules.jump_cost * (start.lead.deviations() + math::sqrt(apart.chi2))
                 }
                 _ => 0.0,
             };
             let worth = share - math::min(cost, rules.max_cost);
             if best.as_ref().is_none_or(|best| worth > best.worth) {
                 best = Some(Place {
+                    lead: start.lead,
                     pose,
                     expected,
                     share,
@@ -187,8 +207,7 @@ impl FrontEnd {
         let fused = fused?;
         self.estimate = fused.pose;
         let found = self.match_near(cloud, &request(fused.pose, 0));
-        let is_going_on = wheels.going_on == Some(place.expected);
-        (is_jump && is_going_on).then_some(found)
+        (is_jump && place.lead == Lead::GoingOn).then_some(found)
     }
 
     /// What the last registration claims to know at a pose.
