@@ -16,7 +16,7 @@ struct Variant {
 }
 
 /// The first is the published build itself.
-const VARIANTS: [Variant; 4] = [
+const VARIANTS: [Variant; 5] = [
     Variant {
         id: "published",
         what: "as published",
@@ -31,6 +31,11 @@ const VARIANTS: [Variant; 4] = [
         id: "features",
         what: "with all default features of eframe besides `glow`",
         options: &["--features", "eframe_default"],
+    },
+    Variant {
+        id: "crates",
+        what: "without optimization across crates",
+        options: &["--config", "profile.web.lto=\"off\""],
     },
     Variant {
         id: "speed",
