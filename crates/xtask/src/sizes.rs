@@ -25,12 +25,12 @@ const VARIANTS: [Variant; 5] = [
     Variant {
         id: "fonts",
         what: "with egui's own fonts besides the subset",
-        options: &["--features", "eframe_fonts"],
+        options: &["--features", "eframe/default_fonts"],
     },
     Variant {
         id: "features",
         what: "with all default features of eframe besides `glow`",
-        options: &["--features", "eframe_default"],
+        options: &["--features", "eframe/default"],
     },
     Variant {
         id: "crates",
