@@ -23,6 +23,7 @@ mod likelihood_grid;
 mod pyramid;
 mod report;
 mod scan_search;
+mod score_scale;
 mod turned_scan;
 mod window;
 

@@ -120,8 +120,8 @@ impl Lattice {
     }
 
     /// Cells from the window's centre to a column and a row.
-    pub fn cells_from_center(&self, column: i32, row: i32) -> (i32, i32) {
-        (column - self.half_columns, row - self.half_rows)
+    pub fn cells_from_center(&self, column: i32, row: i32) -> [i32; 2] {
+        [column - self.half_columns, row - self.half_rows]
     }
 
     /// The last pose.

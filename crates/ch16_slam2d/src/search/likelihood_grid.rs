@@ -3,6 +3,7 @@
 use pr_geom::{Point2, math};
 
 use super::SearchError;
+use super::score_scale::ScoreScale;
 use crate::cloud::{PointCloud, cell_index};
 
 /// Most cells of a grid: 105 m × 105 m at 0.05 m. The levels above it take ten times the memory.
@@ -96,10 +97,9 @@ impl LikelihoodGrid {
         Ok(grid)
     }
 
-    /// Squared distances first, one exponential for each cell that has one then.
+    /// Squared distances first, one look at the scale for each cell then.
     fn scored(&self, points: impl Iterator<Item = Point2<f64>>, reach: usize) -> Vec<u8> {
-        let LikelihoodConfig { cell_m, sigma_m } = self.config;
-        let far_m2 = 9.0 * sigma_m * sigma_m;
+        let cell_m = self.config.cell_m;
         let mut nearest_m2 = vec![f64::INFINITY; self.columns * self.rows];
         let mut gaps_m2 = vec![0.0; 2 * reach + 1];
         for point in points {
@@ -118,14 +118,8 @@ impl LikelihoodGrid {
                 }
             }
         }
-        let score = |&d2: &f64| {
-            if d2 > far_m2 {
-                return 0;
-            }
-            let share = math::exp(-d2 / (2.0 * sigma_m * sigma_m));
-            (f64::from(FULL_SCORE) * share + 0.5) as u8
-        };
-        nearest_m2.iter().map(score).collect()
+        let scale = ScoreScale::new(self.config.sigma_m);
+        nearest_m2.iter().map(|&d2| scale.score(d2)).collect()
     }
 
     fn column_of(&self, x_m: f64) -> usize {

@@ -8,7 +8,7 @@ use crate::cloud::PointCloud;
 pub(super) const LEVELS: usize = 7;
 
 /// Points that are looked up together: their indices come out of the processor's wide registers.
-const BATCH: usize = 64;
+pub(super) const BATCH: usize = 64;
 
 /// A map made ready for searches: the grid and its sliding maxima.
 ///
@@ -32,18 +32,11 @@ pub(super) struct Level {
     maxima: Vec<u8>,
 }
 
-/// Cells of some points, an array for each axis.
+/// Cells of a [`BATCH`] of points at most, an array for each axis.
 #[derive(Clone, Copy)]
 pub(super) struct CellSlice<'a> {
     pub columns: &'a [i16],
     pub rows: &'a [i16],
-}
-
-impl<'a> CellSlice<'a> {
-    fn batches(self) -> impl Iterator<Item = Self> + use<'a> {
-        let batches = self.columns.chunks(BATCH).zip(self.rows.chunks(BATCH));
-        batches.map(|(columns, rows)| Self { columns, rows })
-    }
 }
 
 impl SearchMap {
@@ -140,15 +133,12 @@ impl Level {
     /// The sum of the maxima at all cells, moved by an offset in columns and rows.
     pub(super) fn sum(&self, cells: CellSlice<'_>, offset: [i16; 2]) -> u32 {
         let (mut in_row, mut rows) = ([0; BATCH], [0; BATCH]);
-        let mut sum = 0;
-        for cells in cells.batches() {
-            self.locate_columns(cells.columns, offset[0], &mut in_row);
-            self.locate_rows(cells.rows, offset[1], &mut rows);
-            for (&column, &row) in in_row.iter().zip(&rows).take(cells.columns.len()) {
-                sum += u32::from(self.maxima[(row + column) as usize]);
-            }
-        }
-        sum
+        self.locate_columns(cells.columns, offset[0], &mut in_row);
+        self.locate_rows(cells.rows, offset[1], &mut rows);
+        let places = in_row.iter().zip(&rows).take(cells.columns.len());
+        places
+            .map(|(column, row)| u32::from(self.maxima[(row + column) as usize]))
+            .sum()
     }
 
     /// The sum of the maxima over areas whose corner squares start at these cells, moved alike.
@@ -160,22 +150,21 @@ impl Level {
     ) -> u32 {
         let (mut left, mut right) = ([0; BATCH], [0; BATCH]);
         let (mut bottom, mut top) = ([0; BATCH], [0; BATCH]);
-        let mut sum = 0;
-        for (low, high) in low.batches().zip(high.batches()) {
-            self.locate_columns(low.columns, offset[0], &mut left);
-            self.locate_columns(high.columns, offset[0], &mut right);
-            self.locate_rows(low.rows, offset[1], &mut bottom);
-            self.locate_rows(high.rows, offset[1], &mut top);
-            let columns = left.iter().zip(&right);
-            let rows = bottom.iter().zip(&top);
-            for ((&left, &right), (&bottom, &top)) in columns.zip(rows).take(low.columns.len()) {
+        self.locate_columns(low.columns, offset[0], &mut left);
+        self.locate_columns(high.columns, offset[0], &mut right);
+        self.locate_rows(low.rows, offset[1], &mut bottom);
+        self.locate_rows(high.rows, offset[1], &mut top);
+        let columns = left.iter().zip(&right);
+        let rows = bottom.iter().zip(&top);
+        let areas = columns.zip(rows).take(low.columns.len());
+        areas
+            .map(|((&left, &right), (&bottom, &top))| {
                 let at = |row: u32, column: u32| self.maxima[(row + column) as usize];
                 let lower = at(bottom, left).max(at(bottom, right));
                 let upper = at(top, left).max(at(top, right));
-                sum += u32::from(lower.max(upper));
-            }
-        }
-        sum
+                u32::from(lower.max(upper))
+            })
+            .sum()
     }
 
     /// Places of columns in a row. One square beyond the grid on either side there are only zeros.

@@ -224,7 +224,7 @@ impl ScanSearch {
         };
         let finest = self.shapes.len() - 1;
         (0..self.lattice.columns).map(move |column| {
-            let pose = self.bounded(LatticePose { column, ..at }, finest);
+            let pose = self.bounded(LatticePose { column, ..at }, finest, 0);
             self.share(pose.bound)
         })
     }
@@ -268,7 +268,7 @@ impl ScanSearch {
         };
         let (rows, columns) = (self.lattice.rows, self.lattice.columns);
         (0..rows).flat_map(move |row| {
-            (0..columns).map(move |column| self.bounded(at(row, column), self.shapes.len() - 1))
+            (0..columns).map(move |column| self.bounded(at(row, column), self.shapes.len() - 1, 0))
         })
     }
 
@@ -339,9 +339,24 @@ impl ScanSearch {
         BoxFate::Split { parts }
     }
 
+    /// What a box has to reach for a pose of it to be the best or the runner-up.
+    fn of_interest(&self) -> u32 {
+        match self.goal {
+            SearchGoal::Best => {
+                let to_beat = self.best.map_or(0, |best| best.bound).max(self.floor);
+                to_beat.saturating_sub(self.margin)
+            }
+            SearchGoal::RunnerUp => {
+                let to_beat = self.runner_up.map_or(0, |runner_up| runner_up.bound);
+                to_beat.max(self.runner_up_floor())
+            }
+        }
+    }
+
     /// Bounds all boxes of a shape from `first` to `last`, both included.
     fn bound_parts(&mut self, first: LatticePose, last: LatticePose, shape: usize) {
         let BoxShape { side, turn } = self.shapes[shape];
+        let of_interest = self.of_interest();
         self.parts.clear();
         for heading in (first.heading..=last.heading).step_by(1 << turn) {
             for row in (first.row..=last.row).step_by(1 << side) {
@@ -351,7 +366,7 @@ impl ScanSearch {
                         row,
                         column,
                     };
-                    let part = self.bounded(pose, shape);
+                    let part = self.bounded(pose, shape, of_interest);
                     self.parts.push(part);
                 }
             }
@@ -364,11 +379,12 @@ impl ScanSearch {
         }
     }
 
-    fn bounded(&self, first: LatticePose, shape: usize) -> OpenBox {
-        let (column, row) = self.lattice.cells_from_center(first.column, first.row);
+    /// A box of a shape with its bound, exact where that is `of_interest` at least.
+    fn bounded(&self, first: LatticePose, shape: usize, of_interest: u32) -> OpenBox {
+        let offset = self.lattice.cells_from_center(first.column, first.row);
         let group = first.heading >> self.shapes[shape].turn;
         OpenBox {
-            bound: self.scan.sum(&self.map, shape, group, column, row),
+            bound: self.scan.sum(&self.map, shape, group, offset, of_interest),
             shape,
             first,
         }

@@ -7,7 +7,7 @@ use pr_geom::{Point2, Rotation, math};
 
 use super::lattice::Lattice;
 use super::likelihood_grid::FULL_SCORE;
-use super::pyramid::{CellSlice, LEVELS};
+use super::pyramid::{BATCH, CellSlice, LEVELS};
 use super::{LikelihoodGrid, SearchMap};
 use crate::cloud::PointCloud;
 
@@ -125,25 +125,38 @@ impl TurnedScan {
     ///
     /// The box has the shape of that number in the schedule and holds the headings of the group;
     /// its lowest pose is `column` and `row` cells away from the window's centre. For a single pose
-    /// it is the score itself.
-    pub fn sum(&self, map: &SearchMap, shape: usize, group: i32, column: i32, row: i32) -> u32 {
+    /// it is the score itself. Where it turns out to stay below `of_interest`, what is left of the
+    /// points counts in full: a looser bound, still below.
+    pub fn sum(
+        &self,
+        map: &SearchMap,
+        shape: usize,
+        group: i32,
+        [column, row]: [i32; 2],
+        of_interest: u32,
+    ) -> u32 {
         let plan = &self.plans[shape];
         let start = group as usize * self.points;
         let offset = [column as i16, row as i16];
-        let mut sum = 0;
+        // The bound so far: every point counts in full until it has been looked up.
+        let mut sum = self.full_score();
         for run in &plan.runs {
-            let Some(level) = run.level else {
-                sum += (run.end - run.first) as u32 * u32::from(FULL_SCORE);
-                continue;
-            };
+            let Some(level) = run.level else { continue };
             let level = map.level(level);
-            let range = start + run.first..start + run.end;
-            let low = plan.low.slice(range.clone());
-            sum += if plan.high.columns.is_empty() {
-                level.sum(low, offset)
-            } else {
-                level.sum_of_areas(low, plan.high.slice(range), offset)
-            };
+            for first in (run.first..run.end).step_by(BATCH) {
+                let end = run.end.min(first + BATCH);
+                let range = start + first..start + end;
+                let low = plan.low.slice(range.clone());
+                sum -= (end - first) as u32 * u32::from(FULL_SCORE);
+                sum += if plan.high.columns.is_empty() {
+                    level.sum(low, offset)
+                } else {
+                    level.sum_of_areas(low, plan.high.slice(range), offset)
+                };
+                if sum < of_interest {
+                    return sum;
+                }
+            }
         }
         sum
     }
@@ -164,7 +177,11 @@ impl Cells {
     /// Where the points are at every heading, with the sensor at the window's centre.
     fn turned(points: &[Point2<f64>], lattice: &Lattice, grid: &LikelihoodGrid) -> Self {
         let (x_m, y_m) = lattice.center_m();
-        let mut cells = Self::default();
+        let places = points.len() * lattice.headings as usize;
+        let mut cells = Self {
+            columns: Vec::with_capacity(places),
+            rows: Vec::with_capacity(places),
+        };
         for heading in 0..lattice.headings {
             let rotation = Rotation::new(lattice.heading_rad(heading));
             for point in points {
@@ -230,9 +247,10 @@ struct Spans {
 
 impl Spans {
     fn new(single: &[i16], points: usize, shape: BoxShape) -> Self {
+        let places = single.len() >> shape.turn;
         let mut spans = Self {
-            low: Vec::new(),
-            high: Vec::new(),
+            low: Vec::with_capacity(places + points),
+            high: Vec::with_capacity(places + points),
             widest: vec![0; points],
         };
         for group in single.chunks(points << shape.turn) {
