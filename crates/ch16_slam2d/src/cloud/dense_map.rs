@@ -227,9 +227,9 @@ impl DenseMap {
             second: f64::INFINITY,
         };
         self.table.for_each_run(x, y, reach, |run| {
-            let first = run.start;
-            let points = self.xs[run.clone()].iter().zip(&self.ys[run]);
-            for (offset, (&px, &py)) in points.enumerate() {
+            let points = self.xs[run.clone()].iter().zip(&self.ys[run.clone()]);
+            // A range counts without a check of its own for overflow, unlike `enumerate`.
+            for (index, (&px, &py)) in run.zip(points) {
                 let (dx, dy) = (px - x, py - y);
                 let squared = dx * dx + dy * dy;
                 // Selections instead of branches: which point is nearer cannot be predicted.
@@ -237,11 +237,7 @@ impl DenseMap {
                 let loser = math::max(squared, scan.best);
                 scan.second = math::min(loser, scan.second);
                 scan.best = math::min(squared, scan.best);
-                scan.index = if nearer {
-                    (first + offset) as u32
-                } else {
-                    scan.index
-                };
+                scan.index = if nearer { index as u32 } else { scan.index };
             }
         });
         if scan.second == scan.best && scan.index != NONE {

@@ -156,7 +156,7 @@ impl IcpWorkspace {
         self.pairs.clear();
         self.sum_of_squares_m2 = 0.0;
         let points = cloud.xs().iter().zip(cloud.ys()).zip(&mut self.memory);
-        for (source_index, ((&x, &y), memory)) in points.enumerate() {
+        for (source_index, ((&x, &y), memory)) in (0..cloud.len()).zip(points) {
             let (x, y) = rotation.rotate(x, y);
             let source = (x + target_from_source.x(), y + target_from_source.y());
             if let (true, Some(index)) = (is_first, last_found) {
