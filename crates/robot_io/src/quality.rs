@@ -5,7 +5,7 @@
 //! is tested against all else that the graph knows: with the residual e of its edge, the information
 //! Ω of its measurement and the marginal covariance P of the relative pose by the whole graph, the loop
 //! included, `eᵀ(Ω⁻¹ − P)⁻¹e` has three degrees of freedom. It is the innovation of the loop against the
-//! graph without it.
+//! graph without it. A step from one keyframe to the next is tested in the same way.
 //!
 //! Source: Cook & Weisberg, "Residuals and influence in regression", 1982, §2.1.2.
 
@@ -29,6 +29,8 @@ pub struct Quality {
     pub keyframes: Vec<KeyframeQuality>,
     /// The loops of the graph.
     pub links: Vec<LinkQuality>,
+    /// The parts of the way whose steps the rest of the graph contradicts, in order.
+    pub refuted_ways: Vec<RefutedWay>,
     /// The loops that were tried while scans came in.
     pub tried: Vec<LinkQuality>,
     /// What should be looked at, a sentence each.
@@ -44,6 +46,17 @@ pub struct KeyframeQuality {
     pub pose: [f64; 3],
     /// Covariance against the first keyframe in the body's frame, x, y, θ: m² and rad².
     pub covariance: [[f64; 3]; 3],
+}
+
+/// Measured steps in a row, each of which the rest of the graph contradicts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RefutedWay {
+    /// The keyframe before the first of them.
+    pub from: usize,
+    /// The keyframe after the last one.
+    pub to: usize,
+    /// The largest squared innovation of them.
+    pub chi2: f64,
 }
 
 /// A loop and its evidence.
@@ -85,10 +98,11 @@ impl Quality {
         let mut quality = Self {
             keyframes: keyframes(slam),
             links: Vec::new(),
+            refuted_ways: Vec::new(),
             tried: tried.iter().map(LinkQuality::tried).collect(),
             doubts: Vec::new(),
         };
-        let tests = loop_tests(slam);
+        let tests = edge_tests(slam);
         let closed = tried.iter().filter(|tried| tried.accepted);
         let evidence: Vec<&LoopVerification> = if links.is_empty() {
             closed.map(|tried| &tried.verification).collect()
@@ -105,6 +119,7 @@ impl Quality {
                 ..LinkQuality::new(link, true)
             });
         }
+        quality.refuted_ways = refuted_ways(&tests);
         quality.doubts = doubts::of(&quality, &doubts::disputed(slam, tried), poor);
         quality
     }
@@ -222,16 +237,15 @@ fn keyframes(slam: &mut Slam) -> Vec<KeyframeQuality> {
         .collect()
 }
 
-/// The loops of the graph with their innovation against the rest of it; none where it is not to be had.
+/// The measurements of the graph, each with its innovation against the rest; none where it is not to be had.
 #[must_use]
-pub fn loop_tests(slam: &mut Slam) -> Vec<(EdgeView, Option<f64>)> {
+pub fn edge_tests(slam: &mut Slam) -> Vec<(EdgeView, Option<f64>)> {
     let Ok(covariances) = slam.graph_mut().edge_covariances() else {
         return Vec::new();
     };
     let graph = slam.graph();
     let edges = graph.edges().zip(&covariances);
     edges
-        .filter(|(view, _)| view.edge.kind == EdgeKind::Loop)
         .map(|(view, covariance)| {
             let relative = graph.pose(view.from).between(&graph.pose(view.to));
             let chi2 = innovation_chi2(
@@ -243,6 +257,26 @@ pub fn loop_tests(slam: &mut Slam) -> Vec<(EdgeView, Option<f64>)> {
             (view, chi2)
         })
         .collect()
+}
+
+/// The steps beyond the gate, those in a row as one.
+fn refuted_ways(tests: &[(EdgeView, Option<f64>)]) -> Vec<RefutedWay> {
+    let mut ways: Vec<RefutedWay> = Vec::new();
+    for (view, chi2) in tests {
+        let beyond = chi2.filter(|chi2| *chi2 > GATE_CHI2);
+        let (EdgeKind::Odometry, Some(chi2)) = (view.edge.kind, beyond) else {
+            continue;
+        };
+        let (from, to) = (view.from.index(), view.to.index());
+        match ways.last_mut() {
+            Some(way) if way.to == from => {
+                way.to = to;
+                way.chi2 = math::max(way.chi2, chi2);
+            }
+            _ => ways.push(RefutedWay { from, to, chi2 }),
+        }
+    }
+    ways
 }
 
 /// `eᵀ(Ω⁻¹ − P)⁻¹e`; none where the measurement alone holds the two nodes together.

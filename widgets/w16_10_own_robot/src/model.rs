@@ -159,7 +159,7 @@ impl OwnRobot {
         }
     }
 
-    /// The keyframes to look into: of loops that contradict the graph, and of scans that fit badly.
+    /// The keyframes to look into: of loops and ways that contradict the graph, and of scans that fit badly.
     fn doubts(&self) -> Vec<usize> {
         let poor = self.values.get("poor");
         let keyframes = self.robot.keyframes.iter().enumerate();

@@ -80,6 +80,16 @@ fn play_maps_the_sample_then_holds_it_then_plays_the_way() {
 }
 
 #[test]
+fn what_else_is_doubted_is_not_passed_over_where_no_loop_contradicts() {
+    let mut robot = mapped();
+    tell(&mut robot, "loops", "", &[]);
+    let said = |robot: &OwnRobot| robot.outcome().sentence.clone();
+    assert!(said(&robot).contains("but the list of doubts is not empty"));
+    tell(&mut robot, "doubts", "", &[]);
+    assert!(said(&robot).contains("no loop contradicts the graph."));
+}
+
+#[test]
 fn a_loop_that_contradicts_is_said_and_shown_first() {
     let robot = mapped();
     let outcome = robot.outcome();

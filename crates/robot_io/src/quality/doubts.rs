@@ -1,10 +1,10 @@
-//! What should be looked at: keyframes that are poorly known, loops that the rest speaks against, scans that
-//! hardly fit.
+//! What should be looked at: keyframes that are poorly known, loops and ways that the rest speaks against,
+//! scans that hardly fit.
 
 use ch16_slam2d::slam::Slam;
 use pr_geom::{math, sort_numbers};
 
-use super::{KeyframeQuality, LinkQuality, Quality};
+use super::{GATE_CHI2, KeyframeQuality, LinkQuality, Quality, RefutedWay};
 use crate::run::{PoorFit, TriedLoop};
 
 /// Keyframes that are known so many times worse than the median one are doubted.
@@ -55,6 +55,7 @@ pub(super) fn of(quality: &Quality, disputed: &[Disputed], poor: &[PoorFit]) -> 
     for kind in [
         unsure(&quality.keyframes),
         contradicting(&quality.links),
+        refuted(&quality.refuted_ways),
         not_held(disputed),
         hardly_fitting(poor),
     ] {
@@ -101,6 +102,17 @@ fn contradicting(links: &[LinkQuality]) -> Vec<String> {
     found.collect()
 }
 
+fn refuted(ways: &[RefutedWay]) -> Vec<String> {
+    let mut ways = ways.to_vec();
+    ways.sort_by(|a, b| b.chi2.total_cmp(&a.chi2));
+    let ways = ways.iter().map(|RefutedWay { from, to, chi2 }| {
+        format!(
+            "the way from keyframe {from} to {to} contradicts the rest of the graph: chi-squared {chi2:.1} above {GATE_CHI2:.1}"
+        )
+    });
+    ways.collect()
+}
+
 fn not_held(disputed: &[Disputed]) -> Vec<String> {
     let mut disputed = disputed.to_vec();
     disputed.sort_by(|a, b| b.off_m.total_cmp(&a.off_m));
@@ -129,7 +141,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_scan_that_hardly_fits_and_a_loop_that_contradicts_are_doubted() {
+    fn a_scan_that_hardly_fits_and_loops_and_ways_that_contradict_are_doubted() {
         let keyframe = |sigma_m: f64| KeyframeQuality {
             stamp_s: 0.0,
             pose: [0.0; 3],
@@ -151,9 +163,11 @@ mod tests {
             accepted: true,
             reason: None,
         };
+        let way = |from, to, chi2| RefutedWay { from, to, chi2 };
         let quality = Quality {
             keyframes: [0.02, 0.02, 0.02, 0.4, 0.5].map(keyframe).to_vec(),
             links: vec![link(3.0), link(40.0)],
+            refuted_ways: vec![way(4, 5, 20.0), way(7, 11, 84.44)],
             ..Quality::default()
         };
         let taken_back = |from, off_m| Disputed {
@@ -172,6 +186,8 @@ mod tests {
             [
                 "keyframes 3 to 4 are known to 0.50 m only, the median one to 0.02 m",
                 "the loop from keyframe 9 to 2 contradicts the rest of the graph: chi-squared 40.0 above 16.3",
+                "the way from keyframe 7 to 11 contradicts the rest of the graph: chi-squared 84.4 above 16.3",
+                "the way from keyframe 4 to 5 contradicts the rest of the graph: chi-squared 20.0 above 16.3",
                 "the loop from keyframe 30 to 4 was closed, and the map does not hold it: it is off by 2.35 m and 90°",
                 "the loop from keyframe 31 to 4 was closed, and the map does not hold it: it is off by 0.50 m and 90°",
                 "of the scan at 12.500 s only 31 % fits the map",

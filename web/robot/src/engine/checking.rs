@@ -1,6 +1,6 @@
 //! What is known of the graph's quality: covariances, each loop against the rest, and what to look into.
 
-use robot_io::quality::{LinkQuality, Quality, loop_tests};
+use robot_io::quality::{LinkQuality, Quality, edge_tests};
 
 use super::{Engine, Work};
 use crate::links::Link;
@@ -75,7 +75,7 @@ impl Engine<'_> {
         if !self.links.iter().any(is_open) {
             return;
         }
-        let tests = loop_tests(slam);
+        let tests = edge_tests(slam);
         for link in self.links.iter_mut().filter(|link| is_open(link)) {
             let test = tests
                 .iter()
@@ -108,7 +108,9 @@ impl Engine<'_> {
         let stamps: Vec<f64> = quality.keyframes.iter().map(|k| k.stamp_s).collect();
         let at = |stamp_s: f64| stamps.partition_point(|&s| s <= stamp_s).saturating_sub(1);
         let poor = self.run.poor().iter().map(|poor| at(poor.stamp_s));
-        let mut all: Vec<usize> = contradicting(&self.links).chain(poor).collect();
+        let refuted = quality.refuted_ways.iter().map(|way| way.to);
+        let doubted = contradicting(&self.links).chain(refuted).chain(poor);
+        let mut all: Vec<usize> = doubted.collect();
         all.sort_unstable();
         all.dedup();
         self.look_into = all;

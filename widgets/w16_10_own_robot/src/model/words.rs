@@ -125,7 +125,8 @@ fn visitor(own: &OwnRobot) -> String {
 fn finished(robot: &Robot) -> String {
     let closed = robot.links.iter().filter(|link| link.is_in_graph()).count();
     let doubted = match contradicted(robot) {
-        0 => "no loop contradicts the graph".to_owned(),
+        0 if robot.doubts.is_empty() => "no loop contradicts the graph".to_owned(),
+        0 => "no loop contradicts the graph, but the list of doubts is not empty".to_owned(),
         1 => "one loop contradicts the graph".to_owned(),
         many => format!("{many} loops contradict the graph"),
     };
