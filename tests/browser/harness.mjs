@@ -109,11 +109,15 @@ async function newTab(browser, { stepMs = clock.COARSE_MS, sees = false, ...opti
   return tab;
 }
 
-/** Makes a tab that was used before as good as new: each visit brings an origin of its own. */
-async function tidy(tab, { viewport = SCREEN.viewport } = {}) {
+/** Leaves nothing in a tab that its next test could see: each visit brings an origin of its own. */
+async function tidy(tab) {
   await tab.mouse.move(0, 0);
   await tab.goto('about:blank');
-  await tab.emulateMedia({ media: null, colorScheme: null, reducedMotion: null });
+}
+
+/** What a tab can change for each of its tests: the rest of Playwright's options are for good. */
+async function prepare(tab, { viewport = SCREEN.viewport, colorScheme = null, reducedMotion = null }) {
+  await tab.emulateMedia({ media: null, colorScheme, reducedMotion });
   await tab.setViewportSize(viewport);
 }
 
@@ -128,29 +132,32 @@ export function bare(body, head = '') {
  * For one file of tests: what opens a page for a test, a bare page with `body` at /t.html or any other
  * `path` of the server. The browser starts with the first page and is closed after the last test.
  *
- * Tests with the same options have the same tab, one after the other: a new one costs more than most
- * tests. A test that asks for a `fresh` one, or for another browser `with` other flags, gets it.
+ * Tests whose options differ in no more than a tab can change have the same tab, one after the other: a new
+ * one costs more than most tests. A test that asks for a `fresh` one, or for another browser `with` other flags, gets it.
  */
 export function visitor() {
   const tabs = new Map();
   let shared;
   after(async () => (await shared)?.close());
 
-  const tabFor = async ({ options, fresh = false, with: other }) => {
+  const tabFor = async ({ options = {}, fresh = false, with: other }) => {
     const browser = other ?? (await (shared ??= launch()));
-    if (fresh || other !== undefined) return newTab(browser, options);
-    const key = JSON.stringify(options ?? {});
-    if (!tabs.has(key)) tabs.set(key, await newTab(browser, options));
-    return tabs.get(key);
+    const { viewport, colorScheme, reducedMotion, ...forGood } = options;
+    const isOwn = fresh || other !== undefined;
+    const key = JSON.stringify(forGood);
+    const tab = (!isOwn && tabs.get(key)) || (await newTab(browser, forGood));
+    if (!isOwn) tabs.set(key, tab);
+    await prepare(tab, { viewport, colorScheme, reducedMotion });
+    return tab;
   };
 
   const arrive = async (body, how) => {
-    const { head, path = '/t.html', server: its, options, fresh = false, with: other } = how;
+    const { head, path = '/t.html', server: its, fresh = false, with: other } = how;
     const tab = await tabFor(how);
     const server = await serve({ ...its, pages: { '/t.html': bare(body, head), ...its?.pages } });
     const leave = async () => {
       if (fresh || other !== undefined) await tab.context().close();
-      else await tidy(tab, options);
+      else await tidy(tab);
       await server.close();
     };
     tab.troubles = [];
