@@ -143,21 +143,22 @@ export function visitor() {
   const tabFor = async ({ options = {}, fresh = false, with: other }) => {
     const browser = other ?? (await (shared ??= launch()));
     const { viewport, colorScheme, reducedMotion, ...forGood } = options;
-    const isOwn = fresh || other !== undefined;
+    const isShared = !fresh && other === undefined;
     const key = JSON.stringify(forGood);
-    const tab = (!isOwn && tabs.get(key)) || (await newTab(browser, forGood));
-    if (!isOwn) tabs.set(key, tab);
+    const kept = isShared ? tabs.get(key) : undefined;
+    const tab = kept ?? (await newTab(browser, forGood));
+    if (isShared) tabs.set(key, tab);
     await prepare(tab, { viewport, colorScheme, reducedMotion });
-    return tab;
+    return { tab, isShared };
   };
 
   const arrive = async (body, how) => {
-    const { head, path = '/t.html', server: its, fresh = false, with: other } = how;
-    const tab = await tabFor(how);
+    const { head, path = '/t.html', server: its } = how;
+    const { tab, isShared } = await tabFor(how);
     const server = await serve({ ...its, pages: { '/t.html': bare(body, head), ...its?.pages } });
     const leave = async () => {
-      if (fresh || other !== undefined) await tab.context().close();
-      else await tidy(tab);
+      if (isShared) await tidy(tab);
+      else await tab.context().close();
       await server.close();
     };
     tab.troubles = [];
