@@ -3,7 +3,7 @@
 use pr_geom::{Point2, math};
 
 use super::SearchError;
-use super::score_scale::ScoreScale;
+use super::score_scale::{FARTHEST_SIGMAS, ScoreScale};
 use crate::cloud::{PointCloud, cell_index};
 
 /// Most cells of a grid: 105 m × 105 m at 0.05 m. The levels above it take ten times the memory.
@@ -74,7 +74,9 @@ impl LikelihoodGrid {
         if low.0 > high.0 {
             return Err(SearchError::EmptyMap);
         }
-        let reach = (3.0 * sigma_m / cell_m).ceil().min(f64::from(i32::MAX)) as i64;
+        let reach = (FARTHEST_SIGMAS * sigma_m / cell_m)
+            .ceil()
+            .min(f64::from(i32::MAX)) as i64;
         let columns = (high.0 - low.0 + 1 + 2 * reach) as u64;
         let rows = (high.1 - low.1 + 1 + 2 * reach) as u64;
         if columns.saturating_mul(rows) > MAX_GRID_CELLS || columns.max(rows) > MAX_SIDE_CELLS {

@@ -5,7 +5,7 @@ use pr_geom::math;
 use super::likelihood_grid::FULL_SCORE;
 
 /// Scores end at so many σ.
-const FARTHEST_SIGMAS: f64 = 3.0;
+pub(super) const FARTHEST_SIGMAS: f64 = 3.0;
 
 /// Equal parts of the range of squared distances: few enough to be filled in a moment, and so many
 /// that hardly any holds more than one threshold.
