@@ -7,6 +7,7 @@ import { join } from 'node:path';
 import { describe, it } from 'node:test';
 import { native } from '../native.mjs';
 import * as h from './harness.mjs';
+import { fingers } from './touch.mjs';
 
 const visit = h.visitor();
 const BODY = '<slam-widget name="w16.2" linked></slam-widget>';
@@ -65,16 +66,13 @@ describe('a flat of one’s own', () => {
     await on(async (tab) => {
       const scrolled = () => tab.evaluate(() => scrollY);
       const before = await scrolled();
-      const session = await tab.context().newCDPSession(tab);
-      const touch = async (type, at) => session.send('Input.dispatchTouchEvent', {
-        type, touchPoints: at === undefined ? [] : [{ x: at[0], y: at[1] }],
-      });
+      const { touch } = await fingers(tab);
       const from = await h.pointOf(tab, 'map', 1, 1);
       const to = await h.pointOf(tab, 'map', 3, 1.3);
       const between = [0, 1].map((axis) => (from[axis] + to[axis]) / 2);
-      await touch('touchStart', from);
-      await touch('touchMove', between);
-      await touch('touchMove', to);
+      await touch('touchStart', [from]);
+      await touch('touchMove', [between]);
+      await touch('touchMove', [to]);
       await changed(tab, '');
       await touch('touchEnd');
       await h.moreFrames(tab, 1);

@@ -6,6 +6,7 @@ import { describe, it } from 'node:test';
 import { SMOOTH_MS } from './clock.mjs';
 import * as h from './harness.mjs';
 import { canvasBox, cloudSpot, draggingSpot, restingSpot, sliderRail } from './spots.mjs';
+import { fingers } from './touch.mjs';
 
 const TALL = '<p style="height: 3000px">Much text.</p>';
 const ONE = '<slam-widget name="w16.1"></slam-widget>';
@@ -138,23 +139,21 @@ describe('touch', () => {
   it('that is cancelled leaves no drag behind', async () => {
     await on(ONE + TALL, async (tab) => {
       await h.ready(tab);
-      const session = await tab.context().newCDPSession(tab);
-      const touch = (type, points) =>
-        session.send('Input.dispatchTouchEvent', { type, touchPoints: points });
+      const { touch } = await fingers(tab);
       const query = () => tab.evaluate(() => document.querySelector('slam-widget').query);
       const rail = await sliderRail(tab, 'heading');
       const onRail = [rail.x + 0.3 * rail.width, rail.y];
       for (const [x, y] of [await cloudSpot(tab), onRail]) {
         const untouched = await query();
-        await touch('touchStart', [{ x, y }]);
+        await touch('touchStart', [[x, y]]);
         // The first move tells whose the touch is, the next ones move.
         for (const on of [12, 24, 36]) {
-          await touch('touchMove', [{ x: x + on, y }]);
+          await touch('touchMove', [[x + on, y]]);
           await h.moreFrames(tab, 1);
         }
         await tab.waitForFunction((old) => document.querySelector('slam-widget').query !== old, untouched);
         const before = await query();
-        await touch('touchCancel', []);
+        await touch('touchCancel');
         await h.moreFrames(tab, 3);
         assert.equal(await query(), before);
         await tab.mouse.move(x + 90, y + 40, { steps: 4 });
@@ -305,18 +304,14 @@ async function tabUntil(tab, key, id) {
 /** A finger that moves at once, or rests first for as long as `rest` takes. */
 async function swipe(tab, from, to, rest) {
   const hold = (holds) => tab.evaluate((held) => frameClock.hold(held), holds);
-  const session = await tab.context().newCDPSession(tab);
-  const touch = (type, points) => session.send('Input.dispatchTouchEvent', { type, touchPoints: points });
+  const { touch } = await fingers(tab);
   await hold(rest === undefined);
-  await touch('touchStart', [{ x: from[0], y: from[1] }]);
+  await touch('touchStart', [from]);
   await rest?.();
   for (let step = 1; step <= 8; step += 1) {
     const share = step / 8;
-    await touch('touchMove', [{
-      x: from[0] + (to[0] - from[0]) * share,
-      y: from[1] + (to[1] - from[1]) * share,
-    }]);
+    await touch('touchMove', [[0, 1].map((axis) => from[axis] + (to[axis] - from[axis]) * share)]);
   }
-  await touch('touchEnd', []);
+  await touch('touchEnd');
   await hold(false);
 }

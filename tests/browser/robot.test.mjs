@@ -10,6 +10,7 @@ import { fileURLToPath } from 'node:url';
 import { native } from '../native.mjs';
 import { skip } from '../skip.mjs';
 import * as h from './harness.mjs';
+import { fingers } from './touch.mjs';
 
 const BODY = '<slam-widget name="w16.10" more="on"></slam-widget>';
 const SAMPLE = readFileSync(join(h.DIST, 'samples', 'ring.log'), 'utf8');
@@ -148,19 +149,7 @@ describe('a log of one’s own', () => {
       await says(tab, /mapped: square\.g2o: 4 poses/);
       await tab.evaluate(() => { document.querySelector('slam-widget').value = { keyframe: 2 }; });
       await h.moreFrames(tab, 2);
-      const session = await tab.context().newCDPSession(tab);
-      await tab.evaluate(() => {
-        window.felt = [];
-        for (const type of ['pointerdown', 'pointermove', 'pointerup', 'pointercancel']) {
-          addEventListener(type, () => felt.push(type), true);
-        }
-      });
-      // A busy page gets what was sent after the answer: fingers that come and go between two frames zoom nothing.
-      const touch = async (type, spots, feels) => {
-        const before = await tab.evaluate(() => felt.length);
-        await session.send('Input.dispatchTouchEvent', { type, touchPoints: spots.map(([x, y], id) => ({ x, y, id })) });
-        await tab.waitForFunction(([named, from]) => felt.includes(named, from), [feels, before]);
-      };
+      const { touch, felt } = await fingers(tab);
       const size = async () => {
         const [[left], [right]] = [await h.pointOf(tab, 'map', 0, 0), await h.pointOf(tab, 'map', 1, 0)];
         return right - left;
@@ -172,22 +161,21 @@ describe('a log of one’s own', () => {
         await h.moreFrames(tab, 2);
         const small = await size();
         const [left, top] = await h.pointOf(tab, 'map', x, y);
-        const fingers = (apart) => [[left, top], [left + (left > 200 ? -apart : apart), top]];
+        const spots = (apart) => [[left, top], [left + (left > 200 ? -apart : apart), top]];
         // The first finger does not lie there for so long that it takes hold.
         await tab.evaluate(() => frameClock.hold(true));
-        await touch('touchStart', fingers(40).slice(0, 1), 'pointerdown');
-        await touch('touchStart', fingers(40), 'pointerdown');
+        await touch('touchStart', spots(40).slice(0, 1));
+        await touch('touchStart', spots(40));
         await tab.evaluate(() => frameClock.hold(false));
         await h.moreFrames(tab, 2);
         for (const apart of [50, 60]) {
-          await touch('touchMove', fingers(apart), 'pointermove');
+          await touch('touchMove', spots(apart));
           await h.moreFrames(tab, 1);
         }
-        await touch('touchEnd', [], 'pointerup');
+        await touch('touchEnd');
         await h.moreFrames(tab, 2);
         const large = await size();
-        const told = () => tab.evaluate(() => felt.join(' '));
-        assert.ok(large > 1.2 * small && large < 2 * small, `at ${x}, ${y}: ${small} and ${large} after ${await told()}`);
+        assert.ok(large > 1.2 * small && large < 2 * small, `at ${x}, ${y}: ${small} and ${large} after ${await felt()}`);
       }
       assert.deepEqual(await table(tab, 'keyframes'), before);
       assert.equal(await tab.evaluate(() => document.querySelector('slam-widget').get('keyframe')), 2);
