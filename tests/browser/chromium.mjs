@@ -13,6 +13,8 @@ const PLAYWRIGHT_DISABLES = ['AvoidUnnecessaryBeforeUnloadCheckSync', 'DestroyPr
 /** Pages of the browser's own, loaded beside each tab: a second of work for what nobody sees. */
 const NOT_FOR_TESTS = ['WebUIOmniboxPopup', 'WebUIOmniboxAimPopup', 'WebUIOmniboxFullPopup', 'PreloadTopChromeWebUI'];
 
+const JS = '--expose-gc';
+
 const HOW = {
   executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
   timeout: LAST_RESORT_MS,
@@ -31,7 +33,7 @@ const HOW = {
     '--disable-gpu-compositing',
     // The last list counts, so it starts with Playwright's own.
     `--disable-features=${[...PLAYWRIGHT_DISABLES, ...NOT_FOR_TESTS]}`,
-    '--js-flags=--expose-gc',
+    `--js-flags=${JS}`,
   ],
 };
 
@@ -43,9 +45,11 @@ export function launch(extra = []) {
 }
 
 /**
- * A Chromium that the files of the tests connect to. Pages of one site share a process there, which saves a
- * fifteenth of their work; a measurement of first frames starts each page as a reader's browser does.
+ * A Chromium that the files of the tests connect to, with what pays where pages are visited for seconds. Pages of one
+ * site share a process there, and WebAssembly is compiled to its end much later: each saves a fifteenth of their work. A
+ * measurement of first frames or of drags starts each page as a reader's browser does.
  */
 export function launchServer() {
-  return chromium.launchServer({ ...HOW, args: [...HOW.args, '--process-per-site'] });
+  const late = `--js-flags=${JS} --wasm-tiering-budget=100000000`;
+  return chromium.launchServer({ ...HOW, args: [...HOW.args, '--process-per-site', late] });
 }
