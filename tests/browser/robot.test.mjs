@@ -168,6 +168,8 @@ describe('a log of one’s own', () => {
         await touch('touchStart', spots(40));
         await tab.evaluate(() => frameClock.hold(false));
         await h.moreFrames(tab, 2);
+        // Both rest for so long that a press would be a long one.
+        await tab.evaluate(() => frameClock.pass(2000));
         for (const apart of [50, 60]) {
           await touch('touchMove', spots(apart));
           await h.moreFrames(tab, 1);

@@ -82,16 +82,18 @@ export class TouchGate {
     if (!isOurs) return;
     event.stopPropagation();
     if (first === undefined) this.#widget.letGo();
-    // eframe presses where the first finger is that it hears of: that one is nowhere. A press that lasts ends a pinch.
+    // eframe presses where the finger is that it follows: where one of that number is down, it follows the same as
+    // before. So it first hears of one that is nowhere.
     const nowhere = new Touch({
       identifier: NO_FINGER,
       target: this.#canvas,
       clientX: NOWHERE_PX,
       clientY: NOWHERE_PX,
     });
-    const changedTouches = first === undefined ? [second] : [first, second];
-    const options = { touches: [nowhere], changedTouches, bubbles: true, cancelable: true };
-    this.#canvas.dispatchEvent(new TouchEvent('touchstart', options));
+    for (const changedTouches of [[], first === undefined ? [second] : [first, second]]) {
+      const options = { touches: [nowhere], changedTouches, bubbles: true, cancelable: true };
+      this.#canvas.dispatchEvent(new TouchEvent('touchstart', options));
+    }
   }
 
   #move(event: TouchEvent): void {

@@ -1,6 +1,6 @@
 //! The pointer over the panels: take hold, drag, hover, zoom, pan.
 
-use egui::{CursorIcon, Event, PointerButton, Pos2, Response, Sense, Ui};
+use egui::{CursorIcon, Event, MultiTouchInfo, PointerButton, Pos2, Response, Sense, Ui};
 
 use crate::hot::Hot;
 use crate::model::{Handle, Model};
@@ -123,8 +123,14 @@ impl Pointer {
         if self.zoom.is_zoomed(panel.id) {
             hot.drag(&response);
         }
-        self.wheel(ui, &response, panel, to);
-        let pressed = self.press(ui, &response, panel, to, model);
+        let pinch = ui.input(egui::InputState::multi_touch);
+        let pressed = if let Some(pinch) = pinch {
+            self.pinch(&pinch, panel, to);
+            self.let_go_of(panel, model)
+        } else {
+            self.wheel(ui, &response, panel, to);
+            self.press(ui, &response, panel, to, model)
+        };
         let tapped = self.tap(&response, panel, to, model);
         let hovered = self.hover(ui, &response, panel, to, model);
         if [pressed, tapped, hovered].contains(&Touched::Yes) {
@@ -256,6 +262,32 @@ impl Pointer {
         }
         model.hover(panel.id, place.map(|(_, at)| at));
         self.hovered = place;
+        Touched::Yes
+    }
+
+    /// Two fingers zoom where they are, and take the map along.
+    ///
+    /// A press that has lasted belongs to what was pressed, and egui takes nothing else for hovered: so they are
+    /// not asked for what lies under them.
+    fn pinch(&mut self, pinch: &MultiTouchInfo, panel: &Panel, to: &Transform) {
+        let middle = [pinch.center_pos.x, pinch.center_pos.y];
+        if !to.plot().contains(middle) {
+            return;
+        }
+        self.zoom
+            .by(panel, f64::from(pinch.zoom_delta), to.from_px(middle));
+        let [across, up] = to.units_per_px();
+        let moved = pinch.translation_delta;
+        let shift = [-f64::from(moved.x) * across, f64::from(moved.y) * up];
+        self.zoom.shift(panel, shift);
+    }
+
+    /// Two fingers drag nothing, whatever the first one took hold of.
+    fn let_go_of(&mut self, panel: &Panel, model: &mut dyn Model) -> Touched {
+        if self.panel_held() != Some(panel.id) {
+            return Touched::No;
+        }
+        self.release(model);
         Touched::Yes
     }
 

@@ -331,6 +331,63 @@ fn the_wheel_belongs_to_the_page_and_with_ctrl_to_the_map() {
 }
 
 #[test]
+fn two_fingers_that_rest_zoom_where_they_are_and_drag_nothing() {
+    let mut harness = harness(1100.0);
+    let screen = |harness: &Harness<'_, Shell>, at: [f64; 2]| {
+        Pos2::from(
+            harness
+                .state()
+                .panel_to_screen("map", at)
+                .expect("the map is shown"),
+        )
+    };
+    let apart = |harness: &Harness<'_, Shell>| {
+        screen(harness, [1.2, 1.0]).x - screen(harness, [1.0, 1.0]).x
+    };
+    let finger = |id: u64, phase, pos| Event::Touch {
+        device_id: egui::TouchDeviceId(0),
+        id: egui::TouchId(id),
+        phase,
+        pos,
+        force: None,
+    };
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    // The first one presses what can be dragged; then it presses nothing.
+    for pressed in [screen(&harness, [1.0, 1.0]), pos2(-1e4, -1e4)] {
+        let (before, x) = (apart(&harness), value(&harness, "x"));
+        let first = screen(&harness, [1.0, 1.0]);
+        let second = |px| first + vec2(px, 0.0);
+        harness.event(button(pressed, true));
+        harness.event(finger(0, egui::TouchPhase::Start, first));
+        harness.event(finger(1, egui::TouchPhase::Start, second(60.0)));
+        // By then egui takes it for a press that lasts.
+        harness.run_steps(8);
+        for px in [75.0, 90.0] {
+            harness.event(Event::PointerMoved(first));
+            harness.event(finger(1, egui::TouchPhase::Move, second(px)));
+            harness.run_steps(1);
+        }
+        harness.event(button(first, false));
+        harness.event(Event::PointerGone);
+        for (id, pos) in [(0, first), (1, second(90.0))] {
+            harness.event(finger(id, egui::TouchPhase::End, pos));
+        }
+        harness.run_steps(2);
+        let zoomed = apart(&harness) / before;
+        assert!(
+            (zoomed - 1.5).abs() < 0.01,
+            "{zoomed} with a press at {pressed}"
+        );
+        assert_eq!(value(&harness, "x"), x);
+    }
+}
+
+#[test]
 fn the_static_picture_has_the_layer_that_is_shown() {
     let mut shell = shell();
     let all = shell.picture_svg(390.0, Theme::Light);
