@@ -15,6 +15,7 @@ cargo xtask test                              every check: format, lints, native
 cargo xtask test --quick                      format, licences, lints and native tests
 cargo xtask test PIECE...                     of: format native lints counts site node browser
 cargo xtask peers                             lints and tests of what times other people's solvers
+cargo xtask desktop                           lints and tests of what opens widgets in a desktop's window
 cargo xtask soak N [--go-on] [--only a,b]     the browser tests N times on a busy machine
 cargo xtask record-counts                     accept the instruction counts of the workloads
 cargo xtask fuzz [--minutes N] [--target T] [--keep]
@@ -42,6 +43,8 @@ pub enum Command {
     Test(Vec<Piece>),
     /// Check what times other people's solvers.
     Peers,
+    /// Check what opens a widget in a window.
+    Desktop,
     /// Repeat the browser tests.
     Soak(Soak),
     /// Accept the instruction counts as they are.
@@ -72,6 +75,7 @@ pub fn parse(words: impl Iterator<Item = String>) -> Result<Command, String> {
         "package" => Command::Package,
         "test" => Command::Test(parse_pieces(&mut words)?),
         "peers" => Command::Peers,
+        "desktop" => Command::Desktop,
         "soak" => Command::Soak(parse_soak(&mut words)?),
         "record-counts" => Command::RecordCounts,
         "sizes" => Command::Sizes,

@@ -1,5 +1,5 @@
-//! The project's commands: `cargo xtask serve`, `build`, `package`, `test`, `peers`, `soak`, `fuzz`,
-//! `bench`, `sizes`.
+//! The project's commands: `cargo xtask serve`, `build`, `package`, `test`, `peers`, `desktop`, `soak`,
+//! `fuzz`, `bench`, `sizes`.
 //!
 //! Everything that a step needs is checked first and installed where cargo, npm or apt can do it;
 //! what cannot be installed is named in one line, with the way to get it. Tools of cargo go to
@@ -26,6 +26,7 @@ mod unwaited;
 use std::process::ExitCode;
 
 use args::Command;
+use suite::Beside;
 
 fn main() -> ExitCode {
     if let Some(ended) = linted::before_rustc() {
@@ -47,7 +48,8 @@ fn main() -> ExitCode {
         Command::Package => package::package(),
         Command::Serve { port, speed } => serve::serve(port, speed),
         Command::Test(pieces) => suite::test(&pieces),
-        Command::Peers => suite::peers(),
+        Command::Peers => suite::beside(Beside::Peers),
+        Command::Desktop => suite::beside(Beside::Desktop),
         Command::Soak(soak) => suite::soak(&soak),
         Command::RecordCounts => suite::record_counts(),
         Command::Fuzz(fuzz) => fuzz::fuzz(&fuzz),

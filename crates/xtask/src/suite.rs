@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::{fs, io};
 
-pub use native::{peers, record_counts};
+pub use native::{Beside, beside, record_counts};
 pub use piece::Piece;
 pub use soak::{AfterFailure, Soak, soak};
 

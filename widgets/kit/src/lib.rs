@@ -7,7 +7,7 @@
 //! The other half draws, and is compiled with the feature `view`. [`draw`] puts a scene on any
 //! [`surface::Surface`], of which there are two, [`egui_surface`] for the live picture and [`svg`]
 //! for the static one. [`shell`] adds the words, the [`controls`], the [`transport`] bar and the
-//! [`readout`], and handles the [`pointer`]; [`desktop`] opens it as a window.
+//! [`readout`], and handles the [`pointer`].
 
 pub mod chart;
 pub mod layers;
@@ -43,8 +43,6 @@ pub mod zoom;
 
 #[cfg(feature = "view")]
 pub mod controls;
-#[cfg(all(feature = "view", not(target_arch = "wasm32")))]
-pub mod desktop;
 #[cfg(feature = "view")]
 pub mod egui_surface;
 #[cfg(feature = "view")]

@@ -113,21 +113,41 @@ impl Tools {
     }
 }
 
-/// `cargo xtask peers`: lints and tests of the crate that times other people's solvers.
+/// A package that is checked by a command of its own, beside the suite: what it needs of others takes a minute and
+/// more to compile, and nothing of ours depends on it.
+#[derive(Clone, Copy, Debug)]
+pub enum Beside {
+    /// `cargo xtask peers`: it times other people's solvers.
+    Peers,
+    /// `cargo xtask desktop`: it opens a widget in a window.
+    Desktop,
+}
+
+impl Beside {
+    fn package(self) -> &'static str {
+        match self {
+            Self::Peers => "solver_peers",
+            Self::Desktop => "slam_desktop",
+        }
+    }
+}
+
+/// Lints and tests a package beside the suite.
 ///
 /// # Errors
 /// The step that failed.
-pub fn peers() -> Result<(), Failure> {
+pub fn beside(what: Beside) -> Result<(), Failure> {
+    let package = what.package();
+    let test = || {
+        let mut command = cargo();
+        linting(&mut command)?.args(["test", "--quiet", "--package", package]);
+        Ok::<Command, Failure>(command)
+    };
     show(
-        "Lints of the peers",
-        linting(&mut cargo())?
-            .args(["test", "--quiet", "--no-run"])
-            .args(["--package=solver_peers", "--all-targets"]),
+        &format!("Lints of {package}"),
+        test()?.args(["--no-run", "--all-targets"]),
     )?;
-    show(
-        "Tests of the peers",
-        linting(&mut cargo())?.args(["test", "--quiet", "--package=solver_peers"]),
-    )
+    show(&format!("Tests of {package}"), &mut test()?)
 }
 
 /// Makes clippy the compiler of the workspace's crates and every warning an error.

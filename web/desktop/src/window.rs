@@ -1,9 +1,7 @@
-//! Opens a widget as a desktop window.
+//! The window, and egui around a widget in it.
 
-use eframe::egui;
-
-use crate::palette::Theme;
-use crate::shell::Shell;
+use kit::palette::Theme;
+use kit::shell::Shell;
 
 /// Opens a window with that widget and returns when it is closed.
 ///
