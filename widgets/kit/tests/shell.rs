@@ -331,7 +331,7 @@ fn the_wheel_belongs_to_the_page_and_with_ctrl_to_the_map() {
 }
 
 #[test]
-fn two_fingers_that_rest_zoom_where_they_are_and_drag_nothing() {
+fn two_fingers_that_rest_zoom_take_the_map_along_and_drag_nothing() {
     let mut harness = harness(1100.0);
     let screen = |harness: &Harness<'_, Shell>, at: [f64; 2]| {
         Pos2::from(
@@ -372,6 +372,14 @@ fn two_fingers_that_rest_zoom_where_they_are_and_drag_nothing() {
             harness.event(finger(1, egui::TouchPhase::Move, second(px)));
             harness.run_steps(1);
         }
+        let spot = screen(&harness, [1.0, 1.0]);
+        for (id, pos) in [(0, first), (1, second(90.0))] {
+            let moved = pos + vec2(12.0, -8.0);
+            harness.event(finger(id, egui::TouchPhase::Move, moved));
+        }
+        harness.run_steps(1);
+        let along = screen(&harness, [1.0, 1.0]) - spot;
+        assert!((along - vec2(12.0, -8.0)).length() < 0.01, "{along}");
         harness.event(button(first, false));
         harness.event(Event::PointerGone);
         for (id, pos) in [(0, first), (1, second(90.0))] {
