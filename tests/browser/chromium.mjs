@@ -13,7 +13,8 @@ const PLAYWRIGHT_DISABLES = ['AvoidUnnecessaryBeforeUnloadCheckSync', 'DestroyPr
 /** Pages of the browser's own, loaded beside each tab: a second of work for what nobody sees. */
 const NOT_FOR_TESTS = ['WebUIOmniboxPopup', 'WebUIOmniboxAimPopup', 'WebUIOmniboxFullPopup', 'PreloadTopChromeWebUI'];
 
-const JS = '--expose-gc';
+/** What V8 is told in every Chromium; only the last list of its flags counts. */
+const V8_FLAGS = '--expose-gc';
 
 const HOW = {
   executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
@@ -33,7 +34,7 @@ const HOW = {
     '--disable-gpu-compositing',
     // The last list counts, so it starts with Playwright's own.
     `--disable-features=${[...PLAYWRIGHT_DISABLES, ...NOT_FOR_TESTS]}`,
-    `--js-flags=${JS}`,
+    `--js-flags=${V8_FLAGS}`,
   ],
 };
 
@@ -50,6 +51,6 @@ export function launch(extra = []) {
  * measurement of first frames or of drags starts each page as a reader's browser does.
  */
 export function launchServer() {
-  const late = `--js-flags=${JS} --wasm-tiering-budget=100000000`;
-  return chromium.launchServer({ ...HOW, args: [...HOW.args, '--process-per-site', late] });
+  const compiledLater = `--js-flags=${V8_FLAGS} --wasm-tiering-budget=100000000`;
+  return chromium.launchServer({ ...HOW, args: [...HOW.args, '--process-per-site', compiledLater] });
 }

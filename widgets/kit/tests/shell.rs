@@ -30,17 +30,22 @@ fn is_shown(harness: &Harness<'_, Shell>, role: Role, label: &str) -> bool {
     harness.query_by_role_and_label(role, label).is_some()
 }
 
+/// The primary button goes down somewhere, or up.
+fn button(pos: Pos2, pressed: bool) -> Event {
+    Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    }
+}
+
 /// Presses at one place, moves to another, lets go.
 fn drag(harness: &mut Harness<'_, Shell>, from: Pos2, to: Pos2) {
     for (pos, pressed) in [(from, Some(true)), (to, None), (to, Some(false))] {
         harness.event(Event::PointerMoved(pos));
         if let Some(pressed) = pressed {
-            harness.event(Event::PointerButton {
-                pos,
-                button: PointerButton::Primary,
-                pressed,
-                modifiers: Modifiers::NONE,
-            });
+            harness.event(button(pos, pressed));
         }
         harness.run_steps(2);
     }
@@ -351,12 +356,6 @@ fn two_fingers_that_rest_zoom_take_the_map_along_and_drag_nothing() {
         pos,
         force: None,
     };
-    let button = |pos, pressed| Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
     // The first one presses what can be dragged; then it presses nothing.
     for pressed in [screen(&harness, [1.0, 1.0]), pos2(-1e4, -1e4)] {
         let (before, x) = (apart(&harness), value(&harness, "x"));
@@ -510,12 +509,7 @@ fn a_press_takes_hold_of_what_lay_under_it_though_the_pointer_moved_on_in_the_sa
     let [from, to] =
         [[1.0, 1.0], [2.0, 1.0]].map(|world| Pos2::from(screen(world).expect("the map is shown")));
     harness.event(Event::PointerMoved(from));
-    harness.event(Event::PointerButton {
-        pos: from,
-        button: PointerButton::Primary,
-        pressed: true,
-        modifiers: Modifiers::NONE,
-    });
+    harness.event(button(from, true));
     harness.event(Event::PointerMoved(to));
     harness.run_steps(2);
     assert!(
@@ -528,12 +522,6 @@ fn a_press_takes_hold_of_what_lay_under_it_though_the_pointer_moved_on_in_the_sa
 /// So does a whole drag, or its end.
 #[test]
 fn a_drag_that_ends_within_a_frame_ends_where_the_pointer_was_let_go() {
-    let button = |pos, pressed| Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
     for frames_before_the_end in [0, 1] {
         let mut harness = harness(1100.0);
         let drag = |harness: &mut Harness<'_, Shell>, [from, to]: [Pos2; 2]| {
@@ -572,14 +560,8 @@ fn a_cancelled_touch_lets_go_of_what_it_dragged() {
         .state()
         .panel_to_screen("map", [1.0, 1.0])
         .expect("the map is shown");
-    let button = |pressed| Event::PointerButton {
-        pos: pos2(x, y),
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
     harness.event(Event::PointerMoved(pos2(x, y)));
-    harness.event(button(true));
+    harness.event(button(pos2(x, y), true));
     harness.run_steps(2);
     harness.state_mut().release_drags();
     harness.event(Event::PointerMoved(pos2(x + 80.0, y)));

@@ -130,6 +130,13 @@ impl Beside {
             Self::Desktop => "slam_desktop",
         }
     }
+
+    /// Compiles it with lints and tests it.
+    fn test(self) -> Result<Command, Failure> {
+        let mut command = cargo();
+        linting(&mut command)?.args(["test", "--quiet", "--package", self.package()]);
+        Ok(command)
+    }
 }
 
 /// Lints and tests a package beside the suite.
@@ -138,16 +145,11 @@ impl Beside {
 /// The step that failed.
 pub fn beside(what: Beside) -> Result<(), Failure> {
     let package = what.package();
-    let test = || {
-        let mut command = cargo();
-        linting(&mut command)?.args(["test", "--quiet", "--package", package]);
-        Ok::<Command, Failure>(command)
-    };
     show(
         &format!("Lints of {package}"),
-        test()?.args(["--no-run", "--all-targets"]),
+        what.test()?.args(["--no-run", "--all-targets"]),
     )?;
-    show(&format!("Tests of {package}"), &mut test()?)
+    show(&format!("Tests of {package}"), &mut what.test()?)
 }
 
 /// Makes clippy the compiler of the workspace's crates and every warning an error.
