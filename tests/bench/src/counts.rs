@@ -1,9 +1,9 @@
 //! Instruction counts: they repeat where clocks do not, so that a slower core fails the build.
 //!
-//! A workload runs twice in one process under callgrind (Nethercote & Seward 2007), which collects
-//! during the second run only: without preparation, start and end of the process, and with the
-//! workspaces that the first run has grown. Until then it translates the process without counters,
-//! which takes a third of the time.
+//! All workloads run in one process under callgrind (Nethercote & Seward 2007), each of them twice.
+//! Callgrind collects during the second run only: without preparation, start and end of the process,
+//! and with the workspaces that the first run has grown. It writes down what it has collected each
+//! time. In between it translates the process without counters, which takes a third of the time.
 
 use std::collections::BTreeMap;
 use std::env::{self, consts::ARCH};
@@ -14,7 +14,6 @@ use std::path::{Path, PathBuf};
 use std::process::{self, Command, Stdio};
 
 use measuring::skip::tell;
-use slam2d_bench::measure::find;
 use slam2d_bench::{Run, workloads};
 
 /// A count may rise by this share over the recorded one.
@@ -34,40 +33,49 @@ pub fn is_available() -> bool {
     version.is_ok_and(|output| output.status.success())
 }
 
-/// Counts every workload; `said` is told each count as it comes.
+/// Counts every workload.
 ///
 /// # Errors
-/// One sentence where valgrind fails, where its counts do not repeat, or where `said` fails.
-pub fn count_all(said: &dyn Fn(&str, u64) -> Result<(), String>) -> Result<Counts, String> {
-    let mut counts = Counts::new();
-    for workload in workloads() {
-        let count = count(workload.id)?;
-        said(workload.id, count)?;
-        counts.insert(workload.id.to_owned(), count);
+/// One sentence where valgrind fails.
+pub fn count_all() -> Result<Counts, String> {
+    let file = env::temp_dir().join(format!("slam2d-counts-{}", process::id()));
+    let counted = count_into(&file);
+    let written = fs::read_to_string(&file);
+    // It is there only where callgrind came so far; what matters of a failure is told.
+    drop(fs::remove_file(&file));
+    counted?;
+    let counts = collected(&written.map_err(|error| format!("{}: {error}", file.display()))?);
+    let mut ids = workloads().into_iter().map(|workload| workload.id);
+    match ids.find(|id| !counts.contains_key(*id)) {
+        Some(id) => Err(format!("callgrind counted nothing for {id}")),
+        None => Ok(counts),
     }
-    Ok(counts)
 }
 
-/// Runs a workload twice; callgrind knows the second time by the name of [`counted_run`].
+/// Runs every workload twice; callgrind knows the second time by the name of [`counted_run`].
 ///
 /// # Errors
-/// Where there is no such workload, or no callgrind around this process.
-pub fn run_twice(id: &str) -> Result<(), String> {
-    let mut run = (find(id)?.prepare)();
-    run.once();
-    start_counting()?;
-    counted_run(run.as_mut());
+/// Where there is no callgrind around this process.
+pub fn run_all_twice() -> Result<(), String> {
+    for workload in workloads() {
+        let mut run = (workload.prepare)();
+        run.once();
+        ask_callgrind(&["instrumentation", "on"])?;
+        counted_run(run.as_mut());
+        ask_callgrind(&["dump", workload.id])?;
+        ask_callgrind(&["instrumentation", "off"])?;
+    }
     Ok(())
 }
 
-/// Has the callgrind around this process count from here on, by valgrind's own remote control.
-fn start_counting() -> Result<(), String> {
+/// Asks the callgrind around this process for something, by valgrind's own remote control.
+fn ask_callgrind(what: &[&str]) -> Result<(), String> {
     let failed = |error: std::io::Error| format!("vgdb, a part of valgrind: {error}");
     let mut request = Command::new("vgdb")
         .arg(format!("--pid={}", process::id()))
         // It may not stop this process from outside: some containers forbid that.
         .arg("--max-invoke-ms=0")
-        .args(["instrumentation", "on"])
+        .args(what)
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
@@ -151,27 +159,39 @@ fn complaints(counts: &Counts, accepted: &Counts) -> Vec<String> {
     counts.iter().filter_map(judge).collect()
 }
 
-/// Instructions of one run of a workload.
-fn count(id: &str) -> Result<u64, String> {
+/// Has callgrind write what it collects in each counted run into one file, one part after the other.
+fn count_into(file: &Path) -> Result<(), String> {
     let program = env::current_exe().map_err(|error| error.to_string())?;
     let output = Command::new("valgrind")
-        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
-        .arg("--instr-atstart=no")
-        .arg("--toggle-collect=*counted_run*")
+        .args(["--tool=callgrind", "--instr-atstart=no"])
+        .args(["--toggle-collect=*counted_run*", "--combine-dumps=yes"])
+        .arg(format!("--callgrind-out-file={}", file.display()))
         .arg(program)
-        .args(["--run", id])
+        .arg("--run")
         .output()
         .map_err(|error| format!("valgrind: {error}"))?;
-    let report = String::from_utf8_lossy(&output.stderr);
-    collected(&report).ok_or_else(|| format!("valgrind counted nothing for {id}:\n{report}"))
+    if output.status.success() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&output.stderr);
+    Err(format!("valgrind counted nothing:\n{said}"))
 }
 
-/// What callgrind says that it collected.
-fn collected(report: &str) -> Option<u64> {
-    let (_, count) = report
-        .lines()
-        .find_map(|line| line.split_once("Collected : "))?;
-    count.trim().parse().ok().filter(|&count| count > 0)
+/// What callgrind collected, by what it was asked to dump: each part of the file begins with a trigger and ends
+/// with a total.
+fn collected(file: &str) -> Counts {
+    let mut counts = Counts::new();
+    let mut id = None;
+    for line in file.lines() {
+        if let Some(trigger) = line.strip_prefix("desc: Trigger: ") {
+            id = trigger.strip_prefix("dump ");
+        } else if let Some(total) = line.strip_prefix("totals: ")
+            && let (Some(id), Ok(count @ 1..)) = (id, total.trim().parse::<u64>())
+        {
+            counts.insert(id.to_owned(), count);
+        }
+    }
+    counts
 }
 
 #[cfg(test)]
@@ -200,11 +220,21 @@ mod tests {
     }
 
     #[test]
-    fn a_run_of_no_instructions_is_one_that_was_not_found() {
-        let report = |count: &str| format!("==7== Events    : Ir\n==7== Collected : {count}\n");
-        assert_eq!(collected(&report("113000000")), Some(113_000_000));
-        assert_eq!(collected(&report("0")), None);
-        assert_eq!(collected("==7== nothing"), None);
+    fn each_dump_is_a_count_and_what_ran_outside_of_them_is_none() {
+        let part = |trigger: &str, count: &str| {
+            format!(
+                "part: 1\ndesc: Trigger: {trigger}\nevents: Ir\nfn=(7)\n+3 12\ntotals: {count}\n"
+            )
+        };
+        let file = part("dump lap", "113000000") + &part("dump solve", "4711");
+        let counts =
+            collected(&(file + &part("dump grid", "0") + &part("Program termination", "5")));
+        let expected = [("lap", 113_000_000), ("solve", 4711)];
+        assert_eq!(
+            counts,
+            expected.map(|(id, count)| (id.to_owned(), count)).into()
+        );
+        assert!(collected("events: Ir\n").is_empty());
     }
 
     #[test]

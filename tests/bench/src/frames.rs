@@ -112,6 +112,11 @@ fn coarse_search() -> Shell {
     shell
 }
 
+thread_local! {
+    /// What all widgets are drawn with: it lays the fonts out once.
+    static CONTEXT: Context = Context::default();
+}
+
 /// A widget that is drawn without a screen.
 struct Frames {
     shell: Shell,
@@ -129,7 +134,7 @@ impl Frames {
             shell,
             param,
             values,
-            context: Context::default(),
+            context: CONTEXT.with(Clone::clone),
             input: RawInput {
                 screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0], SIZE[1]))),
                 ..RawInput::default()
@@ -148,7 +153,7 @@ impl Frames {
         self.frames += 1;
         let model = self.shell.model_mut();
         model.set(self.param, value).expect("the value is in range");
-        self.input.time = Some(f64::from(self.frames) / 60.0);
+        self.input.time = Some(self.context.cumulative_frame_nr() as f64 / 60.0);
         let mut output = self
             .context
             .run_ui(self.input.clone(), |ui| self.shell.ui(ui));

@@ -44,7 +44,7 @@ slam2d_bench sweep SLAM2D PAGE.md        run the sweep of 4,000 laps with the pr
                                          print its distribution and write it into a page
 slam2d_bench --counts check              fail where a workload takes 10 % more instructions than recorded
 slam2d_bench --counts accept             record the instruction counts
-slam2d_bench --run ID                    run one workload twice; callgrind counts the second time";
+slam2d_bench --run                       run each workload twice; callgrind counts the second time";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -70,7 +70,7 @@ fn main() -> ExitCode {
             .and_then(|block| publish(Path::new(page), Block::Sweep, &block)),
         ["--counts", "check"] => judge_counts(counts::compare),
         ["--counts", "accept"] => judge_counts(counts::accept),
-        ["--run", id] => counts::run_twice(id),
+        ["--run"] => counts::run_all_twice(),
         ["--help"] => say(USAGE),
         _ => Err(USAGE.to_owned()),
     };
@@ -123,10 +123,7 @@ fn count() -> Result<(), String> {
     if !counts::is_available() {
         return say_json(&counts::Counts::new());
     }
-    let counts = counts::count_all(&|id, count| {
-        eprintln!("{id}: {count} instructions");
-        Ok(())
-    })?;
+    let counts = counts::count_all()?;
     say_json(&counts::of_one_repetition(counts))
 }
 
@@ -146,6 +143,9 @@ fn judge_counts(judge: impl FnOnce(&counts::Counts) -> Result<(), String>) -> Re
     if !counts::is_available() {
         return tell("instruction counts", NO_VALGRIND);
     }
-    let counts = counts::count_all(&|id, count| say(&format!("{id:14} {count:>12} instructions")))?;
+    let counts = counts::count_all()?;
+    for (id, count) in &counts {
+        say(&format!("{id:16} {count:>10} instructions"))?;
+    }
     judge(&counts)
 }
