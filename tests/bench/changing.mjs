@@ -2,7 +2,8 @@
 // `node tests/bench/changing.mjs [PAGE.md] [FRAMES]`. Prints a table, and writes it into the page.
 
 import { writeMarked } from '../../web/marked.mjs';
-import { bare, launch, schema, serve } from '../browser/harness.mjs';
+import { launchForTimes } from '../browser/chromium.mjs';
+import { bare, schema, serve } from '../browser/harness.mjs';
 import { machine, quantile } from './in_chromium.mjs';
 
 /** The project's own limit: a frame of a display at 60 Hz. */
@@ -32,7 +33,7 @@ async function measure(count) {
   const pages = {};
   for (const [id] of SLIDERS) pages[`/${id}.html`] = bare(`<slam-widget name="${id}"></slam-widget>`, WATCH);
   const server = await serve({ pages });
-  const browser = await launch();
+  const browser = await launchForTimes();
   const rows = [];
   try {
     const context = await browser.newContext({ viewport: { width: 1100, height: 900 } });

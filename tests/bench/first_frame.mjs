@@ -2,7 +2,8 @@
 // `node tests/bench/first_frame.mjs [PAGE.md] [ROUNDS]`. Prints a table, and writes it into the page.
 
 import { writeMarked } from '../../web/marked.mjs';
-import { bare, launch, schema, serve } from '../browser/harness.mjs';
+import { launchForTimes } from '../browser/chromium.mjs';
+import { bare, schema, serve } from '../browser/harness.mjs';
 import { machine, quantile } from './in_chromium.mjs';
 
 /** From the navigation to the first frame of a widget: the project's own limit. */
@@ -49,7 +50,7 @@ if (page !== undefined) await writeMarked(page, 'first frame', text);
 /** Milliseconds from the navigation to the first frame, of each page by turns. */
 async function measure(paths, count) {
   const server = await serve({ pages });
-  const browser = await launch();
+  const browser = await launchForTimes();
   const found = new Map(paths.map((path) => [path, []]));
   try {
     const context = await browser.newContext({ viewport: { width: 1100, height: 900 } });

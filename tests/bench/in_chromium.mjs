@@ -3,10 +3,11 @@
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { cpus, platform } from 'node:os';
+import { forTimes } from '../browser/chromium.mjs';
 
 /** Processor, system and browser, as a table names them. */
 export function machine() {
-  const browser = execFileSync(process.env.CHROMIUM ?? '/usr/bin/chromium', ['--version'], {
+  const browser = execFileSync(forTimes(), ['--version'], {
     encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'],
   });
   return `${processor()}, ${cpus().length} cores, ${platform()}, ${browser.trim()}, WebGL by software`;

@@ -1,7 +1,7 @@
 //! The workloads that `docs/performance.md` reports, each defined once.
 //!
 //! The same list runs natively (the binary of this crate), as WebAssembly in a browser (the
-//! exports below), under an instruction counter and under criterion. Every workload keeps what it
+//! exports below), under an instruction counter and under criterion (`tests/criterion`). Every workload keeps what it
 //! computed: so nothing is optimized away, and a digest of all of it, taken while no clock runs,
 //! shows whether two builds compute the same.
 

@@ -87,7 +87,7 @@ impl Tools {
             // the tests, and no other build of them is made.
             Self::BesideTests => linting(&mut command)?
                 .args(PROGRAMS.map(|name| format!("--bin={name}")))
-                .arg("--bench=workloads"),
+                .arg("--bench=timings"),
             Self::AsShipped => command
                 .args(["--package=slam2d_bench", "--package=slam2d_cli"])
                 .args(["--package=slam_web", "--bins", "--release"]),

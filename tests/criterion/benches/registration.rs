@@ -1,6 +1,4 @@
-//! Scan matching where the table of workloads does not look: `cargo bench -p ch16_slam2d`.
-//!
-//! `tests/bench` has the workloads of `docs/performance.md`; here are the sizes that published
+//! Scan matching where the table of workloads does not look: the sizes that published
 //! libraries are timed at, the other map, the other place, and the parts.
 
 use std::hint::black_box;
@@ -9,7 +7,7 @@ use ch16_lab::samples::{self, RegistrationSample};
 use ch16_lab::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
 use ch16_slam2d::cloud::{DenseMap, NearestMap, PointCloud, VoxelMap};
 use ch16_slam2d::icp::{Icp, IcpConfig, IcpVariant, IcpWorkspace};
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::Criterion;
 use pr_geom::SE2;
 use pr_sim::Rng;
 
@@ -24,7 +22,7 @@ fn dense(cloud: &PointCloud) -> DenseMap {
     DenseMap::from_cloud(cloud, CELL_M, usize::MAX)
 }
 
-fn register(c: &mut Criterion) {
+pub fn register(c: &mut Criterion) {
     let (large, small) = (RegistrationSample::large(), RegistrationSample::small());
     let map = dense(&large.map);
     let mut workspace = IcpWorkspace::new();
@@ -47,7 +45,7 @@ fn register(c: &mut Criterion) {
     }
 }
 
-fn maps(c: &mut Criterion) {
+pub fn maps(c: &mut Criterion) {
     let sample = RegistrationSample::large();
     let voxel = VoxelMap::from_cloud(&sample.map, CELL_M, usize::MAX);
     let scan = sample.scan.transformed(&sample.guess);
@@ -69,7 +67,7 @@ fn maps(c: &mut Criterion) {
     });
 }
 
-fn corridor(c: &mut Criterion) {
+pub fn corridor(c: &mut Criterion) {
     let scene = TerrainScene::new(SceneKind::Corridor, TerrainScene::DEFAULT_NDT_CELL_M);
     let mut terrain = Terrain::default();
     for n in [49, 161] {
@@ -82,6 +80,3 @@ fn corridor(c: &mut Criterion) {
         });
     }
 }
-
-criterion_group!(benches, register, maps, corridor);
-criterion_main!(benches);

@@ -1,18 +1,18 @@
-//! The parts of the lap and what a drag repeats of it: `cargo bench -p ch16_lab --bench lap`.
+//! The parts of the lap and what a drag repeats of it.
 //!
-//! The whole lap, its warm solve and its grid are workloads of `tests/bench`.
+//! The whole lap, its warm solve and its grid are workloads.
 
 use std::hint::black_box;
 use std::sync::Arc;
 
 use ch16_lab::lap::{Drive, Lap, LapConfig, LapRunner};
 use ch16_lab::samples;
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::Criterion;
 
 /// Noise factors that a dragged slider passes through.
 const DRAGGED: [f64; 4] = [0.9, 1.0, 1.1, 1.2];
 
-fn lap(criterion: &mut Criterion) {
+pub fn parts(criterion: &mut Criterion) {
     let config = LapConfig::default();
     let mut group = criterion.benchmark_group("lap");
     group.bench_function("drive, 129 ticks", |b| {
@@ -40,7 +40,7 @@ fn lap(criterion: &mut Criterion) {
 }
 
 /// The lap's own graph, solved with an ordering and a symbolic analysis of its own.
-fn cold_solve(criterion: &mut Criterion) {
+pub fn cold_solve(criterion: &mut Criterion) {
     let graph = samples::lap_graph();
     criterion.bench_function("lap_41 cold", |b| {
         b.iter(|| {
@@ -50,6 +50,3 @@ fn cold_solve(criterion: &mut Criterion) {
         });
     });
 }
-
-criterion_group!(benches, lap, cold_solve);
-criterion_main!(benches);

@@ -1,11 +1,10 @@
 //! Times of the solver on graphs made here: a short and a long walk on a street grid.
 //!
-//! The graph of the lap is solved where it is made: `lap_41` in `ch16_slam2d`, `solve` in
-//! `tests/bench`.
+//! The graph of the lap is `lap_41` beside them, and the workload `solve`.
 
 use std::hint::black_box;
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::Criterion;
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
 use pr_optim::system::NormalEquations;
@@ -98,7 +97,7 @@ fn solve(optimizer: &mut Optimizer, mut problem: Problem) -> f64 {
     session.run().report.chi2
 }
 
-fn parts_of_an_iteration(criterion: &mut Criterion) {
+pub fn parts_of_an_iteration(criterion: &mut Criterion) {
     let problem = street_walk(3500, 25);
     let mut linear = LinearSolver::new(&problem, Factorization::Block);
     let mut equations = NormalEquations::default();
@@ -137,7 +136,7 @@ fn parts_of_an_iteration(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn whole_solves(criterion: &mut Criterion) {
+pub fn whole_solves(criterion: &mut Criterion) {
     for (name, problem) in [
         ("streets_41", street_walk(41, 2)),
         ("streets_3500", street_walk(3500, 25)),
@@ -153,6 +152,3 @@ fn whole_solves(criterion: &mut Criterion) {
         group.finish();
     }
 }
-
-criterion_group!(benches, parts_of_an_iteration, whole_solves);
-criterion_main!(benches);

@@ -1,9 +1,9 @@
-//! Every workload of `docs/performance.md` under criterion: `cargo bench -p slam2d_bench`.
+//! Every workload of `docs/performance.md` by its short name: `workloads/lap`.
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{Criterion, Throughput};
 use slam2d_bench::workloads;
 
-fn all(criterion: &mut Criterion) {
+pub fn all(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("workloads");
     for workload in workloads() {
         // One run repeats the small ones: the rate is of single repetitions.
@@ -17,6 +17,3 @@ fn all(criterion: &mut Criterion) {
     }
     group.finish();
 }
-
-criterion_group!(benches, all);
-criterion_main!(benches);
