@@ -31,7 +31,7 @@ const IN_CHROMIUM: [(&str, &str); 2] = [
 /// The first step that fails, in one line.
 pub fn bench(json: Option<&Path>) -> Result<(), Failure> {
     tools::ensure_build_tools()?;
-    let chromium = chromium::ensure_chromium()?;
+    let chromium = chromium::ensure_chromium(chromium::Wanted::ForTimes)?;
     tools::ensure_node_modules(&root().join("tests/browser"))?;
     Tools::AsShipped.compile()?;
     let web = root().join("target/bench-web");

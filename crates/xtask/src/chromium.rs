@@ -10,43 +10,85 @@ use crate::tools::output;
 const HOW_TO_GET_IT: &str = "`sudo apt-get install chromium`, \
      or set CHROMIUM to the path of a Chromium or Chrome";
 
-/// A Chromium for the browser tests; installed through apt-get as root on Debian.
+/// What a Chromium is wanted for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// Tests: the engine without the windows around it will do, and takes a sixth less for a page.
+    ForTests,
+    /// Times: the browser that readers have.
+    ForTimes,
+}
+
+/// The engine alone, as Debian and Playwright name it.
+const SHELL: &str = "chromium-headless-shell";
+
+impl Wanted {
+    /// Programs that will do, the best first.
+    fn programs(self) -> impl Iterator<Item = &'static str> {
+        let shell = (self == Self::ForTests).then_some(SHELL);
+        shell.into_iter().chain([
+            "chromium",
+            "chromium-browser",
+            "google-chrome-stable",
+            "google-chrome",
+        ])
+    }
+
+    /// Debian's packages that hold one, the best first.
+    fn packages(self) -> &'static [&'static str] {
+        match self {
+            Self::ForTests => &[SHELL, "chromium"],
+            Self::ForTimes => &["chromium"],
+        }
+    }
+}
+
+/// A Chromium; installed through apt-get as root on Debian.
 ///
 /// # Errors
 /// One line on how to get it.
-pub fn ensure_chromium() -> Result<PathBuf, Failure> {
-    if let Some(path) = find()? {
+pub fn ensure_chromium(wanted: Wanted) -> Result<PathBuf, Failure> {
+    if let Some(path) = find(wanted)? {
         return Ok(path);
     }
-    let missing = || Failure::new(format!("the browser tests need Chromium: {HOW_TO_GET_IT}"));
+    let missing = || Failure::new(format!("this needs Chromium: {HOW_TO_GET_IT}"));
     let is_root = output(program("id").arg("-u")).as_deref() == Some("0");
     if !is_root || output(program("apt-get").arg("--version")).is_none() {
         return Err(missing());
     }
-    step(
+    let update = step(
         "Updating the package lists",
         program("apt-get").arg("update"),
-    )
-    .and_then(|()| {
-        step(
-            "Installing Chromium (apt-get, once)",
-            program("apt-get").args([
-                "install",
-                "--yes",
-                "--no-install-recommends",
-                "chromium",
-                "fonts-dejavu-core",
-            ]),
-        )
-    })
-    .map_err(|failure| failure.with_way_out(HOW_TO_GET_IT))?;
-    find()?.ok_or_else(missing)
+    );
+    update
+        .and_then(|()| install(wanted))
+        .map_err(|failure| failure.with_way_out(HOW_TO_GET_IT))?;
+    find(wanted)?.ok_or_else(missing)
 }
 
-fn find() -> Result<Option<PathBuf>, Failure> {
+/// Installs the best of the packages that the lists have.
+fn install(wanted: Wanted) -> Result<(), Failure> {
+    let is_listed = |package: &&&str| {
+        output(program("apt-cache").args(["show", "--no-all-versions", package])).is_some()
+    };
+    let packages = wanted.packages();
+    let package = packages.iter().find(is_listed).unwrap_or(&"chromium");
+    step(
+        "Installing Chromium (apt-get, once)",
+        program("apt-get").args([
+            "install",
+            "--yes",
+            "--no-install-recommends",
+            package,
+            "fonts-dejavu-core",
+        ]),
+    )
+}
+
+fn find(wanted: Wanted) -> Result<Option<PathBuf>, Failure> {
     match env::var_os("CHROMIUM") {
         Some(named) => existing(named).map(Some),
-        None => Ok(on_path().or_else(in_applications)),
+        None => Ok(on_path(wanted).or_else(in_applications)),
     }
 }
 
@@ -67,16 +109,12 @@ fn existing(named: OsString) -> Result<PathBuf, Failure> {
     )))
 }
 
-fn on_path() -> Option<PathBuf> {
-    let names = [
-        "chromium",
-        "chromium-browser",
-        "google-chrome-stable",
-        "google-chrome",
-    ];
+fn on_path(wanted: Wanted) -> Option<PathBuf> {
     let inherited = env::var_os("PATH").unwrap_or_default();
-    env::split_paths(&inherited)
-        .flat_map(|folder| names.map(|name| folder.join(name)))
+    let folders: Vec<PathBuf> = env::split_paths(&inherited).collect();
+    wanted
+        .programs()
+        .flat_map(|name| folders.iter().map(move |folder| folder.join(name)))
         .find(|path| path.is_file())
 }
 
@@ -89,6 +127,13 @@ fn in_applications() -> Option<PathBuf> {
 mod tests {
     use super::*;
     use crate::run::root;
+
+    #[test]
+    fn times_are_of_the_browser_that_readers_have() {
+        assert_eq!(Wanted::ForTests.programs().next(), Some(SHELL));
+        assert!(Wanted::ForTimes.programs().all(|name| name != SHELL));
+        assert!(!Wanted::ForTimes.packages().contains(&SHELL));
+    }
 
     #[test]
     fn a_wrong_chromium_is_named_with_what_is_wrong() {

@@ -57,7 +57,7 @@ fn ensure_tools(pieces: &[Piece]) -> Result<Option<PathBuf>, Failure> {
         return Ok(None);
     }
     tools::ensure_node_modules(&root().join("tests/browser"))?;
-    chromium::ensure_chromium().map(Some)
+    chromium::ensure_chromium(chromium::Wanted::ForTests).map(Some)
 }
 
 fn run(

@@ -40,7 +40,7 @@ pub fn soak(soak: &Soak) -> Result<(), Failure> {
         ));
     }
     tools::ensure_node_modules(&root().join("tests/browser"))?;
-    let chromium = chromium::ensure_chromium()?;
+    let chromium = chromium::ensure_chromium(chromium::Wanted::ForTests)?;
     let load = Load::on_every_core();
     println!("{} busy threads load the machine", load.threads());
     let mut failed = Vec::new();
