@@ -116,8 +116,7 @@ pub fn parse_param(name: &str, id: &str, text: &str) -> Result<String, JsError> 
 }
 
 fn unknown_widget(name: &str) -> JsError {
-    let known = registry::names();
-    JsError::new(&format!("there is no widget `{name}`; there are {known}"))
+    JsError::new(&registry::unknown(name))
 }
 
 /// A widget, running on a canvas or not.

@@ -57,6 +57,12 @@ pub fn names() -> String {
     WIDGETS.map(|(name, _)| name).join(", ")
 }
 
+/// What is said of a name that no widget has.
+#[must_use]
+pub fn unknown(name: &str) -> String {
+    format!("there is no widget `{name}`; there are {}", names())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

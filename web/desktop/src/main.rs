@@ -33,12 +33,7 @@ fn named(words: impl IntoIterator<Item = String>) -> Result<Shell, String> {
         let names = registry::names();
         return Err(format!("slam_desktop takes the name of a widget: {names}"));
     };
-    registry::make(name).ok_or_else(|| {
-        format!(
-            "there is no widget {name:?}; there are {}",
-            registry::names()
-        )
-    })
+    registry::make(name).ok_or_else(|| registry::unknown(name))
 }
 
 #[cfg(test)]
@@ -55,7 +50,7 @@ mod tests {
         assert_eq!(asked_for(&["w16.11"]), Ok("w16.11"));
         let refused = asked_for(&["w16.99"]).unwrap_err();
         assert!(
-            refused.starts_with("there is no widget \"w16.99\"; there are w16.1, w16.2"),
+            refused.starts_with("there is no widget `w16.99`; there are w16.1, w16.2"),
             "{refused}"
         );
         for words in [&[][..], &["w16.1", "w16.2"]] {
