@@ -78,6 +78,18 @@ describe('a frame', () => {
     });
   });
 
+  it('tells its size again when it is ready, and with its state: who listens late has missed the first', async () => {
+    await framed('?w=16.1', async ({ tab, frame, post, hear }) => {
+      await hear('ready');
+      await tab.waitForFunction(() => heard.slice(heard.findIndex((data) => data.type === 'ready'))
+        .some((data) => data.type === 'size'));
+      await post({ slam: 1, type: 'get' });
+      const { width, height } = await hear('state');
+      const main = await frame.evaluate(() => document.querySelector('main').getBoundingClientRect());
+      assert.deepEqual([width, height], [main.width, main.height].map(Math.ceil));
+    });
+  });
+
   it('is as high as it says: in a frame of that height nothing scrolls', async () => {
     await framed('?w=16.1&bogus=1', async ({ tab, frame, hear }) => {
       await hear('ready');

@@ -4,7 +4,7 @@ const frame = document.querySelector('#lap');
 
 addEventListener('message', (event) => {
   if (event.source !== frame.contentWindow || event.data?.slam !== 1) return;
-  if (event.data.type === 'size') frame.style.height = `${event.data.height}px`;
+  if (event.data.type === 'size' || event.data.type === 'state') frame.style.height = `${event.data.height}px`;
   if (event.data.type === 'result') {
     document.querySelector('#said').textContent = event.data.outcome.sentence;
   }
@@ -13,3 +13,6 @@ addEventListener('message', (event) => {
 document.querySelector('#noisy').addEventListener('click', () => {
   frame.contentWindow.postMessage({ slam: 1, type: 'set', values: { noise: 2 } }, '*');
 });
+
+// A frame that was there before this script has told its size already; the state holds it, too.
+frame.contentWindow.postMessage({ slam: 1, type: 'get' }, '*');

@@ -52,7 +52,11 @@ function tell(message: string): void {
 
 function listen(element: SlamWidget): void {
   const detail = (event: Event): Message => (event as CustomEvent<Message>).detail;
-  element.addEventListener('slam-ready', (event) => post({ type: 'ready', ...detail(event) }));
+  element.addEventListener('slam-ready', (event) => {
+    post({ type: 'ready', ...detail(event) });
+    // The page around may have begun to listen after the frame got its size.
+    tellSize();
+  });
   element.addEventListener('slam-change', (event) => post({ type: 'changed', ...detail(event) }));
   element.addEventListener('slam-result', (event) => post({ type: 'result', ...detail(event) }));
   element.addEventListener('slam-error', (event) => post({ type: 'error', ...detail(event) }));
@@ -65,6 +69,7 @@ function listen(element: SlamWidget): void {
       value: element.value,
       outcome: element.outcome ?? null,
       summary: element.summary,
+      ...size(),
     }),
   };
   window.addEventListener('message', (event: MessageEvent<unknown>) => {
@@ -76,12 +81,17 @@ function refuse({ message }: Error): void {
   post({ type: 'error', name: spec?.id ?? null, kind: 'message', message });
 }
 
-/** The height of all that the frame shows. */
-function tellSize(): void {
+/** The size of all that the frame shows, CSS pixels. */
+function size(): { width: number; height: number } {
   const { width, height } = main.getBoundingClientRect();
-  post({ type: 'size', width: Math.ceil(width), height: Math.ceil(height) });
+  return { width: Math.ceil(width), height: Math.ceil(height) };
+}
+
+function tellSize(): void {
+  const { width, height } = size();
+  post({ type: 'size', width, height });
   // What learning management systems listen for.
-  const lti = { subject: 'lti.frameResize', height: Math.ceil(height) };
+  const lti = { subject: 'lti.frameResize', height };
   if (window.parent !== window) window.parent.postMessage(JSON.stringify(lti), '*');
 }
 
