@@ -1,5 +1,7 @@
 //! The map for very many queries: the answer to each is all but written down beforehand.
 
+use core::hint::select_unpredictable;
+
 use nalgebra::{Point2, Vector2};
 use pr_geom::math;
 
@@ -8,7 +10,7 @@ use super::{DenseMap, Memory, NearestMap, Neighbor};
 /// Squared distances that differ by less than this, m², count as equal when a point is ruled out.
 const ROUNDING_M2: f64 = 1e-12;
 
-/// Most squares of a table, and most candidates in it: 80 MB. A room takes a hundredth of it.
+/// Most squares of a table, and most candidates in it: 120 MB. A room takes a hundredth of it.
 const BUDGET: usize = 1 << 22;
 
 /// A [`DenseMap`] with a table: for every small square, the points that can be nearest to
@@ -24,9 +26,11 @@ pub struct NearestTable {
     per_metre: f64,
     columns: usize,
     rows: usize,
-    /// `starts[column * rows + row]` to the next entry are the candidates of a square.
+    /// `starts[column * rows + row]` to the next entry are the candidates of a square, two and two.
     starts: Vec<u32>,
-    candidates: Vec<Candidate>,
+    /// One that is left alone stands twice. Four queries of five have one or two candidates, so there is
+    /// seldom a number of them to guess.
+    candidates: Vec<[Candidate; 2]>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -123,12 +127,15 @@ impl NearestTable {
                     near.sort_by_key(|&index| self.map.visit_order(index));
                 }
                 keep_candidates(&self.map, low, square_m, &mut near);
-                self.candidates.extend(near.iter().map(|&index| Candidate {
+                let candidate = |index: u32| Candidate {
                     x: self.map.xs()[index as usize],
                     y: self.map.ys()[index as usize],
                     index,
-                }));
-                if self.candidates.len() > BUDGET {
+                };
+                let pairs = near.chunks(2);
+                self.candidates
+                    .extend(pairs.map(|pair| [pair[0], pair[pair.len() - 1]].map(candidate)));
+                if 2 * self.candidates.len() > BUDGET {
                     self.forget();
                     return;
                 }
@@ -212,13 +219,16 @@ impl NearestMap for NearestTable {
             self.starts[square + 1] as usize,
         );
         let (mut best, mut least) = (Memory::NO_POINT, radius_m * radius_m);
-        for candidate in &self.candidates[start..end] {
-            let (dx, dy) = (candidate.x - query.x, candidate.y - query.y);
-            let squared = dx * dx + dy * dy;
-            // Candidates lie in the chapter's order: the first of equals stays.
-            let nearer = squared < least;
-            least = if nearer { squared } else { least };
-            best = if nearer { candidate.index } else { best };
+        for pair in &self.candidates[start..end] {
+            for candidate in pair {
+                let (dx, dy) = (candidate.x - query.x, candidate.y - query.y);
+                let squared = dx * dx + dy * dy;
+                // Candidates lie in the chapter's order: the first of equals stays. Which one is nearer
+                // nobody can predict, so nothing may branch on it.
+                let nearer = squared < least;
+                least = math::min(squared, least);
+                best = select_unpredictable(nearer, candidate.index, best);
+            }
         }
         (best != Memory::NO_POINT).then_some(Neighbor {
             index: best as usize,
