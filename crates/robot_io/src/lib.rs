@@ -39,6 +39,7 @@ pub mod run;
 pub mod session;
 pub mod trajectory;
 
+mod counted;
 mod lines;
 mod place;
 mod wheel_poses;

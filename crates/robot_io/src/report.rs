@@ -9,6 +9,7 @@ mod picture;
 
 use std::fmt::{Display, Write as _};
 
+use crate::counted::counted;
 use crate::map_image::MapImage;
 use crate::quality::{LinkQuality, Quality};
 
@@ -70,10 +71,10 @@ impl Report<'_> {
         say(
             &mut page,
             format_args!(
-                "<p>{} scans became {} keyframes on a way of {:.1} m. On the way {} loops \
-                 were looked at and {} closed; at the end {} are in the graph.</p>",
-                self.scans,
-                quality.keyframes.len(),
+                "<p>{} became {} on a way of {:.1} m. Loops on the way: {} looked at, {} closed; \
+                 in the graph at the end: {}.</p>",
+                counted(self.scans, "scan"),
+                counted(quality.keyframes.len(), "keyframe"),
                 quality.way_m(),
                 quality.tried.len(),
                 closed.clone().count(),

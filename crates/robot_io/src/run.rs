@@ -82,9 +82,15 @@ pub struct LogRun {
 /// What is said of a log with scans that are not after the one before them; nothing where it has none.
 #[must_use]
 pub fn late_scans(name: &str, late: usize) -> Option<String> {
-    (late > 0).then(|| {
-        format!("{name}: {late} scans are not after the one before them and were left out")
-    })
+    match late {
+        0 => None,
+        1 => Some(format!(
+            "{name}: one scan is not after the one before it and was left out"
+        )),
+        _ => Some(format!(
+            "{name}: {late} scans are not after the one before them and were left out"
+        )),
+    }
 }
 
 impl LogRun {

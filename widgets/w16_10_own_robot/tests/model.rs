@@ -85,8 +85,29 @@ fn what_else_is_doubted_is_not_passed_over_where_no_loop_contradicts() {
     tell(&mut robot, "loops", "", &[]);
     let said = |robot: &OwnRobot| robot.outcome().sentence.clone();
     assert!(said(&robot).contains("but the list of doubts is not empty"));
+    assert_eq!(robot.outcome().standing, Standing::Neutral);
     tell(&mut robot, "doubts", "", &[]);
     assert!(said(&robot).contains("no loop contradicts the graph."));
+    assert_eq!(robot.outcome().standing, Standing::Good);
+}
+
+#[test]
+fn one_of_a_kind_is_said_as_one() {
+    let mut robot = mapped();
+    assert!(
+        robot
+            .outcome()
+            .sentence
+            .contains("40 scans became 5 keyframes")
+    );
+    tell(&mut robot, "keyframes", "", &[0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    tell(&mut robot, "stage", "", &[5.0, 1.0, 1.0, 0.0, 0.0]);
+    tell(&mut robot, "loops", "", &[]);
+    let said = robot.outcome().sentence.clone();
+    assert!(
+        said.contains("1 scan became 1 keyframe on a way of 0 m with 0 loops"),
+        "{said}"
+    );
 }
 
 #[test]

@@ -288,10 +288,13 @@ impl Collector {
         notes.warnings = self.warning.iter().cloned().collect();
         let has_wheels = !self.by_odometry.is_empty() || !self.by_transforms.is_empty();
         if self.early > 0 && has_wheels {
-            notes.warnings.push(format!(
-                "{} scans stand long before the odometry of their time and go without it; sort the recording by time",
-                self.early
-            ));
+            let scans = match self.early {
+                1 => "one scan stands long before the odometry of its time and goes".to_owned(),
+                many => format!("{many} scans stand long before the odometry of their time and go"),
+            };
+            notes
+                .warnings
+                .push(format!("{scans} without it; sort the recording by time"));
         }
         notes.offers = self.offers();
         notes.about.clear();

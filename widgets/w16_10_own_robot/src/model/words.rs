@@ -23,7 +23,8 @@ pub fn outcome(own: &OwnRobot) -> Outcome {
         Stage::Checking => (Standing::Neutral, "checking"),
         _ if robot.is_under_way() => (Standing::Neutral, "looking for the robot"),
         Stage::Done if contradicted(robot) > 0 => (Standing::Bad, "loops contradict"),
-        Stage::Done => (Standing::Good, "mapped"),
+        Stage::Done if robot.doubts.is_empty() => (Standing::Good, "mapped"),
+        Stage::Done => (Standing::Neutral, "mapped"),
     };
     Outcome {
         standing,
@@ -51,13 +52,16 @@ fn sentence(own: &OwnRobot) -> String {
         }
         Stage::Opening => format!("{name} is opened."),
         Stage::Reading => format!(
-            "{name}: {done:.0} % done, {:.0} scans, {} keyframes, {:.0} loops closed.",
-            robot.scans,
-            robot.keyframes.len(),
-            robot.tried[1]
+            "{name}: {done:.0} % done, {}, {}, {} closed.",
+            counted(robot.scans as usize, "scan"),
+            counted(robot.keyframes.len(), "keyframe"),
+            counted(robot.tried[1] as usize, "loop")
         ),
         Stage::Linking => format!("{name}: {done:.0} % done, every keyframe is linked once more."),
-        Stage::Solving => format!("{name}: {} poses are solved.", robot.keyframes.len()),
+        Stage::Solving => format!(
+            "{name} is solved: {}.",
+            counted(robot.keyframes.len(), "pose")
+        ),
         Stage::Checking | Stage::Done => finished(robot),
     };
     let held = if robot.paused { " It is held." } else { "" };
@@ -132,18 +136,26 @@ fn finished(robot: &Robot) -> String {
     };
     let source = if robot.has_scans {
         format!(
-            "{:.0} scans became {} keyframes",
-            robot.scans,
-            robot.keyframes.len()
+            "{} became {}",
+            counted(robot.scans as usize, "scan"),
+            counted(robot.keyframes.len(), "keyframe")
         )
     } else {
-        format!("{} poses", robot.keyframes.len())
+        counted(robot.keyframes.len(), "pose")
     };
     format!(
-        "{}: {source} on a way of {:.0} m with {closed} loops; {doubted}.",
+        "{}: {source} on a way of {:.0} m with {}; {doubted}.",
         robot.name,
-        way_m(robot)
+        way_m(robot),
+        counted(closed, "loop")
     )
+}
+
+fn counted(count: usize, noun: &str) -> String {
+    match count {
+        1 => format!("1 {noun}"),
+        _ => format!("{count} {noun}s"),
+    }
 }
 
 /// Length of the way over the keyframes, m.

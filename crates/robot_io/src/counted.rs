@@ -1,0 +1,9 @@
+//! Numbers with their nouns, for sentences.
+
+/// “1 scan”, “2 scans”.
+pub(crate) fn counted(count: usize, noun: &str) -> String {
+    match count {
+        1 => format!("1 {noun}"),
+        _ => format!("{count} {noun}s"),
+    }
+}
