@@ -273,7 +273,7 @@ fn write_results(folder: &Path, run: &LogRun, quality: &Quality) -> Result<(), F
 /// The quality in words.
 fn report(run: &LogRun, quality: &Quality) -> String {
     let mut text = format!(
-        "Scans: {}. Keyframes: {}. Loops in the graph: {}.\n\n",
+        "{} scans, {} keyframes, {} loops in the graph\n\n",
         run.scans(),
         quality.keyframes.len(),
         quality.links.len()
