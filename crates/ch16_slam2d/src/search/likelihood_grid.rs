@@ -12,9 +12,6 @@ pub const MAX_GRID_CELLS: u64 = 1 << 22;
 /// Most columns and most rows: a cell's number fits into 16 bits, a window's width added.
 const MAX_SIDE_CELLS: u64 = 16_000;
 
-/// The score of a cell that a point lies in the middle of.
-pub(super) const FULL_SCORE: u8 = u8::MAX;
-
 /// Cells and blur of a [`LikelihoodGrid`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LikelihoodConfig {

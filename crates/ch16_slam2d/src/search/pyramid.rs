@@ -1,6 +1,6 @@
 //! The grid with the largest scores of ever larger squares beside it.
 
-use super::likelihood_grid::FULL_SCORE;
+use super::score_scale::FULL_SCORE;
 use super::{LikelihoodConfig, LikelihoodGrid, SearchError};
 use crate::cloud::PointCloud;
 

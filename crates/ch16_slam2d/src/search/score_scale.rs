@@ -2,7 +2,8 @@
 
 use pr_geom::math;
 
-use super::likelihood_grid::FULL_SCORE;
+/// The score of a cell that a point lies in the middle of.
+pub(super) const FULL_SCORE: u8 = u8::MAX;
 
 /// Scores end at so many σ.
 pub(super) const FARTHEST_SIGMAS: f64 = 3.0;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use pr_geom::{Point2, Rotation, math};
 
 use super::lattice::Lattice;
-use super::likelihood_grid::FULL_SCORE;
 use super::pyramid::{BATCH, CellSlice, LEVELS};
+use super::score_scale::FULL_SCORE;
 use super::{LikelihoodGrid, SearchMap};
 use crate::cloud::PointCloud;
 

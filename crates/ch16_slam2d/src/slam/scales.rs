@@ -1,17 +1,11 @@
 //! Lengths from the sensor: the same system for a room and for a hall.
 
-use super::config::{SlamConfig, ThresholdConfig};
+use super::config::{NORMAL_RADIUS_CELLS, SlamConfig, ThresholdConfig};
 use crate::loops::LoopConfig;
 use crate::matching::{MapConfig, TrustConfig};
 use crate::metrics::rms;
 use crate::scan::{LaserScan, ScanConfig};
 
-/// A point's normal comes from its neighbours within so many cells.
-///
-/// A cell is 2.4 σ wide at least, so a wall through n cells has a normal that is off by
-/// `σ √12 / (n cell √n)` = `1.44 / n^1.5` rad at most: 7.4° with the chapter's ratio, n = 5, and 3.4° here.
-/// Normals that are off hold a sweep back along the wall, as pairs of points do.
-pub(super) const NORMAL_RADIUS_CELLS: f64 = 4.2;
 /// Cells of thinned sweeps across one cell of a map; the chapter's ratio of 0.25 to 0.12 m.
 const CELLS_PER_MAP_CELL: f64 = 2.1;
 /// A cell is so many standard deviations of the range noise wide, at least.
