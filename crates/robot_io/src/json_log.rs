@@ -168,7 +168,8 @@ fn in_words(problem: &serde_json::Error) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::{LogFormat, LogOptions, LogReader};
+    use crate::log::{LogOptions, LogReader};
+    use crate::log_format::LogFormat;
 
     fn frame() -> LogFrame {
         LogFrame {

@@ -1,6 +1,7 @@
 //! Recorded logs of real robots: read, run through the estimator, and graded.
 //!
 //! - [`log`]: what every log yields, frames in the order of the file, and what is told of it.
+//! - [`log_format`]: which format a file has, and its reader.
 //! - [`carmen`]: the text format of CARMEN, in both directions.
 //! - [`ros`]: recordings of ROS 2 (MCAP) and ROS 1 (bags).
 //! - [`json_log`]: a log as lines of JSON, in both directions.
@@ -29,6 +30,7 @@ pub mod json_log;
 pub mod line_log;
 pub mod localize;
 pub mod log;
+pub mod log_format;
 pub mod map_image;
 pub mod quality;
 pub mod recorder;

@@ -10,7 +10,8 @@ use std::path::PathBuf;
 use ch16_slam2d::metrics::position_error_m;
 use measuring::skip::{NO_RECORDED_LOGS, skip};
 use robot_io::evaluate::relation_errors;
-use robot_io::log::{LogFormat, LogOptions};
+use robot_io::log::LogOptions;
+use robot_io::log_format::LogFormat;
 use robot_io::relations::read_relations;
 use robot_io::run::{LogRun, OdometryUse};
 

@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use robot_io::log::{LogError, LogFormat, LogOptions, LogReader};
+use robot_io::log::{LogError, LogOptions, LogReader};
+use robot_io::log_format::LogFormat;
 use thiserror::Error;
 
 /// Which topics and frames of a recording of ROS are meant, where there are several.

@@ -3,7 +3,8 @@
 use robot_io::carmen::{CarmenReader, write_carmen};
 use robot_io::info::LogInfo;
 use robot_io::json_log::{FrameLine, JsonLogReader};
-use robot_io::log::{LogFormat, LogFrame, LogNotes, LogOptions, LogReader};
+use robot_io::log::{LogFrame, LogNotes, LogOptions, LogReader};
+use robot_io::log_format::LogFormat;
 use robot_io::run::{LogRun, OdometryUse};
 
 use crate::runs::{assert_finite, assert_loads, drive};

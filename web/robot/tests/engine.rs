@@ -2,7 +2,8 @@
 
 use std::sync::OnceLock;
 
-use robot_io::log::{LogFormat, LogOptions};
+use robot_io::log::LogOptions;
+use robot_io::log_format::LogFormat;
 use robot_io::run::{LogRun, OdometryUse};
 use slam_robot::engine::Engine;
 use slam_robot::sample;

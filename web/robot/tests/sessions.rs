@@ -2,7 +2,8 @@
 
 use ch16_slam2d::localize::StartPose;
 use pr_geom::SE2;
-use robot_io::log::{LogFormat, LogOption, LogOptions};
+use robot_io::log::{LogOption, LogOptions};
+use robot_io::log_format::LogFormat;
 use robot_io::run::{LogRun, OdometryUse};
 use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;

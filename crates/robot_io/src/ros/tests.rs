@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use super::collector::Collector;
 use super::container::{Container, Recorded};
 use super::mcap_file::McapFile;
-use crate::log::{LogError, LogFormat, LogFrame, LogNotes, LogOption, LogOptions};
+use crate::log::{LogError, LogFrame, LogNotes, LogOption, LogOptions};
+use crate::log_format::LogFormat;
 
 const FIXTURES: [(&str, &[u8]); 8] = [
     ("plain.mcap", include_bytes!("../../recordings/plain.mcap")),
