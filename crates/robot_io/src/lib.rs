@@ -13,6 +13,7 @@
 //! - [`run`]: a log through [`Slam`](ch16_slam2d::slam::Slam), frame by frame.
 //! - [`session`]: all that a run is, in one file.
 //! - [`localize`]: a log on the map of a session.
+//! - [`evidence`]: what a run keeps of its loops and scans.
 //! - [`quality`]: how far each keyframe and each loop is to be trusted, and what is to be doubted.
 //! - [`trajectory`]: stamped poses, and the TUM format in both directions.
 //! - [`relations`]: reference relations between two times.
@@ -24,6 +25,7 @@
 
 pub mod carmen;
 pub mod evaluate;
+pub mod evidence;
 pub mod graph_file;
 pub mod info;
 pub mod json_log;

@@ -17,7 +17,7 @@ use ch16_slam2d::slam::Slam;
 use pr_geom::{Matrix3, SE2, math};
 use serde::Serialize;
 
-use crate::run::{PoorFit, TriedLoop};
+use crate::evidence::{PoorFit, TriedLoop};
 
 /// The largest χ² of a loop that is not doubted: of three degrees of freedom, 999 of 1,000 lie below.
 pub const GATE_CHI2: f64 = 16.266;

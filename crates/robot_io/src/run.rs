@@ -7,6 +7,7 @@ use ch16_slam2d::slam::{Refinement, Slam, SlamConfig, SlamReport, SlamSnapshot, 
 use ch16_slam2d::submaps::FrontEndChoice;
 use pr_geom::SE2;
 
+use crate::evidence::{PoorFit, TriedLoop};
 use crate::log::LogFrame;
 use crate::quality::Quality;
 use crate::session::{MappedGraph, ScanPlace, Session, places_kept};
@@ -23,24 +24,6 @@ pub enum OdometryUse {
     Log,
     /// Scans alone: the velocity is expected to stay.
     None,
-}
-
-/// A loop that was looked at, with the evidence and whether it is in the graph.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TriedLoop {
-    /// Candidate, registration and tests.
-    pub verification: LoopVerification,
-    /// Whether it was closed.
-    pub accepted: bool,
-}
-
-/// A scan that hardly fits the map.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PoorFit {
-    /// Its time, s.
-    pub stamp_s: f64,
-    /// Share of it that fits, 0 to 1.
-    pub score: f64,
 }
 
 /// Wheels that stand still in a log of so many scans are told: they may not have been recorded.

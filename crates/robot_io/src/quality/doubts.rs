@@ -5,7 +5,7 @@ use ch16_slam2d::slam::Slam;
 use pr_geom::{math, sort_numbers};
 
 use super::{GATE_CHI2, KeyframeQuality, LinkQuality, Quality, RefutedWay};
-use crate::run::{PoorFit, TriedLoop};
+use crate::evidence::{PoorFit, TriedLoop};
 
 /// Keyframes that are known so many times worse than the median one are doubted.
 const UNSURE_TIMES: f64 = 3.0;
