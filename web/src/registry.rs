@@ -66,7 +66,7 @@ pub fn unknown(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kit::layers::MORE;
+    use kit::param::MORE;
 
     #[test]
     fn a_widget_is_registered_under_its_own_name() {

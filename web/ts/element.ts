@@ -4,6 +4,7 @@
 // place of the widget on the screen (life.ts).
 
 import { linkTo, readAddress } from './address';
+import { boxOf, type Box } from './box';
 import { Controls } from './controls';
 import { listen, upgradeProperties } from './dom';
 import { takeAwayBar } from './export';
@@ -12,7 +13,7 @@ import { CrashError, type CsvFile, type Outcome, type Timeline } from './instanc
 import { Life, TakenAwayError, type LifeHost } from './life';
 import { LoadError } from './module';
 import { lookBar, type Way } from './look';
-import { boxOf, Looks, type Box } from './looks';
+import { Looks } from './looks';
 import { News } from './news';
 import { Notes } from './notes';
 import { build, type Parts } from './parts';

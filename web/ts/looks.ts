@@ -1,6 +1,7 @@
 // How a widget looks on its page: light or dark, moving or still, where the focus is, on paper.
 
 import type { Widget } from '../pkg/glue.js';
+import type { Box } from './box';
 import { listen, reveal } from './dom';
 import type { Life } from './life';
 import type { Parts } from './parts';
@@ -11,9 +12,6 @@ import { themeOf, watchTheme, type Theme } from './theme';
 const reducedMotion = globalThis.matchMedia?.('(prefers-reduced-motion: reduce)');
 /** Narrower no picture is drawn. */
 const NARROWEST_PX = 320;
-
-/** Left, top, width and height of something on the canvas, in CSS pixels. */
-export type Box = readonly [left: number, top: number, width: number, height: number];
 
 /** The element, as far as its looks go. */
 export interface LooksHost extends HTMLElement {
@@ -97,9 +95,4 @@ export class Looks {
 
 function showMotion(widget: Widget): void {
   widget.setReducedMotion(reducedMotion?.matches === true);
-}
-
-/** What the module says of a place. */
-export function boxOf(numbers: Float32Array | undefined): Box | null {
-  return numbers === undefined ? null : ([...numbers] as unknown as Box);
 }

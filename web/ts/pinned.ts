@@ -1,8 +1,8 @@
 // On a narrow screen the picture and the slider that changes it do not fit together: while a control
 // below it is moved, a copy of the picture stands at the top of the screen.
 
+import type { Box } from './box';
 import { create } from './dom';
-import type { Box } from './looks';
 
 /** From this width on, the page has room for both. */
 const NARROW = '(width < 1100px)';

@@ -2,7 +2,8 @@
 //!
 //! The first byte names the widget, the second the parameter, the rest is the text.
 
-use kit::param::{ParamKind, ParamSpec, Values};
+use kit::param::{ParamKind, ParamSpec};
+use kit::values::Values;
 
 use crate::widgets::SPECS;
 

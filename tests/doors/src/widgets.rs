@@ -1,9 +1,10 @@
 //! The widgets that there are, and one that only listens.
 
 use kit::model::{Activity, Model, Outcome, Standing, Table, unknown_button};
-use kit::param::{ParamError, Values};
+use kit::param::ParamError;
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
+use kit::values::Values;
 use w16_1_basin_explorer::model::BasinExplorer;
 use w16_2_full_lap::model::FullLap;
 use w16_3_cost_terraces::model::CostTerraces;

@@ -4,8 +4,8 @@ use egui::accesskit::Role;
 use egui::{Align, Button, DragValue, Layout, Slider, Ui, WidgetInfo, WidgetText};
 
 use crate::hot::Hot;
-use crate::layers::MORE;
 use crate::model::Model;
+use crate::param::MORE;
 use crate::param::{Choice, ParamKind, ParamSpec};
 use crate::ticks::signed;
 

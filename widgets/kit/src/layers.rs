@@ -3,17 +3,8 @@
 //! Whether the rest is shown is a parameter like any other: links, attributes and programs have it.
 //! A widget that does not list it shows everything.
 
-use crate::param::{ParamKind, ParamSpec, Values};
-
-/// Whether everything is shown. A widget with layers lists it last.
-pub const MORE: ParamSpec = ParamSpec {
-    id: "more",
-    label: "more",
-    unit: "",
-    kind: ParamKind::Switch,
-    default: 0.0,
-    help: "Shows all settings, presets, numbers, tables and plots.",
-};
+use crate::param::MORE;
+use crate::values::Values;
 
 /// What a widget opens with, beside its title, its timeline and its verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! What the widgets share.
 //!
-//! The half without egui is what a widget's `model.rs` speaks: [`param`], [`spec`], [`model`],
+//! The half without egui is what a widget's `model.rs` speaks: [`param`], [`values`], [`spec`], [`model`],
 //! [`scene`], [`chart`], [`layers`], [`outside`], [`playback`], [`played`], [`run`], [`ticks`],
 //! [`palette`]. Nothing in it may use the other half: the models are tested headless.
 //!
@@ -21,6 +21,7 @@ pub mod run;
 pub mod scene;
 pub mod spec;
 pub mod ticks;
+pub mod values;
 
 #[cfg(feature = "view")]
 pub mod audit;

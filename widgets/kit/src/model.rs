@@ -2,9 +2,10 @@
 
 use crate::layers::Layer;
 use crate::outside::Delivery;
-use crate::param::{ParamError, Values, printable};
+use crate::param::{ParamError, printable};
 use crate::scene::Scene;
 use crate::spec::{Preset, WidgetSpec};
+use crate::values::Values;
 
 /// A widget without its picture: tested headless, drawn by [`crate`]'s view half.
 ///

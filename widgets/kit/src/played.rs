@@ -2,9 +2,9 @@
 //! widget that shows one.
 
 use crate::model::{Activity, Motion, Timeline, TimelineMark};
-use crate::param::Values;
 use crate::playback::{Playback, SPEED, speed_factor};
 use crate::spec::DEFAULTS;
+use crate::values::Values;
 
 /// The run of a widget, and the parameter that holds the place on it.
 ///
@@ -115,7 +115,7 @@ impl Played {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layers::MORE;
+    use crate::param::MORE;
     use crate::param::{ParamKind, ParamSpec};
 
     const STEPS: ParamSpec = ParamSpec {

@@ -14,10 +14,11 @@ use kit::model::{
     press_preset,
 };
 use kit::outside::Delivery;
-use kit::param::{Changed, ParamError, Values};
+use kit::param::ParamError;
 use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::{DEFAULTS, WidgetSpec};
+use kit::values::{Changed, Values};
 
 use crate::spec::{KEYS, MOST_KEYFRAMES, MOST_SCANS, PARAMS, SPEC};
 use robot::{Robot, Stage};

@@ -1,7 +1,7 @@
 //! The widget's words and its one list of parameters.
 
-use kit::layers::{MORE, Opening};
-use kit::param::{Choice, ParamKind, ParamSpec};
+use kit::layers::Opening;
+use kit::param::{Choice, MORE, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, WidgetSpec};
 

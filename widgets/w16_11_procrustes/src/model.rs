@@ -7,14 +7,15 @@ mod tables;
 mod words;
 
 use ch16_lab::procrustes::{Handedness, Pairs, Procrustes};
-use kit::layers::MORE;
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
-use kit::param::{Changed, ParamError, Values};
+use kit::param::MORE;
+use kit::param::ParamError;
 use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
 
 use crate::spec::{PARAMS, SPEC, WHOLE_TURN_DEG};
 

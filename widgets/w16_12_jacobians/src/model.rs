@@ -9,14 +9,15 @@ mod words;
 
 use ch16_lab::jacobians::{Descent, Moment, descend, optimum, ring};
 use kit::chart::{dragged_to, grab_now};
-use kit::layers::MORE;
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
-use kit::param::{Changed, ParamError, Values};
+use kit::param::MORE;
+use kit::param::ParamError;
 use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
 use pr_geom::SE2;
 
 use crate::spec::{MOST_STEPS, PARAMS, SPEC};

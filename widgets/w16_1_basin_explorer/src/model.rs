@@ -12,14 +12,15 @@ mod words;
 
 use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart};
 use ch16_slam2d::icp::{IcpTrace, IcpWorkspace, Pair, correspondences};
-use kit::layers::{Layer, MORE};
+use kit::layers::Layer;
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
 };
-use kit::param::{Changed, ParamError, Values};
+use kit::param::{MORE, ParamError};
 use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::{DEFAULTS, WidgetSpec};
+use kit::values::{Changed, Values};
 
 use crate::spec::{EDGES, OFFSET_SPAN_M, PARAMS, SPEC, SWEEP};
 use basins::Basins;

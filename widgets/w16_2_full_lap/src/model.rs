@@ -5,10 +5,13 @@
 
 mod drawing;
 mod flat;
+mod found;
 mod gates;
+mod grid;
 mod hands;
 mod moment;
 mod own;
+mod panel;
 mod pick;
 mod picture;
 mod piece;
@@ -26,10 +29,11 @@ use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
 use kit::outside::Delivery;
-use kit::param::{Changed, ParamError, Values};
+use kit::param::ParamError;
 use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
 use pr_sim::{Course, Sketch};
 
 use crate::spec::{EDITING, FLAT_CONTROLS, FLAT_KEYS, LOOP_BUTTONS, SPEC};
@@ -145,7 +149,7 @@ impl FullLap {
 
     /// Looks at the next part, or at the one before.
     fn look_on(&mut self, step: Step) {
-        let part = Part::stepped(Part::chosen(&self.values), step, &self.moment());
+        let part = found::stepped(Part::chosen(&self.values), step, &self.moment());
         self.look_at(part);
     }
 
@@ -489,7 +493,7 @@ impl Model for FullLap {
         if self.stroke(handle, at) {
             return;
         }
-        if handle.panel == picture::panel::MAP {
+        if handle.panel == panel::MAP {
             let ends = hands::dragged_ends(&self.moment(), handle, at);
             if let Some(ends) = ends.filter(|ends| !self.own.is_between(&self.values, *ends)) {
                 if self.own.drag_from(ends[0]) {
@@ -518,13 +522,7 @@ impl Model for FullLap {
             return;
         }
         self.own.let_go();
-        if ![
-            picture::panel::MAP,
-            picture::panel::STRAIN,
-            picture::panel::GATE,
-        ]
-        .contains(&panel)
-        {
+        if ![panel::MAP, panel::STRAIN, panel::GATE].contains(&panel) {
             return;
         }
         let part = hands::part_at(&self.moment(), panel, at, reach);

@@ -2,8 +2,8 @@
 
 use ch16_lab::lap;
 use ch16_slam2d::chi_squared::CHAPTER_QUANTILE;
-use kit::layers::{MORE, Opening};
-use kit::param::{Choice, ParamKind, ParamSpec};
+use kit::layers::Opening;
+use kit::param::{Choice, MORE, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::run::{LOOPS, NOISE, seed};
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};

@@ -17,10 +17,11 @@ use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, finish_work,
     press_preset,
 };
-use kit::param::{Changed, ParamError, Values};
+use kit::param::ParamError;
 use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
 
 use crate::spec::{HALF_SPAN_M, MAX_BALL_STEPS, MOST_DROPS, PARAMS, SPEC};
 use picture::{Looked, Moment};

@@ -14,10 +14,11 @@ mod words;
 use ch16_lab::lap::{LapRecord, NewestLap, NewestStep, RegistrationView, TickReport};
 use kit::chart::{dragged_to, grab_now};
 use kit::model::{Activity, Handle, Model, Motion, Outcome, Table, Timeline, press_preset};
-use kit::param::{Changed, ParamError, Values};
+use kit::param::ParamError;
 use kit::playback::{Playback, speed_factor};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
 use pr_sim::World;
 
 use crate::spec::SPEC;

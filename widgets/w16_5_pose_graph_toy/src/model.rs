@@ -9,14 +9,15 @@ mod settings;
 mod tables;
 mod words;
 
-use kit::layers::MORE;
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
-use kit::param::{Changed, ParamError, Values};
+use kit::param::MORE;
+use kit::param::ParamError;
 use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
 
 use crate::spec::{PARAMS, SPEC};
 use course::{Course, Moment};

@@ -10,14 +10,15 @@ mod words;
 use ch16_lab::basin::{BasinScene, BasinStart};
 use ch16_slam2d::icp::IcpWorkspace;
 use ch16_slam2d::search::SearchGoal;
-use kit::layers::MORE;
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
 };
-use kit::param::{Changed, ParamError, Values};
+use kit::param::MORE;
+use kit::param::ParamError;
 use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::{PLAY, STEP, WidgetSpec};
+use kit::values::{Changed, Values};
 use pr_geom::{SE2, math};
 
 use crate::spec::{OFFSET_SPAN_M, PARAMS, SPEC};

@@ -1,8 +1,8 @@
 //! The widget's words and its one list of parameters.
 
 use ch16_lab::basin::BasinScene;
-use kit::layers::{MORE, Opening};
-use kit::param::{ParamKind, ParamSpec};
+use kit::layers::Opening;
+use kit::param::{MORE, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 

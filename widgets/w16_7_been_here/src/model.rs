@@ -11,10 +11,11 @@ use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, finish_work,
     press_preset,
 };
-use kit::param::{Changed, ParamError, Values};
+use kit::param::ParamError;
 use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
 
 use crate::spec::{LAST_OLD, MOST_ALIKE, PARAMS, SPEC};
 use lap::{Places, Work};

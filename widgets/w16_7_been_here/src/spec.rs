@@ -1,8 +1,8 @@
 //! The widget's words and its one list of parameters.
 
 use ch16_lab::lap::CANONICAL_SEED;
-use kit::layers::{MORE, Opening};
-use kit::param::{Choice, ParamKind, ParamSpec};
+use kit::layers::Opening;
+use kit::param::{Choice, MORE, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::run;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};

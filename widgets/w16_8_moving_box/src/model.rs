@@ -8,14 +8,15 @@ mod words;
 
 use ch16_lab::moving_box::{BoxMethods, BoxScene};
 use ch16_slam2d::icp::{IcpSummary, IcpTrace, IcpWorkspace};
-use kit::layers::MORE;
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
 };
-use kit::param::{Changed, ParamError, Values};
+use kit::param::MORE;
+use kit::param::ParamError;
 use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
 
 use crate::spec::{MOST_SHARE, PARAMS, SPEC};
 use curves::Curves;

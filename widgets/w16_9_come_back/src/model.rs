@@ -8,15 +8,16 @@ mod tables;
 mod words;
 
 use ch16_lab::come_back::{Moment, Morning};
-use kit::layers::MORE;
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, finish_work,
     press_preset,
 };
-use kit::param::{Changed, ParamError, Values};
+use kit::param::MORE;
+use kit::param::ParamError;
 use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
 use pr_geom::SE2;
 
 use crate::spec::{PARAMS, PLAN_M, SPEC};

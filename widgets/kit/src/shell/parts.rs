@@ -3,8 +3,8 @@
 use egui::{Button, Frame, RichText, Ui, vec2};
 
 use super::Shell;
-use crate::layers::MORE;
 use crate::model::apply_preset;
+use crate::param::MORE;
 use crate::pointer::Touched;
 use crate::spec::DEFAULTS;
 use crate::style::TARGET;

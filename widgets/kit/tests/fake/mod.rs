@@ -1,17 +1,18 @@
 //! A small model with one of everything, for tests of what draws and drives models.
 
-use kit::layers::{MORE, Opening};
+use kit::layers::Opening;
 use kit::model::{
     Activity, Fact, Handle, Model, Outcome, Standing, Table, TablePlace, Timeline, TimelineMark,
     unknown_button,
 };
-use kit::param::{Changed, Choice, ParamError, ParamKind, ParamSpec, Values};
+use kit::param::{Choice, MORE, ParamError, ParamKind, ParamSpec};
 use kit::playback::{Playback, SPEED, speed_factor};
 use kit::scene::{
     Aspect, Axis, Bounds, Cell, ColorBar, Layer, LegendEntry, Mark, Panel, Raster, Scene, Stroke,
     Tone, Weight,
 };
 use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use kit::values::{Changed, Values};
 
 const PARAMS: &[ParamSpec] = &[
     ParamSpec {

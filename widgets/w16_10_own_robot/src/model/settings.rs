@@ -1,6 +1,6 @@
 //! What the values of the parameters mean: what the way is coloured by, and which loops are shown.
 
-use kit::param::Values;
+use kit::values::Values;
 
 use super::robot::{Link, Robot};
 

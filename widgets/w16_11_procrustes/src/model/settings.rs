@@ -1,7 +1,7 @@
 //! What the values of the parameter list mean to the core.
 
 use ch16_lab::procrustes::{Handedness, Pairs, Shape};
-use kit::param::Values;
+use kit::values::Values;
 
 use crate::spec::MOVED;
 

@@ -1,7 +1,7 @@
 //! What the values of the parameter list mean to the core.
 
 use ch16_lab::jacobians::{Recipe, RingConfig, WrongJacobian};
-use kit::param::Values;
+use kit::values::Values;
 
 /// The graph and its start.
 pub fn ring(values: &Values) -> RingConfig {

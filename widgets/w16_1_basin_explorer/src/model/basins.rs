@@ -6,8 +6,8 @@ use std::sync::Arc;
 use ch16_lab::basin::{BasinMap, BasinMapAxes, BasinScene, BasinStart, Minimum, OffsetAxis};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
 use kit::model::Activity;
-use kit::param::Values;
 use kit::scene::{Bounds, Cell, Raster};
+use kit::values::Values;
 
 use super::letters::{Room, rooms, spread};
 use super::settings::{axis, config, start};

@@ -4,8 +4,8 @@ use ch16_lab::basin::{BasinScene, EdgeSearch};
 use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
 use kit::layers::Opening;
 use kit::model::{Activity, Fact, Outcome, Standing};
-use kit::param::Values;
 use kit::scene::{Layer, LegendEntry, Mark, Stroke, Tone};
+use kit::values::Values;
 
 use super::BasinExplorer;
 use super::settings::{config, variant_name};

@@ -3,7 +3,7 @@
 use ch16_lab::basin::{BasinScene, BasinStart};
 use ch16_slam2d::icp::{IcpConfig, IcpWorkspace};
 use kit::model::Activity;
-use kit::param::Values;
+use kit::values::Values;
 
 use super::basins::{start_at, start_spot};
 use super::settings::{config, variant};

@@ -2,7 +2,7 @@
 
 use ch16_lab::basin::{BasinPlace, BasinScene, BasinStart, OffsetAxis};
 use ch16_slam2d::icp::{IcpConfig, IcpVariant};
-use kit::param::Values;
+use kit::values::Values;
 
 use crate::spec::HUBER_OFF_M;
 

@@ -6,11 +6,11 @@ use kit::param::{ParamError, printable};
 use pr_sim::{Course, Sketch};
 
 use super::FullLap;
-use super::flat::{
-    Kept, Stroke, Tool, add_wall, add_way_point, is_own, new_wall, new_way_point, snapped,
-};
+use super::flat::{Kept, Stroke, Tool, add_wall, add_way_point, is_own, new_wall, new_way_point};
+use super::grid::snapped;
+use super::panel;
 use super::pick::Step;
-use super::picture::{self, panel};
+use super::picture;
 use super::piece::Piece;
 use crate::spec::{OWN_WORLD, SPEC};
 

@@ -3,19 +3,14 @@
 //! A flat is a [`Sketch`]: it need not be drivable while it is drawn. Whatever changes it goes through
 //! [`Flat::remember`], so that all of it can be taken back.
 
-use kit::param::Values;
 use kit::scene::Bounds;
+use kit::values::Values;
 use pr_sim::sketch::{PlaceCm, limits, to_m};
 use pr_sim::{Course, CourseError, Sketch};
 
+use super::grid::{moved, snapped};
 use super::piece::Piece;
 use crate::spec::OWN_WORLD;
-
-/// What is drawn lies on a grid of so many centimetres.
-pub const GRID_CM: i32 = 5;
-
-/// The heading of the start goes in steps of so many degrees.
-pub const HEADING_STEP_DEG: i32 = 5;
 
 /// So many changes can be taken back.
 const MOST_UNDO: usize = 200;
@@ -152,21 +147,6 @@ impl Flat {
 /// Whether the world is the reader's own.
 pub fn is_own(values: &Values) -> bool {
     values.get("world") == OWN_WORLD
-}
-
-/// The nearest place of the grid, within what a flat may reach.
-pub fn snapped(at: [f64; 2]) -> PlaceCm {
-    let most = limits::COORDINATE_CM as i32;
-    at.map(|m| {
-        let steps = (m * 100.0 / f64::from(GRID_CM)).round();
-        (steps as i32).saturating_mul(GRID_CM).clamp(-most, most)
-    })
-}
-
-/// A place that moved by so much, within what a flat may reach.
-pub fn moved(at: PlaceCm, by: PlaceCm) -> PlaceCm {
-    let most = limits::COORDINATE_CM as i32;
-    [0, 1].map(|axis| at[axis].saturating_add(by[axis]).clamp(-most, most))
 }
 
 /// Puts a wall behind the others; its number, or why it cannot be.

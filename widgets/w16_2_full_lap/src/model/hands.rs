@@ -5,8 +5,9 @@ use kit::model::Handle;
 use pr_geom::math;
 
 use super::moment::Moment;
+use super::panel;
 use super::pick::Part;
-use super::picture::{self, panel};
+use super::picture;
 
 /// A pointer that only moves about answers to what is so near on the map, m.
 const HOVER_M: f64 = 0.3;

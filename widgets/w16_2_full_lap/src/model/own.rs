@@ -1,7 +1,7 @@
 //! A loop of the reader's own: what the settings ask for, what came of it, and the way back.
 
 use ch16_lab::lap::{Choice, Claim, GateUse, OwnKernel, OwnLoop, OwnLoopError, OwnLoopRequest};
-use kit::param::Values;
+use kit::values::Values;
 
 use super::runs::Runs;
 

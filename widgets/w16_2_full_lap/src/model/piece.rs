@@ -1,14 +1,14 @@
 //! A piece of a flat: a wall, one of its ends, a way point, the start.
 
 use kit::model::Handle;
-use kit::param::Values;
+use kit::values::Values;
 use pr_geom::math;
 use pr_sim::Sketch;
 use pr_sim::sketch::{PlaceCm, to_m};
 
-use super::flat::{GRID_CM, HEADING_STEP_DEG, moved, snapped};
+use super::grid::{GRID_CM, HEADING_STEP_DEG, moved, snapped};
+use super::panel;
 use super::pick::Step;
-use super::picture::panel;
 
 /// The tip of the heading stands so far from the start, m.
 const HEADING_ARM_M: f64 = 0.6;

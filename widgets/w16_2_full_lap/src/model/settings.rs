@@ -4,7 +4,7 @@ use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LoopClosure};
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::matching::InformationFrame;
-use kit::param::Values;
+use kit::values::Values;
 use pr_sim::Course;
 
 use crate::spec::OWN_WORLD;

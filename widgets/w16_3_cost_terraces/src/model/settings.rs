@@ -1,6 +1,6 @@
 //! What the values of the parameter list mean to the core.
 
-use kit::param::Values;
+use kit::values::Values;
 
 use crate::spec::MOST_ROWS;
 

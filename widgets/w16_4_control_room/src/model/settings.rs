@@ -1,7 +1,7 @@
 //! What the values of the parameter list mean to the core.
 
 use ch16_lab::lap::LapConfig;
-use kit::param::Values;
+use kit::values::Values;
 
 /// What the run depends on.
 pub fn config(values: &Values) -> LapConfig {

@@ -1,7 +1,7 @@
 //! What the values of the parameter list mean to the core.
 
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
-use kit::param::Values;
+use kit::values::Values;
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 

@@ -2,7 +2,7 @@
 
 use ch16_lab::basin::BasinStart;
 use ch16_lab::whole_window::WindowConfig;
-use kit::param::Values;
+use kit::values::Values;
 
 /// What is searched, and from where.
 pub fn config(values: &Values) -> WindowConfig {

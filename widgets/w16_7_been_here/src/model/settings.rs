@@ -1,7 +1,7 @@
 //! What the values of the parameter list mean to the core.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapDetector, LapMatcher};
-use kit::param::Values;
+use kit::values::Values;
 
 /// The lap that is driven: by NDT and without loops, as `slam2d places` drives it.
 pub fn config(values: &Values) -> LapConfig {

@@ -2,7 +2,7 @@
 
 use ch16_lab::moving_box::{BoxConfig, BoxMethods};
 use ch16_slam2d::icp::IcpVariant;
-use kit::param::Values;
+use kit::values::Values;
 
 /// The sweeps above the curves.
 pub fn config(values: &Values) -> BoxConfig {

@@ -7,7 +7,7 @@ use ch16_lab::lap::{Drive, DriveConfig, DriveSimulation};
 use ch16_lab::laps::{LapNumbers, LapUnderWay, Laps, LapsConfig};
 use ch16_slam2d::localize::{KnownMap, LocalizeConfig, Localizer, StartPose};
 use ch16_slam2d::slam::SlamConfig;
-use kit::param::Values;
+use kit::values::Values;
 
 use super::settings;
 

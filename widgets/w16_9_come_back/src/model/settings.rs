@@ -2,7 +2,7 @@
 
 use ch16_lab::lap::{BuiltInWorld, Choice};
 use ch16_lab::laps::LapsConfig;
-use kit::param::Values;
+use kit::values::Values;
 use pr_geom::SE2;
 
 /// The lap before which the wardrobe is moved: the map of yesterday is of one lap.

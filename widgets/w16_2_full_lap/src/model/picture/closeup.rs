@@ -5,9 +5,9 @@ use ch16_lab::lap::LoopAttempt;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::SE2;
 
-use super::panel;
 use crate::model::gates::{Gate, Gates, Region};
 use crate::model::moment::Moment;
+use crate::model::panel;
 use crate::model::runs::Runs;
 use crate::model::words::{ends, model_name};
 

@@ -5,9 +5,12 @@ use kit::scene::{Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, 
 use pr_geom::{SE2, math};
 use pr_sim::{Wall, World};
 
-use super::{LoopLook, flat, panel, parts};
+use super::look::LoopLook;
+use super::shapes::{arc, xy};
+use super::{flat, parts};
 use crate::model::flat::extent;
 use crate::model::moment::{Drawn, Moment};
+use crate::model::panel;
 
 /// Room around the world, m.
 const MARGIN_M: f64 = 0.4;
@@ -15,14 +18,8 @@ const MARGIN_M: f64 = 0.4;
 /// The same while it is edited: so far out a stroke may lead.
 const EDIT_MARGIN_M: f64 = 1.0;
 
-/// Lowest and highest arc of a loop, m; in between it is as high as its ends are apart.
-const ARC_HEIGHT_M: [f64; 2] = [0.7, 1.2];
-
 /// Length of the head of an arrow, m.
 const ARROW_HEAD_M: f64 = 0.09;
-
-/// Segments of a loop's arc.
-const ARC_STEPS: u32 = 24;
 
 /// The world at a moment.
 pub fn map(moment: &Moment) -> Panel {
@@ -216,24 +213,6 @@ fn loop_layers(attempt: &LoopAttempt, arc: Vec<[f64; 2]>, top: [f64; 2]) -> [Lay
     ]
 }
 
-/// A loop's factor, bent to the north: straight it would hide behind the factors of the corridor.
-pub fn arc(moment: &Moment, attempt: &LoopAttempt) -> Vec<[f64; 2]> {
-    let loop_ = &attempt.verification;
-    let [from, to] = [loop_.from_node, loop_.candidate.node].map(|node| xy(&moment.nodes[node]));
-    let apart = math::norm2(to[0] - from[0], to[1] - from[1]);
-    let top = apart.clamp(ARC_HEIGHT_M[0], ARC_HEIGHT_M[1]);
-    (0..=ARC_STEPS)
-        .map(|step| {
-            let s = f64::from(step) / f64::from(ARC_STEPS);
-            let height = top * 4.0 * s * (1.0 - s);
-            [
-                from[0] + s * (to[0] - from[0]),
-                from[1] + s * (to[1] - from[1]) + height,
-            ]
-        })
-        .collect()
-}
-
 /// At a closed loop, one of the lap or of the reader's own: where the nodes stood before it, and how
 /// each moved.
 fn history(moment: &Moment) -> Vec<Layer> {
@@ -329,8 +308,4 @@ fn legend(moment: &Moment) -> Vec<LegendEntry> {
         legend.push(LegendEntry::line(wide, Tone::Posterior, Stroke::Solid));
     }
     legend
-}
-
-pub fn xy(pose: &SE2) -> [f64; 2] {
-    [pose.x(), pose.y()]
 }

@@ -4,10 +4,11 @@ use ch16_lab::lap::{OwnLoop, RecordedEdge, edge_strain};
 use kit::scene::{Layer, Mark, Stroke, Tone};
 use pr_geom::math;
 
-use super::LoopLook;
-use super::map::{arc, xy};
+use super::look::LoopLook;
+use super::shapes::{arc, xy};
+use crate::model::found::{Found, find};
 use crate::model::moment::Moment;
-use crate::model::pick::{Found, Part, find};
+use crate::model::pick::Part;
 use crate::model::words::{ends, part_label};
 
 /// Words keep so far from the mark that they name, in pixels.

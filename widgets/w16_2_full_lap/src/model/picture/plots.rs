@@ -4,8 +4,9 @@ use ch16_lab::lap::LoopAttempt;
 use kit::chart::{Series, TimeChart, axis_from_zero};
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
-use super::{LoopLook, panel};
+use super::look::LoopLook;
 use crate::model::moment::Moment;
+use crate::model::panel;
 use crate::model::runs::Runs;
 use crate::model::words::ends;
 

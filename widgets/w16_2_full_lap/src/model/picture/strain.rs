@@ -6,8 +6,9 @@ use kit::chart::axis_from_zero;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::math;
 
-use super::{LoopLook, panel};
+use super::look::LoopLook;
 use crate::model::moment::Moment;
+use crate::model::panel;
 use crate::model::pick::Part;
 
 /// The axis reaches at least so far: what a Gaussian residual seldom exceeds.

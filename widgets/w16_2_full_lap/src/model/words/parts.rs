@@ -6,8 +6,9 @@ use kit::model::{Fact, Standing};
 use pr_geom::{SE2, math};
 
 use super::{Said, ends, standing};
+use crate::model::found::{Found, find};
 use crate::model::moment::Moment;
-use crate::model::pick::{Found, Part, find};
+use crate::model::pick::Part;
 
 /// Error and χ² of a part, as far as it has them.
 struct Numbers {
