@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use ch16_lab::lap::{LapConfig, LapRunner};
 use ch16_slam2d::cloud::{PointCloud, VoxelMap};
 use ch16_slam2d::prelude::Point2;
+use kit::counted::counted;
 use kit::scene::{
     Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
 };
@@ -200,9 +201,9 @@ fn at(sweeps: f64) -> Shown {
     let (_, asked) = grown.tree.nearest(QUERY);
     Shown {
         sentence: format!(
-            "{count} {sweeps}, {points} points. The query compares with the {compared} of nine cells. In the tree it compares \
+            "{sweeps}, {points} points. The query compares with the {compared} of nine cells. In the tree it compares \
              with {asked}, but a leaf hangs {levels} levels down, where {fewest} would do.",
-            sweeps = if count == 1 { "sweep" } else { "sweeps" },
+            sweeps = counted(count, "sweep"),
             points = grown.tree.points.len(),
             compared = compared.len(),
             levels = grown.tree.levels,

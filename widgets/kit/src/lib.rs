@@ -1,7 +1,7 @@
 //! What the widgets share.
 //!
 //! The half without egui is what a widget's `model.rs` speaks: [`param`], [`values`], [`spec`], [`model`],
-//! [`scene`], [`chart`], [`layers`], [`outside`], [`playback`], [`played`], [`run`], [`ticks`],
+//! [`scene`], [`chart`], [`counted`], [`layers`], [`outside`], [`playback`], [`played`], [`run`], [`ticks`],
 //! [`palette`]. Nothing in it may use the other half: the models are tested headless.
 //!
 //! The other half draws, and is compiled with the feature `view`. [`draw`] puts a scene on any
@@ -10,6 +10,7 @@
 //! [`readout`], and handles the [`pointer`].
 
 pub mod chart;
+pub mod counted;
 pub mod layers;
 pub mod model;
 pub mod outside;

@@ -1,5 +1,6 @@
 //! The result in words and numbers.
 
+use kit::counted::counted;
 use kit::model::{Fact, Outcome, Standing};
 use pr_geom::math;
 
@@ -149,13 +150,6 @@ fn finished(robot: &Robot) -> String {
         way_m(robot),
         counted(closed, "loop")
     )
-}
-
-fn counted(count: usize, noun: &str) -> String {
-    match count {
-        1 => format!("1 {noun}"),
-        _ => format!("{count} {noun}s"),
-    }
 }
 
 /// Length of the way over the keyframes, m.

@@ -1,6 +1,7 @@
 //! The result in words and numbers.
 
 use ch16_lab::jacobians::EDGE_STD;
+use kit::counted::counted;
 use kit::model::{Fact, Outcome, Standing};
 
 use super::{NAMES, WrongJacobians};
@@ -41,13 +42,6 @@ fn verdict(widget: &WrongJacobians) -> &'static str {
     }
 }
 
-fn steps(count: usize) -> String {
-    match count {
-        1 => "1 step".to_owned(),
-        count => format!("{count} steps"),
-    }
-}
-
 pub fn outcome(widget: &WrongJacobians) -> Outcome {
     let told = widget.solved.runs.iter().zip(NAMES).map(|(run, name)| {
         let ends = if run.rests {
@@ -55,7 +49,7 @@ pub fn outcome(widget: &WrongJacobians) -> Outcome {
         } else {
             format!("{name} still {:.3} m off after", run.end().off_m)
         };
-        format!("{ends} {}", steps(run.steps()))
+        format!("{ends} {}", counted(run.steps(), "step"))
     });
     let told: Vec<_> = told.collect();
     let good = (0..NAMES.len()).all(|solver| ends_at_the_optimum(widget, solver));

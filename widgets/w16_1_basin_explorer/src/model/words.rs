@@ -2,6 +2,7 @@
 
 use ch16_lab::basin::{BasinOutcome, BasinPlace, Minimum, SUCCESS_RADIUS_M};
 use ch16_slam2d::icp::StopReason;
+use kit::counted::counted;
 use kit::model::{Fact, Outcome, Standing};
 use pr_geom::{SE2, math};
 
@@ -44,7 +45,7 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
             end.rmse,
             end.inliers,
             stop_words(&end.stop),
-            iterations(end.iterations),
+            counted(end.iterations, "iteration"),
             caveat(end),
         ),
         facts: vec![
@@ -98,12 +99,5 @@ fn stop_words(stop: &StopReason) -> &'static str {
         StopReason::IterationLimit { .. } => "stopped at the limit of",
         StopReason::TooFewPairs { .. } => "gave up for want of pairs after",
         StopReason::NotFinite => "left the range of numbers after",
-    }
-}
-
-fn iterations(count: usize) -> String {
-    match count {
-        1 => "1 iteration".to_owned(),
-        count => format!("{count} iterations"),
     }
 }

@@ -2,6 +2,7 @@
 
 use ch16_lab::lap::{BuiltInWorld, LoopAttempt, LoopEffect, LoopJudgement, OwnLoopError};
 use ch16_slam2d::loops::GateModel;
+use kit::counted::counted;
 use kit::model::{Fact, Outcome, Standing};
 
 use super::moment::Moment;
@@ -124,8 +125,7 @@ fn lap_sentence(runs: &Runs) -> String {
 fn loops_in_words(count: usize) -> String {
     match count {
         0 => "no loop closed".to_owned(),
-        1 => "1 loop closed".to_owned(),
-        _ => format!("{count} loops closed"),
+        _ => format!("{} closed", counted(count, "loop")),
     }
 }
 

@@ -1,5 +1,6 @@
 //! What is said of a flat while it is edited, and where it cannot be driven.
 
+use kit::counted::counted;
 use kit::model::Standing;
 use pr_sim::Sketch;
 use pr_sim::sketch::{PlaceCm, to_m};
@@ -10,12 +11,8 @@ use crate::model::piece::Piece;
 
 /// `18 walls, 3 way points`.
 pub fn counts(sketch: &Sketch) -> String {
-    let some = |count: usize, one: &str| match count {
-        1 => format!("1 {one}"),
-        _ => format!("{count} {one}s"),
-    };
-    let walls = some(sketch.walls_cm.len(), "wall");
-    let way_points = some(sketch.way_points_cm.len(), "way point");
+    let walls = counted(sketch.walls_cm.len(), "wall");
+    let way_points = counted(sketch.way_points_cm.len(), "way point");
     format!("{walls}, {way_points}")
 }
 
