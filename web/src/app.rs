@@ -73,6 +73,14 @@ impl WidgetApp {
     }
 }
 
+/// The theme of that name; light is what is not dark.
+pub fn theme_of(name: &str) -> Theme {
+    match name {
+        "dark" => Theme::Dark,
+        _ => Theme::Light,
+    }
+}
+
 /// Tells egui's own widgets the theme.
 pub fn apply_theme(ctx: &egui::Context, theme: Theme) {
     ctx.set_theme(match theme {

@@ -18,3 +18,5 @@ mod app;
 mod fonts;
 #[cfg(target_arch = "wasm32")]
 mod handle;
+#[cfg(target_arch = "wasm32")]
+mod questions;

@@ -1,0 +1,218 @@
+//! How the figures of the laps at one noise factor are distributed.
+
+use ch16_lab::lap::LapEstimator;
+use ch16_lab::results::{Column, LapStatistics, Row};
+use serde::{Serialize, Serializer};
+
+use super::SweepArgs;
+use crate::output::say;
+
+/// Most laps whose digests are printed.
+const MOST_SAMPLES: usize = 20;
+
+/// The runs at one noise factor.
+#[derive(Serialize)]
+pub struct Level {
+    noise: f64,
+    runs: usize,
+    /// Shares of the runs with 0, 1, 2 and 3 or more closed loops.
+    loop_shares: [f64; 4],
+    accepted_loops: usize,
+    /// Accepted, but off by more than 0.3 m or 5° from the truth.
+    false_acceptances: usize,
+    /// Share of the runs with a false acceptance.
+    false_run_share: f64,
+    /// Whether loops were looked for.
+    #[serde(skip)]
+    has_loops: bool,
+    entries: Vec<Entry>,
+    /// Medians of the errors at equal shares of the way, from its start to its end.
+    along_the_way: AlongTheWay,
+    /// Digests of some of the laps, evenly spaced: who drives only these compares bits.
+    samples: Vec<Sample>,
+}
+
+/// Medians of position errors, m.
+#[derive(Serialize)]
+struct AlongTheWay {
+    front_end: Vec<f64>,
+    with_loops: Vec<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    ml: Vec<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    ml_cycles: Vec<f64>,
+}
+
+/// A lap by its bits.
+#[derive(Serialize)]
+struct Sample {
+    seed: u32,
+    digest: String,
+}
+
+/// An entry of the results table over the runs; runs that lack it are left out.
+///
+/// Column and row are ids that stay; [`column_title`] and [`row_title`] are for people.
+#[derive(Serialize)]
+struct Entry {
+    #[serde(serialize_with = "column_id")]
+    column: Column,
+    #[serde(serialize_with = "row_id")]
+    row: Row,
+    /// 5 % of the runs are below, m.
+    p05: f64,
+    /// Half of the runs are below, m.
+    median: f64,
+    /// 95 % of the runs are below, m.
+    p95: f64,
+}
+
+impl Level {
+    /// What came out of the runs at one factor.
+    pub fn new(noise: f64, args: &SweepArgs, statistics: &LapStatistics) -> Self {
+        Self {
+            noise,
+            runs: statistics.outcomes.len(),
+            loop_shares: statistics.loop_shares(),
+            accepted_loops: statistics.accepted_loops(),
+            false_acceptances: statistics.false_acceptances(),
+            false_run_share: statistics.false_run_share(),
+            has_loops: args.has(LapEstimator::Graph),
+            entries: entries(args, statistics),
+            along_the_way: AlongTheWay::of(statistics),
+            samples: samples(args.seeds.first, statistics),
+        }
+    }
+
+    /// Prints it for people.
+    pub fn print(&self) {
+        say!("noise ×{}, {} runs", self.noise, self.runs);
+        if self.has_loops {
+            print_loops(self);
+        }
+        say!(
+            "  {:<12} {:<38} {:>8} {:>8} {:>8}",
+            "",
+            "",
+            "5 %",
+            "median",
+            "95 %"
+        );
+        for entry in &self.entries {
+            say!(
+                "  {:<12} {:<38} {:>8.4} {:>8.4} {:>8.4}",
+                column_title(entry.column),
+                row_title(entry.row),
+                entry.p05,
+                entry.median,
+                entry.p95
+            );
+        }
+    }
+}
+
+impl AlongTheWay {
+    fn of(statistics: &LapStatistics) -> Self {
+        let medians = |column| {
+            let medians = statistics.along_the_way_m(column);
+            medians.map(Vec::from).unwrap_or_default()
+        };
+        Self {
+            front_end: medians(Column::FrontEnd),
+            with_loops: medians(Column::WithLoops),
+            ml: medians(Column::MaximumLikelihood),
+            ml_cycles: medians(Column::MaximumLikelihoodCycles),
+        }
+    }
+}
+
+fn samples(first_seed: u32, statistics: &LapStatistics) -> Vec<Sample> {
+    let outcomes = &statistics.outcomes;
+    let seeds = (first_seed..).zip(outcomes);
+    seeds
+        .step_by(outcomes.len().div_ceil(MOST_SAMPLES).max(1))
+        .map(|(seed, outcome)| Sample {
+            seed,
+            digest: format!("{:016x}", outcome.digest),
+        })
+        .collect()
+}
+
+fn entries(args: &SweepArgs, statistics: &LapStatistics) -> Vec<Entry> {
+    let cells = Column::ALL
+        .into_iter()
+        .filter(|&column| args.shows(column))
+        .flat_map(|column| Row::ALL.into_iter().map(move |row| (column, row)));
+    cells
+        .filter_map(|(column, row)| {
+            let spread = statistics.spread(column, row)?;
+            Some(Entry {
+                column,
+                row,
+                p05: spread.p05,
+                median: spread.median,
+                p95: spread.p95,
+            })
+        })
+        .collect()
+}
+
+fn column_id<S: Serializer>(column: &Column, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(match column {
+        Column::Odometry => "odometry",
+        Column::FrontEnd => "front_end",
+        Column::WithLoops => "with_loops",
+        Column::MaximumLikelihood => "ml",
+        Column::MaximumLikelihoodCycles => "ml_cycles",
+    })
+}
+
+/// The names that the figures of the page have, too.
+fn row_id<S: Serializer>(row: &Row, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(match row {
+        Row::EndError => "end_error",
+        Row::Rms => "rms",
+        Row::LastKeyframesMin => "last_nine_min",
+        Row::LastKeyframesMax => "last_nine_max",
+        Row::KeyframeMax => "max_error",
+        Row::HalfWay => "half_way",
+        Row::HalfWaySigma => "half_way_sigma",
+        Row::MapDisagreement => "map_disagreement",
+    })
+}
+
+fn column_title(column: Column) -> &'static str {
+    match column {
+        Column::Odometry => "odometry",
+        Column::FrontEnd => "front end",
+        Column::WithLoops => "with loops",
+        Column::MaximumLikelihood => "ml",
+        Column::MaximumLikelihoodCycles => "ml, cycles",
+    }
+}
+
+fn row_title(row: Row) -> &'static str {
+    match row {
+        Row::EndError => "position error at the end (m)",
+        Row::Rms => "rms position error (m)",
+        Row::LastKeyframesMin => "best of the last nine keyframes (m)",
+        Row::LastKeyframesMax => "worst of the last nine keyframes (m)",
+        Row::KeyframeMax => "largest keyframe error (m)",
+        Row::HalfWay => "error at half of the way (m)",
+        Row::HalfWaySigma => "its deviation, by the graph (m)",
+        Row::MapDisagreement => "map self-disagreement (m)",
+    }
+}
+
+fn print_loops(level: &Level) {
+    let [none, one, two, more] = level.loop_shares.map(|share| 100.0 * share);
+    say!(
+        "  loops closed: 0 in {none:.1} %, 1 in {one:.1} %, 2 in {two:.1} %, 3 or more in {more:.1} %"
+    );
+    say!(
+        "  false acceptances: {} of {} loops, in {:.1} % of the runs",
+        level.false_acceptances,
+        level.accepted_loops,
+        100.0 * level.false_run_share
+    );
+}

@@ -1,0 +1,112 @@
+//! What the page asks of the module beside its widgets: schemas, texts that are parsed, laps, small figures.
+
+use ch16_lab::lap::{LapConfig, LapRunner};
+use ch16_slam2d::submaps::FrontEndChoice;
+use kit::param::ParamKind;
+use serde_json::{Value, json};
+use wasm_bindgen::prelude::*;
+
+use crate::app::theme_of;
+use crate::outcomes::Outcomes;
+use crate::{registry, schema, sketches, state, story};
+
+/// The schema of every widget, a JSON array.
+#[wasm_bindgen(js_name = widgetSchemas)]
+pub fn widget_schemas() -> String {
+    let widgets = registry::WIDGETS.map(|(_, maker)| schema::widget(maker().model()));
+    Value::from(widgets.to_vec()).to_string()
+}
+
+/// State and results of a widget after each of its presets, a line of JSON each.
+///
+/// # Errors
+/// Where there is no such widget.
+#[wasm_bindgen(js_name = afterEachPreset)]
+pub fn after_each_preset(name: &str) -> Result<String, JsError> {
+    let found = registry::WIDGETS.iter().find(|(known, _)| *known == name);
+    let (_, maker) = found.ok_or_else(|| unknown_widget(name))?;
+    Ok(state::after_each_preset(*maker))
+}
+
+/// The digest of a lap's poses and metrics, 16 hexadecimal digits as `slam2d lap` prints it; with
+/// `on_submaps` the front end has them.
+#[wasm_bindgen(js_name = lapDigest)]
+pub fn lap_digest(seed: u32, noise_factor: f64, on_submaps: Option<bool>) -> String {
+    let digest = if on_submaps.unwrap_or_default() {
+        let lap = LapConfig::with_seed_and_noise(seed, noise_factor);
+        let lap = lap.with_front_end(FrontEndChoice::Submaps);
+        LapRunner::new().run(&lap).digest()
+    } else {
+        ch16_lab::lap::lap_digest(seed, noise_factor)
+    };
+    format!("{digest:016x}")
+}
+
+/// A whole lap as JSON, for a drawing of it; see [`story::story`].
+#[wasm_bindgen(js_name = lapStory)]
+pub fn lap_story(seed: u32, noise_factor: f64) -> String {
+    story::story(seed, noise_factor).to_string()
+}
+
+/// Title and slider of each small figure of the page, a JSON array; see [`sketches`].
+#[wasm_bindgen(js_name = sketchSchemas)]
+pub fn sketch_schemas() -> String {
+    let figures = sketches::SKETCHES.iter().map(sketches::Sketch::schema);
+    Value::from(figures.collect::<Vec<_>>()).to_string()
+}
+
+/// A small figure of the page with its slider at `value`: `{"svg", "sentence"}`.
+///
+/// # Errors
+/// Where there is no such figure.
+#[wasm_bindgen(js_name = drawSketch)]
+pub fn draw_sketch(name: &str, value: f64, width_px: f32, theme: &str) -> Result<String, JsError> {
+    let sketch = sketches::find(name)
+        .ok_or_else(|| JsError::new(&format!("there is no figure `{name}`")))?;
+    Ok(sketch.drawn(value, width_px, theme_of(theme)).to_string())
+}
+
+/// Drives one lap after the other.
+#[wasm_bindgen]
+#[derive(Default)]
+pub struct Laps {
+    outcomes: Outcomes,
+}
+
+#[wasm_bindgen]
+impl Laps {
+    /// Has driven nothing yet.
+    #[wasm_bindgen(constructor)]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// What came out of a lap: end errors of wheels, front end and graph in metres, loops closed, false ones.
+    pub fn drive(&mut self, seed: u32, noise_factor: f64) -> Vec<f64> {
+        self.outcomes.of(seed, noise_factor).to_vec()
+    }
+}
+
+/// Reads a text as the core does: `[true, value as text]` or `[false, what was wrong]`.
+///
+/// # Errors
+/// Where there is no such widget or parameter.
+#[wasm_bindgen(js_name = parseParam)]
+pub fn parse_param(name: &str, id: &str, text: &str) -> Result<String, JsError> {
+    let widget = registry::spec(name).ok_or_else(|| unknown_widget(name))?;
+    let spec = widget
+        .params
+        .iter()
+        .find(|param| param.id == id)
+        .ok_or_else(|| JsError::new("no such parameter"))?;
+    let answer = match spec.parse(text) {
+        Ok(_) if matches!(spec.kind, ParamKind::Text { .. }) => json!([true, text.trim()]),
+        Ok(value) => json!([true, spec.to_text(value)]),
+        Err(problem) => json!([false, problem.to_string()]),
+    };
+    Ok(answer.to_string())
+}
+
+fn unknown_widget(name: &str) -> JsError {
+    JsError::new(&registry::unknown(name))
+}
