@@ -314,10 +314,10 @@ pub fn printable(text: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    const SPECS: &[ParamSpec] = &[
+    pub(crate) const SPECS: &[ParamSpec] = &[
         ParamSpec {
             id: "heading",
             label: "heading error",

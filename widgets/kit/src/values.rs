@@ -184,35 +184,20 @@ pub enum Changed {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn slider(id: &'static str) -> ParamSpec {
-        ParamSpec {
-            id,
-            label: id,
-            unit: "",
-            kind: ParamKind::Slider {
-                min: -180.0,
-                max: 180.0,
-                step: 1.0,
-            },
-            default: 25.0,
-            help: "",
-        }
-    }
+    use crate::param::tests::SPECS;
 
     #[test]
     fn a_refused_value_changes_nothing_and_names_the_remedy() {
-        let specs = Vec::leak(vec![slider("heading"), slider("turn")]);
-        let mut values = Values::defaults(specs);
+        let mut values = Values::defaults(SPECS);
         for bad in [f64::NAN, f64::INFINITY, 181.0, -1e300] {
             assert!(values.set("w", "heading", bad).is_err(), "{bad} was taken");
         }
         let error = values.set("w", "headin", 3.0).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "w has no parameter `headin`; it has heading, turn"
+            "w has no parameter `headin`; it has heading, variant"
         );
-        assert_eq!(values, Values::defaults(specs));
+        assert_eq!(values, Values::defaults(SPECS));
         let error = values.find_for("w", "headin").unwrap_err();
         assert!(error.to_string().starts_with("w has no parameter `headin`"));
     }
