@@ -17,8 +17,10 @@ use crate::system::NormalEquations;
 
 mod solve;
 
+use solve::LANES;
+
 /// The factor `L` of `H = L Lᵀ`, with its symbolic analysis and workspace.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct BlockCholesky {
     supernodes: Supernodes,
     /// The panels, column-major, rows of the run first.
@@ -29,8 +31,10 @@ pub struct BlockCholesky {
     stacks: [Vec<f64>; 2],
     /// Where on their stacks they are, the latest last.
     waiting: Vec<Waiting>,
-    /// Right-hand side of one front.
+    /// Right-hand sides of one front.
     local: Vec<f64>,
+    /// Right-hand sides of all rows, zero but during a solve.
+    sides: Vec<[f64; LANES]>,
 }
 
 /// The update of a supernode on its stack.
@@ -45,16 +49,21 @@ impl BlockCholesky {
     /// Analyses the pattern of a structure that is in postorder.
     #[must_use]
     pub fn new(structure: &Structure) -> Self {
-        let supernodes = Supernodes::new(structure);
-        let tallest = supernodes.list.iter().map(Supernode::height).max();
-        Self {
-            values: vec![0.0; supernodes.value_count],
-            reciprocal: vec![0.0; 3 * structure.node_count()],
-            stacks: supernodes.stack_size.map(|size| vec![0.0; size]),
-            waiting: Vec::new(),
-            local: vec![0.0; 3 * tallest.unwrap_or(0)],
-            supernodes,
+        let mut cholesky = Self::default();
+        cholesky.renew(structure);
+        cholesky
+    }
+
+    /// Analyses another pattern, and keeps the memory.
+    pub(crate) fn renew(&mut self, structure: &Structure) {
+        self.supernodes = Supernodes::new(structure);
+        let tallest = self.supernodes.list.iter().map(Supernode::height).max();
+        self.values.resize(self.supernodes.value_count, 0.0);
+        self.reciprocal.resize(3 * structure.node_count(), 0.0);
+        for (stack, size) in self.stacks.iter_mut().zip(self.supernodes.stack_size) {
+            stack.resize(size, 0.0);
         }
+        self.local.resize(3 * tallest.unwrap_or(0) * LANES, 0.0);
     }
 
     /// The elimination order of `order`, renumbered so that every subtree is one run.
@@ -75,10 +84,9 @@ impl BlockCholesky {
     /// The panel of a supernode, and one over the diagonal of its columns.
     #[must_use]
     pub fn panel(&self, supernode: &Supernode) -> (&[f64], &[f64]) {
-        let columns = supernode.columns();
         (
             &self.values[supernode.panel()],
-            &self.reciprocal[3 * columns.start..3 * columns.end],
+            &self.reciprocal[supernode.scalars()],
         )
     }
 

@@ -41,11 +41,26 @@ impl LinearSolver {
     /// Orders and analyses the graph of `problem`; poses and measured values do not matter.
     #[must_use]
     pub fn new(problem: &Problem, factorization: Factorization) -> Self {
+        Self::renewed(problem, factorization, None)
+    }
+
+    /// The same, in the memory of a solver that is no longer needed.
+    pub(crate) fn renewed(
+        problem: &Problem,
+        factorization: Factorization,
+        old: Option<Self>,
+    ) -> Self {
         let structure = Structure::new(problem, minimum_degree(problem));
         let order = BlockCholesky::postordered(&structure);
         let structure = Structure::new(problem, order);
         let cholesky = match factorization {
-            Factorization::Block => Cholesky::Block(Box::new(BlockCholesky::new(&structure))),
+            Factorization::Block => Cholesky::Block(match old.map(|old| old.cholesky) {
+                Some(Cholesky::Block(mut old)) => {
+                    old.renew(&structure);
+                    old
+                }
+                _ => Box::new(BlockCholesky::new(&structure)),
+            }),
             #[cfg(feature = "faer_cholesky")]
             Factorization::Faer => Cholesky::Faer(Box::new(FaerCholesky::new(&structure))),
         };

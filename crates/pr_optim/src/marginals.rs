@@ -64,27 +64,10 @@ pub(crate) fn joint_covariance(
         .collect();
     path.sort_unstable();
     path.dedup();
-    let columns: [Vec<f64>; 6] = core::array::from_fn(|k| {
-        let mut column = vec![0.0; 3 * structure.node_count()];
-        if !fixed[nodes[k / 3]] {
-            column[3 * positions[k / 3] + k % 3] = 1.0;
-            cholesky.solve_lower_along(&path, &mut column);
-        }
-        column
+    let ones = core::array::from_fn(|side| {
+        (!fixed[nodes[side / 3]]).then_some(3 * positions[side / 3] + side % 3)
     });
-    let list = &cholesky.supernodes().list;
-    let mut products = [[0.0; 6]; 6];
-    for row in path.iter().flat_map(|&number| {
-        let columns = list[number].columns();
-        3 * columns.start..3 * columns.end
-    }) {
-        let entries: [f64; 6] = core::array::from_fn(|k| columns[k][row]);
-        for (sums, a) in products.iter_mut().zip(entries) {
-            for (sum, b) in sums.iter_mut().zip(entries) {
-                *sum += a * b;
-            }
-        }
-    }
+    let products = cholesky.gram_along(&path, ones);
     let block =
         |at: [usize; 2]| Matrix3::from_fn(|row, column| products[at[0] + row][at[1] + column]);
     JointCovariance {

@@ -44,6 +44,13 @@ impl Supernode {
         self.first as usize..(self.first + self.width) as usize
     }
 
+    /// The columns of the run, three numbers to a block.
+    #[must_use]
+    pub fn scalars(&self) -> core::ops::Range<usize> {
+        let columns = self.columns();
+        3 * columns.start..3 * columns.end
+    }
+
     /// Where the rows below the run are.
     #[must_use]
     pub fn rows(&self) -> core::ops::Range<usize> {

@@ -4,50 +4,79 @@
 
 use super::BlockCholesky;
 
+/// Right-hand sides that are solved side by side: the columns of two nodes.
+pub(super) const LANES: usize = 6;
+
 impl BlockCholesky {
     /// Overwrites `rhs`, in elimination order, with `H⁻¹ rhs`.
     pub fn solve(&mut self, rhs: &mut [f64]) {
         let fronts = self.supernodes.list.len();
-        (0..fronts).for_each(|number| self.solve_lower_front(number, rhs));
+        let (lanes, _) = rhs.as_chunks_mut::<1>();
+        (0..fronts).for_each(|number| self.solve_lower_front(number, lanes));
         (0..fronts)
             .rev()
             .for_each(|number| self.solve_upper_front(number, rhs));
     }
 
-    /// Overwrites `rhs`, in elimination order, with `L⁻¹ rhs`, passing through some fronts only.
+    /// `XᵀX` of `X = L⁻¹E`, where side k of E has a one in row `ones[k]`, in elimination order, or nothing.
     ///
-    /// `fronts` ascend. They hold every front where `rhs` has an entry that is not zero, and all
-    /// ancestors of each: elsewhere the solution stays zero.
-    pub fn solve_lower_along(&mut self, fronts: &[usize], rhs: &mut [f64]) {
-        fronts
-            .iter()
-            .for_each(|&number| self.solve_lower_front(number, rhs));
+    /// `fronts` ascend. They hold every front where a side has its one, and all ancestors of each:
+    /// elsewhere the solution is zero.
+    pub(crate) fn gram_along(
+        &mut self,
+        fronts: &[usize],
+        ones: [Option<usize>; LANES],
+    ) -> [[f64; LANES]; LANES] {
+        let mut sides = core::mem::take(&mut self.sides);
+        sides.resize(self.reciprocal.len(), [0.0; LANES]);
+        for (side, row) in ones.into_iter().enumerate() {
+            row.into_iter().for_each(|row| sides[row][side] = 1.0);
+        }
+        let mut products = [[0.0; LANES]; LANES];
+        for &number in fronts {
+            self.solve_lower_front(number, &mut sides);
+            for row in &mut sides[self.supernodes.list[number].scalars()] {
+                for (sums, a) in products.iter_mut().zip(*row) {
+                    for (sum, b) in sums.iter_mut().zip(*row) {
+                        *sum += a * b;
+                    }
+                }
+                *row = [0.0; LANES];
+            }
+        }
+        self.sides = sides;
+        products
     }
 
-    /// The columns of one front in `x ← L⁻¹ x`; children come first.
+    /// The columns of one front in `x ← L⁻¹ x`, three at a time; children come first.
     #[inline]
-    fn solve_lower_front(&mut self, number: usize, x: &mut [f64]) {
+    fn solve_lower_front<const N: usize>(&mut self, number: usize, x: &mut [[f64; N]]) {
         let supernode = &self.supernodes.list[number];
         let height = 3 * supernode.height();
-        let run = 3 * supernode.columns().start..3 * supernode.columns().end;
-        let local = &mut self.local[..height];
+        let run = supernode.scalars();
+        let (local, _) = self.local.as_chunks_mut::<N>();
+        let local = &mut local[..height];
         local[..run.len()].copy_from_slice(&x[run.clone()]);
-        local[run.len()..].fill(0.0);
-        let columns = self.values[supernode.panel()].chunks_exact(height);
-        let reciprocal = &self.reciprocal[run.clone()];
-        for (k, (column, reciprocal)) in columns.zip(reciprocal).enumerate() {
-            let value = local[k] * reciprocal;
-            local[k] = value;
-            for (sum, entry) in local[k + 1..].iter_mut().zip(&column[k + 1..]) {
-                *sum -= value * entry;
-            }
+        local[run.len()..].fill([0.0; N]);
+        let blocks = self.values[supernode.panel()].chunks_exact(3 * height);
+        let (reciprocals, _) = self.reciprocal[run.clone()].as_chunks::<3>();
+        for (block, (columns, reciprocals)) in blocks.zip(reciprocals).enumerate() {
+            let first = 3 * block;
+            let column = |k: usize| &columns[k * height + first..(k + 1) * height];
+            eliminate(
+                &mut local[first..],
+                [column(0), column(1), column(2)],
+                reciprocals,
+            );
         }
         x[run.clone()].copy_from_slice(&local[..run.len()]);
         let rows = &self.supernodes.rows[supernode.rows()];
         for (&row, values) in rows.iter().zip(local[run.len()..].chunks_exact(3)) {
             let row = 3 * row as usize;
-            for (sum, value) in x[row..row + 3].iter_mut().zip(values) {
-                *sum += value;
+            for (sums, values) in x[row..row + 3].iter_mut().zip(values) {
+                for (sum, value) in sums.iter_mut().zip(values) {
+                    *sum += value;
+                }
             }
         }
     }
@@ -57,7 +86,7 @@ impl BlockCholesky {
     fn solve_upper_front(&mut self, number: usize, x: &mut [f64]) {
         let supernode = &self.supernodes.list[number];
         let height = 3 * supernode.height();
-        let run = 3 * supernode.columns().start..3 * supernode.columns().end;
+        let run = supernode.scalars();
         let local = &mut self.local[..height];
         local[..run.len()].copy_from_slice(&x[run.clone()]);
         let rows = &self.supernodes.rows[supernode.rows()];
@@ -74,16 +103,42 @@ impl BlockCholesky {
     }
 }
 
+/// Solves for the three unknowns of a block column, and takes what they contribute off the rows below.
+///
+/// `x` and the columns start at the block's diagonal.
+#[inline]
+fn eliminate<const N: usize>(x: &mut [[f64; N]], columns: [&[f64]; 3], reciprocals: &[f64; 3]) {
+    let [a, b, c] = columns;
+    let (head, below) = x.split_at_mut(3);
+    let mut solved = [[0.0; N]; 3];
+    for n in 0..N {
+        let first = head[0][n] * reciprocals[0];
+        let second = (head[1][n] - first * a[1]) * reciprocals[1];
+        let third = (head[2][n] - first * a[2] - second * b[2]) * reciprocals[2];
+        for (row, value) in [first, second, third].into_iter().enumerate() {
+            head[row][n] = value;
+            solved[row][n] = value;
+        }
+    }
+    let [first, second, third] = solved;
+    let entries = a[3..].iter().zip(&b[3..]).zip(&c[3..]);
+    for (sums, ((a, b), c)) in below.iter_mut().zip(entries) {
+        for n in 0..N {
+            sums[n] = sums[n] - first[n] * a - second[n] * b - third[n] * c;
+        }
+    }
+}
+
 /// Inner product in four interleaved sums, which the machine adds side by side.
 #[inline]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (a_chunks, b_chunks) = (a.chunks_exact(4), b.chunks_exact(4));
+    let ((a_chunks, a_rest), (b_chunks, b_rest)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
     let mut tail = 0.0;
-    for (a, b) in a_chunks.remainder().iter().zip(b_chunks.remainder()) {
+    for (a, b) in a_rest.iter().zip(b_rest) {
         tail += a * b;
     }
     let mut sums = [0.0; 4];
-    for (a, b) in a_chunks.zip(b_chunks) {
+    for (a, b) in a_chunks.iter().zip(b_chunks) {
         for k in 0..4 {
             sums[k] += a[k] * b[k];
         }
