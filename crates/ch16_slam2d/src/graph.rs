@@ -18,7 +18,7 @@ mod marginalize;
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::robust::{Belief, GncSettings, believe};
-use pr_optim::{Between, Method, OptimizeError, Optimizer, Problem, Report, Settings};
+use pr_optim::{Between, FactorUse, Method, OptimizeError, Optimizer, Problem, Report, Settings};
 
 pub use marginalize::{MarginalizeError, Marginalized};
 pub use pr_optim::{JacobianModel, RobustKernel, StopReason};
@@ -161,6 +161,7 @@ impl PoseGraph {
             optimizer: Optimizer::new(Settings {
                 method: Method::GaussNewton,
                 jacobians,
+                factor_use: factor_use(jacobians),
                 ..Settings::default()
             }),
         }
@@ -193,6 +194,7 @@ impl PoseGraph {
     #[must_use]
     pub fn solved_with(mut self, jacobians: JacobianModel) -> Self {
         self.optimizer.settings.jacobians = jacobians;
+        self.optimizer.settings.factor_use = factor_use(jacobians);
         self
     }
 
@@ -427,6 +429,15 @@ impl PoseGraph {
             .zip(ends)
             .map(|(joint, factor)| joint.relative(&poses[factor.from], &poses[factor.to]))
             .collect())
+    }
+}
+
+/// The chapter's steps are Gauss–Newton's, each with a factor of its own; what is solved with the exact
+/// Jacobians is solved for its optimum alone.
+fn factor_use(jacobians: JacobianModel) -> FactorUse {
+    match jacobians {
+        JacobianModel::Chapter => FactorUse::EveryStep,
+        JacobianModel::Exact => FactorUse::WhileItShrinks,
     }
 }
 

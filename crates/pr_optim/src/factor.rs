@@ -184,7 +184,7 @@ impl PreparedFactor {
     }
 
     /// Blocks and gradients of this factor at the given poses.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn linearize(
         &self,

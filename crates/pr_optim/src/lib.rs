@@ -50,4 +50,4 @@ pub use optimizer::Optimizer;
 pub use problem::Problem;
 pub use report::{Report, StepReport, StopReason};
 pub use session::{Outcome, SUSPICIOUS_TURN_RAD, Session, Start, Trial};
-pub use settings::{Method, Settings};
+pub use settings::{FactorUse, Method, Settings};

@@ -13,6 +13,7 @@
 //! Source: Nocedal & Wright, "Numerical Optimization", 2006, chapter 10.
 
 mod covariances;
+mod held_factor;
 
 use nalgebra::Vector3;
 use pr_geom::{SE2, math};
@@ -24,10 +25,11 @@ use crate::factor::PreparedPose;
 use crate::linear::{Factorization, LinearSolver};
 use crate::problem::Problem;
 use crate::report::{Report, StepReport, StopReason};
-use crate::settings::{Method, Settings};
+use crate::settings::{FactorUse, Method, Settings};
 use crate::structure::Structure;
 use crate::system::NormalEquations;
 use covariances::PlainFactor;
+use held_factor::HeldFactor;
 
 /// A solver with its workspace, which is kept from one solve to the next.
 ///
@@ -45,6 +47,8 @@ pub struct Optimizer {
     schedule: Damping,
     /// What the last accepted step promised, times `1 + λ`; 0 before the first.
     last_promise: f64,
+    /// Whether `linear` holds a factor of this solve that is good for the next step.
+    held: HeldFactor,
     /// Where the steps came from, as far as they led uphill.
     best: BestPoses,
 }
@@ -68,6 +72,7 @@ impl Optimizer {
             Method::LevenbergMarquardt { initial_damping } => Damping::new(initial_damping),
         };
         self.last_promise = 0.0;
+        self.held.forget();
         self.best.forget();
     }
 
@@ -90,16 +95,18 @@ impl Optimizer {
 
     /// The first half of a step: adds up the normal equations, and so knows the cost.
     fn linearize(&mut self, problem: &Problem) -> Result<f64, OptimizeError> {
-        self.plain = None;
-        let linear = analysed(&mut self.linear, problem, self.settings.factorization);
-        let settings = &self.settings;
-        self.equations.assemble(
-            problem,
-            linear.structure(),
-            settings.jacobians,
-            settings.kernel,
-            settings.ridge,
-        );
+        let settings = self.settings;
+        self.analyse(problem, settings.factorization);
+        let linear = self.linear.as_ref().expect("it was analysed");
+        let structure = linear.structure();
+        let (jacobians, kernel) = (settings.jacobians, settings.kernel);
+        if self.held.is_held() {
+            self.equations
+                .assemble_gradient(problem, structure, jacobians, kernel);
+        } else {
+            self.equations
+                .assemble(problem, structure, jacobians, kernel, settings.ridge);
+        }
         let (cost, chi2) = (self.equations.cost, self.equations.chi2);
         let is_finite = cost.is_finite() && chi2.is_finite();
         // A kernel's cost can look fine where χ² is infinite.
@@ -121,7 +128,9 @@ impl Optimizer {
             .linear
             .as_mut()
             .expect("the graph was analysed for the equations");
-        linear.factorize(&self.equations, damping)?;
+        if !self.held.is_held() {
+            linear.factorize(&self.equations, damping)?;
+        }
         self.delta.clear();
         self.delta
             .extend(self.equations.gradient.iter().map(|g| -g));
@@ -148,6 +157,12 @@ impl Optimizer {
                 self.schedule.update(cost - trial_cost, predicted_decrease)
             }
         };
+        let is_plain = settings.method == Method::GaussNewton;
+        if is_plain && settings.factor_use == FactorUse::WhileItShrinks {
+            self.held.stepped(largest_step);
+        } else {
+            self.held.forget();
+        }
         self.best.left(cost, accepted);
         if accepted {
             // From now on `trial` holds where this step came from.
@@ -258,7 +273,8 @@ impl Optimizer {
     fn convergence_at(&mut self, step: &StepReport) -> Option<StopReason> {
         let settings = &self.settings;
         let undamped = 1.0 + step.damping;
-        let size = undamped * step.largest_step;
+        let expected = self.held.expected_size();
+        let size = expected.unwrap_or(undamped * step.largest_step);
         let promise = undamped * step.predicted_decrease;
         let before = core::mem::replace(&mut self.last_promise, promise);
         let remaining = if step.cost_before > 0.0 {
@@ -283,29 +299,26 @@ impl Optimizer {
 
     /// The linear solver that the settings name for the graph of `problem`, analysed if need be.
     pub fn linear_for(&mut self, problem: &Problem) -> &mut LinearSolver {
+        self.held.lose();
+        self.analyse(problem, self.settings.factorization)
+    }
+
+    /// The linear solver for that graph, made anew where the graph or the factorization has changed.
+    fn analyse(&mut self, problem: &Problem, factorization: Factorization) -> &mut LinearSolver {
         self.plain = None;
-        analysed(&mut self.linear, problem, self.settings.factorization)
+        let fits = |linear: &LinearSolver| linear.fits(problem, factorization);
+        if !self.linear.as_ref().is_some_and(fits) {
+            self.held.lose();
+            let old = self.linear.take();
+            self.linear = Some(LinearSolver::renewed(problem, factorization, old));
+        }
+        self.linear.as_mut().expect("it was analysed")
     }
 
     /// `Σ ρ(eᵀΩe)` at other poses of the same graph, with the kernel of the settings.
     pub fn cost_at(&mut self, problem: &Problem, poses: &[SE2]) -> f64 {
         self.equations.cost_at(problem, poses, self.settings.kernel)
     }
-}
-
-/// The solver in `slot`, made anew where the graph or the factorization has changed.
-fn analysed<'a>(
-    slot: &'a mut Option<LinearSolver>,
-    problem: &Problem,
-    factorization: Factorization,
-) -> &'a mut LinearSolver {
-    if !slot
-        .as_ref()
-        .is_some_and(|linear| linear.fits(problem, factorization))
-    {
-        *slot = None;
-    }
-    slot.get_or_insert_with(|| LinearSolver::new(problem, factorization))
 }
 
 /// Writes `T exp(δ)` of every pose to `moved`; returns the largest `‖(v_x, v_y)‖ + |ω|`.

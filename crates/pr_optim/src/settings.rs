@@ -17,6 +17,20 @@ pub enum Method {
     },
 }
 
+/// Which factor of the normal equations solves a step of Gauss–Newton.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum FactorUse {
+    /// One of its own, at the poses where the step begins.
+    #[default]
+    EveryStep,
+    /// That of an earlier step of the same solve, once steps are short and as long as each is much shorter
+    /// than the one before it: the gradient decides where a solve ends, and the factor only how fast.
+    ///
+    /// This is the chord method of Kelley, "Iterative Methods for Linear and Nonlinear Equations", 1995,
+    /// section 5.4.
+    WhileItShrinks,
+}
+
 /// What to solve with, and when to stop.
 ///
 /// Only an accepted step can end a solve as converged, and not because damping made it small:
@@ -34,6 +48,9 @@ pub struct Settings {
     pub max_iterations: usize,
     /// Stop where `1 + λ` times the largest `‖(v_x, v_y)‖ + |ω|` over the nodes, metres and radians
     /// added, falls below this; 0 never stops.
+    ///
+    /// With [`FactorUse::WhileItShrinks`] a step that is shorter than the one before by some factor counts
+    /// as the one that would follow it, which is shorter by that factor once more.
     pub step_tolerance: f64,
     /// Stop where less than this share of the cost is still to be won, by the estimate below;
     /// 0 never stops.
@@ -48,6 +65,8 @@ pub struct Settings {
     pub ridge: f64,
     /// Which sparse Cholesky factorization to use.
     pub factorization: Factorization,
+    /// How often Gauss–Newton factorizes; damped steps always do.
+    pub factor_use: FactorUse,
 }
 
 impl Default for Settings {
@@ -61,6 +80,7 @@ impl Default for Settings {
             decrease_tolerance: 0.0,
             ridge: 1e-9,
             factorization: Factorization::Block,
+            factor_use: FactorUse::EveryStep,
         }
     }
 }

@@ -40,6 +40,33 @@ impl NormalEquations {
         ridge: f64,
     ) {
         self.clear(structure, ridge);
+        self.add_up(problem, structure, model, kernel, Self::add_blocks);
+        self.hold_fixed(problem, structure, ridge);
+    }
+
+    /// [`assemble`](Self::assemble) of the gradient alone; the blocks stay as they are.
+    pub(crate) fn assemble_gradient(
+        &mut self,
+        problem: &Problem,
+        structure: &Structure,
+        model: JacobianModel,
+        kernel: RobustKernel,
+    ) {
+        self.clear_gradient(structure);
+        self.add_up(problem, structure, model, kernel, |_, _, _, _, _| {});
+        self.hold_gradient(problem, structure);
+    }
+
+    /// Linearizes every factor and adds up gradient and cost; `add_blocks` does the rest.
+    #[inline]
+    fn add_up(
+        &mut self,
+        problem: &Problem,
+        structure: &Structure,
+        model: JacobianModel,
+        kernel: RobustKernel,
+        add_blocks: impl Fn(&mut Self, &Linearization, usize, usize, FactorSlot),
+    ) {
         self.prepare(problem.poses());
         for ((factor, prepared), slot) in problem
             .factors()
@@ -57,9 +84,12 @@ impl NormalEquations {
             self.cost += kernel.cost(part.squared_norm);
             let from = structure.position_of[factor.from] as usize;
             let to = structure.position_of[factor.to] as usize;
-            self.add(&part, from, to, *slot);
+            for axis in 0..3 {
+                self.gradient[3 * from + axis] += part.gradient_from[axis];
+                self.gradient[3 * to + axis] += part.gradient_to[axis];
+            }
+            add_blocks(self, &part, from, to, *slot);
         }
-        self.hold_fixed(problem, structure, ridge);
     }
 
     /// `Σ ρ(eᵀΩe)` at other poses of the same graph; the blocks stay as they are.
@@ -111,20 +141,20 @@ impl NormalEquations {
             .resize(nodes, [ridge, 0.0, 0.0, 0.0, ridge, 0.0, 0.0, 0.0, ridge]);
         self.lower.clear();
         self.lower.resize(structure.row.len(), [0.0; 9]);
+        self.clear_gradient(structure);
+    }
+
+    fn clear_gradient(&mut self, structure: &Structure) {
         self.gradient.clear();
-        self.gradient.resize(3 * nodes, 0.0);
+        self.gradient.resize(3 * structure.node_count(), 0.0);
         self.chi2 = 0.0;
         self.cost = 0.0;
     }
 
     #[inline]
-    fn add(&mut self, part: &Linearization, from: usize, to: usize, slot: FactorSlot) {
+    fn add_blocks(&mut self, part: &Linearization, from: usize, to: usize, slot: FactorSlot) {
         add_symmetric(&mut self.diagonal[from], &part.from_from);
         add_symmetric(&mut self.diagonal[to], &part.to_to);
-        for axis in 0..3 {
-            self.gradient[3 * from + axis] += part.gradient_from[axis];
-            self.gradient[3 * to + axis] += part.gradient_to[axis];
-        }
         self.add_off_diagonal(slot, &part.to_from);
     }
 
@@ -151,17 +181,25 @@ impl NormalEquations {
     /// Gives every fixed node an identity block, plus `ridge`, and no gradient: it will not move.
     pub(crate) fn hold_fixed(&mut self, problem: &Problem, structure: &Structure, ridge: f64) {
         let one = 1.0 + ridge;
-        for (node, _) in problem
-            .fixed()
-            .iter()
-            .enumerate()
-            .filter(|(_, fixed)| **fixed)
-        {
-            let position = structure.position_of[node] as usize;
+        for position in fixed_positions(problem, structure) {
             self.diagonal[position] = [one, 0.0, 0.0, 0.0, one, 0.0, 0.0, 0.0, one];
+        }
+        self.hold_gradient(problem, structure);
+    }
+
+    fn hold_gradient(&mut self, problem: &Problem, structure: &Structure) {
+        for position in fixed_positions(problem, structure) {
             self.gradient[3 * position..3 * position + 3].fill(0.0);
         }
     }
+}
+
+/// Where the fixed nodes are in the order of elimination.
+fn fixed_positions(problem: &Problem, structure: &Structure) -> impl Iterator<Item = usize> {
+    let nodes = problem.fixed().iter().zip(&structure.position_of);
+    nodes
+        .filter(|(fixed, _)| **fixed)
+        .map(|(_, &position)| position as usize)
 }
 
 #[inline]

@@ -2,6 +2,7 @@
 
 mod block_against_faer;
 mod damped_steps;
+mod kept_between_solves;
 mod marginals_against_dense;
 mod promise;
 mod properties;

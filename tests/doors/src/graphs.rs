@@ -5,7 +5,8 @@ use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::robust::{GncSettings, believe, is_sequential};
 use pr_optim::{
-    Between, Factorization, JacobianModel, Method, Problem, RobustKernel, Settings, Start,
+    Between, FactorUse, Factorization, JacobianModel, Method, Problem, RobustKernel, Settings,
+    Start,
 };
 
 use crate::numbers::{finite, scale, tame};
@@ -83,7 +84,7 @@ fn settings(bytes: &mut Unstructured<'_>) -> Result<Settings> {
     let positive = |bytes: &mut Unstructured<'_>| -> Result<f64> {
         Ok(tame(bytes)?.abs().max(1e-3) * scale(bytes)?)
     };
-    Ok(Settings {
+    let settings = Settings {
         method: if bytes.arbitrary()? {
             Method::GaussNewton
         } else {
@@ -110,6 +111,17 @@ fn settings(bytes: &mut Unstructured<'_>) -> Result<Settings> {
         } else {
             Factorization::Block
         },
+        ..Settings::default()
+    };
+    // Without a byte of its own: the inputs that were found stay what they are.
+    let factor_use = if settings.max_iterations.is_multiple_of(2) {
+        FactorUse::EveryStep
+    } else {
+        FactorUse::WhileItShrinks
+    };
+    Ok(Settings {
+        factor_use,
+        ..settings
     })
 }
 

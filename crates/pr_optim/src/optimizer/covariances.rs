@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::{Optimizer, analysed};
+use super::Optimizer;
 use crate::error::OptimizeError;
 use crate::factor::JacobianModel;
 use crate::kernel::RobustKernel;
@@ -74,8 +74,9 @@ impl Optimizer {
         &mut self,
         problem: &Problem,
     ) -> Result<&mut LinearSolver, OptimizeError> {
-        self.plain = None;
-        let linear = analysed(&mut self.linear, problem, Factorization::Block);
+        self.held.lose();
+        self.analyse(problem, Factorization::Block);
+        let linear = self.linear.as_mut().expect("it was analysed");
         self.equations.assemble(
             problem,
             linear.structure(),
