@@ -215,6 +215,7 @@ pub fn verify_loop(
             guess: initial,
             tau_m: (config.radius_m / 2.0).max(config.min_tau_m),
             max_iterations: config.max_iterations,
+            min_score: config.min_score,
         },
     );
     workspace.matcher.pairs(&mut workspace.pairs);

@@ -98,14 +98,7 @@ impl IcpMatcher {
 
     /// [`fit`](Self::fit) for the source of the last registration.
     pub(super) fn fit_again(&mut self, source: &PointCloud, at: SE2, tau_m: f64) -> MatchSummary {
-        self.register_again(
-            source,
-            &MatchRequest {
-                guess: at,
-                tau_m,
-                max_iterations: 0,
-            },
-        )
+        self.register_again(source, &MatchRequest::new(at, tau_m, 0))
     }
 }
 
@@ -160,11 +153,7 @@ mod tests {
             (guess, 2.0, 25),
         ];
         for (guess, tau_m, max_iterations) in requests {
-            let request = MatchRequest {
-                guess,
-                tau_m,
-                max_iterations,
-            };
+            let request = MatchRequest::new(guess, tau_m, max_iterations);
             let expected = fresh.register(&scan, &request);
             assert_eq!(again.register_again(&scan, &request), expected);
             let (mut ours, mut theirs) = (Vec::new(), Vec::new());

@@ -26,6 +26,8 @@ pub struct MatchRequest {
     pub tau_m: f64,
     /// At most so many iterations.
     pub max_iterations: usize,
+    /// A fit with a lower score is of no use: a matcher may give up where it will not come to that, 0 to 1.
+    pub min_score: f64,
 }
 
 impl MatchRequest {
@@ -36,7 +38,14 @@ impl MatchRequest {
             guess,
             tau_m,
             max_iterations,
+            min_score: 0.0,
         }
+    }
+
+    /// The same request for a fit of this score at least.
+    #[must_use]
+    pub fn with_min_score(self, min_score: f64) -> Self {
+        Self { min_score, ..self }
     }
 }
 

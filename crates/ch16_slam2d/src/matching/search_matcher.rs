@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 use std::sync::Arc;
 
-use pr_geom::SE2;
+use pr_geom::math;
 
 use super::{IcpMatcher, MapConfig, MatchRequest, MatchStop, MatchSummary, Matcher, RunnerUp};
 use crate::cloud::PointCloud;
@@ -88,21 +88,22 @@ impl SearchMatcher {
         self.map.as_ref()
     }
 
-    fn search(&self, source: &PointCloud, guess: SE2) -> Option<ScanSearch> {
+    fn search(&self, source: &PointCloud, request: &MatchRequest) -> Option<ScanSearch> {
         let SearchMatcherConfig {
             half_width_m,
             half_turn_rad,
             neighborhood,
             ..
         } = self.config;
-        let window = SearchWindow::around(guess, half_width_m, half_turn_rad);
+        let window = SearchWindow::around(request.guess, half_width_m, half_turn_rad);
         let search = ScanSearch::new(
             Arc::clone(self.map.as_ref()?),
             source,
             &window,
             &neighborhood,
         );
-        let search = search.ok()?.with_min_score(self.config.min_score);
+        let min_score = math::max(self.config.min_score, request.min_score);
+        let search = search.ok()?.with_min_score(min_score);
         Some(search.with_margin(self.max_margin))
     }
 }
@@ -116,7 +117,7 @@ impl Matcher for SearchMatcher {
     }
 
     fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
-        let Some(search) = self.search(source, request.guess) else {
+        let Some(search) = self.search(source, request) else {
             return self.icp.fit(source, request.guess, request.tau_m);
         };
         let Some(found) = search.run() else {
@@ -154,7 +155,7 @@ impl From<ScoredPose> for RunnerUp {
 
 #[cfg(test)]
 mod tests {
-    use pr_geom::Point2;
+    use pr_geom::{Point2, SE2};
 
     use super::*;
 
@@ -204,6 +205,25 @@ mod tests {
             other => panic!("{other:?}"),
         };
         assert!(poses(alone.stop) < poses(found.stop));
+    }
+
+    #[test]
+    fn a_place_below_the_score_that_is_asked_for_is_not_looked_for() {
+        let target = corner();
+        let mut search = SearchMatcher::new(SearchMatcherConfig::default(), &MAP);
+        search.set_target(&target);
+        // Forty points of another corner, of which the map knows nothing: two thirds of the scan fit.
+        let other = target.transformed(&SE2::new(8.0, 5.0, 1.0));
+        let scan: PointCloud = target.iter().chain(other.iter().take(40)).collect();
+        let request = MatchRequest::new(SE2::new(0.2, 0.1, 0.1), 1.0, 30);
+        let found = search.register(&scan, &request);
+        let score = found.score.unwrap();
+        assert!(score > 0.6 && score < 0.8, "{score}");
+        let none = search.register(&scan, &request.with_min_score(0.8));
+        assert_eq!((none.score, none.inliers), (None, 0));
+        let same = search.register(&scan, &request.with_min_score(0.6));
+        let answer = |found: &MatchSummary| (found.pose, found.score, found.runner_up);
+        assert_eq!(answer(&same), answer(&found));
     }
 
     #[test]

@@ -1,11 +1,17 @@
 //! From coarse to fine, and from other starts where the first one leads to a poor fit.
 
-use pr_geom::SE2;
+use pr_geom::{SE2, math};
 
 use super::{IcpMatcher, MapConfig, MatchRequest, MatchSummary, Matcher};
 use crate::cloud::PointCloud;
 use crate::icp::{IcpConfig, IcpVariant, Pair};
 use crate::ndt::{NdtAlign, NdtConfig, NdtMap};
+
+/// A step of NDT that is shorter than this, m and rad added, is the last: points go on from there.
+const ARRIVED: f64 = 0.02;
+
+/// Two starts that are no farther apart, m and rad added, end at the same place.
+const SAME_PLACE: f64 = 0.05;
 
 /// Stages and starts of a [`StagedMatcher`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,52 +94,49 @@ impl StagedMatcher {
         }
     }
 
-    /// ICP from `start`, first from near and then from far to near; the last stage alone where that fits.
+    /// ICP from the guess, first from near and then from far to near; the last stage alone where that fits.
     ///
     /// Pairs from far off pull a scan along a bare wall, and where the guess is good none are needed.
-    fn refine(&mut self, source: &PointCloud, start: SE2, iterations: usize) -> MatchSummary {
+    fn refine(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
         let stages = self.config.taus_m;
         if self.config.near_score.is_infinite() {
-            return self.staged(source, start, iterations, &stages);
+            return self.staged(source, request, &stages);
         }
         let last = stages.iter().rev().find(|tau_m| **tau_m > 0.0);
-        let near = self.staged(
-            source,
-            start,
-            iterations,
-            last.map_or(&[], core::slice::from_ref),
-        );
+        let last = last.map_or(&[][..], core::slice::from_ref);
+        let near = self.staged(source, request, last);
         if near.score >= Some(self.config.near_score) {
             return near;
         }
-        let far = self.staged(source, start, iterations, &stages);
+        let far = self.staged(source, request, &stages);
         if far.score > near.score.map(|score| score + self.config.near_lead) {
             return far;
         }
         self.fit(source, near.pose, near.iterations)
     }
 
-    /// ICP from `start` in these stages.
+    /// ICP from the guess in these stages.
     fn staged(
         &mut self,
         source: &PointCloud,
-        start: SE2,
-        iterations: usize,
+        request: &MatchRequest,
         taus_m: &[f64],
     ) -> MatchSummary {
-        let mut pose = start;
+        let mut pose = request.guess;
         let mut made = 0;
         for tau_m in taus_m.iter().copied().take_while(|tau_m| *tau_m > 0.0) {
-            let stage = self.points.register_again(
-                source,
-                &MatchRequest {
-                    guess: pose,
-                    tau_m,
-                    max_iterations: iterations,
-                },
-            );
+            let stage = MatchRequest {
+                guess: pose,
+                tau_m,
+                ..*request
+            };
+            let stage = self.points.register_again(source, &stage);
             pose = stage.pose;
             made += stage.iterations;
+            // Points without a pair from far off will have none from near.
+            if (stage.inliers as f64) < request.min_score * source.len() as f64 {
+                break;
+            }
         }
         self.fit(source, pose, made)
     }
@@ -152,8 +155,8 @@ impl StagedMatcher {
         }
     }
 
-    /// NDT on wide cells, then on narrow ones.
-    fn climb(&mut self, source: &PointCloud, start: SE2) -> SE2 {
+    /// NDT on wide cells, then on narrow ones; none where either leads to a place that is known.
+    fn climb(&mut self, source: &PointCloud, start: SE2, known: &mut [Vec<SE2>; 2]) -> Option<SE2> {
         let StagedMatcherConfig {
             cells_m,
             min_points,
@@ -164,24 +167,40 @@ impl StagedMatcher {
             let build = |cell_m| NdtMap::build(&self.target, cell_m, min_points);
             self.gaussians.extend(cells_m.map(build));
         }
-        let maps = self.gaussians.iter();
-        maps.fold(start, |pose, map| climb(source, map, pose, ndt_iterations))
+        let mut pose = start;
+        for (map, known) in self.gaussians.iter().zip(known) {
+            pose = climb(source, map, pose, ndt_iterations);
+            if known.iter().any(|place| apart(place, &pose) < SAME_PLACE) {
+                return None;
+            }
+            known.push(pose);
+        }
+        Some(pose)
     }
 }
 
-/// NDT from `start` to its end.
+/// NDT from `start` to where its steps are short.
 fn climb(source: &PointCloud, map: &NdtMap, start: SE2, iterations: usize) -> SE2 {
     let solver = NdtConfig {
         max_iters: iterations,
         ..NdtConfig::default()
     };
     let mut registration = NdtAlign::new(source, map, start, &solver);
+    let mut pose = start;
     loop {
         let step = registration.step();
-        if step.stop.is_some() {
-            return step.pose;
+        let moved = apart(&pose, &step.pose);
+        pose = step.pose;
+        if step.stop.is_some() || moved < ARRIVED {
+            return pose;
         }
     }
+}
+
+/// How far two poses are apart, m and rad added.
+fn apart(a: &SE2, b: &SE2) -> f64 {
+    let motion = a.between(b);
+    math::norm2(motion.x(), motion.y()) + motion.theta().abs()
 }
 
 impl Matcher for StagedMatcher {
@@ -196,8 +215,10 @@ impl Matcher for StagedMatcher {
         if request.max_iterations == 0 {
             return self.fit(source, request.guess, 0);
         }
-        let mut best = self.refine(source, request.guess, request.max_iterations);
+        let mut best = self.refine(source, request);
         let mut is_last = true;
+        // Where Gaussians led to, wide ones and narrow ones.
+        let mut known = [Vec::new(), vec![best.pose]];
         for step in 0..=self.config.turns {
             if best.score >= Some(self.config.good_score) {
                 break;
@@ -206,9 +227,17 @@ impl Matcher for StagedMatcher {
             for side in sides {
                 let turn_rad = side * step as f64 * self.config.turn_rad;
                 let start = request.guess * SE2::new(0.0, 0.0, turn_rad);
-                let start = self.climb(source, start);
-                let found = self.refine(source, start, request.max_iterations);
-                is_last = found.score > best.score.map(|score| score + self.config.lead);
+                let Some(start) = self.climb(source, start, &mut known) else {
+                    continue;
+                };
+                let needed = best.score.map(|score| score + self.config.lead);
+                let from_there = MatchRequest {
+                    guess: start,
+                    min_score: needed.unwrap_or_default(),
+                    ..*request
+                };
+                let found = self.refine(source, &from_there);
+                is_last = found.score > needed;
                 if is_last {
                     best = found;
                 }
@@ -227,7 +256,7 @@ impl Matcher for StagedMatcher {
             return self.fit(source, request.guess, 0);
         }
         let [_, near, last] = self.config.taus_m;
-        self.staged(source, request.guess, request.max_iterations, &[near, last])
+        self.staged(source, request, &[near, last])
     }
 
     fn pairs(&self, pairs: &mut Vec<Pair>) {
@@ -303,6 +332,31 @@ mod tests {
         };
         let (off, score) = end(near, guess);
         assert!(off > 0.1 && score < 0.7, "ICP alone: {off} {score}");
+    }
+
+    #[test]
+    fn what_cannot_reach_the_score_that_is_asked_for_is_given_up() {
+        let map = room();
+        let near = StagedMatcherConfig {
+            good_score: 0.0,
+            ..StagedMatcherConfig::default()
+        };
+        let mut matcher = StagedMatcher::new(near, &MAP);
+        matcher.set_target(&map);
+        // Three metres off, most of the room has no wall within 0.6 m.
+        for (off_m, is_worth_it) in [(0.2, true), (3.0, false)] {
+            let guess = SE2::new(off_m, -off_m, 0.1);
+            let request = MatchRequest::new(guess, 0.5, 15);
+            let patient = matcher.register(&map, &request);
+            let hasty = matcher.register(&map, &request.with_min_score(0.7));
+            assert_eq!(patient.score >= Some(0.7), is_worth_it);
+            assert_eq!(hasty.score >= Some(0.7), is_worth_it);
+            if is_worth_it {
+                assert_eq!(hasty, patient);
+            } else {
+                assert!(hasty.iterations < patient.iterations);
+            }
+        }
     }
 
     #[test]

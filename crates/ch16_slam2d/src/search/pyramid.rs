@@ -82,7 +82,8 @@ impl SearchMap {
 impl Level {
     /// The grid itself, with a border of one cell without a score.
     fn ground(grid: &LikelihoodGrid) -> Self {
-        let mut level = Self::empty(1, grid.columns(), grid.rows());
+        let mut level = Self::without_squares(1, grid.columns(), grid.rows());
+        level.maxima.resize(level.size(), 0);
         let stride = level.stride();
         for (row, scores) in grid.scores().chunks_exact(grid.columns()).enumerate() {
             level.maxima[(row + 1) * stride + 1..][..scores.len()].copy_from_slice(scores);
@@ -90,16 +91,21 @@ impl Level {
         level
     }
 
-    /// Squares of `side` cells a side that touch a grid of `columns` × `rows`, without a score.
-    fn empty(side: usize, columns: usize, rows: usize) -> Self {
+    /// Squares of `side` cells a side that touch a grid of `columns` × `rows`, none of them there yet.
+    fn without_squares(side: usize, columns: usize, rows: usize) -> Self {
         let stride = (columns + side + 1).next_power_of_two();
         Self {
             side: side as i16,
             columns: columns as i16,
             rows: rows as i16,
             row_shift: stride.ilog2(),
-            maxima: vec![0; stride * (rows + side + 1)],
+            maxima: Vec::with_capacity(stride * (rows + side + 1)),
         }
+    }
+
+    /// Number of squares, those that pad the rows among them.
+    fn size(&self) -> usize {
+        self.stride() * (self.rows + self.side + 1) as usize
     }
 
     fn stride(&self) -> usize {
@@ -110,14 +116,16 @@ impl Level {
     fn doubled(&self) -> Self {
         let step = self.side as usize;
         let (columns, rows) = (self.columns as usize, self.rows as usize);
-        let mut wider = Self::empty(2 * step, columns, rows);
+        let mut wider = Self::without_squares(2 * step, columns, rows);
         let stride = wider.stride();
         let used = columns + step + 1;
-        let finer = self.maxima.chunks_exact(self.stride());
-        for (from, to) in finer.zip(wider.maxima.chunks_exact_mut(stride)) {
-            to[..used].copy_from_slice(&from[..used]);
-            raise(&mut to[step..], &from[..used]);
+        for from in self.maxima.chunks_exact(self.stride()) {
+            let start = wider.maxima.len();
+            wider.maxima.extend_from_slice(&from[..used]);
+            wider.maxima.resize(start + stride, 0);
+            raise(&mut wider.maxima[start + step..], &from[..used]);
         }
+        wider.maxima.resize(wider.size(), 0);
         // From the top down, so that no row is raised by one that was raised itself.
         let height = rows + 2 * step + 1;
         for row in (step..height).rev() {

@@ -104,6 +104,8 @@ impl Slam {
         let wider = LoopConfig {
             detection: Detection::Visits,
             radius_m: half_width_m,
+            // The score is that of the search, not that of the registration.
+            min_score: 0.0,
             ..loops
         };
         let view = KeyframeView {
