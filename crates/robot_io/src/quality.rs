@@ -167,6 +167,7 @@ impl KeyframeQuality {
 
 impl LinkQuality {
     fn new(found: &LoopVerification, accepted: bool) -> Self {
+        let is_nowhere = matches!(found.rejection, Some(LoopRejection::NoPlace { .. }));
         Self {
             from: found.from_node,
             to: found.candidate.node,
@@ -174,7 +175,8 @@ impl LinkQuality {
             rmse_m: found.rmse_m.is_finite().then_some(found.rmse_m),
             inliers: found.inliers,
             margin: found.margin.filter(|margin| margin.is_finite()),
-            chi2: found.gate.chi2.is_finite().then_some(found.gate.chi2),
+            // Where no place was found, nothing was gated.
+            chi2: (found.gate.chi2.is_finite() && !is_nowhere).then_some(found.gate.chi2),
             gate_chi2: found.gate.gate_chi2,
             accepted,
             reason: found.rejection.map(|rejection| reason(&rejection)),
@@ -200,6 +202,10 @@ pub fn reason(rejection: &LoopRejection) -> String {
         LoopRejection::LowScore { score, min_score } => {
             format!("{score:.2} of the scan fits, {min_score:.2} is asked")
         }
+        LoopRejection::NoPlace {
+            half_width_m,
+            min_score,
+        } => format!("no place within {half_width_m:.1} m fits by {min_score:.2}"),
         LoopRejection::Ambiguous { margin, min_margin } => {
             format!("another place is behind by {margin:.2} only, {min_margin:.2} is asked")
         }

@@ -65,6 +65,12 @@ impl LapTrace {
             Some(LoopRejection::LowScore { score, min_score }) => {
                 format!("{head}: {gate}, but the score is {score:.2} only, {min_score:.2} is asked")
             }
+            Some(LoopRejection::NoPlace {
+                half_width_m,
+                min_score,
+            }) => {
+                format!("{head}: no place within {half_width_m:.1} m has a score of {min_score:.2}")
+            }
             Some(LoopRejection::Ambiguous { margin, min_margin }) => format!(
                 "{head}: {gate}, but another place is behind by {margin:.2} only, {min_margin:.2} is asked"
             ),
@@ -135,6 +141,14 @@ mod tests {
                 format!("loop 29 to 7 rejected: chi-squared 4.24 {reason}")
             );
         }
+        attempt.verification.rejection = Some(LoopRejection::NoPlace {
+            half_width_m: 8.25,
+            min_score: 0.75,
+        });
+        assert_eq!(
+            lap.loop_sentence(&attempt),
+            "loop 29 to 7 rejected: no place within 8.2 m has a score of 0.75"
+        );
         attempt.verification.gate.chi2 = 8.0;
         attempt.verification.rejection =
             Some(LoopRejection::OutsideGate(attempt.verification.gate));

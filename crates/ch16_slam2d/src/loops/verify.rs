@@ -38,6 +38,13 @@ pub enum LoopRejection {
         /// The lowest that is accepted.
         min_score: f64,
     },
+    /// No place of the window that was searched fits.
+    NoPlace {
+        /// Half of the window's width, m.
+        half_width_m: f64,
+        /// The lowest score that is looked for.
+        min_score: f64,
+    },
     /// Another place fits about as well.
     Ambiguous {
         /// By how much the best other place was behind, in the unit of the matcher's score.

@@ -92,6 +92,12 @@ impl Slam {
                 &wider,
                 &mut workspace,
             );
+            if verification.score.is_none() {
+                verification.rejection = Some(LoopRejection::NoPlace {
+                    half_width_m,
+                    min_score: wide.min_score,
+                });
+            }
             let margin = verification.margin.unwrap_or(loops.max_margin());
             if verification.accepted() && margin < wide.min_margin {
                 verification.rejection = Some(LoopRejection::Ambiguous {

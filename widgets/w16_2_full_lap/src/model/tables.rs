@@ -184,6 +184,7 @@ fn verdict_with_reason(attempt: &LoopAttempt) -> &'static str {
         Some(LoopRejection::PoorFit { .. }) => "rejected: rmse",
         Some(LoopRejection::FewInliers { .. }) => "rejected: pairs",
         Some(LoopRejection::LowScore { .. }) => "rejected: score",
+        Some(LoopRejection::NoPlace { .. }) => "rejected: no place",
         Some(LoopRejection::Ambiguous { .. }) => "rejected: ambiguous",
         Some(LoopRejection::Waiting { .. }) => "waits for others",
         Some(LoopRejection::OutsideGate(_)) => "rejected: χ²",

@@ -82,7 +82,11 @@ static LANES: [Lane; 8] = [
             None => Done::Not,
             Some(attempt) => judged(!matches!(
                 attempt.verification.rejection,
-                Some(LoopRejection::PoorFit { .. } | LoopRejection::FewInliers { .. })
+                Some(
+                    LoopRejection::PoorFit { .. }
+                        | LoopRejection::FewInliers { .. }
+                        | LoopRejection::NoPlace { .. }
+                )
             )),
         },
         data: |report| {
