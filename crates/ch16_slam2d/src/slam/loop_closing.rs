@@ -92,7 +92,8 @@ impl Slam {
                 &wider,
                 &mut workspace,
             );
-            if verification.score.is_none() {
+            // A window that could not be searched is left with what fits at the belief.
+            if verification.score.is_none() && verification.inliers == 0 {
                 verification.rejection = Some(LoopRejection::NoPlace {
                     half_width_m,
                     min_score: wide.min_score,
