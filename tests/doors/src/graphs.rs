@@ -84,7 +84,7 @@ fn settings(bytes: &mut Unstructured<'_>) -> Result<Settings> {
     let positive = |bytes: &mut Unstructured<'_>| -> Result<f64> {
         Ok(tame(bytes)?.abs().max(1e-3) * scale(bytes)?)
     };
-    let settings = Settings {
+    let mut settings = Settings {
         method: if bytes.arbitrary()? {
             Method::GaussNewton
         } else {
@@ -114,15 +114,10 @@ fn settings(bytes: &mut Unstructured<'_>) -> Result<Settings> {
         ..Settings::default()
     };
     // Without a byte of its own: the inputs that were found stay what they are.
-    let factor_use = if settings.max_iterations.is_multiple_of(2) {
-        FactorUse::EveryStep
-    } else {
-        FactorUse::WhileItShrinks
-    };
-    Ok(Settings {
-        factor_use,
-        ..settings
-    })
+    if !settings.max_iterations.is_multiple_of(2) {
+        settings.factor_use = FactorUse::WhileItShrinks;
+    }
+    Ok(settings)
 }
 
 fn pose(bytes: &mut Unstructured<'_>) -> Result<SE2> {

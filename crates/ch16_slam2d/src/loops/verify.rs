@@ -216,14 +216,10 @@ pub fn verify_loop(
     let center = view.poses[candidate.node];
     let belief = center.between(&view.poses[node]);
     let initial = candidate.proposal.unwrap_or(belief);
+    let tau_m = (config.radius_m / 2.0).max(config.min_tau_m);
     let found = workspace.matcher.register(
         &view.keyframes[node].scan,
-        &MatchRequest {
-            guess: initial,
-            tau_m: (config.radius_m / 2.0).max(config.min_tau_m),
-            max_iterations: config.max_iterations,
-            min_score: config.min_score,
-        },
+        &MatchRequest::new(initial, tau_m, config.max_iterations).with_min_score(config.min_score),
     );
     workspace.matcher.pairs(&mut workspace.pairs);
     let information = match frame {

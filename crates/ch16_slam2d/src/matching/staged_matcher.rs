@@ -1,6 +1,6 @@
 //! From coarse to fine, and from other starts where the first one leads to a poor fit.
 
-use pr_geom::{SE2, math};
+use pr_geom::SE2;
 
 use super::{IcpMatcher, MapConfig, MatchRequest, MatchSummary, Matcher};
 use crate::cloud::PointCloud;
@@ -170,7 +170,8 @@ impl StagedMatcher {
         let mut pose = start;
         for (map, known) in self.gaussians.iter().zip(known) {
             pose = climb(source, map, pose, ndt_iterations);
-            if known.iter().any(|place| apart(place, &pose) < SAME_PLACE) {
+            let is_here = |place: &SE2| place.between(&pose).step_size() < SAME_PLACE;
+            if known.iter().any(is_here) {
                 return None;
             }
             known.push(pose);
@@ -189,18 +190,12 @@ fn climb(source: &PointCloud, map: &NdtMap, start: SE2, iterations: usize) -> SE
     let mut pose = start;
     loop {
         let step = registration.step();
-        let moved = apart(&pose, &step.pose);
+        let moved = pose.between(&step.pose).step_size();
         pose = step.pose;
         if step.stop.is_some() || moved < ARRIVED {
             return pose;
         }
     }
-}
-
-/// How far two poses are apart, m and rad added.
-fn apart(a: &SE2, b: &SE2) -> f64 {
-    let motion = a.between(b);
-    math::norm2(motion.x(), motion.y()) + motion.theta().abs()
 }
 
 impl Matcher for StagedMatcher {
