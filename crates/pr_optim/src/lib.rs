@@ -23,6 +23,7 @@ mod factor;
 #[cfg(feature = "faer_cholesky")]
 pub mod faer_cholesky;
 pub mod g2o;
+mod growth;
 pub mod init;
 mod kernel;
 mod linear;
@@ -38,7 +39,6 @@ mod settings;
 pub mod structure;
 pub mod supernodes;
 pub mod system;
-mod tail;
 
 pub use custom::CustomGaussNewton;
 pub use error::OptimizeError;

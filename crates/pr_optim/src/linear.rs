@@ -151,6 +151,20 @@ impl LinearSolver {
         }
     }
 
+    /// Overwrites three right-hand sides that stand side by side, in elimination order, with `H⁻¹` times them.
+    ///
+    /// `None` where the factorization is `faer`'s, which solves for one at a time.
+    pub(crate) fn solve_columns(&mut self, columns: &mut [[f64; 3]]) -> Option<()> {
+        match &mut self.cholesky {
+            Cholesky::Block(cholesky) => {
+                cholesky.solve_sides(columns);
+                Some(())
+            }
+            #[cfg(feature = "faer_cholesky")]
+            Cholesky::Faer(_) => None,
+        }
+    }
+
     /// Overwrites `rhs`, in elimination order, with `H⁻¹ rhs`.
     pub fn solve(&mut self, rhs: &mut [f64]) {
         match &mut self.cholesky {

@@ -22,13 +22,13 @@ use crate::best::BestPoses;
 use crate::damping::{DAMPING_LIMIT, Damping};
 use crate::error::OptimizeError;
 use crate::factor::PreparedPose;
+use crate::growth::Growth;
 use crate::linear::{Factorization, LinearSolver};
 use crate::problem::Problem;
 use crate::report::{Report, StepReport, StopReason};
 use crate::settings::{FactorUse, Method, Settings};
 use crate::structure::Structure;
 use crate::system::NormalEquations;
-use covariances::PlainFactor;
 use held_factor::HeldFactor;
 
 /// A solver with its workspace, which is kept from one solve to the next.
@@ -40,7 +40,7 @@ pub struct Optimizer {
     pub settings: Settings,
     linear: Option<LinearSolver>,
     /// Says what `linear` holds the factor of, where that is good for covariances.
-    plain: Option<PlainFactor>,
+    growth: Option<Growth>,
     equations: NormalEquations,
     delta: Vec<f64>,
     trial: Vec<SE2>,
@@ -305,7 +305,7 @@ impl Optimizer {
 
     /// The linear solver for that graph, made anew where the graph or the factorization has changed.
     fn analyse(&mut self, problem: &Problem, factorization: Factorization) -> &mut LinearSolver {
-        self.plain = None;
+        self.growth = None;
         let fits = |linear: &LinearSolver| linear.fits(problem, factorization);
         if !self.linear.as_ref().is_some_and(fits) {
             self.held.lose();

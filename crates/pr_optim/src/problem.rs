@@ -15,6 +15,7 @@ pub struct Problem {
     fixed: Vec<bool>,
     factors: Vec<Between>,
     prepared: Vec<PreparedFactor>,
+    settled: usize,
 }
 
 impl Problem {
@@ -66,7 +67,22 @@ impl Problem {
     /// Takes the newest measurement out again and returns it; none where there is none.
     pub fn pop_factor(&mut self) -> Option<Between> {
         self.prepared.pop();
-        self.factors.pop()
+        let factor = self.factors.pop();
+        self.settled = self.settled.min(self.factors.len());
+        factor
+    }
+
+    /// How many measurements there were when a pose was last moved.
+    ///
+    /// A solver that is asked for covariances adds what was measured since to the factor of what was before.
+    #[must_use]
+    pub fn settled(&self) -> usize {
+        self.settled
+    }
+
+    /// Says so of a problem that was built anew; more than there are count as all.
+    pub fn settle(&mut self, factors: usize) {
+        self.settled = factors.min(self.factors.len());
     }
 
     /// Number of poses.
@@ -83,12 +99,14 @@ impl Problem {
 
     /// The poses, to be moved from outside.
     pub fn poses_mut(&mut self) -> &mut [SE2] {
+        self.settled = self.factors.len();
         &mut self.poses
     }
 
     /// Takes other poses for the same nodes, and leaves the present ones in `poses`.
     pub(crate) fn swap_poses(&mut self, poses: &mut Vec<SE2>) {
         debug_assert_eq!(poses.len(), self.poses.len());
+        self.settled = self.factors.len();
         core::mem::swap(&mut self.poses, poses);
     }
 
@@ -117,7 +135,17 @@ impl Problem {
             fixed: self.fixed[..nodes].to_vec(),
             factors: self.factors[..factors].to_vec(),
             prepared: self.prepared[..factors].to_vec(),
+            settled: self.settled.min(factors),
         }
+    }
+
+    /// Takes what another problem has beyond this one, which is its [`beginning`](Self::beginning).
+    pub(crate) fn follow(&mut self, whole: &Self) {
+        let (nodes, factors) = (self.node_count(), self.factors.len());
+        self.poses.extend_from_slice(&whole.poses[nodes..]);
+        self.fixed.extend_from_slice(&whole.fixed[nodes..]);
+        self.factors.extend_from_slice(&whole.factors[factors..]);
+        self.prepared.extend_from_slice(&whole.prepared[factors..]);
     }
 
     /// Whether that is the [`beginning`](Self::beginning) of this problem, at the same poses.
@@ -132,19 +160,24 @@ impl Problem {
     /// With a loose pose the normal equations are singular, but for the ridge.
     #[must_use]
     pub fn first_loose_node(&self) -> Option<usize> {
-        let mut parent: Vec<usize> = (0..self.node_count()).collect();
-        for factor in &self.factors {
+        self.first_loose_of(self.node_count(), self.factors.len())
+    }
+
+    /// The same of a [`beginning`](Self::beginning).
+    pub(crate) fn first_loose_of(&self, nodes: usize, factors: usize) -> Option<usize> {
+        let mut parent: Vec<usize> = (0..nodes).collect();
+        for factor in &self.factors[..factors] {
             let (a, b) = (
                 root_of(&mut parent, factor.from),
                 root_of(&mut parent, factor.to),
             );
             parent[a.max(b)] = a.min(b);
         }
-        let mut held = vec![false; self.node_count()];
-        for node in (0..self.node_count()).filter(|&node| self.fixed[node]) {
+        let mut held = vec![false; nodes];
+        for node in (0..nodes).filter(|&node| self.fixed[node]) {
             held[root_of(&mut parent, node)] = true;
         }
-        (0..self.node_count()).find(|&node| !held[root_of(&mut parent, node)])
+        (0..nodes).find(|&node| !held[root_of(&mut parent, node)])
     }
 
     /// `eᵀΩe` of one measurement at the present poses, by its index among [`factors`](Self::factors).

@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use pr_geom::SE2;
 use pr_optim::{
-    Between, Factorization, JacobianModel, Optimizer, PreparedFactor, PreparedPose, Problem,
-    RobustKernel, Settings,
+    Between, Factorization, JacobianModel, OptimizeError, Optimizer, PreparedFactor, PreparedPose,
+    Problem, RobustKernel, Settings,
 };
 
 /// Poses on a lawnmower path, four a line, with links to the line before; the second is fixed.
@@ -192,17 +192,121 @@ fn behind_the_last_loop_covariances_follow_from_those_before_it() {
     }
 }
 
+/// The same, and loops from its end, one of them between nodes that were there long before.
+fn grid_with_loops() -> Problem {
+    let mut problem = grid_with_tail();
+    for (from, to) in [(28, 3), (5, 17), (27, 24), (2, 26)] {
+        let [start, end] = [from, to].map(|node| problem.poses()[node]);
+        problem.add_factor(Between {
+            from,
+            to,
+            measurement: start
+                .between(&end)
+                .boxplus(&Vector3::new(-0.04, 0.03, 0.02)),
+            information: Matrix3::new(50.0, 4.0, -1.0, 4.0, 30.0, 2.0, -1.0, 2.0, 80.0),
+        });
+    }
+    problem
+}
+
+#[test]
+fn loops_that_were_closed_since_are_taken_off_the_covariances_before() {
+    let mut problem = grid_with_loops();
+    // Some of its loops belong to the beginning, and the last ones, and those of the grid's end, do not.
+    for settled in [0, 31, problem.factors().len() - 4, problem.factors().len()] {
+        problem.settle(settled);
+        let dense = dense_covariance(&problem);
+        let block = |a: usize, b: usize| dense.fixed_view::<3, 3>(3 * a, 3 * b).into_owned();
+        let mut optimizer = Optimizer::new(Settings {
+            ridge: 0.0,
+            ..Settings::default()
+        });
+        for a in 0..problem.node_count() {
+            for b in 0..problem.node_count() {
+                let joint = optimizer.joint_covariance(&problem, a, b).unwrap();
+                // 1e-10: as above.
+                assert!((joint.first - block(a, a)).amax() < 1e-10, "{a} {b}");
+                assert!((joint.cross - block(a, b)).amax() < 1e-10, "{a} {b}");
+                assert!((joint.second - block(b, b)).amax() < 1e-10, "{a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_measurement_that_knows_far_more_than_the_graph_is_a_part_of_the_factor() {
+    let mut problem = grid_with_tail();
+    problem.settle(problem.factors().len());
+    let measurement = problem.poses()[3].between(&problem.poses()[28]);
+    let nearly_sure = Between {
+        from: 3,
+        to: 28,
+        measurement,
+        information: Matrix3::identity() * 1e15,
+    };
+    problem.add_factor(nearly_sure);
+    let relative = |problem: &Problem| {
+        let joint = Optimizer::new(Settings::default()).joint_covariance(problem, 3, 28);
+        joint
+            .unwrap()
+            .relative(&problem.poses()[3], &problem.poses()[28])
+    };
+    let known = relative(&problem);
+    problem.settle(problem.factors().len());
+    assert_eq!(known, relative(&problem));
+    // What is not positive definite is told where it is added, as it is where it is factorized.
+    problem.pop_factor();
+    problem.add_factor(Between {
+        information: Matrix3::identity() * -1e3,
+        ..nearly_sure
+    });
+    let mut optimizer = Optimizer::new(Settings::default());
+    let refused = optimizer.joint_covariance(&problem, 3, 28);
+    assert!(matches!(
+        refused,
+        Err(OptimizeError::NotPositiveDefinite { .. })
+    ));
+}
+
+#[test]
+fn how_far_loops_would_move_a_graph_is_what_a_step_moves_it() {
+    let mut problem = grid_with_tail();
+    let mut optimizer = Optimizer::new(Settings {
+        jacobians: JacobianModel::Exact,
+        step_tolerance: 1e-12,
+        ..Settings::default()
+    });
+    optimizer.run(&mut problem);
+    assert_eq!(optimizer.largest_move_since(&problem), Ok(0.0));
+    let loops = grid_with_loops();
+    for &factor in &loops.factors()[loops.factors().len() - 4..] {
+        problem.add_factor(factor);
+        let expected = optimizer.largest_move_since(&problem).unwrap();
+        let step = optimizer.step(&mut problem.clone()).unwrap().largest_step;
+        assert!((expected - step).abs() < 1e-9 * step, "{expected} {step}");
+        assert!(step > 1e-3);
+    }
+    for _ in 0..4 {
+        problem.add_factor(loops.factors()[3]);
+    }
+    assert_eq!(optimizer.largest_move_since(&problem), Ok(f64::INFINITY));
+}
+
 #[test]
 fn a_covariance_has_the_same_bits_whatever_was_asked_for_before() {
-    let whole = grid_with_tail();
+    let whole = grid_with_loops();
     let mut problem = grid(24);
+    problem.settle(problem.factors().len());
     let mut kept = Optimizer::new(Settings::default());
     let fresh = |problem: &Problem, a, b| {
         Optimizer::new(Settings::default()).joint_covariance(problem, a, b)
     };
     let new = problem.factors().len()..;
-    for (&pose, &factor) in whole.poses()[24..].iter().zip(&whole.factors()[new]) {
-        let newest = problem.add_pose(pose);
+    for &factor in &whole.factors()[new] {
+        let newest = factor.from.max(factor.to).max(problem.node_count() - 1);
+        if newest == problem.node_count() {
+            problem.add_pose(whole.poses()[newest]);
+        }
         problem.add_factor(factor);
         for old in [2, newest - 3] {
             let joint = kept.joint_covariance(&problem, old, newest);

@@ -18,6 +18,21 @@ impl BlockCholesky {
             .for_each(|number| self.solve_upper_front(number, rhs));
     }
 
+    /// Overwrites right-hand sides that stand side by side, in elimination order, with `H⁻¹` times them.
+    pub(crate) fn solve_sides<const N: usize>(&mut self, sides: &mut [[f64; N]]) {
+        const { assert!(N <= LANES, "one front has room for so many") };
+        let fronts = self.supernodes.list.len();
+        for number in 0..fronts {
+            let rows = &sides[self.supernodes.list[number].scalars()];
+            if rows.iter().flatten().any(|entry| *entry != 0.0) {
+                self.solve_lower_front(number, sides);
+            }
+        }
+        (0..fronts)
+            .rev()
+            .for_each(|number| self.solve_upper_sides(number, sides));
+    }
+
     /// `XᵀX` of `X = L⁻¹E`, where side k of E has a one in row `ones[k]`, in elimination order, or nothing.
     ///
     /// `fronts` ascend. They hold every front where a side has its one, and all ancestors of each:
@@ -81,6 +96,33 @@ impl BlockCholesky {
         }
     }
 
+    /// The columns of one front in `x ← L⁻ᵀ x`, three at a time; parents come first.
+    #[inline]
+    fn solve_upper_sides<const N: usize>(&mut self, number: usize, x: &mut [[f64; N]]) {
+        let supernode = &self.supernodes.list[number];
+        let height = 3 * supernode.height();
+        let run = supernode.scalars();
+        let (local, _) = self.local.as_chunks_mut::<N>();
+        let local = &mut local[..height];
+        local[..run.len()].copy_from_slice(&x[run.clone()]);
+        let rows = &self.supernodes.rows[supernode.rows()];
+        for (&row, values) in rows.iter().zip(local[run.len()..].chunks_exact_mut(3)) {
+            values.copy_from_slice(&x[3 * row as usize..3 * row as usize + 3]);
+        }
+        let blocks = self.values[supernode.panel()].chunks_exact(3 * height);
+        let (reciprocals, _) = self.reciprocal[run.clone()].as_chunks::<3>();
+        for (block, (columns, reciprocals)) in blocks.zip(reciprocals).enumerate().rev() {
+            let first = 3 * block;
+            let column = |k: usize| &columns[k * height + first..(k + 1) * height];
+            substitute(
+                &mut local[first..],
+                [column(0), column(1), column(2)],
+                reciprocals,
+            );
+        }
+        x[run.clone()].copy_from_slice(&local[..run.len()]);
+    }
+
     /// The columns of one front in `x ← L⁻ᵀ x`; parents come first.
     #[inline]
     fn solve_upper_front(&mut self, number: usize, x: &mut [f64]) {
@@ -100,6 +142,30 @@ impl BlockCholesky {
             local[k] = (local[k] - sum) * reciprocal;
         }
         x[run.clone()].copy_from_slice(&local[..run.len()]);
+    }
+}
+
+/// Solves for the three unknowns of a block column from those below it.
+///
+/// `x` and the columns start at the block's diagonal.
+#[inline]
+fn substitute<const N: usize>(x: &mut [[f64; N]], columns: [&[f64]; 3], reciprocals: &[f64; 3]) {
+    let [a, b, c] = columns;
+    let (head, below) = x.split_at_mut(3);
+    let mut sums = [[0.0; N]; 3];
+    let entries = a[3..].iter().zip(&b[3..]).zip(&c[3..]);
+    for (row, ((a, b), c)) in below.iter().zip(entries) {
+        for n in 0..N {
+            sums[0][n] += row[n] * a;
+            sums[1][n] += row[n] * b;
+            sums[2][n] += row[n] * c;
+        }
+    }
+    for n in 0..N {
+        let third = (head[2][n] - sums[2][n]) * reciprocals[2];
+        let second = (head[1][n] - sums[1][n] - third * b[2]) * reciprocals[1];
+        let first = (head[0][n] - sums[0][n] - second * a[1] - third * a[2]) * reciprocals[0];
+        (head[0][n], head[1][n], head[2][n]) = (first, second, third);
     }
 }
 

@@ -5,28 +5,21 @@ use nalgebra::Matrix3;
 use super::Optimizer;
 use crate::error::OptimizeError;
 use crate::factor::JacobianModel;
+use crate::growth::{Growth, GrowthStart};
 use crate::kernel::RobustKernel;
 use crate::linear::{Factorization, LinearSolver};
 use crate::marginals::JointCovariance;
 use crate::problem::Problem;
-use crate::tail::{Tail, TailStart};
-
-/// What the linear solver holds the factor of, without kernel or damping.
-#[derive(Debug)]
-pub(super) struct PlainFactor {
-    of: Problem,
-    ridge: f64,
-}
 
 impl Optimizer {
     /// Covariance blocks of two nodes at the present poses, exact to first order.
     ///
     /// The measurements count unweighted by any kernel, with their exact Jacobians. The factor is
-    /// this crate's own, whatever the settings name. It is kept while the graph only grows at its end, by
-    /// nodes with one measurement each.
+    /// this crate's own, whatever the settings name. It is kept while the poses stay and the graph grows at
+    /// its end, by nodes with one measurement each and a few that close loops.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite, as far as the two nodes depend on them.
+    /// Where the normal equations are not positive definite.
     ///
     /// # Panics
     /// Where a node does not exist.
@@ -36,12 +29,31 @@ impl Optimizer {
         first: usize,
         second: usize,
     ) -> Result<JointCovariance, OptimizeError> {
-        let start = TailStart::of(problem);
-        let tail = Tail::new(problem, start, [first, second], self.settings.ridge)?;
-        let [first, second] = tail.roots();
-        let linear = self.factorize_beginning(problem, start)?;
-        let joint = linear.joint_covariance(problem, first, second);
-        Ok(tail.joint(&joint.expect("the block factorization shows its factor")))
+        self.held.lose();
+        self.follow(problem)?;
+        let growth = self.growth.as_ref().expect("it follows the problem");
+        let linear = self.linear.as_mut().expect("it was factorized");
+        Ok(growth.joint_covariance(linear, first, second))
+    }
+
+    /// How far the farthest node would move, m and rad added, if the measurements since the poses were last moved
+    /// corrected them.
+    ///
+    /// That is to first order, without a kernel, and from poses that were the best ones then. Infinite where more
+    /// were added than are kept beside the factor.
+    ///
+    /// # Errors
+    /// Where the normal equations are not positive definite.
+    pub fn largest_move_since(&mut self, problem: &Problem) -> Result<f64, OptimizeError> {
+        self.held.lose();
+        self.follow(problem)?;
+        let growth = self.growth.as_ref().expect("it follows the problem");
+        let is_kept = growth.start().factors <= problem.settled();
+        Ok(if is_kept {
+            growth.largest_move()
+        } else {
+            f64::INFINITY
+        })
     }
 
     /// Covariance block of every node at the present poses, exact to first order; zero for fixed ones.
@@ -88,24 +100,33 @@ impl Optimizer {
         Ok(linear)
     }
 
-    /// The same of the graph before its tail, unless that is what was factorized last.
-    fn factorize_beginning(
-        &mut self,
-        problem: &Problem,
-        start: TailStart,
-    ) -> Result<&mut LinearSolver, OptimizeError> {
+    /// Makes the growth stand for that graph, at its present poses.
+    fn follow(&mut self, problem: &Problem) -> Result<(), OptimizeError> {
+        let start = GrowthStart::of(problem);
         let ridge = self.settings.ridge;
-        let is_kept = self.plain.as_ref().is_some_and(|plain| {
-            plain.ridge == ridge
-                && plain.of.node_count() == start.nodes
-                && plain.of.factors().len() == start.factors
-                && problem.begins_with(&plain.of)
-        });
-        if !is_kept {
-            let of = problem.beginning(start.nodes, start.factors);
-            self.factorize_plain(&of)?;
-            self.plain = Some(PlainFactor { of, ridge });
+        if let (Some(growth), Some(linear)) = (&mut self.growth, &mut self.linear)
+            && growth.goes_on_to(problem, start, ridge)
+            && growth.extend(problem, linear).is_ok()
+        {
+            return Ok(());
         }
-        Ok(self.linear.as_mut().expect("it was analysed"))
+        let whole = GrowthStart::whole(problem);
+        self.begin(problem, start).or_else(|error| {
+            // What is too ill conditioned to be added is a part of the beginning.
+            if start == whole {
+                return Err(error);
+            }
+            self.begin(problem, whole)
+        })
+    }
+
+    fn begin(&mut self, problem: &Problem, start: GrowthStart) -> Result<(), OptimizeError> {
+        let of = problem.beginning(start.nodes, start.factors);
+        let ridge = self.settings.ridge;
+        let linear = self.factorize_plain(&of)?;
+        let mut growth = Growth::new(of, start, ridge, linear);
+        growth.extend(problem, linear)?;
+        self.growth = Some(growth);
+        Ok(())
     }
 }
