@@ -155,15 +155,24 @@ impl LoopWorkspace {
     }
 
     /// A workspace that searches the window of ± `half_width_m`, and for other places as far as
-    /// [`LoopConfig::max_margin`].
+    /// [`LoopConfig::max_margin`]; the search is told a pose that fits, where there is one.
     #[must_use]
-    pub fn searching(loops: &LoopConfig, wide: &WideSearch, half_width_m: f64) -> Self {
+    pub fn searching(
+        loops: &LoopConfig,
+        wide: &WideSearch,
+        half_width_m: f64,
+        known: Option<SE2>,
+    ) -> Self {
         let config = SearchMatcherConfig {
             half_width_m,
             ..wide.matcher
         };
-        let matcher = SearchMatcher::new(config, &loops.submap);
-        Self::new(Box::new(matcher.with_max_margin(loops.max_margin())))
+        let mut matcher =
+            SearchMatcher::new(config, &loops.submap).with_max_margin(loops.max_margin());
+        if let Some(known) = known {
+            matcher = matcher.with_known(known);
+        }
+        Self::new(Box::new(matcher))
     }
 
     /// The submap of the last attempt in the candidate's frame.

@@ -3,6 +3,8 @@
 use core::cmp::Ordering;
 use std::sync::Arc;
 
+use pr_geom::SE2;
+
 use super::lattice::{Lattice, LatticePose, Nearness};
 use super::turned_scan::{BoxShape, TurnedScan};
 use super::{
@@ -109,6 +111,18 @@ impl ScanSearch {
     #[must_use]
     pub fn with_min_score(mut self, min_score: f64) -> Self {
         self.floor = (min_score * f64::from(self.scan.full_score())).ceil() as u32;
+        self
+    }
+
+    /// The same search, told a pose that fits: what scores less than the poses next to it need not be split.
+    ///
+    /// The answer stays the same. A pose beyond the window tells nothing.
+    #[must_use]
+    pub fn with_known(mut self, pose: &SE2) -> Self {
+        let finest = self.shapes.len() - 1;
+        let known = self.lattice.around(pose);
+        let scores = known.map(|at| self.bounded(at, finest, 0).bound);
+        self.floor = scores.fold(self.floor, u32::max);
         self
     }
 

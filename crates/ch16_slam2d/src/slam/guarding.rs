@@ -100,7 +100,8 @@ impl Slam {
     /// the graph's belief, as far as it is looked for; none where the best place is another one.
     fn lead(&self, found: &LoopVerification, half_width_m: f64) -> Option<f64> {
         let loops = self.config.loops;
-        let mut workspace = LoopWorkspace::searching(&loops, &loops.search?, half_width_m);
+        let known = Some(found.registered);
+        let mut workspace = LoopWorkspace::searching(&loops, &loops.search?, half_width_m, known);
         let wider = LoopConfig {
             detection: Detection::Visits,
             radius_m: half_width_m,

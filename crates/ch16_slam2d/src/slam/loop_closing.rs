@@ -75,7 +75,7 @@ impl Slam {
             max_rmse_m: f64::INFINITY,
             ..loops
         };
-        let mut workspace = LoopWorkspace::searching(&loops, &wide, half_width_m);
+        let mut workspace = LoopWorkspace::searching(&loops, &wide, half_width_m, None);
         let candidates = detect_visits(self.graph.poses(), node, &wider);
         for candidate in candidates.into_iter().take(wide.candidates) {
             let gate_information = self.gate_information(node, candidate.node);
