@@ -29,6 +29,7 @@ mod submap_loops;
 pub(crate) mod test_room;
 mod uncertainty;
 mod upkeep;
+mod wide_search;
 
 use std::sync::Arc;
 

@@ -37,6 +37,8 @@ pub struct WideSearch {
     pub matcher: SearchMatcherConfig,
     /// It is made once the way since the last loop is longer than this, m.
     pub min_way_m: f64,
+    /// And again after so much more of the way, m; 0: at every attempt.
+    pub every_m: f64,
     /// At most so many candidates are searched at a node.
     pub candidates: usize,
     /// A best place whose score is ahead of the best other place by less is no loop.

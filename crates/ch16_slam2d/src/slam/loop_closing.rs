@@ -1,16 +1,14 @@
 //! The back end: candidates are verified in order, and the first that passes corrects the graph.
 
 use nalgebra::{Matrix3, Vector3};
-use pr_geom::math;
 use pr_optim::OptimizeError;
 
 use super::pending::PendingFrame;
 use super::{Change, LoopAttempt, LoopClosure, LoopEffect, Slam};
 use crate::graph::EdgeKind;
 use crate::loops::{
-    Detection, GateModel, KeyframeView, LoopCandidate, LoopConfig, LoopQuery, LoopRejection,
-    LoopVerification, LoopWorkspace, detect_visits, marginal_information, path_information,
-    verify_loop,
+    GateModel, KeyframeView, LoopCandidate, LoopQuery, LoopRejection, LoopVerification,
+    marginal_information, path_information, verify_loop,
 };
 use crate::metrics::position_error_m;
 
@@ -32,7 +30,7 @@ impl Slam {
         {
             return;
         }
-        self.last_attempt_node = Some(node);
+        let last_attempt = self.last_attempt_node.replace(node);
         if self.submap_loops.is_some() {
             self.verify_on_submaps(node, pending);
             return;
@@ -50,78 +48,8 @@ impl Slam {
                 return;
             }
         }
-        self.search_widely(node, pending);
-    }
-
-    /// Searches the whole window of the drift where no candidate passed and no loop was closed for long.
-    fn search_widely(&mut self, node: usize, pending: &mut PendingFrame) {
-        let loops = self.config.loops;
-        let way_m = self.way_since_loop_m(node);
-        let Some(wide) = loops.search.filter(|wide| way_m > wide.min_way_m) else {
-            return;
-        };
-        let half_width_m = math::min(
-            loops.radius_m + loops.drift_share * way_m,
-            loops.max_radius_m,
-        );
-        let wider = LoopConfig {
-            detection: Detection::Visits,
-            radius_m: half_width_m,
-            min_gap_nodes: self
-                .nodes_since(wide.min_way_m, node)
-                .max(loops.min_gap_nodes),
-            min_score: wide.min_score,
-            // The fit is measured once the place is found.
-            max_rmse_m: f64::INFINITY,
-            ..loops
-        };
-        let mut workspace = LoopWorkspace::searching(&loops, &wide, half_width_m, None);
-        let candidates = detect_visits(self.graph.poses(), node, &wider);
-        for candidate in candidates.into_iter().take(wide.candidates) {
-            let gate_information = self.gate_information(node, candidate.node);
-            let view = KeyframeView {
-                poses: self.graph.poses(),
-                keyframes: &self.keyframes,
-            };
-            let mut verification = verify_loop(
-                view,
-                node,
-                candidate,
-                gate_information,
-                self.config.information_frame,
-                &wider,
-                &mut workspace,
-            );
-            // A window that could not be searched is left with what fits at the belief.
-            if verification.score.is_none() && verification.inliers == 0 {
-                verification.rejection = Some(LoopRejection::NoPlace {
-                    half_width_m,
-                    min_score: wide.min_score,
-                });
-            }
-            let margin = verification.margin.unwrap_or(loops.max_margin());
-            if verification.accepted() && margin < wide.min_margin {
-                verification.rejection = Some(LoopRejection::Ambiguous {
-                    margin,
-                    min_margin: wide.min_margin,
-                });
-            }
-            if verification.accepted() {
-                // The search proposes; what decides is what decides on every loop.
-                let proposal = Some(verification.registered);
-                let proposed = LoopCandidate {
-                    proposal,
-                    ..candidate
-                };
-                let decided = LoopVerification {
-                    margin: Some(margin),
-                    ..self.verify(node, proposed)
-                };
-                verification = self.guarded(decided);
-            }
-            if self.report_attempt(verification, pending) {
-                return;
-            }
+        if let Some(wide) = self.search_that_is_due(node, last_attempt) {
+            self.search_widely(node, &wide, pending);
         }
     }
 
@@ -138,18 +66,6 @@ impl Slam {
             effect: None,
         });
         is_accepted
-    }
-
-    /// Keyframes within so much of the way before a node.
-    fn nodes_since(&self, way_m: f64, node: usize) -> usize {
-        let way = &self.graph.poses()[..=node];
-        let steps = way.windows(2).rev();
-        let lengths = steps.map(|pair| position_error_m(&pair[0], &pair[1]));
-        let ways = lengths.scan(0.0, |sum_m, step_m| {
-            *sum_m += step_m;
-            Some(*sum_m)
-        });
-        ways.take_while(|sum_m| *sum_m <= way_m).count()
     }
 
     /// Length of the way of the keyframes since the last loop, m.
@@ -194,7 +110,7 @@ impl Slam {
         }
     }
 
-    fn verify(&mut self, node: usize, candidate: LoopCandidate) -> LoopVerification {
+    pub(super) fn verify(&mut self, node: usize, candidate: LoopCandidate) -> LoopVerification {
         let gate_information = self.gate_information(node, candidate.node);
         let loops = &self.config.loops;
         let view = KeyframeView {

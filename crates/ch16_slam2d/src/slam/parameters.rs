@@ -483,6 +483,12 @@ pub const PARAMETERS: &[Parameter] = &[
         |c| search(c).map(|s| Slot::from(&mut s.min_way_m))
     ),
     part!(
+        "loops.search.every_m",
+        "m",
+        "and again after so much more of it",
+        |c| search(c).map(|s| Slot::from(&mut s.every_m))
+    ),
+    part!(
         "loops.search.candidates",
         "",
         "keyframes around which it is searched",

@@ -616,18 +616,23 @@ fn loop_config(config: &mut LoopConfig, f: &mut impl Fields) {
         let WideSearch {
             matcher,
             min_way_m,
+            every_m,
             candidates,
             min_margin,
             min_score,
         } = wide.get_or_insert(WideSearch {
             matcher: SearchMatcherConfig::default(),
             min_way_m: 0.0,
+            every_m: 0.0,
             candidates: 0,
             min_margin: 0.0,
             min_score: 0.0,
         });
         search("loops.search.matcher", matcher, f);
         f.number("loops.search.min_way_m", min_way_m);
+        if f.knows("loops.search.every_m") {
+            f.number("loops.search.every_m", every_m);
+        }
         f.count("loops.search.candidates", candidates);
         f.number("loops.search.min_margin", min_margin);
         f.number("loops.search.min_score", min_score);
