@@ -275,6 +275,17 @@ impl PoseGraph {
         self.kinds.len()
     }
 
+    /// How many edges there were when a node was last moved: later ones wait for the next optimization.
+    #[must_use]
+    pub fn settled_edges(&self) -> usize {
+        self.problem.settled()
+    }
+
+    /// Says so of a graph whose nodes were moved and moved back.
+    pub fn settle(&mut self, edges: usize) {
+        self.problem.settle(edges);
+    }
+
     /// All nodes with their handles, in the order in which they were added.
     pub fn nodes(&self) -> impl ExactSizeIterator<Item = (NodeId, PoseNode)> + '_ {
         let nodes = self.problem.poses().iter().zip(self.problem.fixed());
@@ -403,6 +414,15 @@ impl PoseGraph {
             .optimizer
             .joint_covariance(&self.problem, i.index(), j.index())?;
         Ok(joint.relative(&self.pose(i), &self.pose(j)))
+    }
+
+    /// How far the farthest node would move, m and rad added, if the graph was optimized: to first order, by the
+    /// edges since it was optimized last. Infinite where those are too many.
+    ///
+    /// # Errors
+    /// Where the normal equations are not positive definite.
+    pub fn largest_move_since(&mut self) -> Result<f64, OptimizeError> {
+        self.optimizer.largest_move_since(&self.problem)
     }
 
     /// Exact covariance of every pose against the fixed ones, by node; zero for those.

@@ -146,6 +146,9 @@ pub struct SlamConfig {
     /// Jacobians of the optimizer: with the chapter's the last steps shrink by a constant factor, with
     /// exact ones by their square.
     pub jacobians: JacobianModel,
+    /// A loop that would move no node farther than this (m + rad) is an edge of the graph, and the next one that
+    /// does corrects the graph with it; 0: each does.
+    pub least_correction: f64,
     /// Most Gauss–Newton iterations after a loop.
     pub optimizer_iterations: usize,
     /// The optimizer stops where no node moves farther than this (m + rad).
@@ -216,6 +219,7 @@ impl SlamConfig {
             loops: LoopConfig::default(),
             refinement: RefinementConfig::default(),
             jacobians: JacobianModel::Chapter,
+            least_correction: 0.0,
             optimizer_iterations: 15,
             optimizer_tolerance: 1e-7,
             huber: 12.0,

@@ -1,6 +1,7 @@
 //! The back end: candidates are verified in order, and the first that passes corrects the graph.
 
 use nalgebra::{Matrix3, Vector3};
+use pr_geom::SE2;
 use pr_optim::OptimizeError;
 
 use super::pending::PendingFrame;
@@ -141,6 +142,45 @@ impl Slam {
             EdgeKind::Loop,
         );
         let chi2_before = self.graph.chi2();
+        let (iterations, correction) = if self.can_wait() {
+            (0, SE2::identity())
+        } else {
+            self.correct_graph(&poses_before)?
+        };
+        self.chi2 = self.graph.chi2();
+        self.last_loop_node = verification.from_node;
+        self.held.clear();
+        let max_shift_m = poses_before
+            .iter()
+            .zip(self.graph.poses())
+            .map(|(old, new)| position_error_m(new, old))
+            .fold(0.0, f64::max);
+        Ok(LoopEffect {
+            correction,
+            max_shift_m,
+            iterations,
+            chi2: Change {
+                before: chi2_before,
+                after: self.chi2,
+            },
+            poses_before,
+        })
+    }
+
+    /// Whether the graph is nearly where its loops would have it, so that the next one may correct it.
+    fn can_wait(&mut self) -> bool {
+        let least = self.config.least_correction;
+        let mut largest_move = || self.graph.largest_move_since();
+        least > 0.0 && largest_move().is_ok_and(|largest| largest < least)
+    }
+
+    /// Optimizes the graph with its newest edge, a loop, and takes the estimate along: the iterations, and the
+    /// newest node's pose ∘ that before, inverted.
+    ///
+    /// # Errors
+    /// Where that fails: the edge is gone then, and the nodes are where they were.
+    fn correct_graph(&mut self, poses_before: &[SE2]) -> Result<(usize, SE2), LoopRejection> {
+        let settled = self.graph.settled_edges();
         let report = self.graph.optimize_robust(
             self.config.optimizer_iterations,
             self.config.optimizer_tolerance,
@@ -167,29 +207,62 @@ impl Slam {
             for (node, pose) in poses_before.iter().enumerate() {
                 self.graph.set_pose(node, *pose);
             }
+            self.graph.settle(settled);
             return Err(rejection);
         }
         self.take_back_refuted();
-        self.chi2 = self.graph.chi2();
-        self.last_loop_node = verification.from_node;
-        self.held.clear();
-        let newest = verification.from_node;
+        let newest = poses_before.len() - 1;
         let correction = self.graph.pose(newest) * poses_before[newest].inverse();
         self.front_end.correct(&correction);
-        let max_shift_m = poses_before
-            .iter()
-            .zip(self.graph.poses())
-            .map(|(old, new)| position_error_m(new, old))
-            .fold(0.0, f64::max);
-        Ok(LoopEffect {
-            correction,
-            max_shift_m,
-            iterations: report.iterations,
-            chi2: Change {
-                before: chi2_before,
-                after: self.chi2,
-            },
-            poses_before,
-        })
+        Ok((report.iterations, correction))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::slam::SlamConfig;
+    use crate::slam::test_room::frame;
+
+    /// Three laps of a room, and the loops that were closed.
+    fn driven(least_correction: f64) -> (Slam, Vec<LoopEffect>) {
+        let mut config = SlamConfig::for_robot(&frame(0).scan);
+        config.least_correction = least_correction;
+        let mut slam = Slam::new(config);
+        let mut closed = Vec::new();
+        for step in 0..315 {
+            let report = slam.step(&frame(step)).unwrap();
+            closed.extend(report.loop_attempts.into_iter().filter_map(|a| a.effect));
+        }
+        (slam, closed)
+    }
+
+    #[test]
+    fn a_loop_that_would_hardly_move_the_map_waits_for_one_that_does() {
+        let (_, all) = driven(0.0);
+        assert!(all.iter().all(|effect| effect.iterations > 0));
+        let least = 0.02;
+        let (mut slam, some) = driven(least);
+        let waits = |effect: &&LoopEffect| effect.iterations == 0;
+        let waiting = some.iter().filter(waits).count();
+        assert!((1..some.len()).contains(&waiting), "{waiting}");
+        for effect in some.iter().filter(waits) {
+            assert_eq!(effect.correction, SE2::identity());
+            assert_eq!(effect.max_shift_m, 0.0);
+        }
+        // The graph is where it would be, but for that.
+        let before = slam.graph().poses().to_vec();
+        let waited = slam.graph().edge_count() - slam.graph().settled_edges();
+        assert!(waited > 0);
+        slam.graph_mut().optimize_robust(15, 1e-9, 12.0);
+        for (old, new) in before.iter().zip(slam.graph().poses()) {
+            // 1e-3: what is of second order in the move.
+            assert!(old.between(new).step_size() < least + 1e-3);
+        }
+        // More than seven are not kept beside a factor: the eighth corrects the map with them.
+        let (_, few) = driven(10.0);
+        let waits: Vec<bool> = few.iter().map(|effect| effect.iterations == 0).collect();
+        let runs = waits.chunk_by(|a, b| a == b).filter(|run| run[0]);
+        assert_eq!(runs.map(<[bool]>::len).max(), Some(7));
     }
 }

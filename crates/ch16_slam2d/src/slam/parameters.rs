@@ -609,6 +609,11 @@ pub const PARAMETERS: &[Parameter] = &[
         "width of the last optimization's robust cost"
     ),
     field!(
+        least_correction,
+        "",
+        "a loop that would move no keyframe farther, m and rad added, corrects the map with the next one"
+    ),
+    field!(
         optimizer_iterations,
         "",
         "steps of the optimizer after a loop"

@@ -29,7 +29,7 @@ pub struct LoopEffect {
     pub correction: SE2,
     /// Farthest that a node moved, m.
     pub max_shift_m: f64,
-    /// Iterations of the optimizer.
+    /// Iterations of the optimizer; 0 where the loop waits for one that moves the graph farther.
     pub iterations: usize,
     /// χ² of the graph with the new edge, before and after the optimization.
     pub chi2: Change,

@@ -113,6 +113,7 @@ impl SlamConfig {
                 ..default.refinement
             },
             jacobians: JacobianModel::Exact,
+            least_correction: 0.05,
             ..default
         }
     }

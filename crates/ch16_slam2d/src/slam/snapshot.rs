@@ -32,6 +32,8 @@ pub struct SlamSnapshot {
     pub nodes: Vec<PoseNode>,
     /// The graph's edges, in the order in which they were added.
     pub edges: Vec<EdgeView>,
+    /// How many edges there were when a node was last moved; later loops are yet to correct the graph.
+    pub settled_edges: usize,
     /// The keyframes in order.
     pub keyframes: Vec<Keyframe>,
     /// The newest node at which loops were looked for.
@@ -161,6 +163,9 @@ impl SlamSnapshot {
         {
             return Err(SnapshotError::Counter("newest node with a loop"));
         }
+        if self.settled_edges > self.edges.len() {
+            return Err(SnapshotError::Counter("number of settled edges"));
+        }
         for (number, held) in self.held.iter().enumerate() {
             let found = &held.verification;
             if found.from_node >= nodes || found.candidate.node >= found.from_node {
@@ -237,6 +242,7 @@ impl Slam {
             last_stamp_s: self.last_stamp_s,
             nodes: self.graph.nodes().map(|(_, node)| node).collect(),
             edges: self.graph.edges().collect(),
+            settled_edges: self.graph.settled_edges(),
             keyframes: self.keyframes.clone(),
             last_attempt_node: self.last_attempt_node,
             last_loop_node: self.last_loop_node,
@@ -286,6 +292,7 @@ impl Slam {
         slam.last_stamp_s = snapshot.last_stamp_s;
         slam.graph =
             PoseGraph::of(&snapshot.nodes, &snapshot.edges).solved_with(snapshot.config.jacobians);
+        slam.graph.settle(snapshot.settled_edges);
         slam.keyframes = snapshot.keyframes.clone();
         slam.last_attempt_node = snapshot.last_attempt_node;
         slam.last_loop_node = snapshot.last_loop_node;
@@ -298,6 +305,7 @@ impl Slam {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::graph::EdgeKind;
     use crate::loops::LoopGuard;
     use crate::slam::test_room::frame;
 
@@ -330,7 +338,7 @@ mod tests {
 
     #[test]
     fn a_run_that_is_interrupted_ends_in_the_same_bits() {
-        let mut waited = 0;
+        let (mut waited, mut unspread) = (0, 0);
         for config in configs() {
             let mut whole = Slam::new(config.clone());
             driven(&mut whole, 0..140);
@@ -339,6 +347,11 @@ mod tests {
                 let mut first = Slam::new(config.clone());
                 driven(&mut first, 0..stop);
                 waited += first.snapshot().held.len();
+                let graph = first.graph();
+                let newer = graph.edges().skip(graph.settled_edges());
+                unspread += newer
+                    .filter(|view| view.edge.kind == EdgeKind::Loop)
+                    .count();
                 let mut second = Slam::restore(&first.snapshot()).unwrap();
                 driven(&mut second, stop..140);
                 assert_eq!(second.snapshot(), whole.snapshot(), "stopped after {stop}");
@@ -346,6 +359,7 @@ mod tests {
             }
         }
         assert!(waited > 0, "no run was interrupted while a loop waited");
+        assert!(unspread > 0, "none while one was yet to correct the map");
     }
 
     #[test]
@@ -368,7 +382,7 @@ mod tests {
         let good = slam.snapshot();
         assert_eq!(good.check(), Ok(()));
         type Spoil = fn(&mut SlamSnapshot);
-        let spoils: [(Spoil, &str); 7] = [
+        let spoils: [(Spoil, &str); 8] = [
             (|s| drop(s.keyframes.pop()), "nodes have"),
             (|s| s.nodes[0].fixed = false, "no node is fixed"),
             (|s| s.edges[0].to = 999.into(), "edge 0 ties node 0 to 999"),
@@ -377,6 +391,7 @@ mod tests {
                 "node 1 holds",
             ),
             (|s| s.last_loop_node = 999, "newest node with a loop"),
+            (|s| s.settled_edges = 999, "number of settled edges"),
             (|s| drop(s.front_end.scans.pop()), "window of sweeps"),
             (
                 |s| s.front_end.driven[(0, 0)] = f64::INFINITY,

@@ -207,6 +207,7 @@ fn slam(config: &mut SlamConfig, f: &mut impl Fields) {
         loops,
         refinement,
         jacobians,
+        least_correction,
         optimizer_iterations,
         optimizer_tolerance,
         huber,
@@ -282,6 +283,9 @@ fn slam(config: &mut SlamConfig, f: &mut impl Fields) {
     ];
     if f.knows("jacobians") {
         choose(f, "jacobians", jacobians, &models);
+    }
+    if f.knows("least_correction") {
+        f.number("least_correction", least_correction);
     }
     f.count("optimizer_iterations", optimizer_iterations);
     f.number("optimizer_tolerance", optimizer_tolerance);

@@ -62,6 +62,7 @@ pub fn write(session: &Session, out: &mut Writer) {
         out.f64(driven.last_stamp_s);
         out.maybe(driven.last_attempt_node, Writer::count);
         out.count(driven.last_loop_node);
+        out.count(driven.settled_edges);
     });
     out.section(b"NODE", |out| {
         out.count(driven.nodes.len());
@@ -140,13 +141,19 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
     let (sensor, last_odometry) = from.section(b"SENS", |from| {
         Ok((from.maybe(read_sensor)?, from.maybe(Cursor::pose)?))
     })?;
-    let (frames, last_stamp_s, last_attempt_node, last_loop_node) =
+    let (frames, last_stamp_s, last_attempt_node, last_loop_node, settled_edges) =
         from.section(b"STAT", |from| {
             Ok((
                 read_number(from)?,
                 from.f64()?,
                 from.maybe(|from| Ok(from.u32()? as usize))?,
                 from.u32()? as usize,
+                // Every loop corrected the graph at once before this was written.
+                if from.left() > 0 {
+                    Some(from.u32()? as usize)
+                } else {
+                    None
+                },
             ))
         })?;
     let places = from.section(b"NODE", |from| {
@@ -233,6 +240,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
             frames,
             last_stamp_s,
             nodes: places.into_iter().map(|(node, ..)| node).collect(),
+            settled_edges: settled_edges.unwrap_or(edges.len()),
             edges,
             keyframes,
             last_attempt_node,

@@ -212,6 +212,51 @@ fn scans_of_another_make_keep_their_normals_and_crowded_ones_are_thinned() {
     }
 }
 
+/// The file with other content in a section.
+fn with_section(bytes: &[u8], name: &[u8; 4], change: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
+    let at = bytes.windows(4).position(|four| four == name).unwrap() + 4;
+    let length = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
+    let (start, end) = (at + 8, at + 8 + length(at));
+    let content = change(&bytes[start..end]);
+    let all = length(HEAD_BYTES - 8) + content.len() - (end - start);
+    let mut file = bytes[..HEAD_BYTES - 8].to_vec();
+    file.extend_from_slice(&(all as u64).to_le_bytes());
+    file.extend_from_slice(&bytes[HEAD_BYTES..at]);
+    file.extend_from_slice(&(content.len() as u64).to_le_bytes());
+    file.extend_from_slice(&content);
+    file.extend_from_slice(&bytes[end..]);
+    signed(file)
+}
+
+#[test]
+fn a_session_of_an_older_program_goes_on_as_it_was() {
+    let bytes = saved(&run(120, 0..200));
+    // Loops corrected the map at once, and nothing was said of it.
+    let older = with_section(&bytes, b"STAT", |stat| stat[..stat.len() - 4].to_vec());
+    let older = with_section(&older, b"CONF", |text| {
+        let text = core::str::from_utf8(text).unwrap();
+        let lines = text
+            .lines()
+            .filter(|line| !line.starts_with("least_correction"));
+        lines
+            .flat_map(|line| [line, "\n"])
+            .collect::<String>()
+            .into_bytes()
+    });
+    assert!(older.len() < bytes.len());
+    let session = Session::of_bytes(&older, "x").unwrap();
+    let newer = Session::of_bytes(&bytes, "x").unwrap();
+    assert_eq!(session.driven.config.least_correction, 0.0);
+    assert_eq!(session.driven.settled_edges, session.driven.edges.len());
+    let mut expected = newer.driven;
+    expected.config.least_correction = 0.0;
+    expected.settled_edges = expected.edges.len();
+    assert_eq!(session.driven, expected);
+    let mut going_on = LogRun::resume(&session, OdometryUse::Log).unwrap();
+    go_on(&mut going_on, 120, 200..230);
+    assert_eq!(going_on.scans(), 30);
+}
+
 #[test]
 fn every_byte_counts_and_so_does_every_length() {
     let bytes = saved(&run(40, 0..12));
