@@ -252,6 +252,8 @@ fn a_measurement_that_knows_far_more_than_the_graph_is_a_part_of_the_factor() {
             .relative(&problem.poses()[3], &problem.poses()[28])
     };
     let known = relative(&problem);
+    let far = Optimizer::new(Settings::default()).largest_move_since(&problem);
+    assert_eq!(far, Ok(f64::INFINITY), "nobody can say");
     problem.settle(problem.factors().len());
     assert_eq!(known, relative(&problem));
     // What is not positive definite is told where it is added, as it is where it is factorized.

@@ -106,6 +106,11 @@ impl PoseGraph {
         }
         let mut graph = Self::of(&nodes, &edges);
         graph.optimizer.settings = self.optimizer.settings;
+        // A loop that is yet to correct the graph may be a part of any edge now.
+        let newer = &self.kinds[self.settled_edges()..];
+        if newer.iter().all(|kind| *kind == EdgeKind::Odometry) {
+            graph.settle(graph.edge_count());
+        }
         *self = graph;
         Ok(Marginalized {
             neighbours: spokes.len(),
@@ -334,6 +339,19 @@ mod tests {
         graph.add_edge(0, 2, around, omega, EdgeKind::Loop);
         graph.optimize(20, 1e-12);
         graph
+    }
+
+    #[test]
+    fn a_loop_that_is_yet_to_correct_the_graph_does_so_when_a_node_is_gone() {
+        let mut corrected = graph();
+        corrected.marginalize(1).unwrap();
+        assert_eq!(corrected.settled_edges(), corrected.edge_count());
+        let mut waiting = graph();
+        let seen = waiting.pose(0).between(&waiting.pose(3)) * SE2::new(0.0, 0.02, 0.0);
+        let omega = information(250.0, 350.0, 900.0);
+        waiting.add_edge(0, 3, seen, omega, EdgeKind::Loop);
+        waiting.marginalize(1).unwrap();
+        assert_eq!(waiting.settled_edges(), 0);
     }
 
     #[test]

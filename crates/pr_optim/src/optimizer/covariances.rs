@@ -45,14 +45,18 @@ impl Optimizer {
     /// # Errors
     /// Where the normal equations are not positive definite.
     pub fn largest_move_since(&mut self, problem: &Problem) -> Result<f64, OptimizeError> {
+        let is_later = |start: GrowthStart| start.factors > problem.settled();
+        if is_later(GrowthStart::of(problem)) {
+            return Ok(f64::INFINITY);
+        }
         self.held.lose();
         self.follow(problem)?;
         let growth = self.growth.as_ref().expect("it follows the problem");
-        let is_kept = growth.start().factors <= problem.settled();
-        Ok(if is_kept {
-            growth.largest_move()
-        } else {
+        // Where a loop cannot be added, all of the graph is the beginning.
+        Ok(if is_later(growth.start()) {
             f64::INFINITY
+        } else {
+            growth.largest_move()
         })
     }
 
