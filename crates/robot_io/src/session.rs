@@ -139,7 +139,8 @@ impl Session {
     pub fn graph(&self) -> PoseGraph {
         let jacobians = self.driven.config.jacobians;
         let Some(mapped) = &self.mapped else {
-            let graph = PoseGraph::of(&self.driven.nodes, &self.driven.edges);
+            let mut graph = PoseGraph::of(&self.driven.nodes, &self.driven.edges);
+            graph.settle(self.driven.settled_edges);
             return graph.solved_with(jacobians);
         };
         let poses = self.driven.nodes.iter().zip(&mapped.poses);
@@ -148,7 +149,10 @@ impl Session {
             .collect();
         let edges = self.driven.edges.iter();
         let driven = edges.filter(|view| view.edge.kind == EdgeKind::Odometry);
-        PoseGraph::of(&nodes, driven.chain(&mapped.loops)).solved_with(jacobians)
+        let mut graph = PoseGraph::of(&nodes, driven.chain(&mapped.loops));
+        // The map was optimized after its last loop.
+        graph.settle(graph.edge_count());
+        graph.solved_with(jacobians)
     }
 
     /// The scans of the keyframes with their poses, as rays from the sensor to what it saw.
@@ -290,6 +294,7 @@ impl Session {
                 .map(|(node, &pose)| PoseNode { pose, ..*node })
                 .collect(),
             edges: mapped.loops.clone(),
+            settled_edges: mapped.loops.len(),
             ..self.driven.clone()
         };
         as_driven

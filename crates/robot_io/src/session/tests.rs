@@ -308,6 +308,19 @@ fn bytes_that_nobody_wrote_are_a_sentence_or_a_session_that_can_be_used() {
 }
 
 #[test]
+fn a_map_may_have_lost_every_loop_that_was_driven() {
+    let mut run = run(120, 0..200);
+    run.finish();
+    let mut session = run.session().unwrap();
+    let mapped = session.mapped.as_mut().unwrap();
+    mapped.loops.clear();
+    session.driven.settled_edges = session.driven.edges.len();
+    let read = Session::of_bytes(&session.to_bytes(), "x").unwrap();
+    assert_eq!(read, session);
+    assert_eq!(read.graph().settled_edges(), read.graph().edge_count());
+}
+
+#[test]
 fn what_no_run_can_have_left_is_refused() {
     let good = run(40, 0..12).session().unwrap();
     let refused = |change: &dyn Fn(&mut Session), said: &str| {
