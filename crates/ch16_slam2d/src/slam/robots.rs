@@ -94,7 +94,7 @@ impl SlamConfig {
                         ..SearchMatcherConfig::default()
                     },
                     min_way_m: 20.0,
-                    every_m: 5.0,
+                    every_m: 4.0,
                     candidates: 1,
                     min_margin: 0.05,
                     min_score: 0.75,
