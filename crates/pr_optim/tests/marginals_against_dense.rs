@@ -171,25 +171,28 @@ fn grid_with_tail() -> Problem {
     problem
 }
 
-#[test]
-fn behind_the_last_loop_covariances_follow_from_those_before_it() {
-    let problem = grid_with_tail();
-    let nodes = problem.node_count();
-    let dense = dense_covariance(&problem);
+/// The blocks of all pairs, one after the other, against the dense inverse.
+fn assert_that_every_pair_equals_the_dense_inverse(problem: &Problem) {
+    let dense = dense_covariance(problem);
     let block = |a: usize, b: usize| dense.fixed_view::<3, 3>(3 * a, 3 * b).into_owned();
     let mut optimizer = Optimizer::new(Settings {
         ridge: 0.0,
         ..Settings::default()
     });
-    for a in 0..nodes {
-        for b in 0..nodes {
-            let joint = optimizer.joint_covariance(&problem, a, b).unwrap();
+    for a in 0..problem.node_count() {
+        for b in 0..problem.node_count() {
+            let joint = optimizer.joint_covariance(problem, a, b).unwrap();
             // 1e-10: as above.
             assert!((joint.first - block(a, a)).amax() < 1e-10, "{a} {b}");
             assert!((joint.cross - block(a, b)).amax() < 1e-10, "{a} {b}");
             assert!((joint.second - block(b, b)).amax() < 1e-10, "{a} {b}");
         }
     }
+}
+
+#[test]
+fn behind_the_last_loop_covariances_follow_from_those_before_it() {
+    assert_that_every_pair_equals_the_dense_inverse(&grid_with_tail());
 }
 
 /// The same, and loops from its end, one of them between nodes that were there long before.
@@ -215,21 +218,7 @@ fn loops_that_were_closed_since_are_taken_off_the_covariances_before() {
     // Some of its loops belong to the beginning, and the last ones, and those of the grid's end, do not.
     for settled in [0, 31, problem.factors().len() - 4, problem.factors().len()] {
         problem.settle(settled);
-        let dense = dense_covariance(&problem);
-        let block = |a: usize, b: usize| dense.fixed_view::<3, 3>(3 * a, 3 * b).into_owned();
-        let mut optimizer = Optimizer::new(Settings {
-            ridge: 0.0,
-            ..Settings::default()
-        });
-        for a in 0..problem.node_count() {
-            for b in 0..problem.node_count() {
-                let joint = optimizer.joint_covariance(&problem, a, b).unwrap();
-                // 1e-10: as above.
-                assert!((joint.first - block(a, a)).amax() < 1e-10, "{a} {b}");
-                assert!((joint.cross - block(a, b)).amax() < 1e-10, "{a} {b}");
-                assert!((joint.second - block(b, b)).amax() < 1e-10, "{a} {b}");
-            }
-        }
+        assert_that_every_pair_equals_the_dense_inverse(&problem);
     }
 }
 
