@@ -94,7 +94,7 @@ impl LapTrace {
     }
 }
 
-/// The graph with these poses, the first of them fixed.
+/// The graph with these poses, the first of them fixed; a lap's estimator corrects it with every loop.
 pub(super) fn graph_of<'a>(
     poses: &[SE2],
     edges: impl Iterator<Item = &'a RecordedEdge>,
@@ -115,6 +115,7 @@ pub(super) fn graph_of<'a>(
             edge.kind,
         );
     }
+    graph.settle(graph.edge_count());
     graph
 }
 
@@ -147,8 +148,6 @@ mod tests {
             let loop_ = &attempt.verification;
             let (old, new) = (loop_.candidate.node, loop_.from_node);
             let mut graph = lap.graph_before(attempt);
-            // The chapter's estimator corrects its graph with every loop.
-            graph.settle(graph.edge_count());
             assert_eq!(graph.pose(old).between(&graph.pose(new)), loop_.belief);
             assert_eq!(
                 marginal_information(&mut graph, old, new),
