@@ -229,9 +229,14 @@ impl SE2 {
     /// Size of the motion as the chapter measures steps: `‖(v_x, v_y)‖ + |ω|` of its log.
     #[must_use]
     pub fn step_size(&self) -> f64 {
-        let twist = self.log();
-        math::norm2(twist.x, twist.y) + twist.z.abs()
+        twist_size(&self.log())
     }
+}
+
+/// Size of a tangent vector as the chapter measures steps: `‖(v_x, v_y)‖ + |ω|`, m and rad added.
+#[must_use]
+pub fn twist_size(twist: &Vector3<f64>) -> f64 {
+    math::norm2(twist.x, twist.y) + twist.z.abs()
 }
 
 impl Mul for SE2 {

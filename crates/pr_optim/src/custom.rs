@@ -5,7 +5,7 @@
 //! Nothing is damped, no kernel weighs, and no step is taken back.
 
 use nalgebra::{Matrix3, Vector3};
-use pr_geom::math;
+use pr_geom::twist_size;
 
 use crate::error::OptimizeError;
 use crate::factor::{Between, Jacobians, PreparedPose};
@@ -79,8 +79,7 @@ impl CustomGaussNewton {
             let k = 3 * linear.structure().position_of[node] as usize;
             Vector3::new(self.delta[k], self.delta[k + 1], self.delta[k + 2])
         };
-        let size = |step: Vector3<f64>| math::norm2(step.x, step.y) + step.z.abs();
-        let sizes = (0..poses.len()).map(|node| size(step_of(node)));
+        let sizes = (0..poses.len()).map(|node| twist_size(&step_of(node)));
         let largest_step = sizes.fold(0.0, |largest, size| {
             // `max` would drop a NaN.
             if size > largest || size.is_nan() {

@@ -18,7 +18,7 @@ mod start;
 mod tail;
 
 use nalgebra::Vector3;
-use pr_geom::math;
+use pr_geom::{math, twist_size};
 
 use crate::error::OptimizeError;
 use crate::linear::LinearSolver;
@@ -125,7 +125,7 @@ impl Growth {
         for closing in &self.closings {
             closing.correct(&mut moves);
         }
-        let sizes = moves.iter().map(|v| math::norm2(v.x, v.y) + v.z.abs());
+        let sizes = moves.iter().map(twist_size);
         sizes.fold(0.0, math::max)
     }
 

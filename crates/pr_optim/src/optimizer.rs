@@ -16,7 +16,7 @@ mod covariances;
 mod held_factor;
 
 use nalgebra::Vector3;
-use pr_geom::{SE2, math};
+use pr_geom::{SE2, twist_size};
 
 use crate::best::BestPoses;
 use crate::damping::{DAMPING_LIMIT, Damping};
@@ -333,7 +333,7 @@ fn move_poses(
     for (pose, &position) in poses.iter().zip(&structure.position_of) {
         let k = 3 * position as usize;
         let step = Vector3::new(delta[k], delta[k + 1], delta[k + 2]);
-        let size = math::norm2(step.x, step.y) + step.z.abs();
+        let size = twist_size(&step);
         // `max` would drop a NaN.
         if size > largest || size.is_nan() {
             largest = size;

@@ -1,7 +1,7 @@
 //! A scan that moves uphill on a field.
 
 use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
-use pr_geom::{SE2, math, wrap_angle};
+use pr_geom::{SE2, math, twist_size, wrap_angle};
 
 use crate::cloud::PointCloud;
 use crate::scan::is_finite;
@@ -207,7 +207,7 @@ impl<'a, F: PointScores> ScanClimb<'a, F> {
         let there = self.ascent(&pose);
         let is_uphill = there.value > self.here.value && is_finite(&pose);
         if is_uphill {
-            let length = math::norm2(delta.x, delta.y) + delta.z.abs();
+            let length = twist_size(&delta);
             (self.pose, self.here) = (pose, there);
             self.damping = math::max(self.damping * BOLDER, 1e-9);
             if length < self.config.tolerance {
@@ -215,7 +215,7 @@ impl<'a, F: PointScores> ScanClimb<'a, F> {
             }
         } else {
             self.damping *= HARDER;
-            let length = math::norm2(delta.x, delta.y) + delta.z.abs();
+            let length = twist_size(&delta);
             if self.damping > MOST_DAMPING || length < self.config.tolerance {
                 self.stop = Some(ClimbStop::Summit);
             }

@@ -167,11 +167,9 @@ impl LoopWorkspace {
             half_width_m,
             ..wide.matcher
         };
-        let mut matcher =
-            SearchMatcher::new(config, &loops.submap).with_max_margin(loops.max_margin());
-        if let Some(known) = known {
-            matcher = matcher.with_known(known);
-        }
+        let matcher = SearchMatcher::new(config, &loops.submap)
+            .with_max_margin(loops.max_margin())
+            .with_known(known);
         Self::new(Box::new(matcher))
     }
 

@@ -84,10 +84,10 @@ impl SearchMatcher {
         self
     }
 
-    /// The same matcher, told a pose that fits: it finds the same, with less work.
+    /// The same matcher, told a pose that fits, where there is one: it finds the same, with less work.
     #[must_use]
-    pub fn with_known(mut self, known: SE2) -> Self {
-        self.known = Some(known);
+    pub fn with_known(mut self, known: Option<SE2>) -> Self {
+        self.known = known;
         self
     }
 

@@ -1,7 +1,7 @@
 //! Registration on an NDT map: damped Gauss–Newton on the negative score.
 
 use nalgebra::{Matrix3, Vector3};
-use pr_geom::{Rotation, SE2, math};
+use pr_geom::{Rotation, SE2, twist_size};
 
 use super::NdtMap;
 use crate::cloud::PointCloud;
@@ -183,7 +183,7 @@ impl<'a> NdtAlign<'a> {
         let at_pose = self.slope.take();
         let Slope { gradient, hessian } =
             at_pose.unwrap_or_else(|| score_with_slope(self.cloud, self.map, &self.pose).1);
-        let size = math::norm2(gradient.x, gradient.y) + gradient.z.abs();
+        let size = twist_size(&gradient);
         if size < tolerance {
             return Some(NdtStop::SmallGradient {
                 gradient: size,

@@ -3,6 +3,7 @@
 //! Source: Davis, "Direct Methods for Sparse Linear Systems", 2006, chapter 3.
 
 use super::BlockCholesky;
+use crate::supernodes::{Supernode, Supernodes};
 
 /// Right-hand sides that are solved side by side: the columns of two nodes.
 pub(super) const LANES: usize = 6;
@@ -15,7 +16,7 @@ impl BlockCholesky {
         (0..fronts).for_each(|number| self.solve_lower_front(number, lanes));
         (0..fronts)
             .rev()
-            .for_each(|number| self.solve_upper_front(number, rhs));
+            .for_each(|number| self.solve_upper_front(number, lanes));
     }
 
     /// Overwrites right-hand sides that stand side by side, in elimination order, with `H⁻¹` times them.
@@ -104,11 +105,7 @@ impl BlockCholesky {
         let run = supernode.scalars();
         let (local, _) = self.local.as_chunks_mut::<N>();
         let local = &mut local[..height];
-        local[..run.len()].copy_from_slice(&x[run.clone()]);
-        let rows = &self.supernodes.rows[supernode.rows()];
-        for (&row, values) in rows.iter().zip(local[run.len()..].chunks_exact_mut(3)) {
-            values.copy_from_slice(&x[3 * row as usize..3 * row as usize + 3]);
-        }
+        self.supernodes.gather(supernode, x, local);
         let blocks = self.values[supernode.panel()].chunks_exact(3 * height);
         let (reciprocals, _) = self.reciprocal[run.clone()].as_chunks::<3>();
         for (block, (columns, reciprocals)) in blocks.zip(reciprocals).enumerate().rev() {
@@ -125,23 +122,40 @@ impl BlockCholesky {
 
     /// The columns of one front in `x ← L⁻ᵀ x`; parents come first.
     #[inline]
-    fn solve_upper_front(&mut self, number: usize, x: &mut [f64]) {
+    fn solve_upper_front(&mut self, number: usize, x: &mut [[f64; 1]]) {
         let supernode = &self.supernodes.list[number];
         let height = 3 * supernode.height();
         let run = supernode.scalars();
-        let local = &mut self.local[..height];
-        local[..run.len()].copy_from_slice(&x[run.clone()]);
-        let rows = &self.supernodes.rows[supernode.rows()];
-        for (&row, values) in rows.iter().zip(local[run.len()..].chunks_exact_mut(3)) {
-            values.copy_from_slice(&x[3 * row as usize..3 * row as usize + 3]);
-        }
+        let (local, _) = self.local.as_chunks_mut::<1>();
+        let local = &mut local[..height];
+        self.supernodes.gather(supernode, x, local);
+        let local = local.as_flattened_mut();
         let columns = self.values[supernode.panel()].chunks_exact(height);
         let reciprocal = &self.reciprocal[run.clone()];
         for (k, (column, reciprocal)) in columns.zip(reciprocal).enumerate().rev() {
             let sum = dot(&local[k + 1..], &column[k + 1..]);
             local[k] = (local[k] - sum) * reciprocal;
         }
-        x[run.clone()].copy_from_slice(&local[..run.len()]);
+        let (solved, _) = local[..run.len()].as_chunks::<1>();
+        x[run].copy_from_slice(solved);
+    }
+}
+
+impl Supernodes {
+    /// The rows of `x` that a front has: its own, then those below.
+    #[inline]
+    fn gather<const N: usize>(
+        &self,
+        supernode: &Supernode,
+        x: &[[f64; N]],
+        local: &mut [[f64; N]],
+    ) {
+        let (own, below) = local.split_at_mut(supernode.scalars().len());
+        own.copy_from_slice(&x[supernode.scalars()]);
+        let rows = &self.rows[supernode.rows()];
+        for (&row, values) in rows.iter().zip(below.chunks_exact_mut(3)) {
+            values.copy_from_slice(&x[3 * row as usize..3 * row as usize + 3]);
+        }
     }
 }
 

@@ -30,7 +30,7 @@ impl Optimizer {
         second: usize,
     ) -> Result<JointCovariance, OptimizeError> {
         self.held.lose();
-        self.follow(problem)?;
+        self.follow(problem, GrowthStart::of(problem))?;
         let growth = self.growth.as_ref().expect("it follows the problem");
         let linear = self.linear.as_mut().expect("it was factorized");
         Ok(growth.joint_covariance(linear, first, second))
@@ -46,11 +46,12 @@ impl Optimizer {
     /// Where the normal equations are not positive definite.
     pub fn largest_move_since(&mut self, problem: &Problem) -> Result<f64, OptimizeError> {
         let is_later = |start: GrowthStart| start.factors > problem.settled();
-        if is_later(GrowthStart::of(problem)) {
+        let start = GrowthStart::of(problem);
+        if is_later(start) {
             return Ok(f64::INFINITY);
         }
         self.held.lose();
-        self.follow(problem)?;
+        self.follow(problem, start)?;
         let growth = self.growth.as_ref().expect("it follows the problem");
         // Where a loop cannot be added, all of the graph is the beginning.
         Ok(if is_later(growth.start()) {
@@ -104,9 +105,8 @@ impl Optimizer {
         Ok(linear)
     }
 
-    /// Makes the growth stand for that graph, at its present poses.
-    fn follow(&mut self, problem: &Problem) -> Result<(), OptimizeError> {
-        let start = GrowthStart::of(problem);
+    /// Makes the growth stand for that graph, at its present poses, from that beginning on.
+    fn follow(&mut self, problem: &Problem, start: GrowthStart) -> Result<(), OptimizeError> {
         let ridge = self.settings.ridge;
         if let (Some(growth), Some(linear)) = (&mut self.growth, &mut self.linear)
             && growth.goes_on_to(problem, start, ridge)

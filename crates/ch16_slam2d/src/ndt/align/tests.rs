@@ -1,4 +1,5 @@
 use nalgebra::Point2;
+use pr_geom::math;
 
 use super::*;
 use crate::cloud::cell_index;
