@@ -66,6 +66,8 @@ pub struct Slam {
     last_attempt_node: Option<usize>,
     /// The newest node at which a loop was closed; the first before any was.
     last_loop_node: usize,
+    /// The newest node at which the window of the drift was searched.
+    last_search_node: Option<usize>,
     /// Loops that wait for others, in order.
     held: Vec<HeldLoop>,
     detector: Box<dyn LoopDetector>,
@@ -101,6 +103,7 @@ impl Slam {
             last_stamp_s: f64::NEG_INFINITY,
             last_attempt_node: None,
             last_loop_node: 0,
+            last_search_node: None,
             held: Vec::new(),
             chi2: 0.0,
             config,

@@ -277,6 +277,11 @@ impl LogRun {
             return true;
         }
         self.links = refinement.links().to_vec();
+        self.loops
+            .extend(refinement.searched().map(|searched| TriedLoop {
+                verification: *searched,
+                accepted: false,
+            }));
         if let Some(found) = refinement.concluded() {
             let is_it = |tried: &&mut TriedLoop| {
                 let waited = &tried.verification;

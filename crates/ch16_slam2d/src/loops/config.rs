@@ -37,7 +37,7 @@ pub struct WideSearch {
     pub matcher: SearchMatcherConfig,
     /// It is made once the way since the last loop is longer than this, m.
     pub min_way_m: f64,
-    /// And again after so much more of the way, m; 0: at every attempt.
+    /// And again so much of the way after the last one, m; 0: at every attempt.
     pub every_m: f64,
     /// At most so many candidates are searched at a node.
     pub candidates: usize,
@@ -120,7 +120,7 @@ impl LoopConfig {
     pub fn max_margin(&self) -> f64 {
         let search = self.search.map_or(0.0, |search| search.min_margin);
         let guard = self.guard.map_or(0.0, |guard| guard.min_margin);
-        3.0 * math::max(search, guard)
+        2.0 * math::max(search, guard)
     }
 }
 

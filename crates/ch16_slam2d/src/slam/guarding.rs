@@ -198,8 +198,14 @@ impl Slam {
         Ok(guard.expected(&marginal, drift_m))
     }
 
-    /// At the end: closes what still waits, where most of it agrees.
-    pub(super) fn conclude(&mut self) -> Option<LoopVerification> {
+    /// At the end: closes what the last search found, or what still waits, where most of it agrees.
+    pub(super) fn conclude(
+        &mut self,
+        searched: Option<LoopVerification>,
+    ) -> Option<LoopVerification> {
+        if let Some(found) = searched.filter(LoopVerification::accepted) {
+            return self.optimize_with(&found).is_ok().then_some(found);
+        }
         let guard = self.config.loops.guard?;
         let held = core::mem::take(&mut self.held);
         let mut best: Vec<HeldLoop> = Vec::new();

@@ -31,7 +31,7 @@ impl Slam {
         {
             return;
         }
-        let last_attempt = self.last_attempt_node.replace(node);
+        self.last_attempt_node = Some(node);
         if self.submap_loops.is_some() {
             self.verify_on_submaps(node, pending);
             return;
@@ -49,7 +49,7 @@ impl Slam {
                 return;
             }
         }
-        if let Some(wide) = self.search_that_is_due(node, last_attempt) {
+        if let Some(wide) = self.search_that_is_due(node) {
             self.search_widely(node, &wide, pending);
         }
     }

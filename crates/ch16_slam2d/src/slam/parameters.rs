@@ -485,7 +485,7 @@ pub const PARAMETERS: &[Parameter] = &[
     part!(
         "loops.search.every_m",
         "m",
-        "and again after so much more of it",
+        "and again so far after the last search",
         |c| search(c).map(|s| Slot::from(&mut s.every_m))
     ),
     part!(

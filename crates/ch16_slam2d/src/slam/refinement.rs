@@ -61,6 +61,7 @@ pub struct Refinement {
     pass: usize,
     node: usize,
     links: Vec<LoopVerification>,
+    searched: Option<LoopVerification>,
     concluded: Option<LoopVerification>,
     workspace: LoopWorkspace,
 }
@@ -72,7 +73,13 @@ impl Refinement {
         &self.links
     }
 
-    /// The loop that waited for others to the end, and was closed then.
+    /// What was found for the newest keyframe where no loop had been closed for long, accepted or not.
+    #[must_use]
+    pub fn searched(&self) -> Option<&LoopVerification> {
+        self.searched.as_ref()
+    }
+
+    /// The loop that was found last, or waited for others to the end, and was closed then.
     #[must_use]
     pub fn concluded(&self) -> Option<&LoopVerification> {
         self.concluded.as_ref()
@@ -88,7 +95,8 @@ impl Slam {
             return false;
         }
         if refinement.pass == 0 && refinement.node == 0 {
-            refinement.concluded = self.conclude();
+            refinement.searched = self.search_at_the_end();
+            refinement.concluded = self.conclude(refinement.searched);
         }
         if refinement.node == 0 {
             refinement.links.clear();
@@ -112,6 +120,7 @@ impl Slam {
             pass: 0,
             node: 0,
             links: Vec::new(),
+            searched: None,
             concluded: None,
             workspace: LoopWorkspace::new(matcher.build(&self.config.loops.submap)),
         }

@@ -40,6 +40,8 @@ pub struct SlamSnapshot {
     pub last_attempt_node: Option<usize>,
     /// The newest node at which a loop was closed.
     pub last_loop_node: usize,
+    /// The newest node at which the window of the drift was searched.
+    pub last_search_node: Option<usize>,
     /// The loops that wait for others, in order.
     pub held: Vec<HeldLoop>,
     /// Estimate, window and threshold.
@@ -158,9 +160,12 @@ impl SlamSnapshot {
             }
         }
         let is_node = |node: usize| node < nodes || (node == 0 && nodes == 0);
-        if self.last_attempt_node.is_some_and(|node| !is_node(node))
-            || !is_node(self.last_loop_node)
-        {
+        let newest = [
+            self.last_attempt_node,
+            Some(self.last_loop_node),
+            self.last_search_node,
+        ];
+        if !newest.into_iter().flatten().all(is_node) {
             return Err(SnapshotError::Counter("newest node with a loop"));
         }
         if self.settled_edges > self.edges.len() {
@@ -246,6 +251,7 @@ impl Slam {
             keyframes: self.keyframes.clone(),
             last_attempt_node: self.last_attempt_node,
             last_loop_node: self.last_loop_node,
+            last_search_node: self.last_search_node,
             held: self.held.clone(),
             front_end: self.front_end.snapshot(),
         }
@@ -296,6 +302,7 @@ impl Slam {
         slam.keyframes = snapshot.keyframes.clone();
         slam.last_attempt_node = snapshot.last_attempt_node;
         slam.last_loop_node = snapshot.last_loop_node;
+        slam.last_search_node = snapshot.last_search_node;
         slam.held = snapshot.held.clone();
         slam.chi2 = slam.graph.chi2();
         Ok(slam)
@@ -382,7 +389,7 @@ mod tests {
         let good = slam.snapshot();
         assert_eq!(good.check(), Ok(()));
         type Spoil = fn(&mut SlamSnapshot);
-        let spoils: [(Spoil, &str); 8] = [
+        let spoils: [(Spoil, &str); 9] = [
             (|s| drop(s.keyframes.pop()), "nodes have"),
             (|s| s.nodes[0].fixed = false, "no node is fixed"),
             (|s| s.edges[0].to = 999.into(), "edge 0 ties node 0 to 999"),
@@ -391,6 +398,10 @@ mod tests {
                 "node 1 holds",
             ),
             (|s| s.last_loop_node = 999, "newest node with a loop"),
+            (
+                |s| s.last_search_node = Some(999),
+                "newest node with a loop",
+            ),
             (|s| s.settled_edges = 999, "number of settled edges"),
             (|s| drop(s.front_end.scans.pop()), "window of sweeps"),
             (

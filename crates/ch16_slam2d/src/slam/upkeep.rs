@@ -236,6 +236,7 @@ impl Slam {
         let moved_up = |known: usize| known - usize::from(known > node);
         self.last_attempt_node = self.last_attempt_node.map(moved_up);
         self.last_loop_node = moved_up(self.last_loop_node);
+        self.last_search_node = self.last_search_node.map(moved_up);
         self.held.retain(|held| {
             let found = &held.verification;
             found.from_node != node && found.candidate.node != node

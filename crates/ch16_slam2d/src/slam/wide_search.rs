@@ -11,21 +11,13 @@ use crate::loops::{
 use crate::metrics::position_error_m;
 
 impl Slam {
-    /// The search of the window, where no loop was closed for long and the last attempt had a smaller window.
-    pub(super) fn search_that_is_due(
-        &self,
-        node: usize,
-        last_attempt: Option<usize>,
-    ) -> Option<WideSearch> {
+    /// The search of the window, where no loop was closed for long and the last search was made so long ago.
+    pub(super) fn search_that_is_due(&self, node: usize) -> Option<WideSearch> {
         let wide = self.config.loops.search?;
-        let beyond_m = |node: usize| self.way_since_loop_m(node) - wide.min_way_m;
-        if beyond_m(node) <= 0.0 {
-            return None;
-        }
-        let window = |node: usize| (beyond_m(node) / wide.every_m).ceil();
-        let last_attempt = last_attempt.filter(|last| *last > self.last_loop_node);
-        let is_same = last_attempt.is_some_and(|last| window(last) == window(node));
-        (wide.every_m == 0.0 || !is_same).then_some(wide)
+        let is_long_ago = |last: usize| self.way_between_m(last, node) >= wide.every_m;
+        let is_due = self.way_since_loop_m(node) > wide.min_way_m
+            && self.last_search_node.is_none_or(is_long_ago);
+        is_due.then_some(wide)
     }
 
     /// Searches the whole window of the drift where no candidate passed.
@@ -55,6 +47,7 @@ impl Slam {
         let mut workspace = LoopWorkspace::searching(&loops, wide, half_width_m, None);
         let candidates = detect_visits(self.graph.poses(), node, &wider);
         for candidate in candidates.into_iter().take(wide.candidates) {
+            self.last_search_node = Some(node);
             let gate_information = self.gate_information(node, candidate.node);
             let view = KeyframeView {
                 poses: self.graph.poses(),
@@ -102,6 +95,28 @@ impl Slam {
         }
     }
 
+    /// What a search at the newest keyframe finds once no frame follows: a robot that comes back to where it
+    /// began is often switched off there.
+    pub(super) fn search_at_the_end(&mut self) -> Option<LoopVerification> {
+        let wide = self.config.loops.search?;
+        let node = self.keyframes.len().checked_sub(1)?;
+        let is_searched = self.submap_loops.is_some() || self.last_search_node == Some(node);
+        if is_searched || self.way_since_loop_m(node) <= wide.min_way_m {
+            return None;
+        }
+        let mut pending = PendingFrame {
+            stamp_s: self.last_stamp_s,
+            registration: None,
+            new_keyframe: None,
+            loop_attempts: Vec::new(),
+        };
+        self.search_widely(node, &wide, &mut pending);
+        pending
+            .loop_attempts
+            .pop()
+            .map(|attempt| attempt.verification)
+    }
+
     /// Keyframes within so much of the way before a node.
     fn nodes_since(&self, way_m: f64, node: usize) -> usize {
         let way = &self.graph.poses()[..=node];
@@ -122,7 +137,7 @@ mod tests {
     use crate::slam::test_room::frame;
 
     #[test]
-    fn a_window_that_was_searched_in_vain_is_searched_again_after_so_much_more_of_the_way() {
+    fn a_window_is_searched_again_so_much_of_the_way_after_the_last_search() {
         // Ways of the keyframes at which the window is searched, m; nothing is ever found there.
         let searched = |every_m: f64| -> Vec<f64> {
             let mut config = SlamConfig::for_robot(&frame(0).scan);
@@ -144,21 +159,43 @@ mod tests {
             ways_m
         };
         let often = searched(0.0);
-        let seldom = searched(5.0);
         assert!(often.len() > 6, "{often:?}");
-        assert!(
-            seldom
-                .iter()
-                .all(|way_m| *way_m > 4.0 && often.contains(way_m))
-        );
-        let windows = seldom
-            .iter()
-            .map(|way_m| ((way_m - 4.0) / 5.0).ceil() as usize);
-        let windows: Vec<usize> = windows.collect();
-        assert!(
-            windows.windows(2).all(|pair| pair[0] < pair[1]),
-            "{seldom:?}"
-        );
+        let mut expected = Vec::new();
+        for way_m in &often {
+            if expected.last().is_none_or(|last_m| way_m - last_m >= 5.0) {
+                expected.push(*way_m);
+            }
+        }
+        let seldom = searched(5.0);
+        assert_eq!(seldom, expected);
         assert!(2 * seldom.len() <= often.len(), "{seldom:?} {often:?}");
+    }
+
+    #[test]
+    fn a_robot_that_is_switched_off_where_it_began_closes_its_loop() {
+        let driven = |is_searching: bool| {
+            let mut config = SlamConfig::for_robot(&frame(0).scan);
+            let search = config.loops.search.as_mut().unwrap();
+            search.min_way_m = 4.0;
+            if !is_searching {
+                config.loops.search = None;
+            }
+            // A lap of which no attempt sees the end.
+            config.loops.attempt_every_nodes = 1000;
+            let mut slam = Slam::new(config);
+            for step in 0..106 {
+                let report = slam.step(&frame(step)).unwrap();
+                assert_eq!(report.closed_loop(), None, "step {step}");
+            }
+            let newest = slam.keyframes().len() - 1;
+            (slam.refine(), newest)
+        };
+        let (refinement, newest) = driven(true);
+        let searched = refinement.searched().unwrap();
+        assert_eq!(searched.from_node, newest);
+        let concluded = refinement.concluded().unwrap();
+        assert_eq!(concluded.registered, searched.registered);
+        let (refinement, _) = driven(false);
+        assert!(refinement.searched().is_none() && refinement.concluded().is_none());
     }
 }

@@ -63,6 +63,7 @@ pub fn write(session: &Session, out: &mut Writer) {
         out.maybe(driven.last_attempt_node, Writer::count);
         out.count(driven.last_loop_node);
         out.count(driven.settled_edges);
+        out.maybe(driven.last_search_node, Writer::count);
     });
     out.section(b"NODE", |out| {
         out.count(driven.nodes.len());
@@ -141,21 +142,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
     let (sensor, last_odometry) = from.section(b"SENS", |from| {
         Ok((from.maybe(read_sensor)?, from.maybe(Cursor::pose)?))
     })?;
-    let (frames, last_stamp_s, last_attempt_node, last_loop_node, settled_edges) =
-        from.section(b"STAT", |from| {
-            Ok((
-                read_number(from)?,
-                from.f64()?,
-                from.maybe(|from| Ok(from.u32()? as usize))?,
-                from.u32()? as usize,
-                // Every loop corrected the graph at once before this was written.
-                if from.left() > 0 {
-                    Some(from.u32()? as usize)
-                } else {
-                    None
-                },
-            ))
-        })?;
+    let counters = from.section(b"STAT", Counters::read)?;
     let places = from.section(b"NODE", |from| {
         let count = from.count(NODE_BYTES)?;
         (0..count)
@@ -237,14 +224,15 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
     Ok(Session {
         driven: SlamSnapshot {
             config,
-            frames,
-            last_stamp_s,
+            frames: counters.frames,
+            last_stamp_s: counters.last_stamp_s,
             nodes: places.into_iter().map(|(node, ..)| node).collect(),
-            settled_edges: settled_edges.unwrap_or(edges.len()),
+            settled_edges: counters.settled_edges.unwrap_or(edges.len()),
             edges,
             keyframes,
-            last_attempt_node,
-            last_loop_node,
+            last_attempt_node: counters.last_attempt_node,
+            last_loop_node: counters.last_loop_node,
+            last_search_node: counters.last_search_node,
             held,
             front_end,
         },
@@ -253,6 +241,36 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
         sensor,
         last_odometry,
     })
+}
+
+/// What the estimator counts.
+struct Counters {
+    frames: usize,
+    last_stamp_s: f64,
+    last_attempt_node: Option<usize>,
+    last_loop_node: usize,
+    /// None where every loop corrected the graph at once and nothing was said of it.
+    settled_edges: Option<usize>,
+    last_search_node: Option<usize>,
+}
+
+impl Counters {
+    fn read(from: &mut Cursor<'_>) -> Result<Self, Broken> {
+        let node = |from: &mut Cursor<'_>| Ok(from.u32()? as usize);
+        let mut counters = Self {
+            frames: read_number(from)?,
+            last_stamp_s: from.f64()?,
+            last_attempt_node: from.maybe(node)?,
+            last_loop_node: node(from)?,
+            settled_edges: None,
+            last_search_node: None,
+        };
+        if from.left() > 0 {
+            counters.settled_edges = Some(node(from)?);
+            counters.last_search_node = from.maybe(node)?;
+        }
+        Ok(counters)
+    }
 }
 
 fn read_number(from: &mut Cursor<'_>) -> Result<usize, Broken> {
