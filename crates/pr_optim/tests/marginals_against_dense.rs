@@ -26,16 +26,27 @@ fn grid(nodes: usize) -> Problem {
         .step_by(12)
         .flat_map(|start| links.map(|(a, b)| (start + a, start + b)));
     for (from, to) in chain.chain(links) {
-        let poses = problem.poses();
         let noise = Vector3::new(0.02, -0.03, 0.01) * (1.0 + (from + to) as f64 / 5.0);
-        problem.add_factor(Between {
-            from,
-            to,
-            measurement: poses[from].between(&poses[to]).boxplus(&noise),
-            information: Matrix3::new(30.0, 2.0, 1.0, 2.0, 20.0, -3.0, 1.0, -3.0, 60.0),
-        });
+        let information = Matrix3::new(30.0, 2.0, 1.0, 2.0, 20.0, -3.0, 1.0, -3.0, 60.0);
+        measure(&mut problem, [from, to], &noise, information);
     }
     problem
+}
+
+/// Adds a measurement that is so far off.
+fn measure(
+    problem: &mut Problem,
+    [from, to]: [usize; 2],
+    noise: &Vector3<f64>,
+    information: Matrix3<f64>,
+) {
+    let [start, end] = [from, to].map(|node| problem.poses()[node]);
+    problem.add_factor(Between {
+        from,
+        to,
+        measurement: start.between(&end).boxplus(noise),
+        information,
+    });
 }
 
 /// The dense inverse of JᵀΩJ over all poses, rows and columns of fixed poses zero.
@@ -158,15 +169,9 @@ fn grid_with_tail() -> Problem {
     for (from, to) in [(23, 24), (25, 24), (20, 26), (26, 27), (25, 28)] {
         let parent = problem.poses()[usize::min(from, to)];
         problem.add_pose(parent * SE2::new(0.8, -0.1 * from as f64, 0.2 * to as f64));
-        let [start, end] = [from, to].map(|node| problem.poses()[node]);
-        problem.add_factor(Between {
-            from,
-            to,
-            measurement: start
-                .between(&end)
-                .boxplus(&Vector3::new(0.02, 0.01, -0.03)),
-            information: Matrix3::new(25.0, -2.0, 1.0, -2.0, 40.0, 3.0, 1.0, 3.0, 90.0),
-        });
+        let noise = Vector3::new(0.02, 0.01, -0.03);
+        let information = Matrix3::new(25.0, -2.0, 1.0, -2.0, 40.0, 3.0, 1.0, 3.0, 90.0);
+        measure(&mut problem, [from, to], &noise, information);
     }
     problem
 }
@@ -199,15 +204,9 @@ fn behind_the_last_loop_covariances_follow_from_those_before_it() {
 fn grid_with_loops() -> Problem {
     let mut problem = grid_with_tail();
     for (from, to) in [(28, 3), (5, 17), (27, 24), (2, 26)] {
-        let [start, end] = [from, to].map(|node| problem.poses()[node]);
-        problem.add_factor(Between {
-            from,
-            to,
-            measurement: start
-                .between(&end)
-                .boxplus(&Vector3::new(-0.04, 0.03, 0.02)),
-            information: Matrix3::new(50.0, 4.0, -1.0, 4.0, 30.0, 2.0, -1.0, 2.0, 80.0),
-        });
+        let noise = Vector3::new(-0.04, 0.03, 0.02);
+        let information = Matrix3::new(50.0, 4.0, -1.0, 4.0, 30.0, 2.0, -1.0, 2.0, 80.0);
+        measure(&mut problem, [from, to], &noise, information);
     }
     problem
 }
