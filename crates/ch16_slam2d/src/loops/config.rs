@@ -113,7 +113,7 @@ pub struct LoopConfig {
 }
 
 impl LoopConfig {
-    /// Other places are looked for so far behind the best one: three times as far as they have to be.
+    /// Other places are looked for so far behind the best one: twice as far as they have to be.
     ///
     /// The farther, the more of a window has to be searched, for a number that decides nothing.
     #[must_use]

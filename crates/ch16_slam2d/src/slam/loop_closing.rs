@@ -50,7 +50,9 @@ impl Slam {
             }
         }
         if let Some(wide) = self.search_that_is_due(node) {
-            self.search_widely(node, &wide, pending);
+            for found in self.search_widely(node, &wide) {
+                self.report_attempt(found, pending);
+            }
         }
     }
 

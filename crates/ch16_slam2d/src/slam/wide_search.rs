@@ -3,7 +3,6 @@
 use pr_geom::math;
 
 use super::Slam;
-use super::pending::PendingFrame;
 use crate::loops::{
     Detection, KeyframeView, LoopCandidate, LoopConfig, LoopRejection, LoopVerification,
     LoopWorkspace, WideSearch, detect_visits, verify_loop,
@@ -20,13 +19,12 @@ impl Slam {
         is_due.then_some(wide)
     }
 
-    /// Searches the whole window of the drift where no candidate passed.
+    /// Searches the whole window of the drift where no candidate passed: what was found, up to the first that passes.
     pub(super) fn search_widely(
         &mut self,
         node: usize,
         wide: &WideSearch,
-        pending: &mut PendingFrame,
-    ) {
+    ) -> Vec<LoopVerification> {
         let loops = self.config.loops;
         let way_m = self.way_since_loop_m(node);
         let half_width_m = math::min(
@@ -46,6 +44,7 @@ impl Slam {
         };
         let mut workspace = LoopWorkspace::searching(&loops, wide, half_width_m, None);
         let candidates = detect_visits(self.graph.poses(), node, &wider);
+        let mut found = Vec::new();
         for candidate in candidates.into_iter().take(wide.candidates) {
             self.last_search_node = Some(node);
             let gate_information = self.gate_information(node, candidate.node);
@@ -89,10 +88,12 @@ impl Slam {
                 };
                 verification = self.guarded(decided);
             }
-            if self.report_attempt(verification, pending) {
-                return;
+            found.push(verification);
+            if verification.accepted() {
+                break;
             }
         }
+        found
     }
 
     /// What a search at the newest keyframe finds once no frame follows: a robot that comes back to where it
@@ -104,17 +105,7 @@ impl Slam {
         if is_searched || self.way_since_loop_m(node) <= wide.min_way_m {
             return None;
         }
-        let mut pending = PendingFrame {
-            stamp_s: self.last_stamp_s,
-            registration: None,
-            new_keyframe: None,
-            loop_attempts: Vec::new(),
-        };
-        self.search_widely(node, &wide, &mut pending);
-        pending
-            .loop_attempts
-            .pop()
-            .map(|attempt| attempt.verification)
+        self.search_widely(node, &wide).pop()
     }
 
     /// Keyframes within so much of the way before a node.
