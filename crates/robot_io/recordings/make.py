@@ -13,10 +13,12 @@ import json
 import math
 import pathlib
 import sys
+import tempfile
 
 import numpy as np
 from mcap.writer import CompressionType, IndexType, Writer as McapWriter
 from rosbags.rosbag1 import Writer as BagWriter
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer as Bag2Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 FRAMES = 24
@@ -34,6 +36,8 @@ def main(lap):
     write_mcap(HERE / 'cloud.mcap', list(messages(lines, 'cloud')), 'zstd')
     for name, packing in {'plain.bag': None, 'lz4.bag': 'LZ4', 'bz2.bag': 'BZ2'}.items():
         write_bag(HERE / name, list(messages(lines, 'odometry')), packing)
+    write_db3(HERE / 'plain.db3', list(messages(lines, 'odometry')), None)
+    write_db3(HERE / 'packed.db3', list(messages(lines, 'odometry')), 'message')
     with open(HERE / 'frames.jsonl', 'w') as out:
         for line in lines:
             line['stamp_s'] += START_S
@@ -217,6 +221,26 @@ def write_bag(path, recorded, packing):
                 connections[topic] = writer.add_connection(topic, name, typestore=kinds.store)
             data = bytes(kinds.store.serialize_ros1(message, name))
             writer.write(connections[topic], round(stamp * 1e9), data)
+
+
+def write_db3(path, recorded, packing):
+    """A recording of rosbag2 in SQLite; its messages may be packed one by one."""
+    kinds = Messages(Stores.ROS2_HUMBLE, has_sequence=False)
+    with tempfile.TemporaryDirectory() as folder:
+        writer = Bag2Writer(pathlib.Path(folder) / 'bag', version=8, storage_plugin=StoragePlugin.SQLITE3)
+        if packing:
+            writer.set_compression(CompressionMode.MESSAGE, CompressionFormat.ZSTD)
+        with writer:
+            connections = {}
+            for stamp, topic, make in recorded:
+                message = make(kinds)
+                name = message.__msgtype__
+                if topic not in connections:
+                    connections[topic] = writer.add_connection(topic, name, typestore=kinds.store)
+                data = bytes(kinds.store.serialize_cdr(message, name))
+                writer.write(connections[topic], round(stamp * 1e9), data)
+        (written,) = pathlib.Path(folder).glob('bag/*.db3')
+        path.write_bytes(written.read_bytes())
 
 
 if __name__ == '__main__':

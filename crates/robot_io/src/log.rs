@@ -8,6 +8,8 @@ use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 use thiserror::Error;
 
+use crate::laser_mount::LaserMount;
+
 /// A scan of a log, with the odometry at its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogFrame {
@@ -38,7 +40,7 @@ impl fmt::Display for Place {
 }
 
 /// Which of several topics and frames of a recording are meant; none: found by type.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct LogOptions {
     /// The topic that scans come from; else the first one with scans.
     pub scan_topic: Option<String>,
@@ -49,6 +51,10 @@ pub struct LogOptions {
     pub odometry_frame: Option<String>,
     /// The frame of the robot's body; else the one that the odometry moves.
     pub body_frame: Option<String>,
+    /// Where the laser sits, in place of what the recording says.
+    pub laser: Option<LaserMount>,
+    /// Heights (m) that points of a 3-D sensor have to lie between, on the body; else only clouds of one ring are read.
+    pub heights_m: Option<(f64, f64)>,
 }
 
 /// One of [`LogOptions`].

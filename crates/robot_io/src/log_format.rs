@@ -1,12 +1,13 @@
 //! Which format a log has, and the reader that goes with it.
 
-use std::io::BufRead;
-
 use crate::carmen::CarmenReader;
 use crate::json_log::JsonLogReader;
 use crate::log::{LogError, LogOptions, LogReader, Place};
+use crate::log_bytes::{LogBytes, packs};
+use crate::restamped::restamped;
 use crate::ros::RosReader;
 use crate::session::Session;
+use std::io::{self, BufRead};
 
 /// The formats that are told apart by their first bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,8 +20,18 @@ pub enum LogFormat {
     RosBag,
     /// A database of SQLite, the older container of ROS 2.
     Sqlite,
-    /// Compressed by gzip.
-    Gzip,
+    /// Packed as a whole, by gzip or zstd.
+    Packed,
+    /// A recording of ROS 1 older than version 2.0.
+    OldRosBag,
+    /// The file metadata.yaml of rosbag2.
+    Metadata,
+    /// What GMapping writes: particles and their scans.
+    Gfs,
+    /// A log of the canonical scan matcher, in JSON.
+    Csm,
+    /// A zip or tar archive.
+    Archive,
     /// A pose graph of g2o or TORO.
     Graph,
     /// Lines of JSON, one frame each.
@@ -42,8 +53,22 @@ impl LogFormat {
             Self::RosBag
         } else if starts(b"SQLite format 3\0") {
             Self::Sqlite
-        } else if starts(b"\x1f\x8b") {
-            Self::Gzip
+        } else if starts(b"#ROSRECORD") || starts(b"#ROSBAG V1") {
+            Self::OldRosBag
+        } else if starts(b"rosbag2_bagfile_information") {
+            Self::Metadata
+        } else if starts(b"PK\x03\x04") || start.get(257..262) == Some(b"ustar") {
+            Self::Archive
+        } else if is_gfs(start) {
+            Self::Gfs
+        } else if starts(b"{")
+            && [&b"\"nrays\""[..], b"\"readings\""]
+                .iter()
+                .all(|key| holds(start, key))
+        {
+            Self::Csm
+        } else if packs(start) {
+            Self::Packed
         } else if starts(b"VERTEX") || starts(b"EDGE") {
             Self::Graph
         } else if starts(b"{") || starts(b"\xef\xbb\xbf{") {
@@ -62,15 +87,41 @@ impl LogFormat {
     /// # Errors
     /// Where the bytes cannot be had, there are none, or the format holds no log that is read here.
     pub fn open<'a>(
-        mut bytes: impl BufRead + 'a,
+        bytes: impl Into<LogBytes<'a>>,
         name: &str,
         options: &LogOptions,
     ) -> Result<Box<dyn LogReader + 'a>, LogError> {
-        let start = bytes.fill_buf().map_err(|source| LogError::Io {
+        Self::open_parts(vec![bytes.into()], name, options)
+    }
+
+    /// Opens a log of several files, in their order: a recording of ROS 2 may be split.
+    ///
+    /// # Errors
+    /// As of [`open`](Self::open), and where several files are no recording of ROS.
+    pub fn open_parts<'a>(
+        parts: Vec<LogBytes<'a>>,
+        name: &str,
+        options: &LogOptions,
+    ) -> Result<Box<dyn LogReader + 'a>, LogError> {
+        let io = |source| LogError::Io {
             name: name.to_owned(),
             place: Place::Byte(0),
             source,
-        })?;
+        };
+        let Some(first) = parts.first().cloned() else {
+            return Err(LogError::Empty {
+                name: name.to_owned(),
+            });
+        };
+        let packed = |problem: io::Error| match first.is_packed() {
+            Ok(true) => LogError::NoScans {
+                name: name.to_owned(),
+                detail: format!("it is packed by gzip or zstd and does not unpack: {problem}"),
+            },
+            _ => io(problem),
+        };
+        let mut bytes = first.stream().map_err(packed)?;
+        let start = bytes.fill_buf().map_err(packed)?;
         if start.is_empty() {
             return Err(LogError::Empty {
                 name: name.to_owned(),
@@ -81,18 +132,42 @@ impl LogFormat {
             found,
             advice,
         };
-        match Self::detect(start) {
-            Self::Carmen => Ok(Box::new(CarmenReader::new(bytes, name))),
-            Self::Mcap => Ok(Box::new(RosReader::mcap(bytes, name, options))),
-            Self::RosBag => Ok(Box::new(RosReader::bag(bytes, name, options))),
-            Self::Json => Ok(Box::new(JsonLogReader::new(bytes, name))),
-            Self::Gzip => Err(foreign(
-                "compressed by gzip",
-                "unpack it with gunzip and give the result",
+        let found = Self::detect(start);
+        if parts.len() > 1 && !matches!(found, Self::Mcap | Self::RosBag | Self::Sqlite) {
+            return Err(foreign(
+                "several files, the first of which is no recording of ROS",
+                "give one log at a time",
+            ));
+        }
+        match found {
+            Self::Carmen => restamped(&first, |source| CarmenReader::new(source, name)).map_err(io),
+            Self::Json => restamped(&first, |source| JsonLogReader::new(source, name)).map_err(io),
+            Self::Mcap | Self::RosBag | Self::Sqlite => {
+                Ok(Box::new(RosReader::new(parts, name, options)))
+            }
+            Self::Packed => Err(foreign(
+                "packed more than twice",
+                "unpack it with zstd -d or gunzip and give the result",
             )),
-            Self::Sqlite => Err(foreign(
-                "a recording of ROS 2 in SQLite",
-                "convert it to MCAP with ros2 bag convert",
+            Self::OldRosBag => Err(foreign(
+                "a recording of ROS 1 older than version 2.0",
+                "convert it with rosbag fix and give the result",
+            )),
+            Self::Metadata => Err(foreign(
+                "the description of a recording of ROS 2, not the recording",
+                "give its folder, or the files that it names",
+            )),
+            Self::Gfs => Err(foreign(
+                "the output of GMapping, not a log of scans",
+                "give the log that GMapping was run on",
+            )),
+            Self::Csm => Err(foreign(
+                "a log of CSM, the canonical scan matcher",
+                "convert it to CARMEN with json2carmen of CSM and give the result",
+            )),
+            Self::Archive => Err(foreign(
+                "an archive of files",
+                "unpack it and give the recording in it",
             )),
             Self::Utf16 => Err(foreign(
                 "text in UTF-16",
@@ -110,6 +185,24 @@ impl LogFormat {
     }
 }
 
+/// Whether `key` stands in the bytes.
+fn holds(bytes: &[u8], key: &[u8]) -> bool {
+    bytes.windows(key.len()).any(|window| window == key)
+}
+
+/// Whether a line starts as those of GMapping do.
+fn is_gfs(start: &[u8]) -> bool {
+    let words: [&[u8]; 5] = [
+        b"LASER_READING ",
+        b"ODO_UPDATE ",
+        b"SM_UPDATE ",
+        b"GFS ",
+        b"NEFF ",
+    ];
+    let mut lines = start.split(|&byte| byte == b'\n').take(20);
+    lines.any(|line| words.iter().any(|word| line.starts_with(word)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -120,15 +213,27 @@ mod tests {
             (&b""[..], "x.log is empty; give a recorded log"),
             (
                 b"\x1f\x8b\x08",
-                "x.log is compressed by gzip; unpack it with gunzip and give the result",
+                "x.log holds no scan that can be used: it is packed by gzip or zstd and does not unpack: unexpected end of file",
             ),
             (
                 b"\xff\xfeF\0L\0",
                 "x.log is text in UTF-16; save it as UTF-8 and give the result",
             ),
             (
-                b"SQLite format 3\0",
-                "x.log is a recording of ROS 2 in SQLite; convert it to MCAP with ros2 bag convert",
+                b"#ROSRECORD V1.1\n",
+                "x.log is a recording of ROS 1 older than version 2.0; convert it with rosbag fix and give the result",
+            ),
+            (
+                b"LASER_READING 361 1.2\n",
+                "x.log is the output of GMapping, not a log of scans; give the log that GMapping was run on",
+            ),
+            (
+                b"{\"nrays\":3,\"min_theta\":0,\"readings\":[1,2,3]}\n",
+                "x.log is a log of CSM, the canonical scan matcher; convert it to CARMEN with json2carmen of CSM and give the result",
+            ),
+            (
+                b"rosbag2_bagfile_information:\n",
+                "x.log is the description of a recording of ROS 2, not the recording; give its folder, or the files that it names",
             ),
             (
                 b"SLAM2D\r\n",

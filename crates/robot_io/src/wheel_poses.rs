@@ -1,19 +1,49 @@
-//! What the wheels said around the time of the scans.
+//! The poses that odometry gave, around the time of the scans or over a whole recording.
 
 use std::collections::VecDeque;
 
 use pr_geom::SE2;
 
-/// So many poses of the wheels are kept: 20 s at 200 a second.
+/// So many poses are kept of a log that is read once: 20 s at 200 a second.
 const MOST_POSES: usize = 4096;
+/// A pose holds this long beyond the first and the last one, s: until the next message would have come.
+const SLACK_S: f64 = 0.25;
+/// Between poses farther apart than this the path is unknown, s.
+const LONGEST_GAP_S: f64 = 2.0;
+/// The same in periods, for odometry that is slow.
+const LONGEST_GAP_PERIODS: f64 = 10.0;
 
-/// The wheels' poses around the time of the scans.
-#[derive(Clone, Debug, Default)]
+/// Poses of the body in the odometry's frame, in the order of time.
+#[derive(Clone, Debug)]
 pub struct WheelPoses {
     poses: VecDeque<(f64, SE2)>,
+    slack_s: f64,
+    gap_s: f64,
+}
+
+impl Default for WheelPoses {
+    fn default() -> Self {
+        Self {
+            poses: VecDeque::new(),
+            slack_s: SLACK_S,
+            gap_s: LONGEST_GAP_S,
+        }
+    }
 }
 
 impl WheelPoses {
+    /// All poses of a recording with their stamps (s), in any order; `period_s` is the usual time between two.
+    #[must_use]
+    pub fn of(mut poses: Vec<(f64, SE2)>, period_s: f64) -> Self {
+        poses.sort_by(|a, b| a.0.total_cmp(&b.0));
+        poses.dedup_by(|later, first| later.0 <= first.0);
+        Self {
+            poses: poses.into(),
+            slack_s: SLACK_S.max(1.5 * period_s),
+            gap_s: LONGEST_GAP_S.max(LONGEST_GAP_PERIODS * period_s),
+        }
+    }
+
     /// Takes a pose; one that is not after the one before it is left out.
     pub fn push(&mut self, stamp_s: f64, pose: SE2) {
         if self
@@ -29,9 +59,10 @@ impl WheelPoses {
         self.poses.push_back((stamp_s, pose));
     }
 
-    /// Whether no pose is known.
-    pub fn is_empty(&self) -> bool {
-        self.poses.is_empty()
+    /// Stamps of the first pose and of the last one, s.
+    #[must_use]
+    pub fn ends_s(&self) -> Option<(f64, f64)> {
+        Some((self.poses.front()?.0, self.poses.back()?.0))
     }
 
     /// Whether a pose at or after this time is known.
@@ -41,16 +72,28 @@ impl WheelPoses {
             .is_some_and(|&(last_s, _)| last_s >= stamp_s)
     }
 
-    /// The pose at a time, on the twist between the poses around it; beyond them the nearest one.
+    /// The pose at a time, on the twist between the poses around it; none beyond the poses that are known,
+    /// or in a gap between them.
     pub fn at(&self, stamp_s: f64) -> Option<SE2> {
         let after = self.poses.partition_point(|&(pose_s, _)| pose_s < stamp_s);
         let before = after.checked_sub(1).and_then(|k| self.poses.get(k));
         match (before, self.poses.get(after)) {
             (Some(&(before_s, before)), Some(&(after_s, after))) => {
-                let share = (stamp_s - before_s) / (after_s - before_s);
+                let gap_s = after_s - before_s;
+                if gap_s > self.gap_s {
+                    let nearest = if stamp_s - before_s < after_s - stamp_s {
+                        (stamp_s - before_s, before)
+                    } else {
+                        (after_s - stamp_s, after)
+                    };
+                    return (nearest.0 <= self.slack_s).then_some(nearest.1);
+                }
+                let share = (stamp_s - before_s) / gap_s;
                 Some(before * SE2::exp(&(before.between(&after).log() * share)))
             }
-            (Some(&(_, pose)), None) | (None, Some(&(_, pose))) => Some(pose),
+            (Some(&(pose_s, pose)), None) | (None, Some(&(pose_s, pose))) => {
+                ((stamp_s - pose_s).abs() <= self.slack_s).then_some(pose)
+            }
             (None, None) => None,
         }
     }
@@ -68,10 +111,22 @@ mod tests {
             wheels.push(stamp_s, SE2::translation(x, 0.0));
         }
         // The pose of 1.5 s came too late and is left out.
-        for (stamp_s, x) in [(0.0, 0.0), (1.5, 0.5), (3.0, 1.5), (9.0, 2.0)] {
+        for (stamp_s, x) in [(0.9, 0.0), (1.5, 0.5), (3.0, 1.5), (4.1, 2.0)] {
             let pose = wheels.at(stamp_s).unwrap();
             assert!((pose.x() - x).abs() < 1e-12, "{stamp_s}: {}", pose.x());
         }
         assert!(wheels.reaches(4.0) && !wheels.reaches(4.1));
+    }
+
+    #[test]
+    fn beyond_the_known_poses_and_in_a_gap_there_is_none() {
+        let mut wheels = WheelPoses::default();
+        for stamp_s in [1.0, 2.0, 60.0] {
+            wheels.push(stamp_s, SE2::translation(stamp_s, 0.0));
+        }
+        for stamp_s in [0.0, 30.0, 61.0] {
+            assert_eq!(wheels.at(stamp_s), None, "{stamp_s}");
+        }
+        assert!(wheels.at(2.2).is_some() && wheels.at(59.9).is_some());
     }
 }

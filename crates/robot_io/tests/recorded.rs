@@ -11,6 +11,7 @@ use ch16_slam2d::metrics::position_error_m;
 use measuring::skip::{NO_RECORDED_LOGS, skip};
 use robot_io::evaluate::relation_errors;
 use robot_io::log::LogOptions;
+use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
 use robot_io::relations::read_relations;
 use robot_io::run::{LogRun, OdometryUse};
@@ -21,8 +22,10 @@ fn open(name: &str) -> Option<BufReader<File>> {
 }
 
 /// The whole log through the estimator; none without the data.
-fn mapped(log: &str, odometry: OdometryUse) -> Option<LogRun> {
-    let mut reader = LogFormat::open(open(log)?, log, &LogOptions::default()).unwrap();
+fn mapped(log: &'static str, odometry: OdometryUse) -> Option<LogRun> {
+    open(log)?;
+    let bytes = LogBytes::new(move || Ok(open(log).expect("it was there")));
+    let mut reader = LogFormat::open(bytes, log, &LogOptions::default()).unwrap();
     let mut run = LogRun::new(odometry);
     while let Some(frame) = reader.next_frame().unwrap() {
         run.step(frame);

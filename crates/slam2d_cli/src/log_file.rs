@@ -1,14 +1,17 @@
 //! A recorded log as a file: opened, and read with progress on standard error.
 
-use std::fs::File;
-use std::io::{self, BufReader, IsTerminal, Read, stderr};
+use std::fs::{self, File};
+use std::io::{self, BufReader, IsTerminal, Read, Seek, SeekFrom, stderr};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use robot_io::laser_mount::LaserMount;
 use robot_io::log::{LogError, LogOptions, LogReader};
+use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
+use robot_io::rosbag2;
 use thiserror::Error;
 
 /// Which topics and frames of a recording of ROS are meant, where there are several.
@@ -26,6 +29,27 @@ pub struct TopicArgs {
     /// The frame of the robot's body.
     #[arg(long, value_name = "FRAME")]
     body_frame: Option<String>,
+    /// Where the laser sits on the body, in place of what the recording says: metres ahead and to the left, and
+    /// degrees counter-clockwise; ,flipped if it hangs upside down or its driver lists beams clockwise.
+    #[arg(long, value_name = "X,Y,DEG[,flipped]", allow_hyphen_values = true)]
+    laser: Option<LaserMount>,
+    /// Cut clouds of a 3-D sensor to the points between these heights above the body's origin, m.
+    #[arg(long, value_name = "LOW,HIGH", value_parser = heights, allow_hyphen_values = true)]
+    heights: Option<(f64, f64)>,
+}
+
+/// Two heights, the lower one first.
+fn heights(text: &str) -> Result<(f64, f64), String> {
+    let numbers = text.split_once(',').and_then(|(low, high)| {
+        let (low, high) = (
+            low.trim().parse::<f64>().ok()?,
+            high.trim().parse::<f64>().ok()?,
+        );
+        (low < high && low.is_finite() && high.is_finite()).then_some((low, high))
+    });
+    numbers.ok_or_else(|| {
+        "two heights have to be given, the lower one first, such as 0.2,0.6".to_owned()
+    })
 }
 
 impl TopicArgs {
@@ -35,6 +59,8 @@ impl TopicArgs {
             odometry_topic: self.odom_topic.clone(),
             odometry_frame: self.odom_frame.clone(),
             body_frame: self.body_frame.clone(),
+            laser: self.laser,
+            heights_m: self.heights,
         }
     }
 }
@@ -49,6 +75,12 @@ pub enum FileError {
         path: PathBuf,
         /// What the system says.
         source: io::Error,
+    },
+    /// A folder without a recording.
+    #[error("{} is a folder without a recording of ROS 2; give a log, or a folder with files that end in .mcap or .db3", path.display())]
+    NoRecording {
+        /// The folder.
+        path: PathBuf,
     },
     /// It is no log that can be read.
     #[error(transparent)]
@@ -71,7 +103,7 @@ pub fn open(path: &Path) -> Result<BufReader<File>, FileError> {
     Ok(BufReader::with_capacity(1 << 16, file))
 }
 
-/// Opens a log with a bar that follows its bytes.
+/// Opens a log, or the folder of one, with a bar that follows its bytes.
 ///
 /// # Errors
 /// Where it cannot be opened, or is no log.
@@ -79,19 +111,89 @@ pub fn open_log(
     path: &Path,
     topics: &TopicArgs,
 ) -> Result<(Box<dyn LogReader>, Progress), FileError> {
-    let file = open(path)?;
-    let bytes = file.get_ref().metadata().map_or(0, |about| about.len());
-    let progress = Progress::new(bytes);
-    let counted = Counted {
-        source: file,
-        bar: progress.bar.clone(),
-    };
-    let reader = LogFormat::open(
-        BufReader::with_capacity(1 << 16, counted),
-        &path.display().to_string(),
-        &topics.options(),
-    )?;
+    let (parts, progress) = parts(path)?;
+    let name = path.display().to_string();
+    let reader = LogFormat::open_parts(parts, &name, &topics.options())?;
     Ok((reader, progress))
+}
+
+/// The files of a log, and a bar for them.
+fn parts(path: &Path) -> Result<(Vec<LogBytes<'static>>, Progress), FileError> {
+    let files = log_files(path)?;
+    let sizes = files
+        .iter()
+        .map(|file| file.metadata().map_or(0, |about| about.len()));
+    // A log is read once to see what is in it, and once for its scans.
+    let progress = Progress::new(2 * sizes.sum::<u64>());
+    let bytes = files.into_iter().map(|file| bytes_of(file, &progress.bar));
+    let parts: Result<Vec<_>, FileError> = bytes.collect();
+    Ok((parts?, progress))
+}
+
+/// The bytes of a file, opened again for each pass; of a pipe, all of them at once.
+fn bytes_of(path: PathBuf, bar: &ProgressBar) -> Result<LogBytes<'static>, FileError> {
+    let mut file = open(&path)?;
+    let is_file = file.get_ref().metadata().is_ok_and(|about| about.is_file());
+    if !is_file {
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)
+            .map_err(|source| FileError::Io { path, source })?;
+        return Ok(LogBytes::from(bytes));
+    }
+    let bar = bar.clone();
+    Ok(LogBytes::new(move || {
+        let counted = Counted {
+            source: File::open(&path)?,
+            bar: bar.clone(),
+        };
+        Ok(BufReader::with_capacity(1 << 16, counted))
+    }))
+}
+
+/// The files of a recording: one, or those of a folder of rosbag2.
+fn log_files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
+    let told = |path: &Path| {
+        let path = path.to_owned();
+        move |source| FileError::Io { path, source }
+    };
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let metadata = path.join("metadata.yaml");
+    let listed = if metadata.is_file() {
+        rosbag2::files_of(&fs::read_to_string(&metadata).map_err(told(&metadata))?)
+    } else {
+        Vec::new()
+    };
+    let mut files: Vec<PathBuf> = listed
+        .iter()
+        .map(|name| {
+            let whole = path.join(name);
+            // Older versions list them from the folder above, and packing changes their ends.
+            let last = Path::new(name).file_name().map(|last| path.join(last));
+            let ends = ["", ".zstd", ".zst", ".gz"].iter().map(|end| {
+                let last = last.clone().unwrap_or_else(|| whole.clone());
+                PathBuf::from(format!("{}{end}", last.display()))
+            });
+            let mut others = std::iter::once(whole.clone()).chain(ends);
+            others.find(|file| file.is_file()).unwrap_or(whole)
+        })
+        .collect();
+    if files.is_empty() {
+        for entry in fs::read_dir(path).map_err(told(path))? {
+            let entry = entry.map_err(told(path))?;
+            if rosbag2::is_recording(&entry.file_name().to_string_lossy()) {
+                files.push(entry.path());
+            }
+        }
+        files.sort();
+    }
+    if files.is_empty() {
+        return Err(FileError::NoRecording {
+            path: path.to_owned(),
+        });
+    }
+    Ok(files)
 }
 
 /// Share, speed and time left: a bar in a terminal, a line every ten seconds elsewhere.
@@ -139,7 +241,7 @@ impl Progress {
 
 /// Bytes that a bar counts.
 struct Counted {
-    source: BufReader<File>,
+    source: File,
     bar: ProgressBar,
 }
 
@@ -148,5 +250,11 @@ impl Read for Counted {
         let count = self.source.read(buffer)?;
         self.bar.inc(count as u64);
         Ok(count)
+    }
+}
+
+impl Seek for Counted {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.source.seek(to)
     }
 }

@@ -1,11 +1,12 @@
 //! What the worker's JavaScript sees: a file in, orders in, updates out.
 
-use std::io::{self, BufReader, Read};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
 use ch16_slam2d::localize::StartPose;
 use js_sys::{Array, Float64Array, Function, Object, Reflect, Uint8Array};
 use pr_geom::SE2;
 use robot_io::log::{LogOption, LogOptions};
+use robot_io::log_bytes::LogBytes;
 use wasm_bindgen::prelude::*;
 
 use crate::engine::Engine;
@@ -25,7 +26,7 @@ struct JsFile {
 impl Read for JsFile {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let end = self.size.min(self.at + into.len() as u64);
-        if end == self.at {
+        if end <= self.at {
             return Ok(0);
         }
         // Sizes of files are whole numbers far below 2⁵³.
@@ -40,6 +41,19 @@ impl Read for JsFile {
         bytes.subarray(0, count as u32).copy_to(&mut into[..count]);
         self.at += count as u64;
         Ok(count)
+    }
+}
+
+impl Seek for JsFile {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let at = match to {
+            SeekFrom::Start(at) => Some(at),
+            SeekFrom::End(by) => self.size.checked_add_signed(by),
+            SeekFrom::Current(by) => self.at.checked_add_signed(by),
+        };
+        let before = || io::Error::new(io::ErrorKind::InvalidInput, "a place before the file");
+        self.at = at.ok_or_else(before)?;
+        Ok(self.at)
     }
 }
 
@@ -128,13 +142,16 @@ impl Robot {
     }
 }
 
-fn source(size: f64, read: Function) -> BufReader<JsFile> {
-    let file = JsFile {
-        read,
-        at: 0,
-        size: size as u64,
-    };
-    BufReader::with_capacity(PIECE_BYTES, file)
+/// The bytes of a file, which are read once more for each pass over it.
+fn source(size: f64, read: Function) -> LogBytes<'static> {
+    LogBytes::new(move || {
+        let file = JsFile {
+            read: read.clone(),
+            at: 0,
+            size: size as u64,
+        };
+        Ok(BufReader::with_capacity(PIECE_BYTES, file))
+    })
 }
 
 fn options(chosen: &str) -> LogOptions {

@@ -9,12 +9,13 @@ mod orders;
 mod telling;
 
 use std::collections::BTreeMap;
-use std::io::BufRead;
+use std::io::{self, BufRead, Read};
 
 use ch16_slam2d::graph::PoseGraph;
 use ch16_slam2d::slam::Refinement;
 use pr_geom::SE2;
 use robot_io::log::{LogOptions, LogReader};
+use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
 use robot_io::recorder::RunRecorder;
 use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
@@ -92,14 +93,17 @@ impl<'a> Engine<'a> {
     /// # Errors
     /// One sentence where it is nothing that can be mapped, solved or looked at.
     pub fn open(
-        mut source: impl BufRead + 'a,
+        source: impl Into<LogBytes<'a>>,
         name: &str,
         size_bytes: u64,
         options: &LogOptions,
     ) -> Result<Self, String> {
-        let start = source.fill_buf().map_err(|problem| {
+        let bytes = source.into();
+        let told = |problem: io::Error| {
             format!("{name} cannot be read: {problem}; it may have moved or changed")
-        })?;
+        };
+        let mut source = bytes.stream().map_err(told)?;
+        let start = source.fill_buf().map_err(told)?;
         let lower = name.to_ascii_lowercase();
         if Session::begins(start) || lower.ends_with(".slam2d") {
             if size_bytes > session::MOST_BYTES {
@@ -125,7 +129,8 @@ impl<'a> Engine<'a> {
                     .map_err(|problem| format!("{name} cannot be read: {problem}"))?;
                 Work::Solving(Box::new(GraphSolving::read(&bytes, name)?))
             } else {
-                let reader = LogFormat::open(source, name, options);
+                drop(source);
+                let reader = LogFormat::open(bytes, name, options);
                 Work::Reading(reader.map_err(|problem| problem.to_string())?)
             };
         Ok(Self::beginning(work, name, size_bytes))

@@ -4,13 +4,12 @@
 //! ([`PLACE`]); its text is the log's name, and below it what the owner should know, a sentence a line.
 //! Places hang on the keyframes next to them, so that they go along where the reader moves those.
 
-use std::io::BufRead;
-
 use ch16_slam2d::localize::{LocalizeReport, StartPose, Verdict};
 use ch16_slam2d::metrics::position_error_m;
 use pr_geom::SE2;
 use robot_io::localize::LocalizeRun;
 use robot_io::log::{LogNotes, LogOptions, LogReader};
+use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
 use robot_io::quality::KeyframeQuality;
 use robot_io::run::{OdometryUse, late_scans};
@@ -58,7 +57,7 @@ impl<'a> Whereabouts<'a> {
     /// # Errors
     /// One sentence where the file is no log, or the session no map.
     pub fn open(
-        source: impl BufRead + 'a,
+        source: impl Into<LogBytes<'a>>,
         name: &str,
         size_bytes: u64,
         options: &LogOptions,

@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use robot_io::log::LogOptions;
+use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
 use robot_io::run::{LogRun, OdometryUse};
 use slam_robot::engine::Engine;
@@ -259,14 +260,18 @@ impl std::io::Read for Torn<'_> {
     }
 }
 
+impl std::io::Seek for Torn<'_> {
+    fn seek(&mut self, _: std::io::SeekFrom) -> std::io::Result<u64> {
+        Err(std::io::Error::other("a log of lines is read in its order"))
+    }
+}
+
 #[test]
 fn a_file_that_goes_while_it_is_read_leaves_a_map_of_a_part_and_says_so() {
     let (log, _) = files();
     let half = log[..log.len() / 2].iter().rposition(|&byte| byte == b'\n');
-    let torn = Torn {
-        bytes: &log[..=half.unwrap()],
-    };
-    let source = std::io::BufReader::new(torn);
+    let bytes = &log[..=half.unwrap()];
+    let source = LogBytes::new(move || Ok(std::io::BufReader::new(Torn { bytes })));
     let options = LogOptions::default();
     let mut engine = Engine::open(source, "ring.log", log.len() as u64, &options).unwrap();
     while engine.step() {}

@@ -11,7 +11,7 @@ use std::io::BufRead;
 use super::container::{Container, ContainerError, MOST_BYTES, Recorded};
 use super::decompress::Packing;
 use super::file_bytes::FileBytes;
-use records::{Connections, Fields, op, piece};
+use records::{Connections, Fields, LONGEST_START, begins, op, piece};
 
 const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
 
@@ -37,31 +37,95 @@ impl<R: BufRead> BagFile<R> {
         }
     }
 
-    fn with_length(&mut self, what: &str) -> Result<Vec<u8>, ContainerError> {
-        let length = self.file.take(4, "a length")?;
-        let length = u32::from_le_bytes(length.try_into().expect("four bytes"));
-        self.file.take(u64::from(length), what)
+    /// A length and as many bytes, which are added to `taken`; false where they cannot be.
+    fn with_length(&mut self, what: &str, taken: &mut Vec<u8>) -> Result<bool, ContainerError> {
+        let length = self.file.up_to(4, "a length")?;
+        taken.extend_from_slice(&length);
+        let Ok(length) = <[u8; 4]>::try_from(length) else {
+            return Ok(false);
+        };
+        let length = u64::from(u32::from_le_bytes(length));
+        if length > MOST_BYTES as u64 {
+            return Ok(false);
+        }
+        let bytes = self.file.up_to(length, what)?;
+        taken.extend_from_slice(&bytes);
+        Ok(bytes.len() as u64 == length)
     }
 
     /// Takes the next record of the file; answers with its message where it is one.
     fn next_record(&mut self) -> Result<Option<Recorded>, ContainerError> {
-        let header = self.with_length("a record's header")?;
-        let data = self.with_length("a record's data")?;
-        let taken = Fields::of(&header).and_then(|fields| match fields.op()? {
-            op::CHUNK => {
-                self.chunk = unpacked(&fields, data)?;
+        let mut taken = Vec::new();
+        if !self.with_length("a record's header", &mut taken)? {
+            return self.go_on(&taken, true, "a record's header was expected".to_owned());
+        }
+        let header_end = taken.len();
+        let header = taken[4..].to_vec();
+        let fields = match Fields::of(&header).and_then(|fields| fields.op().map(|op| (op, fields)))
+        {
+            Ok(fields) => fields,
+            Err(problem) => return self.go_on(&taken, false, problem),
+        };
+        let (op, fields) = fields;
+        if !self.with_length("a record's data", &mut taken)? {
+            return self.go_on(&taken, true, "a record's data was expected".to_owned());
+        }
+        let data = &taken[header_end + 4..];
+        // An index with another length than its count reaches over what follows it.
+        if op == op::INDEX
+            && fields
+                .u32("count")
+                .is_ok_and(|count| count as usize * op::INDEX_ENTRY != data.len())
+        {
+            let problem = "the length of an index is not that of its entries".to_owned();
+            return self.go_on(&taken, false, problem);
+        }
+        let read = match op {
+            op::CHUNK => unpacked(&fields, data.to_vec()).map(|chunk| {
+                self.chunk = chunk;
                 self.chunk_at = 0;
-                Ok(None)
-            }
+                None
+            }),
             // Version 2.0 keeps messages in chunks; some writers do not.
-            _ => self.connections.take(&fields, &data),
-        });
-        taken.map_err(ContainerError::Broken)
+            _ => self.connections.take(&fields, data),
+        };
+        match read {
+            Err(problem) if self.holds()? => Err(ContainerError::Skipped(problem)),
+            Err(problem) => self.go_on(&taken, false, problem),
+            Ok(message) => Ok(message),
+        }
+    }
+
+    /// Whether a record or the end of the file follows.
+    fn holds(&mut self) -> Result<bool, ContainerError> {
+        let next = self.file.up_to(LONGEST_START as u64, "a record")?;
+        self.file.put_back(&next);
+        Ok(next.is_empty() || begins(&next))
+    }
+
+    /// Goes on at the next record behind the first byte of what was taken.
+    fn go_on(
+        &mut self,
+        taken: &[u8],
+        is_cut_off: bool,
+        problem: String,
+    ) -> Result<Option<Recorded>, ContainerError> {
+        self.file.put_back(taken.get(1..).unwrap_or_default());
+        if self.file.seek(LONGEST_START, begins)? {
+            return Err(ContainerError::Skipped(problem));
+        }
+        if is_cut_off {
+            Err(ContainerError::CutOff(problem))
+        } else {
+            Err(ContainerError::Broken(problem))
+        }
     }
 
     /// Takes the next record of the chunk.
     fn next_of_chunk(&mut self) -> Result<Option<Recorded>, String> {
         let mut rest = &self.chunk[self.chunk_at..];
+        // Whatever is wrong, the next call finds the end of the chunk.
+        self.chunk_at = self.chunk.len();
         let header = piece(&mut rest, "a record's header inside of a chunk")?;
         let data = piece(&mut rest, "a record's data inside of a chunk")?;
         self.chunk_at = self.chunk.len() - rest.len();
@@ -81,7 +145,7 @@ impl<R: BufRead> Container for BagFile<R> {
         }
         loop {
             let message = if self.chunk_at < self.chunk.len() {
-                self.next_of_chunk().map_err(ContainerError::Broken)?
+                self.next_of_chunk().map_err(ContainerError::Skipped)?
             } else if self.file.is_at_end()? {
                 return Ok(None);
             } else {

@@ -31,6 +31,15 @@ pub enum ContainerError {
     CutOff(String),
     /// A record is not what it has to be.
     Broken(String),
+    /// The same, and the next call goes on behind it.
+    Skipped(String),
+}
+
+impl ContainerError {
+    /// Whether messages may follow.
+    pub fn goes_on(&self) -> bool {
+        matches!(self, Self::Skipped(_))
+    }
 }
 
 /// Messages in the order of the file.
@@ -38,7 +47,8 @@ pub trait Container {
     /// The next message; none at the end.
     ///
     /// # Errors
-    /// Where the rest cannot be read. Nothing comes after an error.
+    /// Where a part or the rest cannot be read. Nothing comes after an error but
+    /// [`ContainerError::Skipped`].
     fn next_message(&mut self) -> Result<Option<Recorded>, ContainerError>;
 
     /// Bytes read so far: where an error is.

@@ -1,19 +1,29 @@
 //! The bytes of a file, counted as they are read.
 
+use std::collections::VecDeque;
 use std::io::{self, BufRead, Read};
 
 use super::container::{ContainerError, MOST_BYTES};
 
+/// So much is read at a time while the next record is looked for.
+const PIECE: usize = 1 << 16;
+
 /// Bytes in their order, and how many there were.
 pub struct FileBytes<R> {
     source: R,
+    /// Bytes that were put back, which come before those of the source.
+    back: VecDeque<u8>,
     offset: u64,
 }
 
 impl<R: BufRead> FileBytes<R> {
     /// The bytes from a file's start on.
     pub fn new(source: R) -> Self {
-        Self { source, offset: 0 }
+        Self {
+            source,
+            back: VecDeque::new(),
+            offset: 0,
+        }
     }
 
     /// Bytes read so far.
@@ -23,6 +33,9 @@ impl<R: BufRead> FileBytes<R> {
 
     /// Whether no byte follows.
     pub fn is_at_end(&mut self) -> Result<bool, ContainerError> {
+        if !self.back.is_empty() {
+            return Ok(false);
+        }
         let left = self.source.fill_buf().map_err(ContainerError::Io)?;
         Ok(left.is_empty())
     }
@@ -44,8 +57,10 @@ impl<R: BufRead> FileBytes<R> {
                 "{what} of {MOST_BYTES} bytes at most was expected, and it has {count}"
             )));
         }
-        let mut bytes = Vec::new();
-        let read = self.source.by_ref().take(count).read_to_end(&mut bytes);
+        let held = self.back.len().min(count as usize);
+        let mut bytes: Vec<u8> = self.back.drain(..held).collect();
+        let left = count - held as u64;
+        let read = self.source.by_ref().take(left).read_to_end(&mut bytes);
         self.offset += bytes.len() as u64;
         read.map_err(ContainerError::Io)?;
         Ok(bytes)
@@ -53,13 +68,49 @@ impl<R: BufRead> FileBytes<R> {
 
     /// Goes over `count` bytes, which may be more than fit into memory.
     pub fn skip(&mut self, count: u64, what: &str) -> Result<(), ContainerError> {
-        let mut skipped = self.source.by_ref().take(count);
+        let held = self
+            .back
+            .len()
+            .min(usize::try_from(count).unwrap_or(usize::MAX));
+        self.back.drain(..held);
+        let mut skipped = self.source.by_ref().take(count - held as u64);
         let there = io::copy(&mut skipped, &mut io::sink()).map_err(ContainerError::Io)?;
+        let there = there + held as u64;
         self.offset += there;
         if there < count {
             return Err(cut_off(what, count, there));
         }
         Ok(())
+    }
+}
+
+impl<R: BufRead> FileBytes<R> {
+    /// Puts bytes back that were taken last: they are read again.
+    pub fn put_back(&mut self, bytes: &[u8]) {
+        self.offset -= bytes.len() as u64;
+        for &byte in bytes.iter().rev() {
+            self.back.push_front(byte);
+        }
+    }
+
+    /// Goes on to where `begins` finds the start of a record in the bytes from there on, of which it sees
+    /// `window` at least unless the file ends. Returns whether there is one.
+    pub fn seek(
+        &mut self,
+        window: usize,
+        begins: impl Fn(&[u8]) -> bool,
+    ) -> Result<bool, ContainerError> {
+        loop {
+            let bytes = self.up_to((PIECE + window) as u64, "a record")?;
+            let is_end = bytes.len() < PIECE + window;
+            let starts = if is_end { bytes.len() } else { PIECE };
+            let found = (0..starts).find(|&at| begins(&bytes[at..]));
+            let kept = found.unwrap_or(starts);
+            self.put_back(&bytes[kept..]);
+            if found.is_some() || is_end {
+                return Ok(found.is_some());
+            }
+        }
     }
 }
 

@@ -8,7 +8,7 @@ mod records;
 
 use std::io::BufRead;
 
-use super::container::{Container, ContainerError, Recorded};
+use super::container::{Container, ContainerError, MOST_BYTES, Recorded};
 use super::file_bytes::FileBytes;
 use records::{HEAD_BYTES, Records, head, op};
 
@@ -24,6 +24,8 @@ pub struct McapFile<R> {
     /// Records of the chunk under way, from `chunk_at` on.
     chunk: Vec<u8>,
     chunk_at: usize,
+    /// Whether the file ends in it.
+    is_cut_off: bool,
 }
 
 impl<R: BufRead> McapFile<R> {
@@ -36,6 +38,7 @@ impl<R: BufRead> McapFile<R> {
             records: Records::default(),
             chunk: Vec::new(),
             chunk_at: 0,
+            is_cut_off: false,
         }
     }
 
@@ -50,25 +53,87 @@ impl<R: BufRead> McapFile<R> {
 
     /// Takes the next record of the file; answers with its message where it is one that can be read.
     fn next_record(&mut self) -> Result<Option<Recorded>, ContainerError> {
-        let bytes = self.file.take(HEAD_BYTES as u64, "a record's head")?;
-        let (op, length) = head(&bytes).expect("as many bytes as were taken");
+        let head_bytes = self.file.take(HEAD_BYTES as u64, "a record's head")?;
+        let (op, length) = head(&head_bytes).expect("as many bytes as were taken");
+        if op == op::ATTACHMENT {
+            // It may be larger than memory.
+            return self.file.skip(length, "an attachment").map(|()| None);
+        }
+        let body = match self.file.up_to(length, "a record") {
+            Ok(body) => body,
+            Err(ContainerError::Broken(problem)) => return self.go_on(&head_bytes, &[], problem),
+            Err(other) => return Err(other),
+        };
+        let is_cut_off = (body.len() as u64) < length;
+        if is_cut_off {
+            let problem = format!(
+                "a record of {length} bytes was expected, and {} are there",
+                body.len()
+            );
+            // A length that lies reaches over chunks that hold.
+            return match self.go_on(&head_bytes, &body, problem.clone()) {
+                Err(ContainerError::Broken(_)) if op == op::CHUNK => {
+                    self.chunk = chunk::records(&body, true)?;
+                    self.is_cut_off = true;
+                    self.chunk_at = 0;
+                    Ok(None)
+                }
+                Err(ContainerError::Broken(_)) => Err(ContainerError::CutOff(problem)),
+                other => other,
+            };
+        }
         match op {
-            op::CHUNK => {
-                let bytes = self.file.up_to(length, "a chunk")?;
-                self.chunk = chunk::records(&bytes, (bytes.len() as u64) < length)?;
-                self.chunk_at = 0;
-                Ok(None)
-            }
-            op::SCHEMA | op::CHANNEL | op::MESSAGE => {
-                let body = self.file.take(length, "a record")?;
-                self.records.take(op, &body)
-            }
+            op::CHUNK => match chunk::records(&body, false) {
+                Ok(records) => {
+                    self.chunk = records;
+                    self.chunk_at = 0;
+                    Ok(None)
+                }
+                Err(ContainerError::Broken(problem)) => self.after(&body, problem),
+                Err(other) => Err(other),
+            },
+            op::SCHEMA | op::CHANNEL | op::MESSAGE => match self.records.take(op, &body) {
+                Err(ContainerError::Broken(problem)) => Err(ContainerError::Skipped(problem)),
+                other => other,
+            },
             op::FOOTER => {
-                self.file.skip(length, "the footer")?;
                 self.is_done = true;
                 self.magic().map(|()| None)
             }
-            _ => self.file.skip(length, "a record").map(|()| None),
+            1..=15 | 128.. => Ok(None),
+            _ => self.go_on(
+                &head_bytes,
+                &body,
+                format!("a record is of the unknown kind {op}"),
+            ),
+        }
+    }
+
+    /// After a chunk that cannot be read: its length holds if a record or the end follows it.
+    fn after(&mut self, body: &[u8], problem: String) -> Result<Option<Recorded>, ContainerError> {
+        let next = self.file.up_to(HEAD_BYTES as u64, "a record's head")?;
+        self.file.put_back(&next);
+        let holds = head(&next)
+            .is_none_or(|(op, length)| (1..=15).contains(&op) && length <= MOST_BYTES as u64);
+        if holds {
+            return Err(ContainerError::Skipped(problem));
+        }
+        self.go_on(&[], body, problem)
+    }
+
+    /// Goes on at the next chunk behind the first byte of what was taken.
+    fn go_on(
+        &mut self,
+        head: &[u8],
+        body: &[u8],
+        problem: String,
+    ) -> Result<Option<Recorded>, ContainerError> {
+        let taken = [head, body].concat();
+        self.file.put_back(taken.get(1..).unwrap_or_default());
+        if self.file.seek(chunk::LONGEST_START, chunk::begins)? {
+            Err(ContainerError::Skipped(problem))
+        } else {
+            Err(ContainerError::Broken(problem))
         }
     }
 
@@ -80,11 +145,19 @@ impl<R: BufRead> McapFile<R> {
             let body = rest[HEAD_BYTES..].get(..length)?;
             Some((op, body))
         });
-        let (op, body) = body.ok_or_else(|| {
-            ContainerError::CutOff("the end of a record inside of a chunk was expected".to_owned())
-        })?;
+        let Some((op, body)) = body else {
+            self.chunk_at = self.chunk.len();
+            let problem = "the end of a record inside of a chunk was expected".to_owned();
+            return Err(match self.is_cut_off {
+                true => ContainerError::CutOff(problem),
+                false => ContainerError::Skipped(problem),
+            });
+        };
         self.chunk_at += HEAD_BYTES + body.len();
-        self.records.take(op, body)
+        match self.records.take(op, body) {
+            Err(ContainerError::Broken(problem)) => Err(ContainerError::Skipped(problem)),
+            other => other,
+        }
     }
 }
 
@@ -142,13 +215,12 @@ mod tests {
             // What follows the chunk is none of it.
             let bytes = [bytes, record(15, &[0; 40])].concat();
             let said = McapFile::new(&bytes[..]).next_message().unwrap_err();
-            let is_told =
-                matches!(&said, ContainerError::CutOff(said) if said.contains("inside of a chunk"));
+            let is_told = matches!(&said, ContainerError::Skipped(said) if said.contains("inside of a chunk"));
             assert!(is_told, "{length}: {said:?}");
         }
         let lie = file(&whole, 1000);
         let said = McapFile::new(&lie[..]).next_message().unwrap_err();
-        assert!(matches!(said, ContainerError::Broken(said) if said.contains("1000 bytes")));
+        assert!(matches!(said, ContainerError::Skipped(said) if said.contains("1000 bytes")));
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! The messages that a log is made of, from their bytes.
 
-use ch16_slam2d::scan::LaserScan;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
+use super::scan_fields::ScanFields;
 use super::wire::{Wire, WireError, WireReader};
 
 /// Time and frame of a message.
@@ -49,37 +49,36 @@ pub fn header(fields: &mut WireReader<'_>) -> Result<Header, WireError> {
 }
 
 /// `sensor_msgs/LaserScan`; the mounting is not in the message.
-pub fn laser_scan(fields: &mut WireReader<'_>) -> Result<(Header, LaserScan), WireError> {
+pub fn laser_scan(fields: &mut WireReader<'_>) -> Result<(Header, ScanFields), WireError> {
+    let (header, mut scan) = scan_without_ranges(fields)?;
+    scan.ranges_m = fields.f32_list("ranges")?;
+    Ok((header, scan))
+}
+
+/// `sensor_msgs/MultiEchoLaserScan`: the first echo of each beam.
+pub fn multi_echo_scan(fields: &mut WireReader<'_>) -> Result<(Header, ScanFields), WireError> {
+    let (header, mut scan) = scan_without_ranges(fields)?;
+    let count = fields.count("ranges", 4)?;
+    scan.ranges_m = Vec::with_capacity(count);
+    for _ in 0..count {
+        let echoes = fields.f32_list("echoes")?;
+        scan.ranges_m.push(echoes.first().copied().unwrap_or(0.0));
+    }
+    Ok((header, scan))
+}
+
+/// What both kinds of scans begin with.
+fn scan_without_ranges(fields: &mut WireReader<'_>) -> Result<(Header, ScanFields), WireError> {
     let header = header(fields)?;
-    let first_angle_rad = fields.f32("angle_min")?;
-    fields.f32("angle_max")?;
-    let angle_step_rad = fields.f32("angle_increment")?;
-    let beam_interval_s = fields.f32("time_increment")?;
-    fields.f32("scan_time")?;
-    let range_min_m = fields.f32("range_min")?;
-    let range_max_m = fields.f32("range_max")?;
-    let ranges_m = fields.f32_list("ranges")?;
-    let positive = |value: f64| value.is_finite() && value > 0.0;
-    let scan = LaserScan {
-        first_angle_rad,
-        angle_step_rad,
-        range_min_m: if positive(range_min_m) {
-            range_min_m
-        } else {
-            0.0
-        },
-        range_max_m: if range_max_m > 0.0 {
-            range_max_m
-        } else {
-            f64::INFINITY
-        },
-        beam_interval_s: if positive(beam_interval_s) {
-            beam_interval_s
-        } else {
-            0.0
-        },
-        ranges_m,
-        ..LaserScan::default()
+    let scan = ScanFields {
+        angle_min: fields.f32("angle_min")?,
+        angle_max: fields.f32("angle_max")?,
+        angle_increment: fields.f32("angle_increment")?,
+        time_increment: fields.f32("time_increment")?,
+        scan_time: fields.f32("scan_time")?,
+        range_min: fields.f32("range_min")?,
+        range_max: fields.f32("range_max")?,
+        ranges_m: Vec::new(),
     };
     Ok((header, scan))
 }

@@ -9,7 +9,7 @@
 use core::f64::consts::TAU;
 
 use ch16_slam2d::scan::LaserScan;
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix4, Point3, Vector4};
 use pr_geom::{math, sort_numbers, sort_pairs};
 
 use super::messages::{Header, header};
@@ -21,7 +21,8 @@ const MOST_BEAMS: f64 = 100_000.0;
 /// farther from each other beyond 6 m.
 const RING_M: f64 = 0.05;
 
-const SEVERAL_RINGS: &str = "the cloud has several rings; only clouds of one ring are read";
+const SEVERAL_RINGS: &str =
+    "the cloud has several rings; give the heights to cut it by: --heights LOW,HIGH";
 
 /// Where a number stands in each point.
 #[derive(Clone, Copy, Debug)]
@@ -63,42 +64,102 @@ pub fn point_cloud(fields: &mut WireReader<'_>) -> Result<(Header, LaserScan), S
     Ok((header, scan))
 }
 
+/// The points of `sensor_msgs/PointCloud2` in the sensor's frame, m.
+///
+/// # Errors
+/// Where the message ends early, or has no coordinates.
+pub fn cloud_points(fields: &mut WireReader<'_>) -> Result<Vec<Point3<f64>>, String> {
+    let cloud = Cloud::of(fields)?;
+    let z = cloud
+        .z
+        .ok_or("a cloud has to have a field z to be cut by heights")?;
+    let points = cloud.data.chunks_exact(cloud.step).filter_map(|point| {
+        let number = |field: Field| {
+            field
+                .of(point, cloud.is_big)
+                .filter(|value| value.is_finite())
+        };
+        Some(Point3::new(number(cloud.x)?, number(cloud.y)?, number(z)?))
+    });
+    Ok(points.collect())
+}
+
+/// The message with the places of its coordinates.
+struct Cloud<'a> {
+    header: Header,
+    height: u32,
+    x: Field,
+    y: Field,
+    z: Option<Field>,
+    ring: Option<Field>,
+    is_big: bool,
+    step: usize,
+    data: &'a [u8],
+}
+
+impl<'a> Cloud<'a> {
+    fn of(fields: &mut WireReader<'a>) -> Result<Self, String> {
+        let told = |error: WireError| error.to_string();
+        let header = header(fields).map_err(told)?;
+        let height = fields.u32("height").map_err(told)?;
+        fields.u32("width").map_err(told)?;
+        let count = fields.count("fields", 10).map_err(told)?;
+        let (mut x, mut y, mut z, mut ring) = (None, None, None, None);
+        for _ in 0..count {
+            let name = fields.name("a field's name").map_err(told)?;
+            let field = Field {
+                offset: fields.u32("a field's offset").map_err(told)? as usize,
+                kind: fields.u8("a field's type").map_err(told)?,
+            };
+            fields.u32("a field's count").map_err(told)?;
+            match name.as_str() {
+                "x" => x = Some(field),
+                "y" => y = Some(field),
+                "z" => z = Some(field),
+                "ring" => ring = Some(field),
+                _ => {}
+            }
+        }
+        let is_big = fields.u8("is_bigendian").map_err(told)? != 0;
+        let step = fields.u32("point_step").map_err(told)? as usize;
+        fields.u32("row_step").map_err(told)?;
+        let data = fields.bytes("the points").map_err(told)?;
+        let (Some(x), Some(y)) = (x, y) else {
+            return Err("a cloud has to have fields x and y".to_owned());
+        };
+        if step == 0 {
+            return Err("a point has to have bytes, and has none".to_owned());
+        }
+        Ok(Self {
+            header,
+            height,
+            x,
+            y,
+            z,
+            ring,
+            is_big,
+            step,
+            data,
+        })
+    }
+}
+
 /// Bearing (rad) and range (m) of each point.
 fn ring(fields: &mut WireReader<'_>) -> Result<(Header, Vec<(f64, f64)>), String> {
-    let told = |error: WireError| error.to_string();
-    let header = header(fields).map_err(told)?;
-    let height = fields.u32("height").map_err(told)?;
-    fields.u32("width").map_err(told)?;
-    let count = fields.count("fields", 10).map_err(told)?;
-    let (mut x, mut y, mut z, mut ring) = (None, None, None, None);
-    for _ in 0..count {
-        let name = fields.name("a field's name").map_err(told)?;
-        let field = Field {
-            offset: fields.u32("a field's offset").map_err(told)? as usize,
-            kind: fields.u8("a field's type").map_err(told)?,
-        };
-        fields.u32("a field's count").map_err(told)?;
-        match name.as_str() {
-            "x" => x = Some(field),
-            "y" => y = Some(field),
-            "z" => z = Some(field),
-            "ring" => ring = Some(field),
-            _ => {}
-        }
-    }
-    let is_big = fields.u8("is_bigendian").map_err(told)? != 0;
-    let step = fields.u32("point_step").map_err(told)? as usize;
-    fields.u32("row_step").map_err(told)?;
-    let data = fields.bytes("the points").map_err(told)?;
-    let (Some(x), Some(y)) = (x, y) else {
-        return Err("a cloud has to have fields x and y".to_owned());
-    };
-    if step == 0 {
-        return Err("a point has to have bytes, and has none".to_owned());
-    }
+    let Cloud {
+        header,
+        height,
+        x,
+        y,
+        z,
+        ring,
+        is_big,
+        step,
+        data,
+    } = Cloud::of(fields)?;
     if height > 1 {
         return Err(format!(
-            "the cloud has {height} rows; only clouds of one ring are read"
+            "the cloud has {height} rows; give the heights to cut it by: --heights LOW,HIGH"
         ));
     }
     let mut first_ring = None;

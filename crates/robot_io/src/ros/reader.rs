@@ -1,56 +1,130 @@
 //! Frames of a recording, whatever its container.
 
-use std::io::BufRead;
+use std::io::ErrorKind;
 
-use super::bag_file::BagFile;
-use super::collector::Collector;
+use ch16_slam2d::scan::LaserScan;
+use pr_geom::{Point2, math};
+
+use super::binned::binned;
 use super::container::{Container, ContainerError};
-use super::mcap_file::McapFile;
+use super::cursor::{ScanCursor, StampedScan};
+use super::file::RosFiles;
+use super::plan::Plan;
+use super::survey::Survey;
 use crate::log::{BrokenRecord, LogError, LogFrame, LogNotes, LogOptions, LogReader, Place};
+use crate::log_bytes::LogBytes;
 
-/// Reads a recording, message by message.
+/// Scans of two lasers belong together if their stamps differ by less than this share of a period.
+const TOGETHER: f64 = 0.6;
+
+/// Reads a recording: once to see what is in it, and once more for its scans.
 pub struct RosReader<'a> {
-    container: Box<dyn Container + 'a>,
+    files: RosFiles<'a>,
     name: String,
-    collector: Collector,
+    options: LogOptions,
     notes: LogNotes,
+    reading: Option<Reading<'a>>,
     frames: usize,
-    is_done: bool,
+}
+
+/// The second pass.
+struct Reading<'a> {
+    plan: Plan,
+    anchor: ScanCursor<'a>,
+    others: Vec<Companion<'a>>,
+}
+
+/// Another laser, and its scans nearest to that of the first.
+struct Companion<'a> {
+    cursor: ScanCursor<'a>,
+    last: Option<StampedScan>,
+    next: Option<StampedScan>,
 }
 
 impl<'a> RosReader<'a> {
-    /// A reader of an MCAP file; `name` is what errors call it.
+    /// A reader of the files of a recording; `name` is what errors call it.
     #[must_use]
-    pub fn mcap(source: impl BufRead + 'a, name: &str, options: &LogOptions) -> Self {
-        Self::new(Box::new(McapFile::new(source)), name, options)
-    }
-
-    /// A reader of a bag of ROS 1; `name` is what errors call it.
-    #[must_use]
-    pub fn bag(source: impl BufRead + 'a, name: &str, options: &LogOptions) -> Self {
-        Self::new(Box::new(BagFile::new(source)), name, options)
-    }
-
-    fn new(container: Box<dyn Container + 'a>, name: &str, options: &LogOptions) -> Self {
+    pub fn new(files: Vec<LogBytes<'a>>, name: &str, options: &LogOptions) -> Self {
         Self {
-            container,
+            files: RosFiles::new(files),
             name: name.to_owned(),
-            collector: Collector::new(options),
+            options: options.clone(),
             notes: LogNotes::default(),
+            reading: None,
             frames: 0,
-            is_done: false,
         }
     }
 
-    /// Takes what ends the recording early: an error where there was no scan, else a note.
-    fn end_early(&mut self, error: ContainerError) -> Result<(), LogError> {
-        let name = self.name.clone();
-        let offset = self.container.offset();
-        let place = Place::Byte(offset);
+    /// The first pass: what is in the recording, and what is taken of it.
+    fn survey(&mut self) -> Result<Reading<'a>, LogError> {
+        let mut survey = Survey::default();
+        let mut messages = self.files.messages();
+        loop {
+            match messages.next_message() {
+                Ok(Some(message)) => {
+                    if let Err(problem) = survey.take(&message, &self.options) {
+                        let place = Place::Byte(messages.offset());
+                        self.notes.leave_out(place, problem);
+                    }
+                }
+                Ok(None) => break,
+                Err(error) => {
+                    let place = Place::Byte(messages.offset());
+                    if !self.take_error(error, place)? {
+                        break;
+                    }
+                }
+            }
+        }
+        self.notes.bytes = messages.offset();
+        let plan = Plan::of(&survey, &self.options);
+        plan.tell(&survey, &mut self.notes);
+        if let Some((option, wanted)) = plan.missing.clone().filter(|_| !plan.scans.is_empty()) {
+            return Err(LogError::Missing {
+                name: self.name.clone(),
+                option: option.name(),
+                wanted,
+                advice: plan.instead_of(option),
+            });
+        }
+        let mut cursors = plan.scans.iter().map(|scans| {
+            let messages = Box::new(self.files.messages());
+            ScanCursor::new(messages, scans.clone(), self.options.heights_m)
+        });
+        let Some(anchor) = cursors.next() else {
+            let instead = messages.instead();
+            return Err(self.nothing_found(instead.as_deref().unwrap_or(plan.without_scans())));
+        };
+        let others = cursors.map(|cursor| Companion {
+            cursor,
+            last: None,
+            next: None,
+        });
+        let others = others.collect();
+        Ok(Reading {
+            plan,
+            anchor,
+            others,
+        })
+    }
+
+    /// Takes what is wrong with a container: an error of the system ends the reading, all else is a note.
+    /// Returns whether messages may follow.
+    fn take_error(&mut self, error: ContainerError, place: Place) -> Result<bool, LogError> {
         match error {
+            // Packed bytes that break off are no fault of the system.
+            ContainerError::Io(source)
+                if matches!(
+                    source.kind(),
+                    ErrorKind::UnexpectedEof | ErrorKind::InvalidData
+                ) =>
+            {
+                let problem = source.to_string();
+                self.notes.half_written = Some(BrokenRecord { place, problem });
+            }
             ContainerError::Io(source) => {
                 return Err(LogError::Io {
-                    name,
+                    name: self.name.clone(),
                     place,
                     source,
                 });
@@ -63,21 +137,22 @@ impl<'a> RosReader<'a> {
                 let rest = "the rest of the file was not read".to_owned();
                 self.notes.ended_early = Some(rest);
             }
+            ContainerError::Skipped(problem) => {
+                self.notes.leave_out(place, problem);
+                return Ok(true);
+            }
         }
-        Ok(())
+        Ok(false)
     }
 
-    fn nothing_found(&self) -> LogError {
+    fn nothing_found(&self, instead: &str) -> LogError {
         let broken = self.notes.first_broken.as_ref();
         let broken = broken.or(self.notes.half_written.as_ref());
         LogError::NoScans {
             name: self.name.clone(),
             detail: match broken {
                 Some(broken) => format!("{}: {}", broken.place, broken.problem),
-                None => {
-                    let instead = self.container.instead();
-                    instead.unwrap_or_else(|| self.collector.without_scans())
-                }
+                None => instead.to_owned(),
             },
         }
     }
@@ -85,52 +160,122 @@ impl<'a> RosReader<'a> {
 
 impl LogReader for RosReader<'_> {
     fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
-        loop {
-            if let Some(frame) = self.collector.pop() {
+        let mut reading = match self.reading.take() {
+            Some(reading) => reading,
+            None => self.survey()?,
+        };
+        let scan = reading.next(&mut self.notes);
+        self.notes.bytes = reading.anchor.offset();
+        if scan.is_none() || self.frames == 0 {
+            reading.tell_fields(&mut self.notes);
+        }
+        let without_scans = reading.plan.without_scans().to_owned();
+        let odometry = |stamp_s| {
+            reading
+                .plan
+                .wheels
+                .as_ref()
+                .and_then(|wheels| wheels.at(stamp_s))
+        };
+        let frame = scan.map(|scan| LogFrame {
+            stamp_s: scan.stamp_s,
+            odometry: odometry(scan.stamp_s),
+            scan: scan.scan,
+        });
+        self.reading = Some(reading);
+        match frame {
+            Some(frame) => {
                 self.frames += 1;
-                if self.frames == 1 {
-                    if let Some((option, wanted)) = self.collector.missing() {
-                        return Err(LogError::Missing {
-                            name: self.name.clone(),
-                            option: option.name(),
-                            wanted,
-                            advice: self.collector.instead_of(option),
-                        });
-                    }
-                    self.collector.tell(&mut self.notes);
-                }
-                return Ok(Some(frame));
+                Ok(Some(frame))
             }
-            if self.is_done {
-                self.collector.tell(&mut self.notes);
-                return if self.frames == 0 {
-                    Err(self.nothing_found())
-                } else {
-                    Ok(None)
-                };
-            }
-            match self.container.next_message() {
-                Ok(Some(message)) => {
-                    if let Err(problem) = self.collector.take(&message) {
-                        let place = Place::Byte(self.container.offset());
-                        self.notes.leave_out(place, problem);
-                    }
-                }
-                Ok(None) => {
-                    self.is_done = true;
-                    self.collector.finish();
-                }
-                Err(error) => {
-                    self.is_done = true;
-                    self.collector.finish();
-                    self.end_early(error)?;
-                }
-            }
-            self.notes.bytes = self.container.offset();
+            None if self.frames == 0 => Err(self.nothing_found(&without_scans)),
+            None => Ok(None),
         }
     }
 
     fn notes(&self) -> &LogNotes {
         &self.notes
+    }
+}
+
+impl Reading<'_> {
+    /// The next scan of the first laser, with those of the others of its time.
+    fn next(&mut self, notes: &mut LogNotes) -> Option<StampedScan> {
+        let mut scan = self.anchor.next(notes)?;
+        if self.others.is_empty() {
+            return Some(scan);
+        }
+        let most_apart_s = TOGETHER * self.anchor.scans().period_s;
+        let wheels = self.plan.wheels.as_ref();
+        let of_anchor = wheels.and_then(|wheels| wheels.at(scan.stamp_s));
+        let mut points = points_of(&scan.scan);
+        let mut step_rad = scan.scan.angle_step_rad.abs();
+        for other in &mut self.others {
+            let Some(near) = other.nearest(scan.stamp_s, notes) else {
+                continue;
+            };
+            if (near.stamp_s - scan.stamp_s).abs() > most_apart_s {
+                continue;
+            }
+            // Where the body was when the other laser looked, seen from where it is now.
+            let of_other = wheels.and_then(|wheels| wheels.at(near.stamp_s));
+            let moved = of_anchor
+                .zip(of_other)
+                .map(|(now, then)| now.between(&then));
+            let moved = moved.unwrap_or_default();
+            let of_near = points_of(&near.scan).into_iter();
+            points.extend(of_near.map(|point| moved.transform(point)));
+            step_rad = step_rad.min(near.scan.angle_step_rad.abs());
+        }
+        scan.scan = binned(points.into_iter().map(|point| (point.x, point.y)), step_rad);
+        Some(scan)
+    }
+
+    /// Adds what is wrong with the fields of scans.
+    fn tell_fields(&self, notes: &mut LogNotes) {
+        let cursors =
+            std::iter::once(&self.anchor).chain(self.others.iter().map(|other| &other.cursor));
+        for sentence in cursors.flat_map(ScanCursor::said) {
+            if !notes.warnings.contains(sentence) {
+                notes.warnings.push(sentence.clone());
+            }
+        }
+    }
+}
+
+/// The points of a scan on the body.
+fn points_of(scan: &LaserScan) -> Vec<Point2<f64>> {
+    let beams = scan.ranges_m.iter().enumerate();
+    let seen = beams.filter(|&(_, &range_m)| scan.is_return(range_m));
+    seen.map(|(beam, &range_m)| {
+        let (sin, cos) = math::sin_cos(scan.bearing_rad(beam));
+        scan.body_from_sensor
+            .transform(Point2::new(range_m * cos, range_m * sin))
+    })
+    .collect()
+}
+
+impl Companion<'_> {
+    /// The scan nearest to this time, which never goes back.
+    fn nearest(&mut self, stamp_s: f64, notes: &mut LogNotes) -> Option<&StampedScan> {
+        while self
+            .next
+            .as_ref()
+            .or(self.last.as_ref())
+            .is_none_or(|scan| scan.stamp_s < stamp_s)
+        {
+            let Some(next) = self.cursor.next(notes) else {
+                break;
+            };
+            if let Some(before) = self.next.replace(next) {
+                self.last = Some(before);
+            }
+        }
+        let apart_s = |scan: &StampedScan| (scan.stamp_s - stamp_s).abs();
+        match (&self.last, &self.next) {
+            (Some(last), Some(next)) if apart_s(last) <= apart_s(next) => Some(last),
+            (_, Some(next)) => Some(next),
+            (last, None) => last.as_ref(),
+        }
     }
 }

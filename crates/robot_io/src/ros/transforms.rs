@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use ch16_slam2d::scan::LaserScan;
 use nalgebra::Isometry3;
 use pr_geom::{SE2, math};
 
 use super::messages::TransformMessage;
+use crate::laser_mount::LaserMount;
 
 /// Longer chains of frames go in a circle.
 const LONGEST_CHAIN: usize = 64;
@@ -15,57 +15,100 @@ const MOST_FRAMES: usize = 10_000;
 /// A laser whose axis leans farther than this does not scan the plane, as the cosine of 30°.
 const LEAST_UPRIGHT: f64 = 0.866;
 
-/// Where a planar laser sits, and whether its axis points up or down.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mount {
-    /// The sensor on the body, in the plane.
-    pub body_from_sensor: SE2,
-    /// Whether its beams turn clockwise, seen from above.
-    pub is_upside_down: bool,
+/// A frame that is found farther from where it was first moves, m.
+const MOVED_M: f64 = 0.01;
+/// The same of a turn, rad.
+const MOVED_RAD: f64 = 0.01;
+
+/// Whether the name is one of what a robot moves in, by ROS's convention (REP 105).
+pub fn is_ground(frame: &str) -> bool {
+    let name = frame.rsplit('/').next().unwrap_or(frame);
+    name.contains("odom") || matches!(name, "map" | "world" | "earth")
 }
 
-impl Mount {
-    /// The mounting in the plane.
-    ///
-    /// # Errors
-    /// Where the laser leans too far to scan the plane.
-    pub fn of(body_from_sensor: &Isometry3<f64>) -> Result<Self, String> {
-        let turn = body_from_sensor.rotation.to_rotation_matrix();
-        let turn = turn.matrix();
-        let upright = turn[(2, 2)];
-        if upright.abs() < LEAST_UPRIGHT {
-            return Err("the laser leans by more than 30° and does not scan the plane".to_owned());
-        }
-        let offset = &body_from_sensor.translation;
-        Ok(Self {
-            body_from_sensor: SE2::new(offset.x, offset.y, math::atan2(turn[(1, 0)], turn[(0, 0)])),
-            is_upside_down: upright < 0.0,
-        })
+/// The mounting of a laser in the plane.
+///
+/// # Errors
+/// Where the laser leans too far to scan the plane.
+pub fn mount_of(body_from_sensor: &Isometry3<f64>) -> Result<LaserMount, String> {
+    let turn = body_from_sensor.rotation.to_rotation_matrix();
+    let upright = turn.matrix()[(2, 2)];
+    if upright.abs() < LEAST_UPRIGHT {
+        return Err("the laser leans by more than 30° and does not scan the plane".to_owned());
     }
+    Ok(LaserMount {
+        body_from_sensor: planar(body_from_sensor),
+        is_flipped: upright < 0.0,
+    })
+}
 
-    /// Puts a scan where the laser sits.
-    pub fn place(&self, scan: &mut LaserScan) {
-        scan.body_from_sensor = self.body_from_sensor;
-        if self.is_upside_down {
-            scan.first_angle_rad = -scan.first_angle_rad;
-            scan.angle_step_rad = -scan.angle_step_rad;
-        }
-    }
+/// A frame in the frame above it.
+#[derive(Clone, Debug)]
+struct Edge {
+    parent: String,
+    /// The newest one.
+    transform: Isometry3<f64>,
+    first: Isometry3<f64>,
+    moves: bool,
 }
 
 /// The newest transform of each frame in the frame above it.
 #[derive(Clone, Debug, Default)]
 pub struct Transforms {
-    above: BTreeMap<String, (String, Isometry3<f64>)>,
+    above: BTreeMap<String, Edge>,
 }
 
 impl Transforms {
     /// Takes a transform.
     pub fn take(&mut self, message: &TransformMessage) {
-        if self.above.len() < MOST_FRAMES || self.above.contains_key(&message.child) {
-            let edge = (message.header.frame.clone(), message.transform);
+        if let Some(edge) = self.above.get_mut(&message.child) {
+            let moved = edge.first.inverse() * message.transform;
+            let is_elsewhere =
+                moved.translation.vector.norm() > MOVED_M || moved.rotation.angle() > MOVED_RAD;
+            edge.moves |= is_elsewhere && edge.parent == message.header.frame;
+            edge.transform = message.transform;
+            edge.parent.clone_from(&message.header.frame);
+        } else if self.above.len() < MOST_FRAMES {
+            let edge = Edge {
+                parent: message.header.frame.clone(),
+                transform: message.transform,
+                first: message.transform,
+                moves: false,
+            };
             self.above.insert(message.child.clone(), edge);
         }
+    }
+
+    /// Whether any transform of a frame above `sensor` changes, up to `body`.
+    pub fn moves_on(&self, body: &str, sensor: &str) -> bool {
+        let mut frame = sensor;
+        for _ in 0..LONGEST_CHAIN {
+            let Some(edge) = self.above.get(frame).filter(|_| frame != body) else {
+                return false;
+            };
+            if edge.moves {
+                return true;
+            }
+            frame = &edge.parent;
+        }
+        false
+    }
+
+    /// The highest frame that `sensor` is fixed to; none if no frame is above it.
+    pub fn root_of(&self, sensor: &str, ground: Option<&str>) -> Option<&str> {
+        let mut root = None;
+        let mut frame = sensor;
+        for _ in 0..LONGEST_CHAIN {
+            let Some(edge) = self.above.get(frame) else {
+                break;
+            };
+            if edge.moves || is_ground(&edge.parent) || ground == Some(edge.parent.as_str()) {
+                break;
+            }
+            root = Some(edge.parent.as_str());
+            frame = &edge.parent;
+        }
+        root
     }
 
     /// Where `sensor` is on `body`, by way of the nearest frame above both; none where they share none.
@@ -88,12 +131,12 @@ impl Transforms {
     fn chain<'a>(&'a self, frame: &'a str, ground: Option<&str>) -> Vec<(&'a str, Isometry3<f64>)> {
         let mut chain = vec![(frame, Isometry3::identity())];
         let (mut frame, mut place) = chain[0];
-        while let Some((parent, transform)) = self.above.get(frame)
+        while let Some(edge) = self.above.get(frame)
             && chain.len() < LONGEST_CHAIN
-            && ground != Some(parent.as_str())
+            && ground != Some(edge.parent.as_str())
         {
-            place = transform * place;
-            frame = parent;
+            place = edge.transform * place;
+            frame = &edge.parent;
             chain.push((frame, place));
         }
         chain
@@ -102,7 +145,7 @@ impl Transforms {
     /// Every frame with the frame above it, in the order of names.
     pub fn edges(&self) -> impl Iterator<Item = (&str, &str)> {
         let edges = self.above.iter();
-        edges.map(|(child, (parent, _))| (parent.as_str(), child.as_str()))
+        edges.map(|(child, edge)| (edge.parent.as_str(), child.as_str()))
     }
 }
 
@@ -119,6 +162,8 @@ mod tests {
     use core::f64::consts::{FRAC_PI_2, PI};
 
     use nalgebra::{Quaternion, Translation3, UnitQuaternion};
+
+    use ch16_slam2d::scan::LaserScan;
 
     use super::*;
     use crate::ros::messages::Header;
@@ -145,11 +190,11 @@ mod tests {
         frames.take(&message("base", "mast", 1.0, quarter));
         frames.take(&message("mast", "laser", 0.5, [1.0, 0.0, 0.0, 0.0]));
         let chain = frames.body_from_sensor("base", "laser", None).unwrap();
-        let mount = Mount::of(&chain).unwrap();
+        let mount = mount_of(&chain).unwrap();
         let [x, y, theta] = mount.body_from_sensor.to_array();
         // 1e-12: a dozen roundings of numbers about 1.
         assert!((x - 1.0).abs() < 1e-12 && (y - 0.5).abs() < 1e-12);
-        assert!((theta - FRAC_PI_2).abs() < 1e-12 && mount.is_upside_down);
+        assert!((theta - FRAC_PI_2).abs() < 1e-12 && mount.is_flipped);
         let mut scan = LaserScan {
             first_angle_rad: -1.0,
             angle_step_rad: 0.5,
@@ -173,7 +218,7 @@ mod tests {
         let chain = frames
             .body_from_sensor("footprint", "laser", ground)
             .unwrap();
-        let [x, y, theta] = Mount::of(&chain).unwrap().body_from_sensor.to_array();
+        let [x, y, theta] = mount_of(&chain).unwrap().body_from_sensor.to_array();
         // 0.75 m ahead on the link, which the footprint sees to its right; 1e-12: a dozen roundings.
         assert!(x.abs() < 1e-12 && (y + 0.75).abs() < 1e-12, "{x} {y}");
         assert!((theta + FRAC_PI_2).abs() < 1e-12);
@@ -195,6 +240,6 @@ mod tests {
     fn a_laser_that_looks_at_the_floor_is_refused() {
         let forward = UnitQuaternion::from_euler_angles(0.0, PI / 4.0, 0.0);
         let leaning = Isometry3::from_parts(Translation3::identity(), forward);
-        assert!(Mount::of(&leaning).unwrap_err().contains("leans"));
+        assert!(mount_of(&leaning).unwrap_err().contains("leans"));
     }
 }

@@ -1,8 +1,6 @@
 //! What the reader asks of the engine, in words: `turn 3`, `add 120 14`, `pin 7 1.5 2 0.1`, `unpin`,
 //! `look 12`, `cancel`; and where the robot of another log was.
 
-use std::io::BufRead;
-
 use ch16_slam2d::localize::StartPose;
 use ch16_slam2d::loops::{
     KeyframeView, LoopCandidate, LoopVerification, LoopWorkspace, verify_loop,
@@ -11,6 +9,7 @@ use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::slam::SlamParts;
 use pr_geom::SE2;
 use robot_io::log::LogOptions;
+use robot_io::log_bytes::LogBytes;
 use robot_io::map_image::map_of;
 use robot_io::report::Report;
 use robot_io::session;
@@ -59,7 +58,7 @@ impl<'a> Engine<'a> {
     /// One sentence where there is no map, or the file is no log; what was known of a log before stays.
     pub fn locate(
         &mut self,
-        source: impl BufRead + 'a,
+        source: impl Into<LogBytes<'a>>,
         name: &str,
         size_bytes: u64,
         options: &LogOptions,

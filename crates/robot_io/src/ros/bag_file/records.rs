@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::ros::container::{Recorded, kind_of};
+use crate::ros::container::{MOST_BYTES, Recorded, kind_of};
 use crate::ros::wire::Wire;
 
 /// More topics than any robot has.
@@ -11,8 +11,11 @@ const MOST_CONNECTIONS: usize = 10_000;
 /// Kinds of records, by their field `op`.
 pub mod op {
     pub const MESSAGE: u8 = 2;
+    pub const INDEX: u8 = 4;
     pub const CHUNK: u8 = 5;
     pub const CONNECTION: u8 = 7;
+    /// Bytes of an entry of an index: a time and an offset.
+    pub const INDEX_ENTRY: usize = 12;
 }
 
 /// Topic and type of a connection.
@@ -63,6 +66,23 @@ impl Connections {
             recorded_s: f64::from(seconds) + f64::from(nanoseconds) * 1e-9,
         })
     }
+}
+
+/// So many bytes show that a record begins: the headers of known records are shorter.
+pub const LONGEST_START: usize = 1024;
+
+/// Whether a record that can be read begins here.
+pub fn begins(bytes: &[u8]) -> bool {
+    let mut rest = bytes;
+    let Ok(header) = piece(&mut rest, "a header") else {
+        return false;
+    };
+    let is_known = Fields::of(header).and_then(|fields| fields.op());
+    let length = rest
+        .first_chunk::<4>()
+        .map(|length| u32::from_le_bytes(*length));
+    is_known.is_ok_and(|op| (2..=7).contains(&op))
+        && length.is_some_and(|length| length as usize <= MOST_BYTES)
 }
 
 /// A length and as many bytes.

@@ -1,6 +1,6 @@
 //! The records of a chunk, unpacked.
 
-use super::records::{broken, fields};
+use super::records::{HEAD_BYTES, broken, fields, head as record_head, op};
 use crate::ros::container::{ContainerError, MOST_BYTES};
 use crate::ros::decompress::Packing;
 use crate::ros::wire::{WireError, WireReader};
@@ -61,6 +61,26 @@ pub fn records(chunk: &[u8], is_cut_off: bool) -> Result<Vec<u8>, ContainerError
         ));
     }
     Ok(records)
+}
+
+/// So many bytes show that a chunk begins: record head, times, sizes, and the name of the packing.
+pub const LONGEST_START: usize = HEAD_BYTES + 8 + 8 + 8 + 4 + 4 + 4 + 8;
+
+/// Whether a chunk that can be read begins here.
+pub fn begins(bytes: &[u8]) -> bool {
+    let Some((op::CHUNK, length)) = record_head(bytes) else {
+        return false;
+    };
+    let Ok(mut fields) = fields(&bytes[HEAD_BYTES..]) else {
+        return false;
+    };
+    let before = fields.rest().len();
+    let Ok(head) = head(&mut fields) else {
+        return false;
+    };
+    let in_front = (before - fields.rest().len()) as u64;
+    let is_known = matches!(head.packing.as_str(), "" | "lz4" | "zstd");
+    is_known && head.packed.checked_add(in_front) == Some(length) && head.size <= MOST_BYTES as u64
 }
 
 fn head(fields: &mut WireReader<'_>) -> Result<Head, WireError> {

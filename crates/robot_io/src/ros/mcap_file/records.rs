@@ -16,6 +16,7 @@ pub mod op {
     pub const CHANNEL: u8 = 4;
     pub const MESSAGE: u8 = 5;
     pub const CHUNK: u8 = 6;
+    pub const ATTACHMENT: u8 = 9;
 }
 
 /// What a record is, and its length.

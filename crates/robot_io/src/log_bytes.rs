@@ -1,0 +1,185 @@
+//! The bytes of a log, which may be read more than once.
+//!
+//! Most faults of a recording show only in the whole of it: a transform at its end, a clock that steps
+//! back, odometry that starts late. So a log is looked through once before its first frame is taken, and
+//! whoever opens one gives a way to open it again. Files that are packed as a whole by gzip or zstd are
+//! unpacked on the way.
+
+use std::io::{self, BufRead, BufReader, Cursor, Read, Seek};
+use std::rc::Rc;
+
+use flate2::bufread::MultiGzDecoder;
+use ruzstd::decoding::StreamingDecoder;
+
+/// Larger files of SQLite have to be unpacked before: they are read here and there.
+const MOST_UNPACKED: u64 = 1 << 30;
+
+/// First bytes of gzip.
+const GZIP: &[u8] = b"\x1f\x8b";
+/// First bytes of zstd.
+const ZSTD: &[u8] = b"\x28\xb5\x2f\xfd";
+
+/// Bytes that can be read from any place on.
+pub trait SeekRead: BufRead + Seek {}
+
+impl<T: BufRead + Seek> SeekRead for T {}
+
+type Open<'a> = dyn Fn() -> io::Result<Box<dyn SeekRead + 'a>> + 'a;
+
+/// The bytes of a log: opened again for each pass over it.
+#[derive(Clone)]
+pub struct LogBytes<'a> {
+    open: Rc<Open<'a>>,
+}
+
+impl<'a> LogBytes<'a> {
+    /// Bytes that `open` gives from their start, each time it is called.
+    pub fn new<R: SeekRead + 'a>(open: impl Fn() -> io::Result<R> + 'a) -> Self {
+        Self {
+            open: Rc::new(move || Ok(Box::new(open()?) as Box<dyn SeekRead + 'a>)),
+        }
+    }
+
+    /// The bytes in their order, unpacked.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn stream(&self) -> io::Result<Box<dyn BufRead + 'a>> {
+        let mut source: Box<dyn BufRead + 'a> = Box::new((self.open)()?);
+        // Packed once, or twice by mistake.
+        for _ in 0..2 {
+            let start = source.fill_buf()?;
+            source = if start.starts_with(GZIP) {
+                Box::new(BufReader::with_capacity(
+                    1 << 16,
+                    MultiGzDecoder::new(source),
+                ))
+            } else if start.starts_with(ZSTD) {
+                Box::new(BufReader::with_capacity(1 << 16, ZstdFrames::new(source)))
+            } else {
+                break;
+            };
+        }
+        Ok(source)
+    }
+
+    /// The bytes, unpacked, to be read here and there.
+    ///
+    /// # Errors
+    /// What the system says, or that packed bytes are too many for memory.
+    pub fn seekable(&self) -> io::Result<Box<dyn SeekRead + 'a>> {
+        let mut source = (self.open)()?;
+        let start = source.fill_buf()?;
+        if !packs(start) {
+            return Ok(source);
+        }
+        drop(source);
+        let mut bytes = Vec::new();
+        self.stream()?
+            .take(MOST_UNPACKED + 1)
+            .read_to_end(&mut bytes)?;
+        if bytes.len() as u64 > MOST_UNPACKED {
+            return Err(io::Error::other(
+                "it unpacks to more than 1 GB; unpack it with zstd -d or gunzip and give the result",
+            ));
+        }
+        Ok(Box::new(Cursor::new(bytes)))
+    }
+
+    /// Whether the file is packed as a whole.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn is_packed(&self) -> io::Result<bool> {
+        Ok(packs((self.open)()?.fill_buf()?))
+    }
+}
+
+/// Whether a file that starts so is packed as a whole, by gzip or zstd.
+pub(crate) fn packs(start: &[u8]) -> bool {
+    start.starts_with(GZIP) || start.starts_with(ZSTD)
+}
+
+impl<'a> From<&'a [u8]> for LogBytes<'a> {
+    fn from(bytes: &'a [u8]) -> Self {
+        Self::new(move || Ok(Cursor::new(bytes)))
+    }
+}
+
+impl From<Vec<u8>> for LogBytes<'_> {
+    fn from(bytes: Vec<u8>) -> Self {
+        let bytes: Rc<[u8]> = bytes.into();
+        Self::new(move || Ok(Cursor::new(Rc::clone(&bytes))))
+    }
+}
+
+/// Frames of zstd one after the other: a decoder of one frame stops at its end.
+struct ZstdFrames<R: Read> {
+    decoder: Option<StreamingDecoder<R, ruzstd::decoding::FrameDecoder>>,
+    source: Option<R>,
+}
+
+impl<R: BufRead> ZstdFrames<R> {
+    fn new(source: R) -> Self {
+        Self {
+            decoder: None,
+            source: Some(source),
+        }
+    }
+}
+
+impl<R: BufRead> Read for ZstdFrames<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        loop {
+            if let Some(decoder) = &mut self.decoder {
+                let count = decoder.read(into)?;
+                if count > 0 || into.is_empty() {
+                    return Ok(count);
+                }
+                self.source = self.decoder.take().map(StreamingDecoder::into_inner);
+            }
+            let Some(mut source) = self.source.take() else {
+                return Ok(0);
+            };
+            if source.fill_buf()?.is_empty() {
+                self.source = Some(source);
+                return Ok(0);
+            }
+            let decoder = StreamingDecoder::new(source).map_err(io::Error::other)?;
+            self.decoder = Some(decoder);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    #[test]
+    fn packed_bytes_come_out_as_they_went_in_and_again_each_time() {
+        let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        gzip.write_all(b"FLASER").unwrap();
+        let gzip = gzip.finish().unwrap();
+        let level = ruzstd::encoding::CompressionLevel::Fastest;
+        let frame = |bytes: &[u8]| ruzstd::encoding::compress_to_vec(bytes, level);
+        // Two frames, as of programs that pack on several cores.
+        let zstd = [frame(b"FLA"), frame(b"SER")].concat();
+        for packed in [&b"FLASER"[..], &gzip, &zstd] {
+            let bytes = LogBytes::from(packed);
+            for _ in 0..2 {
+                let mut text = String::new();
+                bytes.stream().unwrap().read_to_string(&mut text).unwrap();
+                assert_eq!(text, "FLASER");
+                let mut again = String::new();
+                bytes
+                    .seekable()
+                    .unwrap()
+                    .read_to_string(&mut again)
+                    .unwrap();
+                assert_eq!(again, "FLASER");
+            }
+        }
+    }
+}

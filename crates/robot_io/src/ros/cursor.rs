@@ -1,0 +1,195 @@
+//! The scans of one topic in the order of their stamps, read from the file as they are needed.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use ch16_slam2d::scan::LaserScan;
+
+use super::binned::binned;
+use super::container::{Container, Recorded};
+use super::messages::{laser_scan, multi_echo_scan};
+use super::plan::PlannedScans;
+use super::point_cloud::{cloud_points, point_cloud};
+use super::survey::{SCANS, named, reader};
+use crate::log::{LogNotes, Place};
+
+/// A scan waits for so many others at most that stand after it in the file and before it in time.
+const MOST_WAITING: usize = 1024;
+/// Angle between the beams of a cloud that is cut to a band of heights, rad: half a degree.
+const CLOUD_STEP_RAD: f64 = 0.0087;
+
+/// A scan and its time.
+#[derive(Clone, Debug)]
+pub struct StampedScan {
+    /// When it was measured, s.
+    pub stamp_s: f64,
+    /// The scan where its laser sits.
+    pub scan: LaserScan,
+}
+
+/// Orders a heap so that the earliest scan is on top.
+struct Waiting(StampedScan);
+
+impl PartialEq for Waiting {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Waiting {}
+
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Waiting {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.0.stamp_s.total_cmp(&self.0.stamp_s)
+    }
+}
+
+/// Reads the scans of a topic.
+pub struct ScanCursor<'a> {
+    container: Box<dyn Container + 'a>,
+    scans: PlannedScans,
+    heights_m: Option<(f64, f64)>,
+    /// Earliest stamp of any message after this one, by the number of the message, s.
+    earliest_after_s: Vec<f64>,
+    read: usize,
+    waiting: BinaryHeap<Waiting>,
+    is_done: bool,
+    /// What is wrong with the fields of the first scan that has a fault, a sentence each.
+    said: Vec<String>,
+}
+
+impl<'a> ScanCursor<'a> {
+    /// A cursor at the first scan.
+    pub fn new(
+        container: Box<dyn Container + 'a>,
+        scans: PlannedScans,
+        heights_m: Option<(f64, f64)>,
+    ) -> Self {
+        let mut earliest_s = f64::INFINITY;
+        let mut earliest_after_s: Vec<f64> = scans
+            .stamps_s
+            .iter()
+            .rev()
+            .map(|stamp_s| {
+                let after_s = earliest_s;
+                earliest_s = earliest_s.min(*stamp_s);
+                after_s
+            })
+            .collect();
+        earliest_after_s.reverse();
+        Self {
+            container,
+            scans,
+            heights_m,
+            earliest_after_s,
+            read: 0,
+            waiting: BinaryHeap::new(),
+            is_done: false,
+            said: Vec::new(),
+        }
+    }
+
+    /// The topic with the times of its scans.
+    pub fn scans(&self) -> &PlannedScans {
+        &self.scans
+    }
+
+    /// Bytes read so far.
+    pub fn offset(&self) -> u64 {
+        self.container.offset()
+    }
+
+    /// What is wrong with the fields of scans so far.
+    pub fn said(&self) -> &[String] {
+        &self.said
+    }
+
+    /// The next scan in the order of time; none at the end, which a survey has told of.
+    pub fn next(&mut self, notes: &mut LogNotes) -> Option<StampedScan> {
+        loop {
+            let bound_s = match self.read.checked_sub(1) {
+                Some(last) if !self.is_done => self.earliest_after_s.get(last).copied(),
+                Some(_) => Some(f64::INFINITY),
+                None => Some(f64::NEG_INFINITY),
+            };
+            let bound_s = bound_s.unwrap_or(f64::INFINITY);
+            let is_ready = self.waiting.peek().is_some_and(|first| {
+                first.0.stamp_s <= bound_s || self.is_done || self.waiting.len() > MOST_WAITING
+            });
+            if is_ready {
+                return self.waiting.pop().map(|first| first.0);
+            }
+            if self.is_done {
+                return None;
+            }
+            match self.container.next_message() {
+                Ok(Some(message)) => self.take(&message, notes),
+                // What damage there is, the survey has told.
+                Err(error) if error.goes_on() => {}
+                Ok(None) | Err(_) => self.is_done = true,
+            }
+        }
+    }
+
+    fn take(&mut self, message: &Recorded, notes: &mut LogNotes) {
+        if message.topic != self.scans.topic || !SCANS.contains(&message.kind.as_str()) {
+            return;
+        }
+        let number = self.read;
+        self.read += 1;
+        match self.scan(message) {
+            Ok(scan) => {
+                let stamp_s = self.scans.stamps_s.get(number).copied().unwrap_or(f64::NAN);
+                if stamp_s.is_finite() {
+                    self.waiting.push(Waiting(StampedScan { stamp_s, scan }));
+                }
+            }
+            Err(problem) => {
+                let place = Place::Byte(self.container.offset());
+                notes.leave_out(place, named(message, problem));
+            }
+        }
+    }
+
+    fn scan(&mut self, message: &Recorded) -> Result<LaserScan, String> {
+        let mut fields = reader(message)?;
+        if message.kind == "sensor_msgs/PointCloud2" {
+            if let Some((low_m, high_m)) = self.heights_m {
+                let points = cloud_points(&mut fields)?;
+                let body_from_sensor = self.scans.body_from_sensor;
+                let on_body = points.iter().map(|point| body_from_sensor * point);
+                let in_band = on_body.filter(|point| (low_m..=high_m).contains(&point.z));
+                return Ok(binned(
+                    in_band.map(|point| (point.x, point.y)),
+                    CLOUD_STEP_RAD,
+                ));
+            }
+            let (_, mut scan) = point_cloud(&mut fields)?;
+            self.scans.mount.place(&mut scan);
+            return Ok(scan);
+        }
+        let read = if message.kind == SCANS[0] {
+            laser_scan
+        } else {
+            multi_echo_scan
+        };
+        let (_, told) = read(&mut fields).map_err(|problem| problem.to_string())?;
+        let (mut scan, said) = told.checked(self.scans.period_s)?;
+        scan.validate().map_err(|problem| problem.to_string())?;
+        if self.said.is_empty() {
+            let topic = &self.scans.topic;
+            self.said = said
+                .iter()
+                .map(|said| format!("scans of {topic}: {said}"))
+                .collect();
+        }
+        self.scans.mount.place(&mut scan);
+        Ok(scan)
+    }
+}

@@ -1,0 +1,304 @@
+//! Which scans and which odometry of a recording are taken, where the laser sits, and at which times.
+
+mod mounts;
+mod offers;
+mod wheels;
+
+use nalgebra::Isometry3;
+
+use super::survey::{SCANS, ScanStream, Survey};
+use crate::laser_mount::LaserMount;
+use crate::lines::listed;
+use crate::log::{LogNotes, LogOffer, LogOption, LogOptions};
+use crate::stamps::MendedStamps;
+use crate::wheel_poses::WheelPoses;
+
+/// A topic with fewer scans than this share of the richest one is not the robot's laser.
+const LEAST_SHARE: f64 = 0.1;
+/// Two lasers whose numbers of scans differ by more than this factor are not merged.
+const SAME_RATE: f64 = 1.5;
+/// So many other topics are named in a sentence.
+const MOST_NAMED: usize = 10;
+
+/// The topic of transforms.
+pub const TRANSFORMS: &str = "/tf";
+
+/// A topic whose scans are read.
+#[derive(Clone, Debug)]
+pub struct PlannedScans {
+    /// Its name.
+    pub topic: String,
+    /// When each of its messages was measured, s; not a number where it cannot be read.
+    pub stamps_s: Vec<f64>,
+    /// From one to the next, s.
+    pub period_s: f64,
+    /// Where the laser sits.
+    pub mount: LaserMount,
+    /// The same with height and lean.
+    pub body_from_sensor: Isometry3<f64>,
+}
+
+/// What is taken from a recording.
+#[derive(Debug, Default)]
+pub struct Plan {
+    /// The scans; those of further lasers are merged into those of the first.
+    pub scans: Vec<PlannedScans>,
+    /// The body's poses by odometry.
+    pub wheels: Option<WheelPoses>,
+    /// What options could choose.
+    pub offers: Vec<LogOffer>,
+    /// An option that asks for what is not there.
+    pub missing: Option<(LogOption, String)>,
+    /// What was chosen and found.
+    pub about: Vec<String>,
+    /// What was missing or mended.
+    pub warnings: Vec<String>,
+    /// Why no scan can be read.
+    without_scans: String,
+}
+
+impl Plan {
+    /// What is taken of a recording in which `survey` found what it holds.
+    #[must_use]
+    pub fn of(survey: &Survey, options: &LogOptions) -> Self {
+        let mut plan = Self {
+            without_scans: without_scans(survey, options),
+            ..Self::default()
+        };
+        let chosen = chosen_scans(survey, options);
+        let Some((topic, stream)) = chosen.first().copied() else {
+            plan.offers = offers::of(survey, None, None, None);
+            return plan;
+        };
+        let mut clocks = vec![MendedStamps::of(&stream.stamps_s, &stream.recorded_s)];
+        let wheels = wheels::chosen(survey, options, &stream.frame, &clocks[0]);
+        let ground = wheels.as_ref().map(|wheels| wheels.track.above.as_str());
+        let told_body = options
+            .body_frame
+            .as_deref()
+            .map(|body| body.trim_start_matches('/'));
+        let body = told_body
+            .or(wheels.as_ref().map(|wheels| wheels.track.body.as_str()))
+            .unwrap_or("base_link");
+        let found = mounts::find(survey, body, &stream.frame, ground, options);
+        let frame = if stream.frame.is_empty() {
+            "without a frame".to_owned()
+        } else {
+            format!("in frame {}", stream.frame)
+        };
+        plan.about
+            .push(format!("scans are those of {topic}, {frame}"));
+        if let Some(wheels) = &wheels {
+            plan.about.push(format!(
+                "odometry is that of {}, from {} to {}",
+                wheels.topic, wheels.track.above, wheels.track.body
+            ));
+        }
+        plan.about.push(mounts::sentence(&found));
+        plan.scans.push(planned(topic, &clocks[0], &found));
+        plan.warnings.extend(found.warning.clone());
+        for (other, stream) in &chosen[1..] {
+            let other_mount = mounts::find(survey, &found.body, &stream.frame, ground, options);
+            let is_asked_for = options.scan_topic.is_some();
+            if other_mount.is_known && found.is_known && stream.frame != chosen[0].1.frame
+                || is_asked_for
+            {
+                let clock = MendedStamps::of(&stream.stamps_s, &stream.recorded_s);
+                plan.about.push(format!(
+                    "scans of {other}, in frame {}, are merged with them: {}",
+                    stream.frame,
+                    mounts::sentence(&other_mount)
+                ));
+                plan.scans.push(planned(other, &clock, &other_mount));
+                clocks.push(clock);
+            }
+        }
+        plan.name_other_scans(survey, options);
+        for (scans, clock) in plan.scans.iter().zip(&clocks) {
+            let said = clock.sentences(&format!("scans of {}", scans.topic));
+            plan.warnings.extend(said);
+        }
+        if let Some(wheels) = &wheels {
+            plan.warnings.extend(
+                wheels
+                    .clock
+                    .sentences(&format!("poses of {}", wheels.topic)),
+            );
+            plan.take_wheels(wheels, &clocks[0]);
+            plan.about.extend(wheels.others.clone());
+        }
+        for (parent, child) in survey.transforms.edges().take(100) {
+            plan.about.push(format!("frame {child} hangs on {parent}"));
+        }
+        plan.offers = offers::of(survey, Some(topic), wheels.as_ref(), Some(&found.body));
+        plan.missing = offers::missing(survey, options, &plan.offers, wheels.as_ref());
+        plan
+    }
+
+    /// Puts odometry and scans on one clock.
+    fn take_wheels(&mut self, wheels: &wheels::Wheels<'_>, clock: &MendedStamps) {
+        let aligned = wheels::aligned(wheels, clock);
+        let by_s = aligned.scans_by_s;
+        for scans in &mut self.scans {
+            scans
+                .stamps_s
+                .iter_mut()
+                .for_each(|stamp_s| *stamp_s += by_s);
+        }
+        self.warnings.extend(aligned.said);
+        let poses = aligned.poses;
+        let anchor = &self.scans[0].stamps_s;
+        let known = anchor.iter().filter(|stamp_s| stamp_s.is_finite()).count();
+        let bare = anchor
+            .iter()
+            .filter(|stamp_s| stamp_s.is_finite() && poses.at(**stamp_s).is_none())
+            .count();
+        if bare > 0
+            && let Some((first_s, last_s)) = poses.ends_s()
+        {
+            let early = anchor
+                .iter()
+                .filter(|&&stamp_s| stamp_s < first_s && poses.at(stamp_s).is_none());
+            let late = anchor
+                .iter()
+                .filter(|&&stamp_s| stamp_s > last_s && poses.at(stamp_s).is_none());
+            let (early, late) = (early.count(), late.count());
+            self.warnings.push(format!(
+                "{bare} of {known} scans have no odometry of their time ({early} before its first pose, {late} after its last, {} in gaps); they go by scans alone. Record odometry from the start to the end",
+                bare - early - late
+            ));
+        }
+        self.wheels = Some(poses);
+    }
+
+    /// Names the topics with scans that are not read.
+    fn name_other_scans(&mut self, survey: &Survey, options: &LogOptions) {
+        if options.scan_topic.is_some() {
+            return;
+        }
+        let is_read = |topic: &String| self.scans.iter().any(|scans| scans.topic == *topic);
+        let usable = survey.scans.iter().filter(|(_, stream)| stream.is_usable);
+        let others: Vec<String> = usable
+            .filter(|(topic, _)| !is_read(topic))
+            .map(|(topic, _)| topic.clone())
+            .take(MOST_NAMED)
+            .collect();
+        if !others.is_empty() {
+            let example = others[0].clone();
+            self.warnings.push(format!(
+                "there are scans on {} as well, which are not read; choose with --scan-topic {example}",
+                listed(others.into_iter())
+            ));
+        }
+    }
+
+    /// Tells what was met and what was chosen.
+    pub fn tell(&self, survey_counts: &Survey, notes: &mut LogNotes) {
+        let counts = survey_counts.counts.iter();
+        notes.records = counts
+            .map(|((topic, kind), &count)| (format!("{topic} {kind}"), count))
+            .collect();
+        notes.about.clone_from(&self.about);
+        notes.warnings.clone_from(&self.warnings);
+        notes.offers.clone_from(&self.offers);
+    }
+
+    /// What stands in the recording in place of scans.
+    pub fn without_scans(&self) -> &str {
+        &self.without_scans
+    }
+
+    /// What there is in place of what an option asks for.
+    pub fn instead_of(&self, option: LogOption) -> String {
+        let offer = self.offers.iter().find(|offer| offer.option == option);
+        let names = offer.map_or(&[][..], |offer| &offer.names);
+        if names.is_empty() {
+            "it has none, so leave the option out".to_owned()
+        } else {
+            format!("it has {}", listed(names.iter().take(20).cloned()))
+        }
+    }
+}
+
+fn planned(topic: &str, clock: &MendedStamps, found: &mounts::Found) -> PlannedScans {
+    PlannedScans {
+        topic: topic.to_owned(),
+        stamps_s: clock.stamps_s.clone(),
+        period_s: clock.period_s,
+        mount: found.mount,
+        body_from_sensor: found.body_from_sensor,
+    }
+}
+
+/// The topics whose scans may be read, the first one first.
+fn chosen_scans<'a>(survey: &'a Survey, options: &LogOptions) -> Vec<(&'a str, &'a ScanStream)> {
+    let usable = survey.scans.iter().filter(|(_, stream)| stream.is_usable);
+    let mut usable: Vec<(&str, &ScanStream)> = usable
+        .map(|(topic, stream)| (topic.as_str(), stream))
+        .collect();
+    if let Some(wanted) = &options.scan_topic {
+        let find = |topic: &str| usable.iter().copied().find(|(known, _)| *known == topic);
+        let all = wanted.split(',').map(str::trim);
+        let found: Option<Vec<_>> = all.map(find).collect();
+        return found.unwrap_or_default();
+    }
+    // Lasers before clouds, which may be those of a camera.
+    let is_cloud = |stream: &ScanStream| SCANS[stream.kind] == "sensor_msgs/PointCloud2";
+    usable.sort_by_key(|(_, stream)| (is_cloud(stream), stream.order));
+    let most = usable
+        .iter()
+        .map(|(_, stream)| stream.stamps_s.len())
+        .max()
+        .unwrap_or(0);
+    let is_rich = |count: usize| count as f64 >= LEAST_SHARE * most as f64;
+    usable.retain(|(_, stream)| is_rich(stream.stamps_s.len()));
+    let Some((_, first)) = usable.first().copied() else {
+        return usable;
+    };
+    let of_first = first.stamps_s.len() as f64;
+    let mut frames = vec![first.frame.as_str()];
+    let mut at = 0;
+    usable.retain(|(_, stream)| {
+        at += 1;
+        let ratio = stream.stamps_s.len() as f64 / of_first;
+        let is_new = !frames.contains(&stream.frame.as_str());
+        let is_kept = at == 1
+            || is_new
+                && !is_cloud(stream)
+                && !is_cloud(first)
+                && (1.0 / SAME_RATE..=SAME_RATE).contains(&ratio);
+        if is_kept {
+            frames.push(stream.frame.as_str());
+        }
+        is_kept
+    });
+    usable
+}
+
+fn without_scans(survey: &Survey, options: &LogOptions) -> String {
+    if options.scan_topic.is_none()
+        && let Some(problem) = survey
+            .scans
+            .values()
+            .find_map(|stream| stream.problem.clone())
+    {
+        return problem;
+    }
+    if let Some(topic) = &options.scan_topic
+        && let Some(problem) = survey
+            .scans
+            .get(topic)
+            .and_then(|stream| stream.problem.clone())
+    {
+        return problem;
+    }
+    let topics = survey.counts.keys().take(20);
+    let topics = listed(topics.map(|(topic, kind)| format!("{topic} ({kind})")));
+    if let Some(topic) = &options.scan_topic {
+        return format!("{topic} is not one of {topics}");
+    }
+    if topics.is_empty() {
+        return "it has no message".to_owned();
+    }
+    format!("it has {topics}; record a topic of type sensor_msgs/LaserScan as well")
+}

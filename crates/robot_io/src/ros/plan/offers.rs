@@ -1,0 +1,82 @@
+//! What options could choose in a recording, and what they ask for in vain.
+
+use std::collections::BTreeSet;
+
+use super::TRANSFORMS;
+use super::wheels::Wheels;
+use crate::log::{LogOffer, LogOption, LogOptions};
+use crate::ros::survey::{ODOMETRY, SCANS, Survey};
+
+/// So many topics or frames are offered for an option.
+const MOST_OFFERED: usize = 100;
+
+/// What each option could choose, and what is taken.
+pub fn of(
+    survey: &Survey,
+    scans: Option<&str>,
+    wheels: Option<&Wheels<'_>>,
+    body: Option<&str>,
+) -> Vec<LogOffer> {
+    let topics = |kinds: &[&str]| {
+        let all = survey.counts.keys();
+        let of_kind = all.filter(|(_, kind)| kinds.contains(&kind.as_str()));
+        of_kind
+            .map(|(topic, _)| topic.clone())
+            .collect::<BTreeSet<_>>()
+    };
+    let frames = || survey.transforms.edges();
+    let parents: BTreeSet<String> = frames().map(|(parent, _)| parent.to_owned()).collect();
+    let children = frames().map(|(_, child)| child.to_owned());
+    let bodies: BTreeSet<String> = children.chain(parents.iter().cloned()).collect();
+    let mut odometry = topics(&[ODOMETRY]);
+    if !survey.tracks.is_empty() {
+        odometry.insert(TRANSFORMS.to_owned());
+    }
+    let above = wheels.filter(|wheels| wheels.is_transform);
+    LogOption::ALL
+        .map(|option| {
+            let (taken, names) = match option {
+                LogOption::ScanTopic => (scans.map(str::to_owned), topics(&SCANS)),
+                LogOption::OdometryTopic => {
+                    (wheels.map(|wheels| wheels.topic.clone()), odometry.clone())
+                }
+                LogOption::OdometryFrame => (
+                    above.map(|wheels| wheels.track.above.clone()),
+                    parents.clone(),
+                ),
+                LogOption::BodyFrame => (body.map(str::to_owned), bodies.clone()),
+            };
+            LogOffer {
+                option,
+                taken,
+                names: names.into_iter().take(MOST_OFFERED).collect(),
+            }
+        })
+        .to_vec()
+}
+
+/// An option that asks for what is not there: the odometry's topic or frame, or the body's frame.
+pub fn missing(
+    survey: &Survey,
+    options: &LogOptions,
+    offers: &[LogOffer],
+    wheels: Option<&Wheels<'_>>,
+) -> Option<(LogOption, String)> {
+    let lacks = |option: LogOption, wanted: &Option<String>| {
+        let wanted = wanted.as_ref()?;
+        let plain = wanted.trim_start_matches('/');
+        let offer = offers.iter().find(|offer| offer.option == option)?;
+        let is_there = |name: &String| name.trim_start_matches('/') == plain;
+        let of_wheels = wheels.map(|wheels| &wheels.track.body);
+        let mut bodies = survey
+            .odometry
+            .values()
+            .map(|track| &track.body)
+            .chain(of_wheels);
+        let is_body = option == LogOption::BodyFrame && bodies.any(is_there);
+        (!is_body && !offer.names.iter().any(is_there)).then(|| (option, wanted.clone()))
+    };
+    lacks(LogOption::OdometryTopic, &options.odometry_topic)
+        .or_else(|| lacks(LogOption::OdometryFrame, &options.odometry_frame))
+        .or_else(|| lacks(LogOption::BodyFrame, &options.body_frame))
+}

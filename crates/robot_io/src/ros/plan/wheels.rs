@@ -1,0 +1,177 @@
+//! Which odometry is taken, and how its clock and that of the scans go together.
+
+use super::TRANSFORMS;
+use crate::lines::listed;
+use crate::log::LogOptions;
+use crate::ros::survey::{Survey, Track};
+use crate::stamps::MendedStamps;
+use crate::wheel_poses::WheelPoses;
+
+/// Clocks that differ by less are one clock with a delay, s.
+const SAME_CLOCK_S: f64 = 1.0;
+/// Odometry of fewer scans than this share does not cover them.
+const COVERS: f64 = 0.8;
+
+/// The odometry that is taken.
+pub struct Wheels<'a> {
+    /// Its topic.
+    pub topic: String,
+    /// Its poses.
+    pub track: &'a Track,
+    /// Their stamps.
+    pub clock: MendedStamps,
+    /// Whether it is a transform.
+    pub is_transform: bool,
+    /// What else might have been taken.
+    pub others: Option<String>,
+}
+
+/// The odometry that moves, leads to the laser and covers the scans; none where there is none.
+pub fn chosen<'a>(
+    survey: &'a Survey,
+    options: &LogOptions,
+    sensor: &str,
+    scans: &MendedStamps,
+) -> Option<Wheels<'a>> {
+    let wanted = options.odometry_topic.as_deref();
+    let topics = survey
+        .odometry
+        .iter()
+        .map(|(topic, track)| (topic.clone(), track, false));
+    let transforms = survey
+        .tracks
+        .values()
+        .map(|track| (TRANSFORMS.to_owned(), track, true));
+    let candidates = topics
+        .chain(transforms)
+        .filter(|(topic, track, is_transform)| {
+            let is_wanted = wanted.is_none_or(|wanted| wanted == topic);
+            // A transform of one message is fixed, whatever its name.
+            is_wanted && (!is_transform || track.moves || track.poses.len() > 2)
+        });
+    let scored = candidates.map(|(topic, track, is_transform)| {
+        let clock = MendedStamps::of(&track.stamps_s, &track.recorded_s);
+        let leads = leads_to(survey, track, sensor);
+        let score = (
+            track.moves,
+            leads,
+            covers(&clock, scans),
+            !is_transform,
+            std::cmp::Reverse(track.order),
+        );
+        (score, topic, track, clock, is_transform)
+    });
+    let mut scored: Vec<_> = scored.collect();
+    scored.sort_by(|a, b| b.0.cmp(&a.0));
+    let mut scored = scored.into_iter();
+    let (_, topic, track, clock, is_transform) = scored.next()?;
+    let others = scored
+        .map(|(_, topic, track, ..)| format!("{topic} from {} to {}", track.above, track.body));
+    let others = listed(others.take(5));
+    Some(Wheels {
+        topic,
+        track,
+        clock,
+        is_transform,
+        others: (!others.is_empty()).then(|| {
+            format!("there is other odometry: {others}; choose with --odom-topic or --odom-frame")
+        }),
+    })
+}
+
+/// Whether the body that moves carries the laser: surely, or as far as the transforms know.
+fn leads_to(survey: &Survey, track: &Track, sensor: &str) -> bool {
+    let transforms = &survey.transforms;
+    let ground = Some(track.above.as_str());
+    let is_connected = transforms
+        .body_from_sensor(&track.body, sensor, ground)
+        .is_some();
+    // A body that no transform names may carry it all the same.
+    let is_named = transforms.edges().any(|(parent, child)| {
+        parent == track.body || child == track.body && parent != track.above
+    });
+    is_connected
+        || !is_named
+            && survey
+                .odometry
+                .values()
+                .any(|known| known.body == track.body)
+}
+
+/// Whether the poses cover the time of most scans, each by the recording's own time where it is known.
+fn covers(clock: &MendedStamps, scans: &MendedStamps) -> bool {
+    let offset_s = clock_offset_s(scans, clock).unwrap_or(0.0);
+    let (first_s, last_s) = ends_s(&clock.stamps_s);
+    let covered = scans.stamps_s.iter().filter(|&&stamp_s| {
+        let stamp_s = stamp_s - offset_s;
+        (first_s - SAME_CLOCK_S..=last_s + SAME_CLOCK_S).contains(&stamp_s)
+    });
+    covered.count() as f64 >= COVERS * scans.stamps_s.len() as f64
+}
+
+fn ends_s(stamps_s: &[f64]) -> (f64, f64) {
+    let known = stamps_s
+        .iter()
+        .copied()
+        .filter(|stamp_s| stamp_s.is_finite());
+    known.fold(
+        (f64::INFINITY, f64::NEG_INFINITY),
+        |(first, last), stamp_s| (first.min(stamp_s), last.max(stamp_s)),
+    )
+}
+
+/// How far the scans' clock is ahead of that of the odometry, if the recording's time shows it, s.
+fn clock_offset_s(scans: &MendedStamps, wheels: &MendedStamps) -> Option<f64> {
+    let offset_s = scans.ahead_s? - wheels.ahead_s?;
+    (offset_s.abs() > SAME_CLOCK_S).then_some(offset_s)
+}
+
+/// Scans and odometry on one clock.
+pub struct Aligned {
+    /// The poses on that clock.
+    pub poses: WheelPoses,
+    /// What is added to the scans' stamps, s.
+    pub scans_by_s: f64,
+    /// What was done.
+    pub said: Option<String>,
+}
+
+/// Puts both on the clock of the recording, or on that of the odometry.
+pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
+    let clock = &wheels.clock;
+    let (mut scans_by_s, mut wheels_by_s, mut said) = (0.0, 0.0, None);
+    if let Some(offset_s) = clock_offset_s(scans, clock) {
+        let is_scans_off = scans
+            .ahead_s
+            .is_some_and(|ahead_s| ahead_s.abs() > SAME_CLOCK_S);
+        if is_scans_off {
+            scans_by_s = -offset_s;
+        } else {
+            wheels_by_s = offset_s;
+        }
+        let whose = if is_scans_off { "scans" } else { "odometry" };
+        said = Some(format!(
+            "the clocks of scans and odometry differ by {:.1} s, as the recording's own time shows; that of the {whose} is moved. Set both computers' clocks by NTP",
+            offset_s.abs()
+        ));
+    } else {
+        let ((first_s, last_s), (scan_s, end_s)) =
+            (ends_s(&clock.stamps_s), ends_s(&scans.stamps_s));
+        if last_s < scan_s || first_s > end_s {
+            let apart_s = scan_s - first_s;
+            said = Some(format!(
+                "the clocks of scans and odometry differ by {:.0} s, and the recording does not show which is right; set both computers' clocks by NTP and record again, or go by scans alone with --no-odometry",
+                apart_s.abs()
+            ));
+        }
+    }
+    let stamped = clock.stamps_s.iter().zip(&wheels.track.poses);
+    let poses = stamped
+        .filter(|(stamp_s, _)| stamp_s.is_finite())
+        .map(|(stamp_s, pose)| (stamp_s + wheels_by_s, *pose));
+    Aligned {
+        poses: WheelPoses::of(poses.collect(), clock.period_s),
+        scans_by_s,
+        said,
+    }
+}

@@ -1,0 +1,406 @@
+//! The fields of a laser scan, checked against each other.
+//!
+//! A driver states the same thing more than once: the first and the last angle, the step between two beams and
+//! their number; the time of a beam and that of a scan; ranges and their limits. If they contradict each
+//! other, what two of them agree on is taken and a sentence reports it; else the scan is refused.
+
+use core::f64::consts::{PI, TAU};
+
+use ch16_slam2d::scan::LaserScan;
+
+use crate::stamps::median;
+
+/// A sweep is a turn at most, up to the rounding of four-byte numbers and one beam too many.
+const FULL_TURN: f64 = 1.02 * TAU;
+/// Longer ranges are not metres.
+const LONGEST_M: f64 = 400.0;
+/// So much longer than from one scan to the next may a sweep take: stamps jitter.
+const SWEEP_SLACK: f64 = 1.3;
+
+/// What `sensor_msgs/LaserScan` has in its fields.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ScanFields {
+    /// Angle of the first beam, rad.
+    pub angle_min: f64,
+    /// Angle of the last beam, rad.
+    pub angle_max: f64,
+    /// Angle from one beam to the next, rad.
+    pub angle_increment: f64,
+    /// Time from one beam to the next, s.
+    pub time_increment: f64,
+    /// Time of a turn, s.
+    pub scan_time: f64,
+    /// Shorter ranges are no points, m.
+    pub range_min: f64,
+    /// Longer ones are none either, m.
+    pub range_max: f64,
+    /// One range for each beam, m.
+    pub ranges_m: Vec<f64>,
+}
+
+/// A scan, and what was contradictory in its fields.
+pub type Checked = (LaserScan, Vec<String>);
+
+impl ScanFields {
+    /// The scan of these fields; `period_s` is the time from one scan to the next, 0 if it is unknown.
+    ///
+    /// # Errors
+    /// Which fields contradict each other, if nothing can be taken from them.
+    pub fn checked(self, period_s: f64) -> Result<Checked, String> {
+        if self.ranges_m.is_empty() {
+            return Err("a scan has to have ranges, and has none".to_owned());
+        }
+        let mut said = Vec::new();
+        let (first_angle_rad, angle_step_rad) = self.angles(&mut said)?;
+        let beam_interval_s = self.beam_interval_s(period_s, &mut said);
+        let (range_min_m, range_max_m, scale) = self.ranges(&mut said);
+        let mut ranges_m = self.ranges_m;
+        if scale != 1.0 {
+            ranges_m.iter_mut().for_each(|range_m| *range_m *= scale);
+        }
+        let scan = LaserScan {
+            first_angle_rad,
+            angle_step_rad,
+            range_min_m,
+            range_max_m,
+            beam_interval_s,
+            ranges_m,
+            ..LaserScan::default()
+        };
+        Ok((scan, said))
+    }
+
+    /// First angle and step, rad.
+    fn angles(&self, said: &mut Vec<String>) -> Result<(f64, f64), String> {
+        let beams = self.ranges_m.len();
+        let gaps = (beams - 1).max(1) as f64;
+        let (min, max, step) = (self.angle_min, self.angle_max, self.angle_increment);
+        let has_step = step.is_finite() && step != 0.0;
+        let has_ends = min.is_finite() && max.is_finite() && min != max;
+        if !has_ends {
+            let from = match (min.is_finite(), max.is_finite()) {
+                (true, _) => min,
+                (false, true) if has_step => max - gaps * step,
+                _ => {
+                    return Err(format!(
+                        "angle_min is {min} and angle_max {max}; set them in the driver"
+                    ));
+                }
+            };
+            if !has_step {
+                return Err(format!(
+                    "angle_increment is {step}, and angle_min and angle_max do not give it; set it in the driver"
+                ));
+            }
+            let (from, step) = if step.abs() * gaps > FULL_TURN {
+                said.push(
+                    "its angles are degrees; they are taken as such. Publish radians".to_owned(),
+                );
+                (from.to_radians(), step.to_radians())
+            } else {
+                (from, step)
+            };
+            return in_a_turn(from, step, gaps);
+        }
+        let of_ends = (max - min) / gaps;
+        if !has_step {
+            said.push(format!(
+                "angle_increment is {step}; {:.4}° is taken, from angle_min, angle_max and {beams} beams",
+                of_ends.to_degrees()
+            ));
+            return in_a_turn(min, of_ends, gaps);
+        }
+        // The last angle is that of the last beam, or that of the one after it; degrees of either kind.
+        let agrees = |ends: f64, step: f64| {
+            (ends - step * gaps).abs() <= 1.5 * step.abs()
+                || (ends / (step * gaps) - 1.0).abs() < 0.01
+        };
+        if agrees(max - min, step) {
+            if (step * gaps).abs() <= FULL_TURN {
+                return Ok((min, step));
+            }
+            said.push("its angles are degrees; they are taken as such. Publish radians".to_owned());
+            return in_a_turn(min.to_radians(), step.to_radians(), gaps);
+        }
+        if agrees(max - min, step.to_radians()) && (max - min).abs() <= FULL_TURN {
+            said.push(format!(
+                "angle_increment is {step}, which is degrees; angle_min and angle_max are radians. Publish radians"
+            ));
+            return Ok((min, step.to_radians()));
+        }
+        if agrees((max - min).to_radians(), step) && (step * gaps).abs() <= FULL_TURN {
+            said.push(format!(
+                "angle_min {min} and angle_max {max} are degrees; angle_increment is radians. Publish radians"
+            ));
+            return Ok((min.to_radians(), step));
+        }
+        let told = |taken: &str| {
+            format!(
+                "angle_min {:.2}°, angle_max {:.2}° and {beams} beams give a step of {:.4}°, and angle_increment is {:.4}°; {taken}. Correct the driver",
+                min.to_degrees(),
+                max.to_degrees(),
+                of_ends.to_degrees(),
+                step.to_degrees()
+            )
+        };
+        if (max - min).abs() <= FULL_TURN {
+            said.push(told("the step of the two ends is taken"));
+            return Ok((min, of_ends));
+        }
+        if (step * gaps).abs() <= FULL_TURN {
+            said.push(told(
+                "angle_increment is taken, as the ends are farther apart than a turn",
+            ));
+            return Ok((min, step));
+        }
+        Err(told("neither is a sweep of a turn or less"))
+    }
+
+    /// Time from one beam to the next, s; 0 if what is stated cannot be.
+    fn beam_interval_s(&self, period_s: f64, said: &mut Vec<String>) -> f64 {
+        let stated_s = self.time_increment;
+        if !(stated_s.is_finite() && stated_s > 0.0) {
+            return 0.0;
+        }
+        let beams = self.ranges_m.len() as f64;
+        let scan_time_s = self.scan_time;
+        let is_scan_time = scan_time_s > 0.0 && scan_time_s <= SWEEP_SLACK * period_s;
+        let longest_s = match (is_scan_time, period_s > 0.0) {
+            (true, _) => SWEEP_SLACK * scan_time_s,
+            (false, true) => SWEEP_SLACK * period_s,
+            // Slower lasers than one turn in two seconds are none.
+            (false, false) => 2.0,
+        };
+        if stated_s * beams <= longest_s {
+            return stated_s;
+        }
+        // A unit is believed if the sweep then takes what the scans' period or their scan_time is.
+        let target_s = if is_scan_time { scan_time_s } else { period_s };
+        let units = [
+            ("nanoseconds", 1e-9),
+            ("microseconds", 1e-6),
+            ("milliseconds", 1e-3),
+        ];
+        let unit = units.into_iter().find(|(_, unit)| {
+            let sweep_s = stated_s * unit * beams;
+            target_s > 0.0 && (0.7 * target_s..=SWEEP_SLACK * target_s).contains(&sweep_s)
+        });
+        let stated = format!(
+            "time_increment is {stated_s} s, so that a sweep would take {:.1} s",
+            stated_s * beams
+        );
+        match unit {
+            Some((name, unit)) => {
+                said.push(format!("{stated}; {name} are taken, which agree with the scans' period. Publish seconds"));
+                stated_s * unit
+            }
+            None => {
+                said.push(format!(
+                    "{stated}, but scans are {period_s:.2} s apart; each sweep is taken as one moment. Publish seconds"
+                ));
+                0.0
+            }
+        }
+    }
+
+    /// Limits of the range (m), and what every range is multiplied by.
+    fn ranges(&self, said: &mut Vec<String>) -> (f64, f64, f64) {
+        let positive = |value: f64| value.is_finite() && value > 0.0;
+        let returns = self
+            .ranges_m
+            .iter()
+            .copied()
+            .filter(|&range| positive(range));
+        let typical = median(returns.collect()).unwrap_or(0.0);
+        let scale = if typical > LONGEST_M {
+            said.push(format!(
+                "its ranges are about {typical:.0}, which is millimetres; they are divided by 1000. Publish metres"
+            ));
+            1e-3
+        } else {
+            1.0
+        };
+        let limit = |value: f64| {
+            if value > LONGEST_M && scale != 1.0 {
+                value * scale
+            } else {
+                value
+            }
+        };
+        let (min, max) = (limit(self.range_min), limit(self.range_max));
+        let range_min_m = if positive(min) { min } else { 0.0 };
+        let range_max_m = if max > 0.0 { max } else { f64::INFINITY };
+        if range_max_m <= range_min_m {
+            said.push(format!(
+                "range_min is {min} m and range_max {max} m; neither is taken. Correct the driver"
+            ));
+            return (0.0, f64::INFINITY, scale);
+        }
+        (range_min_m, range_max_m, scale)
+    }
+}
+
+/// Angles that make a sweep.
+fn in_a_turn(first: f64, step: f64, gaps: f64) -> Result<(f64, f64), String> {
+    if (step * gaps).abs() <= FULL_TURN && first.abs() <= 4.0 * PI && step != 0.0 {
+        Ok((first, step))
+    } else {
+        Err(format!(
+            "its beams cover {:.0}°, which is more than a turn; correct angle_min, angle_max and angle_increment in the driver",
+            (step * gaps).abs().to_degrees()
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fields() -> ScanFields {
+        ScanFields {
+            angle_min: -PI,
+            angle_max: PI - TAU / 360.0,
+            angle_increment: TAU / 360.0,
+            range_max: 12.0,
+            ranges_m: vec![2.0; 360],
+            ..ScanFields::default()
+        }
+    }
+
+    #[track_caller]
+    fn assert_taken(fields: ScanFields, first: f64, step: f64, words: &str) {
+        let (scan, said) = fields.checked(0.1).unwrap();
+        // 1e-6: four-byte numbers.
+        assert!(
+            (scan.first_angle_rad - first).abs() < 1e-6,
+            "{}",
+            scan.first_angle_rad
+        );
+        assert!(
+            (scan.angle_step_rad - step).abs() < 1e-6,
+            "{}",
+            scan.angle_step_rad
+        );
+        let said = said.join(" ");
+        assert_eq!(said.is_empty(), words.is_empty(), "{said}");
+        assert!(said.contains(words), "{said}");
+    }
+
+    #[test]
+    fn angles_that_agree_are_taken_and_others_by_what_two_say() {
+        let (first, step) = (-PI, TAU / 360.0);
+        assert_taken(fields(), first, step, "");
+        // Some drivers state the angle after the last beam.
+        assert_taken(
+            ScanFields {
+                angle_max: PI,
+                ..fields()
+            },
+            first,
+            step,
+            "",
+        );
+        for increment in [0.0, f64::NAN, -step, 0.5 * step, 2.0 * step] {
+            let other = ScanFields {
+                angle_increment: increment,
+                ..fields()
+            };
+            assert_taken(other, first, step, "angle_increment");
+        }
+        let degrees = ScanFields {
+            angle_min: -180.0,
+            angle_max: 179.0,
+            angle_increment: 1.0,
+            ..fields()
+        };
+        assert_taken(degrees.clone(), first, step, "degrees");
+        assert_taken(
+            ScanFields {
+                angle_increment: step,
+                ..degrees
+            },
+            first,
+            step,
+            "degrees",
+        );
+        assert_taken(
+            ScanFields {
+                angle_increment: 1.0,
+                ..fields()
+            },
+            first,
+            step,
+            "degrees",
+        );
+        assert_taken(
+            ScanFields {
+                angle_max: f64::NAN,
+                ..fields()
+            },
+            first,
+            step,
+            "",
+        );
+        assert_taken(
+            ScanFields {
+                angle_max: 40.0,
+                ..fields()
+            },
+            first,
+            step,
+            "angle_increment is taken",
+        );
+    }
+
+    #[test]
+    fn angles_of_which_nothing_agrees_are_refused() {
+        let bad = ScanFields {
+            angle_max: 40.0,
+            angle_increment: 3.0,
+            ..fields()
+        };
+        let said = bad.checked(0.1).unwrap_err();
+        assert!(said.contains("neither is a sweep"), "{said}");
+        let bad = ScanFields {
+            angle_max: f64::NAN,
+            angle_increment: f64::NAN,
+            ..fields()
+        };
+        assert!(
+            bad.checked(0.1)
+                .unwrap_err()
+                .contains("set it in the driver")
+        );
+    }
+
+    #[test]
+    fn the_time_of_a_beam_is_checked_against_the_period() {
+        let interval = |time_increment: f64| {
+            let fields = ScanFields {
+                time_increment,
+                ..fields()
+            };
+            let (scan, said) = fields.checked(0.1).unwrap();
+            (scan.beam_interval_s, said.join(" "))
+        };
+        assert_eq!(interval(0.1 / 360.0), (0.1 / 360.0, String::new()));
+        let (taken_s, said) = interval(0.1e9 / 360.0);
+        assert!(
+            (taken_s - 0.1 / 360.0).abs() < 1e-9 && said.contains("nanoseconds"),
+            "{said}"
+        );
+        let (taken_s, said) = interval(7.0);
+        assert!(taken_s == 0.0 && said.contains("one moment"), "{said}");
+    }
+
+    #[test]
+    fn millimetres_are_divided() {
+        let fields = ScanFields {
+            ranges_m: vec![2000.0; 360],
+            ..fields()
+        };
+        let (scan, said) = fields.checked(0.1).unwrap();
+        assert_eq!((scan.ranges_m[0], scan.range_max_m), (2.0, 12.0));
+        assert!(said[0].contains("millimetres"));
+    }
+}

@@ -1,0 +1,200 @@
+//! Recordings of ROS 2 in SQLite (`.db3`), which rosbag2 wrote by default until 2023.
+//!
+//! Two tables are read: `topics` and `messages`. A few pages are in memory at a time, and nothing is written.
+//!
+//! Source: "Database File Format", sqlite.org/fileformat2.html, sections 1.3 to 1.6 and 2. The crates that read
+//! SQLite either need C or run a whole database; of the format this needs tables in the order of their rows.
+
+mod pages;
+mod record;
+mod table;
+
+use std::collections::BTreeMap;
+
+use super::container::{Container, ContainerError, Recorded, kind_of};
+use super::wire::Wire;
+use crate::lines::printable;
+use crate::log_bytes::SeekRead;
+use pages::Pages;
+use record::{Value, columns};
+use table::Table;
+
+/// More topics than any robot has.
+const MOST_TOPICS: usize = 10_000;
+
+/// A topic with its type.
+struct Topic {
+    name: String,
+    kind: String,
+    /// Else the name of an encoding that is another system's.
+    wire: Result<Wire, String>,
+}
+
+/// Where the columns of the messages stand.
+#[derive(Clone, Copy)]
+struct Columns {
+    topic: usize,
+    time: usize,
+    data: usize,
+}
+
+/// Messages of a database, in the order of their rows.
+pub struct SqliteFile<'a> {
+    source: Option<Box<dyn SeekRead + 'a>>,
+    pages: Option<Pages<'a>>,
+    topics: BTreeMap<i64, Topic>,
+    messages: Table,
+    columns: Columns,
+    other: Option<(String, String)>,
+    has_messages: bool,
+}
+
+impl<'a> SqliteFile<'a> {
+    /// A reader at the file's start.
+    pub fn new(source: Box<dyn SeekRead + 'a>) -> Self {
+        Self {
+            source: Some(source),
+            pages: None,
+            topics: BTreeMap::new(),
+            messages: Table::at(0),
+            columns: Columns {
+                topic: 1,
+                time: 2,
+                data: 3,
+            },
+            other: None,
+            has_messages: false,
+        }
+    }
+
+    /// Reads the header, the list of tables and the topics.
+    fn start(&mut self, source: Box<dyn SeekRead + 'a>) -> Result<(), ContainerError> {
+        let mut pages = Pages::new(source)?;
+        let mut tables: BTreeMap<String, (u32, Vec<String>)> = BTreeMap::new();
+        let mut list = Table::at(1);
+        while let Some(row) = list.next_row(&mut pages)? {
+            // type, name, tbl_name, rootpage, sql
+            if let [
+                Value::Text(kind),
+                Value::Text(name),
+                _,
+                root,
+                Value::Text(sql),
+                ..,
+            ] = &row.values[..]
+                && kind == "table"
+                && let Some(root) = root.integer().and_then(|root| u32::try_from(root).ok())
+                && tables.len() < MOST_TOPICS
+            {
+                tables.insert(name.clone(), (root, columns(sql)));
+            }
+        }
+        let find = |name: &str| {
+            tables.get(name).ok_or_else(|| {
+                let known = crate::lines::listed(tables.keys().take(20).map(|name| printable(name)));
+                ContainerError::Broken(format!(
+                    "a database with the tables topics and messages of rosbag2 was expected, and it has {known}; give a recording of ros2 bag record"
+                ))
+            })
+        };
+        let (topics_at, topic_columns) = find("topics")?;
+        let (messages_at, message_columns) = find("messages")?;
+        let at = |columns: &[String], name: &str, usual: usize| {
+            columns
+                .iter()
+                .position(|column| column == name)
+                .unwrap_or(usual)
+        };
+        self.columns = Columns {
+            topic: at(message_columns, "topic_id", 1),
+            time: at(message_columns, "timestamp", 2),
+            data: at(message_columns, "data", 3),
+        };
+        let [name_at, kind_at, format_at] = [("name", 1), ("type", 2), ("serialization_format", 3)]
+            .map(|(name, usual)| at(topic_columns, name, usual));
+        let mut rows = Table::at(*topics_at);
+        while let Some(row) = rows.next_row(&mut pages)? {
+            let text = |at: usize| {
+                row.values
+                    .get(at)
+                    .and_then(Value::text)
+                    .map(crate::lines::name)
+            };
+            let (Some(name), Some(kind)) = (text(name_at), text(kind_at)) else {
+                continue;
+            };
+            let wire = match text(format_at).as_deref() {
+                None | Some("cdr" | "") => Ok(Wire::Cdr),
+                Some(other) => Err(other.to_owned()),
+            };
+            if self.topics.len() < MOST_TOPICS {
+                let kind = kind_of(&kind);
+                self.topics.insert(row.id, Topic { name, kind, wire });
+            }
+        }
+        self.messages = Table::at(*messages_at);
+        self.pages = Some(pages);
+        Ok(())
+    }
+}
+
+impl Container for SqliteFile<'_> {
+    fn next_message(&mut self) -> Result<Option<Recorded>, ContainerError> {
+        if let Some(source) = self.source.take() {
+            self.start(source)?;
+        }
+        let Some(pages) = &mut self.pages else {
+            return Ok(None);
+        };
+        while let Some(row) = self.messages.next_row(pages)? {
+            self.has_messages = true;
+            let mut values = row.values;
+            let integer = |at: usize, values: &[Value]| values.get(at).and_then(Value::integer);
+            let topic = integer(self.columns.topic, &values).and_then(|id| self.topics.get(&id));
+            let time_ns = integer(self.columns.time, &values);
+            let data = values.get_mut(self.columns.data).map(std::mem::take);
+            let (Some(topic), Some(time_ns), Some(Value::Blob(bytes))) = (topic, time_ns, data)
+            else {
+                return Err(ContainerError::Skipped(format!(
+                    "row {} of messages has to name a topic, a time and data",
+                    row.id
+                )));
+            };
+            let wire = match &topic.wire {
+                Ok(wire) => *wire,
+                Err(encoding) => {
+                    self.other
+                        .get_or_insert_with(|| (topic.name.clone(), encoding.clone()));
+                    continue;
+                }
+            };
+            return Ok(Some(Recorded {
+                topic: topic.name.clone(),
+                kind: topic.kind.clone(),
+                wire,
+                bytes,
+                recorded_s: time_ns as f64 * 1e-9,
+            }));
+        }
+        Ok(None)
+    }
+
+    fn offset(&self) -> u64 {
+        self.pages.as_ref().map_or(0, Pages::offset)
+    }
+
+    fn instead(&self) -> Option<String> {
+        if let Some((topic, encoding)) = &self.other {
+            let [topic, encoding] = [topic, encoding].map(|name| printable(name));
+            return Some(format!(
+                "its messages are in the encoding ‘{encoding}’, such as those on {topic}; record with cdr"
+            ));
+        }
+        (!self.has_messages).then(|| {
+            "it has no message; if a file that ends in -wal lies beside it, let sqlite3 take it in with PRAGMA wal_checkpoint".to_owned()
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,268 @@
+//! What is in a recording, from one pass over all of it.
+//!
+//! Of scans only times and frames are kept; of odometry and of transforms that may be odometry, all poses, up
+//! to a bound. So the pass costs little memory however long the recording is.
+
+use std::collections::BTreeMap;
+
+use pr_geom::SE2;
+
+use super::container::Recorded;
+use super::messages::{Header, header, laser_scan, multi_echo_scan, odometry, transforms};
+use super::point_cloud::point_cloud;
+use super::transforms::{Transforms, is_ground, planar};
+use super::wire::WireReader;
+use crate::log::LogOptions;
+use crate::place::checked;
+
+/// A recording of garbage has no end of topics.
+const MOST_TOPICS: usize = 1000;
+/// So many poses of one source are kept; of more, every second one.
+const MOST_POSES: usize = 1 << 18;
+/// So many transforms are followed as odometry.
+const MOST_TRACKS: usize = 32;
+/// So many messages of a topic are decoded whole, to see whether they can be used.
+const TRIED: usize = 3;
+/// Odometry that stays within this has not moved, m and rad.
+const STILL: f64 = 1e-3;
+
+/// Types of messages that are scans.
+pub const SCANS: [&str; 3] = [
+    "sensor_msgs/LaserScan",
+    "sensor_msgs/MultiEchoLaserScan",
+    "sensor_msgs/PointCloud2",
+];
+/// The type of odometry.
+pub const ODOMETRY: &str = "nav_msgs/Odometry";
+
+/// The scans of a topic.
+#[derive(Clone, Debug, Default)]
+pub struct ScanStream {
+    /// Which of [`SCANS`] they are.
+    pub kind: usize,
+    /// Place among the topics in the order of the file.
+    pub order: usize,
+    /// Stamp of each message, s; NaN where it cannot be read.
+    pub stamps_s: Vec<f64>,
+    /// When each was recorded, s.
+    pub recorded_s: Vec<f64>,
+    /// The sensor's frame, as the first message names it.
+    pub frame: String,
+    /// Whether one that was tried can be used.
+    pub is_usable: bool,
+    /// Why the first one cannot be used.
+    pub problem: Option<String>,
+}
+
+/// Poses of a body by one source.
+#[derive(Clone, Debug, Default)]
+pub struct Track {
+    /// The frame that the poses are in.
+    pub above: String,
+    /// The frame that moves.
+    pub body: String,
+    /// Place among the tracks in the order of the file.
+    pub order: usize,
+    /// Stamp of each pose, s.
+    pub stamps_s: Vec<f64>,
+    /// When each was recorded, s.
+    pub recorded_s: Vec<f64>,
+    /// The poses.
+    pub poses: Vec<SE2>,
+    /// Whether they differ.
+    pub moves: bool,
+    /// Of so many messages one is kept.
+    every: usize,
+    seen: usize,
+}
+
+impl Track {
+    fn take(&mut self, stamp_s: f64, recorded_s: f64, pose: SE2) {
+        self.every = self.every.max(1);
+        self.seen += 1;
+        if !(self.seen - 1).is_multiple_of(self.every) {
+            return;
+        }
+        if let Some(first) = self.poses.first() {
+            let moved = first.between(&pose).to_array();
+            self.moves |= moved.iter().any(|part| part.abs() > STILL);
+        }
+        self.stamps_s.push(stamp_s);
+        self.recorded_s.push(recorded_s);
+        self.poses.push(pose);
+        if self.poses.len() >= MOST_POSES {
+            self.every *= 2;
+            thin(&mut self.stamps_s);
+            thin(&mut self.recorded_s);
+            thin(&mut self.poses);
+        }
+    }
+}
+
+fn thin<T>(all: &mut Vec<T>) {
+    let mut at = 0;
+    all.retain(|_| {
+        at += 1;
+        at % 2 == 1
+    });
+}
+
+/// What a pass over the recording found.
+#[derive(Debug, Default)]
+pub struct Survey {
+    /// How many messages of each topic and type there are.
+    pub counts: BTreeMap<(String, String), usize>,
+    /// Scans by topic.
+    pub scans: BTreeMap<String, ScanStream>,
+    /// Odometry by topic.
+    pub odometry: BTreeMap<String, Track>,
+    /// Transforms that may be odometry, by frame above and body.
+    pub tracks: BTreeMap<(String, String), Track>,
+    /// The newest transforms.
+    pub transforms: Transforms,
+}
+
+impl Survey {
+    /// Takes a message.
+    ///
+    /// # Errors
+    /// What is wrong with it; it is left out. Scans are judged when they are read.
+    pub fn take(&mut self, message: &Recorded, options: &LogOptions) -> Result<(), String> {
+        let key = (message.topic.clone(), message.kind.clone());
+        if self.counts.len() < MOST_TOPICS || self.counts.contains_key(&key) {
+            *self.counts.entry(key).or_default() += 1;
+        }
+        let named = |problem: String| named(message, problem);
+        if let Some(kind) = SCANS.iter().position(|kind| *kind == message.kind) {
+            self.take_scan(message, kind, options);
+            return Ok(());
+        }
+        match message.kind.as_str() {
+            ODOMETRY => self.take_odometry(message).map_err(named),
+            "tf2_msgs/TFMessage" | "tf/tfMessage" => {
+                let all = reader(message)
+                    .and_then(|mut fields| transforms(&mut fields).map_err(|e| e.to_string()))
+                    .map_err(named)?;
+                for told in &all {
+                    let Ok(pose) = checked(planar(&told.transform)) else {
+                        continue;
+                    };
+                    self.transforms.take(told);
+                    let parent = &told.header.frame;
+                    let may_be_odometry = match &options.odometry_frame {
+                        Some(frame) => frame.trim_start_matches('/') == parent,
+                        None => is_ground(parent) && parent.contains("odom"),
+                    };
+                    let key = (parent.clone(), told.child.clone());
+                    let has_room = self.tracks.len() < MOST_TRACKS;
+                    if may_be_odometry && (has_room || self.tracks.contains_key(&key)) {
+                        let order = self.tracks.len();
+                        let track = self.tracks.entry(key).or_insert_with(|| Track {
+                            above: parent.clone(),
+                            body: told.child.clone(),
+                            order,
+                            ..Track::default()
+                        });
+                        track.take(told.header.stamp_s, message.recorded_s, pose);
+                    }
+                }
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn take_scan(&mut self, message: &Recorded, kind: usize, options: &LogOptions) {
+        let order = self.scans.len();
+        if order >= MOST_TOPICS && !self.scans.contains_key(&message.topic) {
+            return;
+        }
+        let stream = self.scans.entry(message.topic.clone()).or_default();
+        if stream.stamps_s.is_empty() {
+            (stream.kind, stream.order) = (kind, order);
+        }
+        let head =
+            reader(message).and_then(|mut fields| header(&mut fields).map_err(|e| e.to_string()));
+        let is_tried =
+            stream.stamps_s.len() < TRIED || !stream.is_usable && stream.stamps_s.len() < 100;
+        let stamp_s = match &head {
+            Ok(header) => header.stamp_s,
+            Err(_) => f64::NAN,
+        };
+        stream.stamps_s.push(stamp_s);
+        stream.recorded_s.push(message.recorded_s);
+        if is_tried {
+            match scan_header(message, options) {
+                Ok(header) => {
+                    if !stream.is_usable {
+                        stream.frame = header.frame;
+                    }
+                    stream.is_usable = true;
+                }
+                Err(problem) => {
+                    stream
+                        .problem
+                        .get_or_insert_with(|| named(message, problem));
+                }
+            }
+        }
+    }
+
+    fn take_odometry(&mut self, message: &Recorded) -> Result<(), String> {
+        let mut fields = reader(message)?;
+        let told = odometry(&mut fields).map_err(|problem| problem.to_string())?;
+        let pose = checked(planar(&told.pose))?;
+        let order = self.odometry.len();
+        if order >= MOST_TOPICS && !self.odometry.contains_key(&message.topic) {
+            return Ok(());
+        }
+        let track = self
+            .odometry
+            .entry(message.topic.clone())
+            .or_insert_with(|| Track {
+                above: told.header.frame.clone(),
+                body: if told.child.is_empty() {
+                    "base_link".to_owned()
+                } else {
+                    told.child.clone()
+                },
+                order,
+                ..Track::default()
+            });
+        track.take(told.header.stamp_s, message.recorded_s, pose);
+        Ok(())
+    }
+}
+
+/// Whether a message is a scan that can be used.
+fn scan_header(message: &Recorded, options: &LogOptions) -> Result<Header, String> {
+    let mut fields = reader(message)?;
+    let told = |problem: super::wire::WireError| problem.to_string();
+    match message.kind.as_str() {
+        "sensor_msgs/PointCloud2" if options.heights_m.is_some() => {
+            header(&mut fields).map_err(told)
+        }
+        "sensor_msgs/PointCloud2" => point_cloud(&mut fields).map(|(header, _)| header),
+        kind => {
+            let read = if kind == SCANS[0] {
+                laser_scan
+            } else {
+                multi_echo_scan
+            };
+            let (header, scan) = read(&mut fields).map_err(told)?;
+            let (scan, _) = scan.checked(0.0)?;
+            scan.validate().map_err(|problem| problem.to_string())?;
+            Ok(header)
+        }
+    }
+}
+
+/// The fields of a message.
+pub fn reader(message: &Recorded) -> Result<WireReader<'_>, String> {
+    WireReader::new(message.wire, &message.bytes).map_err(|problem| problem.to_string())
+}
+
+/// A problem with the topic and type of its message.
+pub fn named(message: &Recorded, problem: String) -> String {
+    format!("{} on {}: {problem}", message.kind, message.topic)
+}
