@@ -6,6 +6,7 @@ use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 
 use crate::lines::finite;
+use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::place::checked;
 
 /// Where a planar laser sits, and whether its axis points up or down.
@@ -46,6 +47,40 @@ impl LaserMount {
 pub fn flip(scan: &mut LaserScan) {
     scan.first_angle_rad = -scan.first_angle_rad;
     scan.angle_step_rad = -scan.angle_step_rad;
+}
+
+/// A log whose laser sits where an option says.
+pub(crate) struct PlacedReader<'a> {
+    inner: Box<dyn LogReader + 'a>,
+    mount: LaserMount,
+    notes: LogNotes,
+}
+
+impl<'a> PlacedReader<'a> {
+    /// The frames of `inner`, with their laser at `mount`.
+    pub(crate) fn new(inner: Box<dyn LogReader + 'a>, mount: LaserMount) -> Self {
+        Self {
+            inner,
+            mount,
+            notes: LogNotes::default(),
+        }
+    }
+}
+
+impl LogReader for PlacedReader<'_> {
+    fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
+        let frame = self.inner.next_frame();
+        self.notes.clone_from(self.inner.notes());
+        self.notes.laser = Some(self.mount);
+        Ok(frame?.map(|mut frame| {
+            self.mount.place(&mut frame.scan);
+            frame
+        }))
+    }
+
+    fn notes(&self) -> &LogNotes {
+        &self.notes
+    }
 }
 
 impl FromStr for LaserMount {

@@ -36,6 +36,7 @@ pub mod log;
 pub mod log_bytes;
 pub mod log_format;
 pub mod map_image;
+pub mod motion;
 pub mod quality;
 pub mod recorder;
 pub mod relations;

@@ -127,7 +127,7 @@ pub struct BrokenRecord {
 }
 
 /// What a reader has met so far, besides frames.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct LogNotes {
     /// How many records of each kind were read.
     pub records: BTreeMap<String, usize>,
@@ -145,6 +145,8 @@ pub struct LogNotes {
     pub about: Vec<String>,
     /// What options could choose; nothing in a log of lines.
     pub offers: Vec<LogOffer>,
+    /// Where the laser sits, where the recording or an option says it.
+    pub laser: Option<LaserMount>,
     /// What was missing and how it was made up for.
     pub warnings: Vec<String>,
     /// Why what follows in the file was not read.

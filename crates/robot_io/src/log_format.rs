@@ -2,6 +2,7 @@
 
 use crate::carmen::CarmenReader;
 use crate::json_log::JsonLogReader;
+use crate::laser_mount::PlacedReader;
 use crate::log::{LogError, LogOptions, LogReader, Place};
 use crate::log_bytes::{LogBytes, packs};
 use crate::restamped::restamped;
@@ -140,8 +141,18 @@ impl LogFormat {
             ));
         }
         match found {
-            Self::Carmen => restamped(&first, |source| CarmenReader::new(source, name)).map_err(io),
-            Self::Json => restamped(&first, |source| JsonLogReader::new(source, name)).map_err(io),
+            Self::Carmen | Self::Json => {
+                let reader = if found == Self::Json {
+                    restamped(&first, |source| JsonLogReader::new(source, name))
+                } else {
+                    restamped(&first, |source| CarmenReader::new(source, name))
+                };
+                let reader = reader.map_err(io)?;
+                Ok(match options.laser {
+                    Some(mount) => Box::new(PlacedReader::new(reader, mount)),
+                    None => reader,
+                })
+            }
             Self::Mcap | Self::RosBag | Self::Sqlite => {
                 Ok(Box::new(RosReader::new(parts, name, options)))
             }

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use robot_io::log::LogReader;
 use robot_io::trajectory::{StampedPose, Trajectory};
 use thiserror::Error;
 
 use crate::grade::{GradeError, ReferenceArgs};
-use crate::log_file::{FileError, TopicArgs, open, open_log};
+use crate::log_file::{FileError, TopicArgs, open, open_compared};
 use crate::output::print_json;
 
 /// Grade a trajectory against reference relations or against the true trajectory.
@@ -68,7 +69,7 @@ pub fn run(args: &EvaluateArgs) -> Result<(), EvaluateError> {
 
 /// The odometry of a log at its scans, as far as it is in the order of time.
 fn odometry(path: &Path, topics: &TopicArgs) -> Result<Trajectory, EvaluateError> {
-    let (mut reader, mut progress) = open_log(path, topics)?;
+    let (mut reader, mut progress) = open_compared(path, topics)?;
     let mut poses: Vec<StampedPose> = Vec::new();
     while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
         progress.tell(poses.len());

@@ -11,12 +11,13 @@ use clap::Args;
 use measuring::process;
 use pr_geom::SE2;
 use robot_io::localize::LocalizeRun;
+use robot_io::log::LogReader;
 use robot_io::run::{OdometryUse, late_scans};
 use serde::Serialize;
 use thiserror::Error;
 
 use crate::grade::{Grade, GradeError, ReferenceArgs};
-use crate::log_file::{FileError, TopicArgs, open_log};
+use crate::log_file::{FileError, TopicArgs, open_compared};
 use crate::optimize::{check_file, write_whole};
 use crate::output::{print_json, say};
 use crate::session_file::{SessionFileError, read_session};
@@ -185,7 +186,7 @@ pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
     let flag = Arc::clone(&is_interrupted);
     // Without a handler Ctrl-C ends the process at once, which loses the work and nothing else.
     let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
-    let (mut reader, mut progress) = open_log(&args.log, &args.topics)?;
+    let (mut reader, mut progress) = open_compared(&args.log, &args.topics)?;
     while !is_interrupted.load(Ordering::Relaxed) {
         let Some(frame) = reader.next_frame().map_err(FileError::from)? else {
             break;

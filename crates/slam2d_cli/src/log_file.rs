@@ -11,6 +11,7 @@ use robot_io::laser_mount::LaserMount;
 use robot_io::log::{LogError, LogOptions, LogReader};
 use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
+use robot_io::motion::ComparedReader;
 use robot_io::rosbag2;
 use thiserror::Error;
 
@@ -115,6 +116,22 @@ pub fn open_log(
     let name = path.display().to_string();
     let reader = LogFormat::open_parts(parts, &name, &topics.options())?;
     Ok((reader, progress))
+}
+
+/// Opens a log as [`open_log`] does, and compares its first scans with its odometry: what surely is wrong about
+/// the mounting or the units is mended and told.
+///
+/// # Errors
+/// Where it cannot be opened, or is no log.
+pub fn open_compared(
+    path: &Path,
+    topics: &TopicArgs,
+) -> Result<(ComparedReader<'static>, Progress), FileError> {
+    let (reader, progress) = open_log(path, topics)?;
+    Ok((
+        ComparedReader::new(reader, topics.laser.is_some()),
+        progress,
+    ))
 }
 
 /// The files of a log, and a bar for them.

@@ -10,6 +10,7 @@ use ch16_slam2d::slam::parameters::{Parameter, ParameterError};
 use ch16_slam2d::submaps::FrontEndChoice;
 use clap::Args;
 use measuring::{process, timed};
+use robot_io::log::LogReader;
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
 use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
@@ -18,7 +19,7 @@ use thiserror::Error;
 
 use crate::buildings::setting;
 use crate::grade::{Grade, GradeError, ReferenceArgs};
-use crate::log_file::{FileError, TopicArgs, open_log};
+use crate::log_file::{FileError, TopicArgs, open_compared};
 use crate::optimize::check_folder;
 use crate::output::{print_json, say};
 use crate::run_output::write_folder;
@@ -140,7 +141,7 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
         })?;
     }
     let (mut run, mut recorder) = start(args)?;
-    let (mut reader, mut progress) = open_log(&args.log, &args.topics)?;
+    let (mut reader, mut progress) = open_compared(&args.log, &args.topics)?;
     let mut broken = None;
     let mut costs = TickCosts::default();
     while !is_interrupted.load(Ordering::Relaxed) {

@@ -201,6 +201,11 @@ impl Plan {
         notes.about.clone_from(&self.about);
         notes.warnings.clone_from(&self.warnings);
         notes.offers.clone_from(&self.offers);
+        // Merged scans have no laser of their own.
+        notes.laser = match &self.scans[..] {
+            [only] => Some(only.mount),
+            _ => None,
+        };
     }
 
     /// What stands in the recording in place of scans.

@@ -1,0 +1,156 @@
+//! A log whose first scans were compared with its odometry.
+
+use std::collections::VecDeque;
+
+use pr_geom::SE2;
+
+use super::{Comparison, Motion};
+use crate::laser_mount::{LaserMount, flip};
+use crate::log::{LogError, LogFrame, LogNotes, LogReader};
+
+/// So many scans are compared at most, with so many beams together: they are in memory.
+const MOST_SCANS: usize = 2000;
+const MOST_BEAMS: usize = 1 << 21;
+
+/// A mounting that was mended.
+struct Mended {
+    /// Where the laser was said to sit.
+    said: SE2,
+    /// Where it does.
+    body_from_sensor: SE2,
+    /// Whether its beams are listed the other way round.
+    is_flipped: bool,
+}
+
+/// Reads a log, compares its first scans with its odometry, and mends what is surely wrong.
+pub struct ComparedReader<'a> {
+    inner: Box<dyn LogReader + 'a>,
+    /// Whether the mounting was set by hand, and stays.
+    is_told: bool,
+    waiting: VecDeque<LogFrame>,
+    motion: Option<Motion>,
+    mount: Option<Mended>,
+    metres: f64,
+    is_still: bool,
+    notes: LogNotes,
+    said: Vec<String>,
+}
+
+impl<'a> ComparedReader<'a> {
+    /// A reader of the frames of `inner`; `is_told` says that the mounting was set by hand, and stays.
+    #[must_use]
+    pub fn new(inner: Box<dyn LogReader + 'a>, is_told: bool) -> Self {
+        Self {
+            inner,
+            is_told,
+            waiting: VecDeque::new(),
+            motion: None,
+            mount: None,
+            metres: 1.0,
+            is_still: false,
+            notes: LogNotes::default(),
+            said: Vec::new(),
+        }
+    }
+
+    /// What the comparison found; none before the first frame.
+    #[must_use]
+    pub fn motion(&self) -> Option<&Motion> {
+        self.motion.as_ref()
+    }
+
+    /// Reads and compares the first scans.
+    fn compare(&mut self) -> Result<(), LogError> {
+        let mut comparison: Option<Comparison> = None;
+        let mut beams = 0;
+        let mut has_odometry = false;
+        while self.waiting.len() < MOST_SCANS && beams < MOST_BEAMS {
+            let frame = match self.inner.next_frame() {
+                Ok(Some(frame)) => frame,
+                Ok(None) => break,
+                Err(error) if self.waiting.is_empty() => return Err(error),
+                // It comes again once these frames are taken.
+                Err(_) => break,
+            };
+            beams += frame.scan.ranges_m.len().max(1);
+            has_odometry |= frame.odometry.is_some();
+            let comparing = comparison.get_or_insert_with(|| Comparison::new(&frame));
+            comparing.take(&frame);
+            let is_enough = comparing.is_enough();
+            self.waiting.push_back(frame);
+            if is_enough {
+                break;
+            }
+        }
+        let mut motion = Motion::default();
+        if let (true, Some(comparison), Some(first)) =
+            (has_odometry, comparison, self.waiting.front())
+        {
+            let said = first.scan.body_from_sensor;
+            motion = Motion::of(&comparison.stretches, said);
+            let told = self.inner.notes().laser;
+            let mount = told.unwrap_or(LaserMount {
+                body_from_sensor: said,
+                is_flipped: false,
+            });
+            self.said = motion.sentences(mount, !self.is_told);
+            if !self.is_told {
+                let mended = motion.mended_mount(mount);
+                self.mount = mended.map(|mended| Mended {
+                    said,
+                    body_from_sensor: mended.body_from_sensor,
+                    is_flipped: mended.is_flipped != mount.is_flipped,
+                });
+            }
+            self.metres = motion.metres().unwrap_or(1.0);
+            self.is_still = motion.is_still();
+        }
+        self.motion = Some(motion);
+        Ok(())
+    }
+
+    fn mended(&self, mut frame: LogFrame) -> LogFrame {
+        if let Some(mended) = &self.mount
+            && frame.scan.body_from_sensor == mended.said
+        {
+            if mended.is_flipped {
+                flip(&mut frame.scan);
+            }
+            frame.scan.body_from_sensor = mended.body_from_sensor;
+        }
+        if self.is_still {
+            frame.odometry = None;
+        }
+        if self.metres != 1.0 {
+            frame.odometry = frame
+                .odometry
+                .map(|pose| SE2::new(pose.x() * self.metres, pose.y() * self.metres, pose.theta()));
+        }
+        frame
+    }
+
+    fn take_notes(&mut self) {
+        self.notes.clone_from(self.inner.notes());
+        self.notes.warnings.extend(self.said.iter().cloned());
+    }
+}
+
+impl LogReader for ComparedReader<'_> {
+    fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
+        if self.motion.is_none() {
+            let compared = self.compare();
+            self.take_notes();
+            compared?;
+        }
+        if let Some(frame) = self.waiting.pop_front() {
+            return Ok(Some(self.mended(frame)));
+        }
+        let frame = self.inner.next_frame();
+        self.take_notes();
+        Ok(frame?.map(|frame| self.mended(frame)))
+    }
+
+    fn notes(&self) -> &LogNotes {
+        &self.notes
+    }
+}
