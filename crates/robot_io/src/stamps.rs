@@ -77,6 +77,22 @@ impl MendedStamps {
         }
     }
 
+    /// Moves these stamps by the steps of another stream of the same clock: both stepped by the same, which each
+    /// knows only to its own period.
+    pub fn take_steps_of(&mut self, other: &Self) {
+        if self.steps.len() != other.steps.len() {
+            return;
+        }
+        for (own, other_step) in self.steps.clone().into_iter().zip(&other.steps) {
+            let off_s = own.by_s - other_step.by_s;
+            if off_s.abs() <= 2.0 * (self.period_s + other.period_s) {
+                self.stamps_s[own.at..]
+                    .iter_mut()
+                    .for_each(|stamp_s| *stamp_s += off_s);
+            }
+        }
+    }
+
     /// Whether nothing was changed.
     #[must_use]
     pub fn is_unchanged(&self) -> bool {
@@ -236,26 +252,19 @@ impl<'a> Work<'a> {
                     .filter_map(|&at| Some(original[at] - self.recorded(at)?));
                 median(ahead.collect())
             };
-            let by_s = match (ahead(before), ahead(after)) {
-                (Some(old_s), Some(new_s)) => {
-                    let by_s = new_s - old_s;
-                    // The stamps have to jump by it while the recording goes on as ever.
-                    let jumps = (moved_s - period_s - by_s).abs() < 0.5 * by_s.abs();
-                    let is_irregular = (moved_s - period_s).abs() > 3.0 * period_s;
-                    if !jumps || !is_irregular || by_s.abs() < LEAST_STEP_S {
-                        continue;
-                    }
-                    by_s
-                }
-                _ => {
-                    let stamps =
-                        |of: &[usize]| of.iter().map(|&at| original[at]).collect::<Vec<_>>();
-                    let (old, new) = (stamps(before), stamps(after));
-                    if lowest(&old) <= highest(&new) + LEAST_STEP_S {
-                        continue;
-                    }
-                    moved_s - period_s
-                }
+            let by_record = ahead(before)
+                .zip(ahead(after))
+                .map(|(old_s, new_s)| new_s - old_s);
+            let by_record = by_record.filter(|by_s| {
+                // The stamps have to jump by it while the recording goes on as ever.
+                let jumps = (moved_s - period_s - by_s).abs() < 0.5 * by_s.abs();
+                let is_irregular = (moved_s - period_s).abs() > 3.0 * period_s;
+                jumps && is_irregular && by_s.abs() >= LEAST_STEP_S
+            });
+            let stamps = |of: &[usize]| of.iter().map(|&at| original[at]).collect::<Vec<_>>();
+            let goes_back = lowest(&stamps(before)) > highest(&stamps(after)) + LEAST_STEP_S;
+            let Some(by_s) = by_record.or(goes_back.then_some(moved_s - period_s)) else {
+                continue;
             };
             steps.push(ClockStep { at: now, by_s });
             for stamp_s in &mut self.stamps_s[now..] {

@@ -6,6 +6,7 @@ mod estimators;
 mod files;
 mod logs;
 mod optimize;
+mod recordings;
 mod sessions;
 mod shards;
 mod support;

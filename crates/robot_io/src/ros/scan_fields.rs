@@ -232,9 +232,9 @@ impl ScanFields {
         let range_max_m = if max > 0.0 { max } else { f64::INFINITY };
         if range_max_m <= range_min_m {
             said.push(format!(
-                "range_min is {min} m and range_max {max} m; neither is taken. Correct the driver"
+                "range_min is {min:.3} m and range_max {max:.3} m; the smaller one is taken for the shortest range. Correct the driver"
             ));
-            return (0.0, f64::INFINITY, scale);
+            return (range_max_m, range_min_m, scale);
         }
         (range_min_m, range_max_m, scale)
     }

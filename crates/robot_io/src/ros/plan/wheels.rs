@@ -64,7 +64,8 @@ pub fn chosen<'a>(
     let mut scored: Vec<_> = scored.collect();
     scored.sort_by(|a, b| b.0.cmp(&a.0));
     let mut scored = scored.into_iter();
-    let (_, topic, track, clock, is_transform) = scored.next()?;
+    let (_, topic, track, mut clock, is_transform) = scored.next()?;
+    clock.take_steps_of(scans);
     let others = scored
         .map(|(_, topic, track, ..)| format!("{topic} from {} to {}", track.above, track.body));
     let others = listed(others.take(5));
@@ -79,23 +80,33 @@ pub fn chosen<'a>(
     })
 }
 
-/// Whether the body that moves carries the laser: surely, or as far as the transforms know.
-fn leads_to(survey: &Survey, track: &Track, sensor: &str) -> bool {
+/// Whether the body that moves carries the laser.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Leads {
+    /// The transforms know the body, and no way to the laser.
+    Not,
+    /// No transform names the body.
+    Perhaps,
+    /// Transforms lead to the laser.
+    Surely,
+}
+
+fn leads_to(survey: &Survey, track: &Track, sensor: &str) -> Leads {
     let transforms = &survey.transforms;
     let ground = Some(track.above.as_str());
-    let is_connected = transforms
+    let mut edges = transforms.edges();
+    if transforms
         .body_from_sensor(&track.body, sensor, ground)
-        .is_some();
-    // A body that no transform names may carry it all the same.
-    let is_named = transforms.edges().any(|(parent, child)| {
-        parent == track.body || child == track.body && parent != track.above
-    });
-    is_connected
-        || !is_named
-            && survey
-                .odometry
-                .values()
-                .any(|known| known.body == track.body)
+        .is_some()
+    {
+        Leads::Surely
+    } else if edges
+        .any(|(parent, child)| parent == track.body || child == track.body && parent != track.above)
+    {
+        Leads::Not
+    } else {
+        Leads::Perhaps
+    }
 }
 
 /// Whether the poses cover the time of most scans, each by the recording's own time where it is known.

@@ -1,0 +1,86 @@
+//! Recordings as people have them: each with one fault, and what has to come of it.
+
+mod field;
+mod variants;
+mod write;
+
+use ch16_lab::lap::{Drive, DriveConfig};
+use pr_geom::{Point2, SE2};
+use robot_io::log::{LogOptions, LogReader};
+use robot_io::log_bytes::LogBytes;
+use robot_io::log_format::LogFormat;
+use robot_io::motion::ComparedReader;
+use robot_io::run::{LogRun, OdometryUse};
+
+/// What comes of a recording: where each scan was taken, and what its owner is told.
+pub struct Outcome {
+    /// Stamps (s) and poses.
+    pub path: Vec<(f64, SE2)>,
+    /// Sentences, or the refusal.
+    pub said: String,
+}
+
+/// Maps a recording as `slam2d run` does.
+pub fn mapped(parts: Vec<LogBytes<'_>>, name: &str, options: &LogOptions) -> Outcome {
+    let mut run = LogRun::new(OdometryUse::Log);
+    let refused = |said: String| Outcome {
+        path: Vec::new(),
+        said,
+    };
+    let reader = match LogFormat::open_parts(parts, name, options) {
+        Ok(reader) => reader,
+        Err(problem) => return refused(problem.to_string()),
+    };
+    let mut reader = ComparedReader::new(reader, options.laser.is_some());
+    loop {
+        match reader.next_frame() {
+            Ok(Some(frame)) => {
+                run.step(frame);
+            }
+            Ok(None) => break,
+            Err(problem) => return refused(problem.to_string()),
+        }
+    }
+    run.finish();
+    let mut said = reader.notes().sentences(name);
+    said.extend(run.sentences(name));
+    let path = run.trajectory();
+    Outcome {
+        path: path
+            .poses()
+            .iter()
+            .map(|at| (at.stamp_s, at.pose))
+            .collect(),
+        said: said.join("\n"),
+    }
+}
+
+/// Root of the mean square distance between paths after the best rigid motion of the first onto the second,
+/// m. A mirror image is none.
+pub fn distance_m(path: &[SE2], truth: &[SE2]) -> f64 {
+    assert_eq!(path.len(), truth.len());
+    let mean = |of: &[SE2]| {
+        let sum = of
+            .iter()
+            .fold((0.0, 0.0), |sum, pose| (sum.0 + pose.x(), sum.1 + pose.y()));
+        Point2::new(sum.0 / of.len() as f64, sum.1 / of.len() as f64)
+    };
+    let (from, to) = (mean(path), mean(truth));
+    let (mut dot, mut cross) = (0.0, 0.0);
+    for (a, b) in path.iter().zip(truth) {
+        let (a, b) = (a.position() - from, b.position() - to);
+        dot += a.dot(&b);
+        cross += a.x * b.y - a.y * b.x;
+    }
+    let turn = SE2::new(0.0, 0.0, cross.atan2(dot));
+    let squares = path.iter().zip(truth).map(|(a, b)| {
+        let moved = turn.transform(Point2::from(a.position() - from));
+        (moved.coords - (b.position() - to)).norm_squared()
+    });
+    (squares.sum::<f64>() / path.len() as f64).sqrt()
+}
+
+/// The simulated drive that every variant is made of.
+pub fn drive() -> Drive {
+    Drive::simulate(&DriveConfig::default())
+}
