@@ -10,7 +10,9 @@
 //! information. JSON has the same numbers by name.
 //! Source: Grisetti, Stachniss, "TORO: tree-based network optimizer", the description of its files.
 
-use std::borrow::Cow;
+mod prepared;
+mod toro;
+
 use std::fmt::Write as _;
 
 use pr_optim::Between;
@@ -19,6 +21,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::lines::json_words;
+
+pub use prepared::{Prepared, prepared};
 
 /// A pose graph with the ids of its file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -64,6 +68,14 @@ pub enum GraphError {
         name: String,
         /// The line and what is wrong.
         source: G2oError,
+    },
+    /// It is a graph of another kind.
+    #[error("{name}: {problem}")]
+    Foreign {
+        /// The file's name.
+        name: String,
+        /// What it is, and what to do.
+        problem: String,
     },
     /// It is no graph in JSON.
     #[error("{name}: a graph with nodes and edges as JSON was expected: {problem}")]
@@ -149,7 +161,11 @@ impl GraphFile {
             })?;
             return Ok(graph);
         }
-        let file = G2oFile::parse(as_g2o(bytes)).map_err(told)?;
+        let prepared = prepared(bytes).map_err(|problem| GraphError::Foreign {
+            name: name.to_owned(),
+            problem,
+        })?;
+        let file = G2oFile::parse(&prepared.text).map_err(told)?;
         Ok(Self::of(&file.problem, |node| file.id_of(node)))
     }
 
@@ -222,44 +238,6 @@ const AS_TORO: Records = Records {
     fix: None,
     order: [0, 1, 3, 5, 2, 4],
 };
-
-/// A graph's text with every record of TORO as one of g2o, line by line; other text as it is.
-#[must_use]
-pub fn as_g2o(bytes: &[u8]) -> Cow<'_, [u8]> {
-    let is_toro = |line: &[u8]| {
-        let line = line.trim_ascii_start();
-        [&b"VERTEX2"[..], b"EDGE2"].iter().any(|name| {
-            line.starts_with(name) && line.get(name.len()).is_some_and(u8::is_ascii_whitespace)
-        })
-    };
-    if !bytes.split(|&byte| byte == b'\n').any(is_toro) {
-        return Cow::Borrowed(bytes);
-    }
-    let mut text = Vec::with_capacity(bytes.len() + bytes.len() / 8);
-    for line in bytes.split_inclusive(|&byte| byte == b'\n') {
-        match std::str::from_utf8(line) {
-            Ok(words) if is_toro(line) => {
-                text.extend_from_slice(toro_line(words).as_bytes());
-                text.push(b'\n');
-            }
-            _ => text.extend_from_slice(line),
-        }
-    }
-    Cow::Owned(text)
-}
-
-/// A record of TORO as one of g2o; the wrong number of fields stays wrong.
-fn toro_line(line: &str) -> String {
-    let words: Vec<&str> = line.split_whitespace().collect();
-    match words[..] {
-        ["EDGE2", from, to, x, y, theta, xx, xy, yy, tt, xt, yt] => {
-            format!("EDGE_SE2 {from} {to} {x} {y} {theta} {xx} {xy} {xt} {yy} {yt} {tt}")
-        }
-        ["EDGE2", ref rest @ ..] => format!("EDGE_SE2 {}", rest.join(" ")),
-        [_, ref rest @ ..] => format!("VERTEX_SE2 {}", rest.join(" ")),
-        [] => String::new(),
-    }
-}
 
 #[cfg(test)]
 mod tests {

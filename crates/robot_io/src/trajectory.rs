@@ -1,4 +1,7 @@
-//! Stamped poses, and the TUM format: `stamp x y z qx qy qz qw` on each line.
+//! Stamped poses, and the TUM format: `stamp x y z qx qy qz qw` on each line, with blanks or commas between.
+//!
+//! EuRoC's ground truth is read as well: `stamp,x,y,z,qw,qx,qy,qz` with whole nanoseconds, and more columns after
+//! them. Source: Burri et al., "The EuRoC micro aerial vehicle datasets", 2016.
 
 use std::io::{BufRead, Write};
 
@@ -58,6 +61,11 @@ pub enum TextError {
     },
 }
 
+/// Stamps as large as this are nanoseconds: eleven days after 1970.
+const LEAST_STAMP_NS: f64 = 1e15;
+/// What a stamp of nanoseconds becomes in a whole number of 32 bits.
+const OVERFLOWN: f64 = 2_147_483_647.0;
+
 const TUM_LINE: &str = "stamp x y z qx qy qz qw";
 
 impl Trajectory {
@@ -73,14 +81,24 @@ impl Trajectory {
         &self.poses
     }
 
-    /// Reads TUM lines; `#` starts a comment. Height, roll and pitch are not looked at.
+    /// Reads lines of TUM or EuRoC; `#` starts a comment. Height, roll and pitch are not looked at.
     ///
     /// # Errors
     /// The first line that is no pose, that is not after the one before it, or that there is none.
     pub fn read_tum(source: impl BufRead, name: &str) -> Result<Self, TextError> {
         let mut poses: Vec<StampedPose> = Vec::new();
         let mut numbers = NumberLines::new(source, name, TUM_LINE);
-        while let Some([stamp_s, x, y, _, qx, qy, qz, qw]) = numbers.next_line()? {
+        while let Some([stamp, x, y, _, a, b, c, d]) = numbers.next_line()? {
+            let is_euroc = numbers.has_commas && stamp >= LEAST_STAMP_NS;
+            let (stamp_s, [qx, qy, qz, qw]) = if is_euroc {
+                (stamp * 1e-9, [b, c, d, a])
+            } else {
+                (stamp, [a, b, c, d])
+            };
+            if stamp == OVERFLOWN && poses.last().is_some_and(|last| last.stamp_s == OVERFLOWN) {
+                let problem = "the stamps are all 2147483647: they overflowed 32 bits; write them with 64 bits";
+                return Err(numbers.refuse(problem.to_owned()));
+            }
             if poses.last().is_some_and(|last| stamp_s <= last.stamp_s) {
                 return Err(numbers.refuse("the stamp is not after the one before it".to_owned()));
             }
@@ -181,6 +199,8 @@ pub(crate) struct NumberLines<'a, R> {
     expected: &'static str,
     line: Vec<u8>,
     number: usize,
+    /// Whether commas stand in the last line.
+    has_commas: bool,
 }
 
 impl<'a, R: BufRead> NumberLines<'a, R> {
@@ -191,6 +211,7 @@ impl<'a, R: BufRead> NumberLines<'a, R> {
             expected,
             line: Vec::new(),
             number: 0,
+            has_commas: false,
         }
     }
 
@@ -236,7 +257,9 @@ impl<'a, R: BufRead> NumberLines<'a, R> {
                 continue;
             }
             let names = self.expected.split(' ');
-            let mut words = text.split_ascii_whitespace();
+            self.has_commas = text.contains(',');
+            let separates = |c: char| c.is_ascii_whitespace() || c == ',';
+            let mut words = text.split(separates).filter(|word| !word.is_empty());
             let mut numbers = [0.0; N];
             for (slot, name) in numbers.iter_mut().zip(names) {
                 *slot = finite(words.next(), name).map_err(|problem| self.refuse(problem))?;
@@ -277,6 +300,23 @@ mod tests {
             // 1e-15: a heading through half an angle, sine and cosine.
             assert!((a.pose.theta() - b.pose.theta()).abs() < 1e-15);
         }
+    }
+
+    #[test]
+    fn commas_and_the_order_of_euroc_are_read() {
+        let tum =
+            read("1700000000.5,1,2,0,0,0,0.6,0.8\n1700000001, 1, 2, 0, 0, 0, 0, 1\n").unwrap();
+        let euroc = "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n\
+                     1700000000500000000,1,2,0,0.8,0,0,0.6,9,9\n1700000001000000000,1,2,0,1,0,0,0,9,9\n";
+        let euroc = read(euroc).unwrap();
+        for (a, b) in tum.poses().iter().zip(euroc.poses()) {
+            // 1e-6 s: nanoseconds since 1970 in f64.
+            assert!((a.stamp_s - b.stamp_s).abs() < 1e-6);
+            assert_eq!(a.pose, b.pose);
+        }
+        let overflown = "2147483647,1,2,0,1,0,0,0\n2147483647,1,2,0,1,0,0,0\n";
+        let said = read(overflown).unwrap_err().to_string();
+        assert!(said.contains("overflowed 32 bits"), "{said}");
     }
 
     #[test]

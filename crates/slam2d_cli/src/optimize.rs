@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use pr_optim::g2o::{G2oError, G2oFile};
 use pr_optim::{OptimizeError, RobustKernel};
-use robot_io::graph_file::as_g2o;
+use robot_io::graph_file::prepared;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -31,6 +31,14 @@ pub enum OptimizeFailure {
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
+    },
+    /// The file is a graph of another kind.
+    #[error("{}: {problem}", path.display())]
+    Foreign {
+        /// Which file.
+        path: PathBuf,
+        /// What it is, and what to do.
+        problem: String,
     },
     /// The file is not a graph that can be solved.
     #[error("{}: {source}", path.display())]
@@ -103,7 +111,10 @@ struct Summary {
 pub fn run(args: &OptimizeArgs) -> Result<(), OptimizeFailure> {
     let (file, summary) = solve_file(args)?;
     for (record, count) in file.kept_records() {
-        eprintln!("{count} × {record} kept as it is, not part of the problem");
+        // Priors are part of it, and told before.
+        if record != "EDGE_PRIOR_SE2" {
+            eprintln!("{count} × {record} kept as it is, not part of the problem");
+        }
     }
     print_summary(&summary, args);
     Ok(())
@@ -115,10 +126,17 @@ fn solve_file(args: &OptimizeArgs) -> Result<(G2oFile, Summary), OptimizeFailure
         path: path.clone(),
         source,
     })?;
-    let mut file = G2oFile::parse(as_g2o(&text)).map_err(|source| OptimizeFailure::Graph {
+    let prepared = prepared(&text).map_err(|problem| OptimizeFailure::Foreign {
+        path: path.clone(),
+        problem,
+    })?;
+    let mut file = G2oFile::parse(&prepared.text).map_err(|source| OptimizeFailure::Graph {
         path: path.clone(),
         source,
     })?;
+    for said in &prepared.said {
+        eprintln!("slam2d: {}: {said}", path.display());
+    }
     let chi2_initial = file.problem.chi2();
     if !chi2_initial.is_finite() {
         return Err(OptimizeFailure::Overflow {
@@ -129,15 +147,17 @@ fn solve_file(args: &OptimizeArgs) -> Result<(G2oFile, Summary), OptimizeFailure
     let solved = solve_repeatedly(&mut file.problem, args)
         .map_err(|error| in_words_of_the_file(path, &file, error))?;
     if let Some(output) = &args.output {
-        write_whole(output, &file.to_bytes()).map_err(|source| OptimizeFailure::File {
-            path: output.clone(),
-            source,
+        write_whole(output, prepared.own_lines(&file.to_bytes())).map_err(|source| {
+            OptimizeFailure::File {
+                path: output.clone(),
+                source,
+            }
         })?;
     }
     let report = solved.outcome.report;
     let summary = Summary {
-        nodes: file.problem.node_count(),
-        edges: file.problem.factors().len(),
+        nodes: file.problem.node_count() - prepared.helpers,
+        edges: file.problem.factors().len() - prepared.priors,
         init: start_name(solved.outcome.start),
         iterations: report.iterations,
         total_iterations: solved.outcome.total_iterations,

@@ -141,7 +141,8 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
         })?;
     }
     let (mut run, mut recorder) = start(args)?;
-    let (mut reader, mut progress) = open_compared(&args.log, &args.topics)?;
+    let (reader, mut progress) = open_compared(&args.log, &args.topics)?;
+    let mut reader = reader.for_scans_alone(args.no_odometry);
     let mut broken = None;
     let mut costs = TickCosts::default();
     while !is_interrupted.load(Ordering::Relaxed) {

@@ -211,7 +211,7 @@ fn what_makes_no_sense_names_what_does() {
         (
             text(&half),
             &out,
-            "half.bag holds no scan that can be used: byte 15: a length of 4 bytes was expected",
+            "half.bag holds no scan that can be used: byte 15: a record's header was expected",
         ),
     ] {
         assert_refused(&["convert", input, output], said);

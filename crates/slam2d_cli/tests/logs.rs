@@ -202,7 +202,7 @@ fn wheels_that_never_move_are_told() {
     };
     let told = said(&[]);
     assert!(
-        told.contains("its odometry stands still for all 39 scans"),
+        told.contains("odometry stands still while the scans move by 3."),
         "{told}"
     );
     assert_eq!(said(&["--no-odometry"]), "");
@@ -250,9 +250,14 @@ fn files_that_cannot_be_used_end_in_one_line() {
     let prose = write(&folder, "prose.txt", "It was a dark night.\n");
     let far = write(&folder, "far", "5 6 0 0 0 0 0 0\n");
     let tum = write(&folder, "t.tum", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
+    let in_folder = folder.path().join("bag");
+    fs::create_dir(&in_folder).unwrap();
     for (arguments, said) in [
         (vec!["run", "/absent"], "/absent: "),
-        (vec!["run", text(folder.path())], "directory"),
+        (
+            vec!["run", text(&in_folder)],
+            "is a folder without a recording of ROS 2; give a log",
+        ),
         (vec!["run", text(&empty)], "is empty; give a recorded log"),
         (vec!["info", text(&prose)], "is no CARMEN log; give one"),
         (

@@ -223,6 +223,14 @@ impl Motion {
         }
     }
 
+    /// Leaves the findings about the laser alone.
+    pub(super) fn keep_mounting(&mut self) {
+        let is_of_laser = |finding: &Finding| {
+            matches!(finding, Finding::Mirrored { .. } | Finding::Turned { .. })
+        };
+        self.findings.retain(is_of_laser);
+    }
+
     /// What is wrong.
     #[must_use]
     pub fn findings(&self) -> &[Finding] {
@@ -321,7 +329,7 @@ impl Motion {
                 }
             ),
             Finding::Unlike { correlation } => format!(
-                "scans and odometry turn differently (correlation {correlation:.2}); compare with a map by scans alone: --no-odometry"
+                "scans matched alone and odometry turn differently (correlation {correlation:.2}): the scans see too little to be matched alone, or the odometry is not this robot's; compare with a map by --no-odometry"
             ),
         };
         self.findings.iter().map(sentence).collect()

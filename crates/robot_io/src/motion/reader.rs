@@ -27,6 +27,8 @@ pub struct ComparedReader<'a> {
     inner: Box<dyn LogReader + 'a>,
     /// Whether the mounting was set by hand, and stays.
     is_told: bool,
+    /// Whether the run goes by scans alone.
+    is_alone: bool,
     waiting: VecDeque<LogFrame>,
     motion: Option<Motion>,
     mount: Option<Mended>,
@@ -43,6 +45,7 @@ impl<'a> ComparedReader<'a> {
         Self {
             inner,
             is_told,
+            is_alone: false,
             waiting: VecDeque::new(),
             motion: None,
             mount: None,
@@ -51,6 +54,13 @@ impl<'a> ComparedReader<'a> {
             notes: LogNotes::default(),
             said: Vec::new(),
         }
+    }
+
+    /// The same reader for a run by scans alone: what is wrong with odometry is not told.
+    #[must_use]
+    pub fn for_scans_alone(mut self, is_so: bool) -> Self {
+        self.is_alone = is_so;
+        self
     }
 
     /// What the comparison found; none before the first frame.
@@ -88,6 +98,9 @@ impl<'a> ComparedReader<'a> {
         {
             let said = first.scan.body_from_sensor;
             motion = Motion::of(&comparison.stretches, said);
+            if self.is_alone {
+                motion.keep_mounting();
+            }
             let told = self.inner.notes().laser;
             let mount = told.unwrap_or(LaserMount {
                 body_from_sensor: said,

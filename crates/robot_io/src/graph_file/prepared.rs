@@ -1,0 +1,290 @@
+//! A graph's text as one that the solver takes: every record of g2o's planar kind, every part held.
+//!
+//! - Records of TORO become records of g2o. Some programs write `EDGE2` with the information in g2o's order: read
+//!   in TORO's order it would be indefinite.
+//! - A file without vertices gets them from a spanning tree of its edges.
+//! - Each part that no chain of edges ties to another is held at its first vertex.
+//! - `EDGE_PRIOR_SE2 id x y θ I…` becomes an edge from a fixed vertex at the origin.
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+use pr_geom::SE2;
+
+use crate::counted::counted;
+use crate::lines::finite;
+
+/// A graph's text for the solver.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Prepared<'a> {
+    /// The text; first the lines of the file, with vertices that were missing behind them.
+    pub text: Cow<'a, [u8]>,
+    /// Lines that are the graph's; those behind them hold it in its place.
+    pub lines: usize,
+    /// Vertices behind those lines.
+    pub helpers: usize,
+    /// Priors that became edges.
+    pub priors: usize,
+    /// What was done, a sentence each.
+    pub said: Vec<String>,
+}
+
+/// A record with its kind.
+#[derive(Clone, Copy)]
+struct Edge {
+    from: i64,
+    to: i64,
+    motion: SE2,
+}
+
+/// Makes a graph's text ready.
+///
+/// # Errors
+/// What the file is, if it is no planar graph.
+pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
+    let text = super::toro::as_g2o(bytes);
+    let mut said: Vec<String> = text.said.into_iter().collect();
+    let text = text.text;
+    let mut ids: Vec<i64> = Vec::new();
+    let mut edges: Vec<Edge> = Vec::new();
+    let mut fixed: Vec<i64> = Vec::new();
+    let mut priors: Vec<(i64, String)> = Vec::new();
+    let mut in_space = None;
+    for (number, line) in text.split(|&byte| byte == b'\n').enumerate() {
+        let Ok(line) = std::str::from_utf8(line) else {
+            continue;
+        };
+        let mut words = line.trim_start_matches('\u{feff}').split_ascii_whitespace();
+        let Some(kind) = words.next() else {
+            continue;
+        };
+        let words: Vec<&str> = words.collect();
+        let id = |at: usize| words.get(at).and_then(|word| word.parse::<i64>().ok());
+        match kind {
+            "VERTEX_SE2" => ids.extend(id(0)),
+            "EDGE_SE2" => {
+                let number = |at: usize| finite(words.get(at).copied(), "").ok();
+                if let (Some(from), Some(to), Some(x), Some(y), Some(theta)) =
+                    (id(0), id(1), number(2), number(3), number(4))
+                {
+                    let motion = SE2::new(x, y, theta);
+                    edges.push(Edge { from, to, motion });
+                }
+            }
+            "FIX" => fixed.extend((0..words.len()).filter_map(id)),
+            "EDGE_PRIOR_SE2" => {
+                if let Some(of) = id(0).filter(|_| words.len() == 10) {
+                    priors.push((of, words[1..].join(" ")));
+                }
+            }
+            "VERTEX_SE3:QUAT" | "EDGE_SE3:QUAT" | "VERTEX3" | "EDGE3" => {
+                in_space.get_or_insert((number + 1, kind.to_owned()));
+            }
+            _ => {}
+        }
+    }
+    if ids.is_empty()
+        && edges.is_empty()
+        && let Some((line, kind)) = in_space
+    {
+        return Err(format!(
+            "line {line} is a {kind}: a graph in three dimensions, and only planar ones are solved; write it with VERTEX_SE2 and EDGE_SE2"
+        ));
+    }
+    let mut lines = text.split_inclusive(|&byte| byte == b'\n').count();
+    let mut added = String::new();
+    if ids.is_empty() && !edges.is_empty() {
+        let tree = spanning_tree(&edges);
+        said.push(format!(
+            "the file has no vertex; {} follow from a tree of its edges",
+            counted(tree.len(), "pose")
+        ));
+        for (id, pose) in &tree {
+            let [x, y, theta] = pose.to_array();
+            added.push_str(&format!("VERTEX_SE2 {id} {x} {y} {theta}\n"));
+            ids.push(*id);
+        }
+        lines += tree.len();
+    }
+    let mut helper = None;
+    let mut helpers = String::new();
+    let known: BTreeSet<i64> = ids.iter().copied().collect();
+    priors.retain(|(of, _)| known.contains(of));
+    if !priors.is_empty() {
+        let id = ids.iter().max().map_or(0, |id| id.saturating_add(1));
+        helpers.push_str(&format!("VERTEX_SE2 {id} 0 0 0\nFIX {id}\n"));
+        for (of, rest) in &priors {
+            helpers.push_str(&format!("EDGE_SE2 {id} {of} {rest}\n"));
+        }
+        said.push(format!(
+            "{} taken as measurements",
+            counted(priors.len(), "prior")
+        ));
+        helper = Some(id);
+    }
+    let parts = parts(&ids, &edges);
+    let held: BTreeSet<i64> = fixed
+        .iter()
+        .chain(priors.iter().map(|(of, _)| of))
+        .copied()
+        .collect();
+    let is_held = |part: &[i64]| part.iter().any(|id| held.contains(id));
+    if parts.len() > 1 || helper.is_some() && fixed.is_empty() {
+        let loose = parts.iter().filter(|part| !is_held(part));
+        for part in loose {
+            helpers.push_str(&format!("FIX {}\n", part[0]));
+        }
+    }
+    if parts.len() > 1 {
+        let single = parts.iter().filter(|part| part.len() == 1).count();
+        said.push(format!(
+            "the graph has {} that no chain of edges ties together, {single} of them a single vertex; each is solved by itself and held at its first vertex",
+            counted(parts.len(), "part")
+        ));
+    }
+    let text = if added.is_empty() && helpers.is_empty() {
+        text
+    } else {
+        let mut whole = text.into_owned();
+        if whole.last().is_some_and(|&byte| byte != b'\n') {
+            whole.push(b'\n');
+        }
+        whole.extend_from_slice(added.as_bytes());
+        whole.extend_from_slice(helpers.as_bytes());
+        Cow::Owned(whole)
+    };
+    Ok(Prepared {
+        text,
+        lines,
+        helpers: usize::from(helper.is_some()),
+        priors: priors.len(),
+        said,
+    })
+}
+
+impl Prepared<'_> {
+    /// The graph's own lines of a text that was written from this one.
+    #[must_use]
+    pub fn own_lines<'b>(&self, written: &'b [u8]) -> &'b [u8] {
+        let mut left = self.lines;
+        let end = written.iter().position(|&byte| {
+            left -= usize::from(byte == b'\n' && left > 0);
+            byte == b'\n' && left == 0
+        });
+        end.map_or(written, |end| &written[..=end])
+    }
+}
+
+/// Which vertices each vertex has an edge to, with the motion there.
+fn neighbours(edges: &[Edge]) -> BTreeMap<i64, Vec<(i64, SE2)>> {
+    let mut near: BTreeMap<i64, Vec<(i64, SE2)>> = BTreeMap::new();
+    for edge in edges {
+        near.entry(edge.from)
+            .or_default()
+            .push((edge.to, edge.motion));
+        near.entry(edge.to)
+            .or_default()
+            .push((edge.from, edge.motion.inverse()));
+    }
+    near
+}
+
+/// A pose for each vertex that an edge names: from the lowest number on, the fewest edges first.
+fn spanning_tree(edges: &[Edge]) -> BTreeMap<i64, SE2> {
+    let near = neighbours(edges);
+    let mut poses: BTreeMap<i64, SE2> = BTreeMap::new();
+    for &root in near.keys() {
+        if poses.contains_key(&root) {
+            continue;
+        }
+        poses.insert(root, SE2::identity());
+        let mut waiting = VecDeque::from([root]);
+        while let Some(id) = waiting.pop_front() {
+            let pose = poses[&id];
+            for &(next, motion) in near.get(&id).into_iter().flatten() {
+                if !poses.contains_key(&next) {
+                    poses.insert(next, pose * motion);
+                    waiting.push_back(next);
+                }
+            }
+        }
+    }
+    poses
+}
+
+/// Vertices that chains of edges tie together, each part in the order of the file.
+fn parts(ids: &[i64], edges: &[Edge]) -> Vec<Vec<i64>> {
+    let near = neighbours(edges);
+    let mut part_of: BTreeMap<i64, usize> = BTreeMap::new();
+    let mut count = 0;
+    for &root in ids {
+        if part_of.contains_key(&root) {
+            continue;
+        }
+        part_of.insert(root, count);
+        let mut waiting = VecDeque::from([root]);
+        while let Some(id) = waiting.pop_front() {
+            for (next, _) in near.get(&id).into_iter().flatten() {
+                if part_of.insert(*next, count).is_none() {
+                    waiting.push_back(*next);
+                }
+            }
+        }
+        count += 1;
+    }
+    let mut parts = vec![Vec::new(); count];
+    for id in ids {
+        parts[part_of[id]].push(*id);
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use pr_optim::g2o::G2oFile;
+
+    use super::*;
+
+    fn said(text: &str) -> (G2oFile, String, Vec<u8>) {
+        let prepared = prepared(text.as_bytes()).unwrap();
+        let file = G2oFile::parse(&prepared.text).unwrap();
+        let own = prepared.own_lines(&file.to_bytes()).to_vec();
+        (file, prepared.said.join("; "), own)
+    }
+
+    #[test]
+    fn edges_alone_make_the_vertices_and_parts_stand_by_themselves() {
+        let edges = "EDGE_SE2 0 1 1 0 1.5707963 100 0 0 100 0 400\nEDGE_SE2 1 2 1 0 1.5707963 100 0 0 100 0 400\n";
+        let (file, told, own) = said(&format!("{edges}EDGE_SE2 8 9 1 0 0 1 0 0 1 0 1"));
+        assert_eq!(file.problem.node_count(), 5);
+        assert!(file.problem.chi2() < 1e-12);
+        assert!(
+            told.contains("5 poses follow from a tree") && told.contains("2 parts"),
+            "{told}"
+        );
+        let own = String::from_utf8(own).unwrap();
+        assert!(
+            own.ends_with("VERTEX_SE2 9 1 0 0\n") && !own.contains("FIX"),
+            "{own}"
+        );
+    }
+
+    #[test]
+    fn a_prior_pulls_its_vertex_and_stays_a_prior_in_the_file() {
+        let text = "VERTEX_SE2 4 0 0 0\nVERTEX_SE2 5 1 0 0\nEDGE_SE2 4 5 1 0 0 1 0 0 1 0 1\n\
+                    EDGE_PRIOR_SE2 4 2 0 0 100 0 0 100 0 100\n";
+        let (file, told, own) = said(text);
+        assert_eq!(file.problem.factors().len(), 2);
+        assert!((file.problem.chi2() - 400.0).abs() < 1e-9);
+        assert_eq!(
+            (told.as_str(), own.as_slice()),
+            ("1 prior taken as measurements", text.as_bytes())
+        );
+    }
+
+    #[test]
+    fn a_graph_in_space_is_named() {
+        let problem = prepared(b"VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n").unwrap_err();
+        assert!(problem.starts_with("line 1 is a VERTEX_SE3:QUAT: a graph in three dimensions"));
+    }
+}

@@ -1,0 +1,112 @@
+//! Records of TORO as records of g2o.
+
+use std::borrow::Cow;
+
+use nalgebra::Matrix3;
+
+/// Text in g2o's records, and what was peculiar about it.
+pub struct AsG2o<'a> {
+    /// The text.
+    pub text: Cow<'a, [u8]>,
+    /// What was peculiar.
+    pub said: Option<String>,
+}
+
+/// A graph's text with every record of TORO as one of g2o, line by line; other text as it is.
+#[must_use]
+pub fn as_g2o(bytes: &[u8]) -> AsG2o<'_> {
+    let is_toro = |line: &[u8]| {
+        let line = line.trim_ascii_start();
+        [&b"VERTEX2"[..], b"EDGE2"].iter().any(|name| {
+            line.starts_with(name) && line.get(name.len()).is_some_and(u8::is_ascii_whitespace)
+        })
+    };
+    let lines = || bytes.split_inclusive(|&byte| byte == b'\n');
+    let toro = || {
+        lines()
+            .filter(|line| is_toro(line))
+            .filter_map(|line| std::str::from_utf8(line).ok())
+    };
+    if toro().next().is_none() && !lines().any(is_toro) {
+        return AsG2o {
+            text: Cow::Borrowed(bytes),
+            said: None,
+        };
+    }
+    let is_g2o_order = toro().any(|line| !is_information(line, TORO_ORDER))
+        && toro().all(|line| is_information(line, G2O_ORDER));
+    let mut text = Vec::with_capacity(bytes.len() + bytes.len() / 8);
+    for line in lines() {
+        match std::str::from_utf8(line) {
+            Ok(words) if is_toro(line) => {
+                text.extend_from_slice(toro_line(words, is_g2o_order).as_bytes());
+                text.push(b'\n');
+            }
+            _ => text.extend_from_slice(line),
+        }
+    }
+    AsG2o {
+        text: Cow::Owned(text),
+        said: is_g2o_order.then(|| {
+            "its EDGE2 have the information in g2o's order, as in TORO's it would be indefinite; it is taken so".to_owned()
+        }),
+    }
+}
+
+/// Where xx, xy, xθ, yy, yθ, θθ stand in a record of each format.
+const TORO_ORDER: [usize; 6] = [0, 1, 4, 2, 5, 3];
+const G2O_ORDER: [usize; 6] = [0, 1, 2, 3, 4, 5];
+
+/// Whether the information of an edge has no negative eigenvalue in this order; true of what is no edge.
+fn is_information(line: &str, order: [usize; 6]) -> bool {
+    let words: Vec<&str> = line.split_ascii_whitespace().collect();
+    if words.first() != Some(&"EDGE2") || words.len() != 12 {
+        return true;
+    }
+    let numbers: Vec<f64> = words[6..]
+        .iter()
+        .filter_map(|word| word.parse().ok())
+        .collect();
+    if numbers.len() != 6 {
+        return true;
+    }
+    let [xx, xy, xt, yy, yt, tt] = order.map(|at| numbers[at]);
+    let eigenvalues = Matrix3::new(xx, xy, xt, xy, yy, yt, xt, yt, tt).symmetric_eigenvalues();
+    let size = eigenvalues.amax();
+    eigenvalues.iter().all(|&value| value >= -1e-9 * size)
+}
+
+/// A record of TORO as one of g2o; the wrong number of fields stays wrong.
+fn toro_line(line: &str, is_g2o_order: bool) -> String {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    match words[..] {
+        ["EDGE2", from, to, x, y, theta, xx, xy, yy, tt, xt, yt] if !is_g2o_order => {
+            format!("EDGE_SE2 {from} {to} {x} {y} {theta} {xx} {xy} {xt} {yy} {yt} {tt}")
+        }
+        ["EDGE2", ref rest @ ..] => format!("EDGE_SE2 {}", rest.join(" ")),
+        [_, ref rest @ ..] => format!("VERTEX_SE2 {}", rest.join(" ")),
+        [] => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_order_of_the_information_is_told_by_what_is_definite() {
+        let converted =
+            |edge: &str| String::from_utf8(as_g2o(edge.as_bytes()).text.into_owned()).unwrap();
+        let expected = "EDGE_SE2 0 1 1 0 0 10 1 2 20 3 30\n";
+        assert_eq!(converted("EDGE2 0 1 1 0 0 10 1 20 30 2 3\n"), expected);
+        assert_eq!(
+            converted("EDGE2 0 1 1 0 0 100 0 0 100 0 400\n"),
+            "EDGE_SE2 0 1 1 0 0 100 0 0 100 0 400\n"
+        );
+        assert!(
+            as_g2o(b"EDGE2 0 1 1 0 0 100 0 0 100 0 400\n")
+                .said
+                .is_some()
+        );
+    }
+}
