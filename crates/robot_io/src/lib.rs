@@ -24,6 +24,7 @@
 //! line and what was expected.
 
 pub mod carmen;
+pub mod doctor;
 pub mod evaluate;
 pub mod evidence;
 pub mod graph_file;
@@ -40,6 +41,7 @@ pub mod motion;
 pub mod quality;
 pub mod recorder;
 pub mod relations;
+pub mod remark;
 pub mod report;
 pub mod ros;
 pub mod rosbag2;

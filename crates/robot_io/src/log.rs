@@ -9,6 +9,7 @@ use pr_geom::SE2;
 use thiserror::Error;
 
 use crate::laser_mount::LaserMount;
+use crate::remark::Remark;
 
 /// A scan of a log, with the odometry at its time.
 #[derive(Clone, Debug, PartialEq)]
@@ -148,7 +149,7 @@ pub struct LogNotes {
     /// Where the laser sits, where the recording or an option says it.
     pub laser: Option<LaserMount>,
     /// What was missing and how it was made up for.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
     /// Why what follows in the file was not read.
     pub ended_early: Option<String>,
 }
@@ -192,7 +193,7 @@ impl LogNotes {
             });
         }
         let warnings = self.warnings.iter();
-        said.extend(warnings.map(|warning| format!("{name}: {warning}")));
+        said.extend(warnings.map(|warning| format!("{name}: {}", warning.text)));
         said
     }
 

@@ -67,7 +67,18 @@ pub enum MapError {
 /// # Errors
 /// Where no scan has a point, or there would be too many cells.
 pub fn map_of(lines: &[FrameLine], cell_m: f64) -> Result<MapImage, MapError> {
-    let mut map = MapBuilder::new(cell_m);
+    built(MapBuilder::new(cell_m), lines)
+}
+
+/// As [`map_of`], with free space where beams saw nothing out to the sensor's limit.
+///
+/// # Errors
+/// As of [`map_of`].
+pub fn map_with_free_space(lines: &[FrameLine], cell_m: f64) -> Result<MapImage, MapError> {
+    built(MapBuilder::new(cell_m).with_free_space(), lines)
+}
+
+fn built(mut map: MapBuilder, lines: &[FrameLine]) -> Result<MapImage, MapError> {
     for line in lines {
         if let Some([x, y, theta]) = line.pose {
             let frame = LogFrame::from(line.clone());
@@ -89,10 +100,17 @@ pub fn map_of_session(session: &Session, cell_m: f64) -> Result<MapImage, MapErr
     map.finish()
 }
 
+/// How far a scan sees, m.
+fn reach_of(scan: &LaserScan) -> f64 {
+    math::min(scan.range_max_m, FARTHEST_M)
+}
+
 /// Adds scans to an occupancy grid that grows with them.
 #[derive(Clone, Debug)]
 pub struct MapBuilder {
     cell_m: f64,
+    /// Whether beams that saw nothing out to the sensor's limit clear what is before it.
+    clears: bool,
     grid: Option<OccupancyGrid>,
     /// Bounds of all points and robots, m: the image ends there.
     low: Point2<f64>,
@@ -105,10 +123,18 @@ impl MapBuilder {
     pub fn new(cell_m: f64) -> Self {
         Self {
             cell_m,
+            clears: false,
             grid: None,
             low: Point2::new(f64::INFINITY, f64::INFINITY),
             high: Point2::new(f64::NEG_INFINITY, f64::NEG_INFINITY),
         }
+    }
+
+    /// The same map, in which beams that saw nothing out to the sensor's limit mark free space, as REP 117 has them.
+    #[must_use]
+    pub fn with_free_space(mut self) -> Self {
+        self.clears = true;
+        self
     }
 
     /// Adds the scan that was taken at `world_from_body`; rays that saw nothing say nothing.
@@ -121,6 +147,8 @@ impl MapBuilder {
         for (beam, &range_m) in scan.ranges_m.iter().enumerate() {
             if scan.is_return(range_m) && range_m < FARTHEST_M {
                 beams.push((scan.bearing_rad(beam), range_m));
+            } else if self.clears && range_m >= scan.range_max_m {
+                beams.push((scan.bearing_rad(beam), reach_of(scan)));
             }
         }
         if scan.angle_step_rad < 0.0 {
@@ -134,9 +162,8 @@ impl MapBuilder {
             return Ok(());
         }
         let at = world_from_sensor.position();
-        let grid = self
-            .grid
-            .get_or_insert_with(|| OccupancyGrid::new(Self::config(self.cell_m, scan, at)));
+        let config = self.config(scan, at);
+        let grid = self.grid.get_or_insert_with(|| OccupancyGrid::new(config));
         grid.cover(at, reach_m + 2.0 * self.cell_m)?;
         for &(bearing, range_m) in &beams {
             let (sin, cos) = math::sin_cos(bearing + world_from_sensor.theta());
@@ -156,14 +183,20 @@ impl MapBuilder {
         Ok(())
     }
 
-    fn config(cell_m: f64, scan: &LaserScan, at: Point2<f64>) -> GridConfig {
+    fn config(&self, scan: &LaserScan, at: Point2<f64>) -> GridConfig {
+        let cell_m = self.cell_m;
         GridConfig {
             sensor: InverseSensorModel {
                 // A return marks its own cell and no wall thicker than that.
                 obstacle_thickness_m: 1.5 * cell_m,
                 // Half a step to either side, and what is lost in rounding.
                 beam_width_rad: 1.001 * scan.angle_step_rad.abs(),
-                max_range_m: FARTHEST_M,
+                // A reading at it hit nothing.
+                max_range_m: if self.clears {
+                    reach_of(scan)
+                } else {
+                    FARTHEST_M
+                },
                 ..InverseSensorModel::default()
             },
             ..GridConfig::growing_from(at, cell_m)

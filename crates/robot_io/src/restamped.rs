@@ -6,6 +6,7 @@ use std::io;
 
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::log_bytes::LogBytes;
+use crate::remark::Remark;
 use crate::stamps::MendedStamps;
 
 /// A frame waits for so many others at most that stand after it and were taken before it.
@@ -18,7 +19,7 @@ type Key = (u64, usize);
 struct Restamped<R> {
     inner: R,
     stamps_s: Vec<f64>,
-    said: Vec<String>,
+    said: Vec<Remark>,
     /// Earliest stamp of any frame after this one, s.
     earliest_after_s: Vec<f64>,
     waiting: BTreeMap<Reverse<Key>, LogFrame>,
@@ -74,7 +75,7 @@ pub fn restamped<'a, R: LogReader + 'a>(
     earliest_after_s.reverse();
     Ok(Box::new(Restamped {
         inner,
-        said: mended.sentences("scans"),
+        said: mended.remarks("scans"),
         stamps_s,
         earliest_after_s,
         waiting: BTreeMap::new(),
@@ -143,7 +144,7 @@ mod tests {
 
     use super::*;
 
-    fn stamps(text: &str) -> (Vec<f64>, Vec<String>) {
+    fn stamps(text: &str) -> (Vec<f64>, Vec<Remark>) {
         let bytes = LogBytes::from(text.as_bytes().to_vec());
         let mut reader = restamped(&bytes, |source| CarmenReader::new(source, "x.clf")).unwrap();
         let mut stamps = Vec::new();
@@ -170,7 +171,7 @@ mod tests {
         let swapped = good.chunks(2).flat_map(|two| [two[1] + 5.0, two[0] + 5.0]);
         let (found, said) = stamps(&log(swapped));
         assert!(found.windows(2).all(|two| two[0] < two[1]) && found.len() == 40);
-        assert!(said[0].contains("sorted by stamp"), "{said:?}");
+        assert!(said[0].text.contains("sorted by stamp"), "{said:?}");
         let reset = good.iter().map(|stamp_s| {
             if *stamp_s < 20.0 {
                 stamp_s + 100.0
@@ -180,6 +181,6 @@ mod tests {
         });
         let (found, said) = stamps(&log(reset));
         assert!(found.windows(2).all(|two| two[0] < two[1]) && found.len() == 40);
-        assert!(said[0].contains("steps back"), "{said:?}");
+        assert!(said[0].text.contains("steps back"), "{said:?}");
     }
 }

@@ -11,6 +11,8 @@
 
 use pr_geom::sort_numbers;
 
+use crate::remark::{Part, Remark};
+
 /// Stamps on each side that judge one between them.
 const NEIGHBOURS: usize = 5;
 /// A stamp nearer than this to the median of its neighbours is believed, s.
@@ -101,7 +103,7 @@ impl MendedStamps {
 
     /// What was done, a sentence each; `messages` names them, as “scans”.
     #[must_use]
-    pub fn sentences(&self, messages: &str) -> Vec<String> {
+    pub fn remarks(&self, messages: &str) -> Vec<Remark> {
         let all = self.stamps_s.len();
         let mut said = Vec::new();
         if self.unset > 0 {
@@ -136,7 +138,8 @@ impl MendedStamps {
                 self.swapped
             ));
         }
-        said
+        let mended = |text| Remark::mended(Part::Clocks, text);
+        said.into_iter().map(mended).collect()
     }
 }
 

@@ -6,6 +6,7 @@
 mod basin;
 mod buildings;
 mod convert;
+mod doctor;
 mod evaluate;
 mod grade;
 mod info;
@@ -56,6 +57,7 @@ enum Command {
     Sweep(sweep::SweepArgs),
     Optimize(optimize::OptimizeArgs),
     Info(info::InfoArgs),
+    Doctor(doctor::DoctorArgs),
     Run(run_log::RunArgs),
     Localize(localize::LocalizeArgs),
     Parameters(parameters::ParametersArgs),
@@ -88,6 +90,7 @@ fn main() -> ExitCode {
         Command::Places(args) => places::run(args).map_err(|e| e.to_string()),
         Command::Sweep(args) => sweep::run(args).map_err(|e| e.to_string()),
         Command::Optimize(args) => optimize::run(args).map_err(|e| e.to_string()),
+        Command::Doctor(args) => doctor::run(args).map_err(|e| e.to_string()),
         Command::Info(args) => info::run(args).map_err(|e| e.to_string()),
         Command::Run(args) => run_log::run(args).map_err(|e| e.to_string()),
         Command::Localize(args) => localize::run(args).map_err(|e| e.to_string()),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use robot_io::json_log::FrameLine;
 use robot_io::log::LogError;
-use robot_io::map_image::{MapError, MapMode, map_of, map_of_session};
+use robot_io::map_image::{MapError, MapMode, map_of, map_of_session, map_with_free_space};
 use thiserror::Error;
 
 use crate::log_file::{FileError, open};
@@ -29,6 +29,9 @@ pub struct MapArgs {
     /// Side of a cell, m.
     #[arg(long, default_value = "0.05", value_parser = numbers::cell_m, allow_hyphen_values = true)]
     resolution: f64,
+    /// Mark as free what lies before the sensor's limit on beams that saw nothing (REP 117); takes the folder of a run.
+    #[arg(long)]
+    free_space: bool,
     /// What a pixel says: occupied, free or unknown, or the probability.
     #[arg(long, value_enum, default_value = "trinary")]
     mode: ModeArg,
@@ -64,6 +67,9 @@ pub enum MapFailure {
     /// The folder is not one of a run.
     #[error("{} has no {KEYFRAMES}; give a session, or a folder that slam2d run -o DIR wrote", .0.display())]
     NoRun(PathBuf),
+    /// A session has no beams that saw nothing.
+    #[error("{} keeps only beams that saw something, so it has no free space beyond them; give the folder of the run", .0.display())]
+    NoBeams(PathBuf),
     /// The session cannot be used.
     #[error(transparent)]
     Session(#[from] SessionFileError),
@@ -100,8 +106,16 @@ pub fn run(args: &MapArgs) -> Result<(), MapFailure> {
         (ModeArg::Trinary, image) => (MapMode::Trinary, image.unwrap_or(ImageArg::Pgm)),
     };
     // A folder's keyframes have all beams, a session has thinned scans.
+    if args.free_space && !args.run.is_dir() {
+        return Err(MapFailure::NoBeams(args.run.clone()));
+    }
     let map = if args.run.is_dir() {
-        map_of(&keyframes(&args.run)?, args.resolution)
+        let draw = if args.free_space {
+            map_with_free_space
+        } else {
+            map_of
+        };
+        draw(&keyframes(&args.run)?, args.resolution)
     } else {
         map_of_session(&read_session(&args.run)?.0, args.resolution)
     };

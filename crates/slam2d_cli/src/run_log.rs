@@ -50,6 +50,9 @@ pub struct RunArgs {
     /// parameters stay as they are.
     #[arg(long = "continue", value_name = "SESSION", conflicts_with_all = ["settings", "front_end"])]
     session: Option<PathBuf>,
+    /// In the map, mark as free what lies before the sensor's limit on beams that saw nothing (REP 117).
+    #[arg(long)]
+    free_space: bool,
     #[command(flatten)]
     reference: ReferenceArgs,
     /// Print one JSON object.
@@ -195,7 +198,17 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     if let Some(folder) = &args.output {
         write_results(folder, &run, &quality)?;
         remarks.extend(reader.notes().about.iter().cloned());
-        write_folder(folder, &name, &run, &quality, &recorder, &remarks)?;
+        let title = args.log.file_name().unwrap_or(args.log.as_os_str());
+        let title = title.to_string_lossy();
+        write_folder(
+            folder,
+            &title,
+            &run,
+            &quality,
+            &recorder,
+            &remarks,
+            args.free_space,
+        )?;
     }
     // The results are written before anything that may still fail is told.
     let grade = grade?;

@@ -6,12 +6,14 @@
 //! | `graph.g2o` | the pose graph |
 //! | `keyframes.jsonl` | the keyframes' scans with their poses: what `slam2d map` takes |
 //! | `report.html` | keyframes, loops and doubts with pictures |
+//! | `map.pgm`, `map.yaml` | the map for Nav2's map_server |
+//! | `map.png` | the same map to look at |
 
 use std::io::{self, Write};
 use std::path::Path;
 
 use robot_io::graph_file::GraphFile;
-use robot_io::map_image::map_of;
+use robot_io::map_image::{MapMode, map_of, map_with_free_space};
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
 use robot_io::report::Report;
@@ -24,6 +26,8 @@ use crate::optimize::write_whole;
 /// The file of keyframes.
 pub const KEYFRAMES: &str = "keyframes.jsonl";
 
+/// Side of the map's cells, m: what Nav2's maps have.
+const MAP_CELL_M: f64 = 0.05;
 /// Side of the report's cells, m: finer walls than its picture shows cost space.
 const REPORT_CELL_M: f64 = 0.1;
 
@@ -38,6 +42,7 @@ pub fn write_folder(
     quality: &Quality,
     recorder: &RunRecorder,
     remarks: &[String],
+    has_free_space: bool,
 ) -> Result<(), FileError> {
     let save = |name: &str, write: &dyn Fn(&mut Vec<u8>) -> io::Result<()>| {
         let path = folder.join(name);
@@ -57,8 +62,21 @@ pub fn write_folder(
     save(KEYFRAMES, &|out| {
         lines.iter().try_for_each(|line| line.write(&mut *out))
     })?;
+    let draw = if has_free_space {
+        map_with_free_space
+    } else {
+        map_of
+    };
+    // A place too large for cells so small has no map here; `slam2d map --resolution` makes one.
+    if let Ok(map) = draw(&lines, MAP_CELL_M) {
+        save("map.pgm", &|out| map.write_pgm(out))?;
+        save("map.png", &|out| map.write_png(out, MapMode::Trinary))?;
+        save("map.yaml", &|out| {
+            out.write_all(map.yaml("map.pgm", MapMode::Trinary).as_bytes())
+        })?;
+    }
     // A place too large for cells so small has a report without walls.
-    let map = map_of(&lines, REPORT_CELL_M).ok();
+    let map = draw(&lines, REPORT_CELL_M).ok();
     let report = Report {
         name: log,
         scans: run.scans(),

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::Stretch;
 use crate::laser_mount::LaserMount;
+use crate::remark::{Part, Remark};
 use crate::stamps::median;
 
 /// Fewer stretches show nothing.
@@ -279,7 +280,7 @@ impl Motion {
     /// The findings, a sentence each; `mount` is where the laser was said to sit, and `is_mended` whether what
     /// they say was done.
     #[must_use]
-    pub fn sentences(&self, mount: LaserMount, is_mended: bool) -> Vec<String> {
+    pub fn remarks(&self, mount: LaserMount, is_mended: bool) -> Vec<Remark> {
         let option = self
             .mended_mount(mount)
             .map(|mended| mended.option())
@@ -332,7 +333,19 @@ impl Motion {
                 "scans matched alone and odometry turn differently (correlation {correlation:.2}): the scans see too little to be matched alone, or the odometry is not this robot's; compare with a map by --no-odometry"
             ),
         };
-        self.findings.iter().map(sentence).collect()
+        let remark = |finding: &Finding| {
+            let (part, may_be_mended) = match finding {
+                Finding::Mirrored { .. } | Finding::Turned { .. } => (Part::Mounting, is_mended),
+                Finding::Unit { .. } | Finding::Still { .. } => (Part::Odometry, true),
+                Finding::Scale { .. } | Finding::Unlike { .. } => (Part::Odometry, false),
+            };
+            let text = sentence(finding);
+            match may_be_mended {
+                true => Remark::mended(part, text),
+                false => Remark::wrong(part, text),
+            }
+        };
+        self.findings.iter().map(remark).collect()
     }
 }
 

@@ -7,6 +7,7 @@ use pr_geom::SE2;
 use super::{Comparison, Motion};
 use crate::laser_mount::{LaserMount, flip};
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
+use crate::remark::Remark;
 
 /// So many scans are compared at most, with so many beams together: they are in memory.
 const MOST_SCANS: usize = 2000;
@@ -35,7 +36,7 @@ pub struct ComparedReader<'a> {
     metres: f64,
     is_still: bool,
     notes: LogNotes,
-    said: Vec<String>,
+    said: Vec<Remark>,
 }
 
 impl<'a> ComparedReader<'a> {
@@ -106,7 +107,7 @@ impl<'a> ComparedReader<'a> {
                 body_from_sensor: said,
                 is_flipped: false,
             });
-            self.said = motion.sentences(mount, !self.is_told);
+            self.said = motion.remarks(mount, !self.is_told);
             if !self.is_told {
                 let mended = motion.mended_mount(mount);
                 self.mount = mended.map(|mended| Mended {

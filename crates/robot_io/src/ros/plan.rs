@@ -10,6 +10,7 @@ use super::survey::{SCANS, ScanStream, Survey};
 use crate::laser_mount::LaserMount;
 use crate::lines::listed;
 use crate::log::{LogNotes, LogOffer, LogOption, LogOptions};
+use crate::remark::{Part, Remark};
 use crate::stamps::MendedStamps;
 use crate::wheel_poses::WheelPoses;
 
@@ -52,7 +53,7 @@ pub struct Plan {
     /// What was chosen and found.
     pub about: Vec<String>,
     /// What was missing or mended.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
     /// Why no scan can be read.
     without_scans: String,
 }
@@ -96,7 +97,8 @@ impl Plan {
         }
         plan.about.push(mounts::sentence(&found));
         plan.scans.push(planned(topic, &clocks[0], &found));
-        plan.warnings.extend(found.warning.clone());
+        let of_mount = |text| Remark::mended(Part::Mounting, text);
+        plan.warnings.extend(found.warning.clone().map(of_mount));
         for (other, stream) in &chosen[1..] {
             let other_mount = mounts::find(survey, &found.body, &stream.frame, ground, options);
             let is_asked_for = options.scan_topic.is_some();
@@ -115,15 +117,12 @@ impl Plan {
         }
         plan.name_other_scans(survey, options);
         for (scans, clock) in plan.scans.iter().zip(&clocks) {
-            let said = clock.sentences(&format!("scans of {}", scans.topic));
+            let said = clock.remarks(&format!("scans of {}", scans.topic));
             plan.warnings.extend(said);
         }
         if let Some(wheels) = &wheels {
-            plan.warnings.extend(
-                wheels
-                    .clock
-                    .sentences(&format!("poses of {}", wheels.topic)),
-            );
+            plan.warnings
+                .extend(wheels.clock.remarks(&format!("poses of {}", wheels.topic)));
             plan.take_wheels(wheels, &clocks[0]);
             plan.about.extend(wheels.others.clone());
         }
@@ -163,10 +162,10 @@ impl Plan {
                 .iter()
                 .filter(|&&stamp_s| stamp_s > last_s && poses.at(stamp_s).is_none());
             let (early, late) = (early.count(), late.count());
-            self.warnings.push(format!(
+            self.warnings.push(Remark::mended(Part::Odometry, format!(
                 "{bare} of {known} scans have no odometry of their time ({early} before its first pose, {late} after its last, {} in gaps); they go by scans alone. Record odometry from the start to the end",
                 bare - early - late
-            ));
+            )));
         }
         self.wheels = Some(poses);
     }
@@ -185,10 +184,10 @@ impl Plan {
             .collect();
         if !others.is_empty() {
             let example = others[0].clone();
-            self.warnings.push(format!(
+            self.warnings.push(Remark::mended(Part::Sensor, format!(
                 "there are scans on {} as well, which are not read; choose with --scan-topic {example}",
                 listed(others.into_iter())
-            ));
+            )));
         }
     }
 

@@ -13,6 +13,7 @@ use super::plan::Plan;
 use super::survey::Survey;
 use crate::log::{BrokenRecord, LogError, LogFrame, LogNotes, LogOptions, LogReader, Place};
 use crate::log_bytes::LogBytes;
+use crate::remark::{Part, Remark};
 
 /// Scans of two lasers belong together if their stamps differ by less than this share of a period.
 const TOGETHER: f64 = 0.6;
@@ -236,8 +237,9 @@ impl Reading<'_> {
         let cursors =
             std::iter::once(&self.anchor).chain(self.others.iter().map(|other| &other.cursor));
         for sentence in cursors.flat_map(ScanCursor::said) {
-            if !notes.warnings.contains(sentence) {
-                notes.warnings.push(sentence.clone());
+            let remark = Remark::mended(Part::Sensor, sentence.clone());
+            if !notes.warnings.contains(&remark) {
+                notes.warnings.push(remark);
             }
         }
     }

@@ -58,6 +58,14 @@ impl ScanFields {
         if scale != 1.0 {
             ranges_m.iter_mut().for_each(|range_m| *range_m *= scale);
         }
+        // Nothing within the limit, by REP 117: as a reading at it, which other formats can write.
+        if range_max_m.is_finite() {
+            let is_beyond = |range_m: &&mut f64| **range_m == f64::INFINITY;
+            ranges_m
+                .iter_mut()
+                .filter(is_beyond)
+                .for_each(|range_m| *range_m = range_max_m);
+        }
         let scan = LaserScan {
             first_angle_rad,
             angle_step_rad,

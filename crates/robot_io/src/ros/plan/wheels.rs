@@ -3,6 +3,7 @@
 use super::TRANSFORMS;
 use crate::lines::listed;
 use crate::log::LogOptions;
+use crate::remark::{Part, Remark};
 use crate::ros::survey::{Survey, Track};
 use crate::stamps::MendedStamps;
 use crate::wheel_poses::WheelPoses;
@@ -144,7 +145,7 @@ pub struct Aligned {
     /// What is added to the scans' stamps, s.
     pub scans_by_s: f64,
     /// What was done.
-    pub said: Option<String>,
+    pub said: Option<Remark>,
 }
 
 /// Puts both on the clock of the recording, or on that of the odometry.
@@ -161,18 +162,24 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
             wheels_by_s = offset_s;
         }
         let whose = if is_scans_off { "scans" } else { "odometry" };
-        said = Some(format!(
-            "the clocks of scans and odometry differ by {:.1} s, as the recording's own time shows; that of the {whose} is moved. Set both computers' clocks by NTP",
-            offset_s.abs()
+        said = Some(Remark::mended(
+            Part::Clocks,
+            format!(
+                "the clocks of scans and odometry differ by {:.1} s, as the recording's own time shows; that of the {whose} is moved. Set both computers' clocks by NTP",
+                offset_s.abs()
+            ),
         ));
     } else {
         let ((first_s, last_s), (scan_s, end_s)) =
             (ends_s(&clock.stamps_s), ends_s(&scans.stamps_s));
         if last_s < scan_s || first_s > end_s {
             let apart_s = scan_s - first_s;
-            said = Some(format!(
-                "the clocks of scans and odometry differ by {:.0} s, and the recording does not show which is right; set both computers' clocks by NTP and record again, or go by scans alone with --no-odometry",
-                apart_s.abs()
+            said = Some(Remark::wrong(
+                Part::Clocks,
+                format!(
+                    "the clocks of scans and odometry differ by {:.0} s, and the recording does not show which is right; set both computers' clocks by NTP and record again, or go by scans alone with --no-odometry",
+                    apart_s.abs()
+                ),
             ));
         }
     }

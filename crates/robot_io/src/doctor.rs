@@ -1,0 +1,335 @@
+//! How it stands with a recording: sensor, odometry, mounting, clocks and file on one screen.
+//!
+//! [`Checkup`] takes every frame of a log. What its reader mended on the way, and what scans against odometry
+//! showed, is in the log's notes.
+
+use serde::Serialize;
+
+use crate::info::LogInfo;
+use crate::log::{LogFrame, LogNotes, LogOption};
+use crate::motion::Motion;
+use crate::remark::{Part, Remark, Verdict};
+
+/// A sensor of which fewer beams see something may look into a cover, or its limits are wrong.
+const LEAST_VALID: f64 = 0.1;
+
+/// The scans in numbers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SensorSummary {
+    /// Scans.
+    pub scans: usize,
+    /// Most beams of a scan.
+    pub beams: usize,
+    /// From the first beam to the last, degrees.
+    pub field_of_view_deg: f64,
+    /// Shortest range that counts, m.
+    pub range_min_m: f64,
+    /// Longest one, m; none if the sensor states none.
+    pub range_max_m: Option<f64>,
+    /// Scans a second.
+    pub rate_hz: f64,
+    /// Share of the beams that see something.
+    pub valid: f64,
+}
+
+/// The odometry in numbers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct OdometrySummary {
+    /// Where it comes from; none in a log of lines.
+    pub source: Option<String>,
+    /// Poses a second; none in a log of lines.
+    pub rate_hz: Option<f64>,
+    /// Path, m.
+    pub path_m: f64,
+    /// Share of the scans that have it.
+    pub covered: f64,
+}
+
+/// All that is known of a recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Diagnosis {
+    /// Its name.
+    pub name: String,
+    /// The worst of the verdicts.
+    pub verdict: Verdict,
+    /// The scans.
+    pub sensor: SensorSummary,
+    /// The odometry; none where there is none.
+    pub odometry: Option<OdometrySummary>,
+    /// Scans against odometry.
+    pub motion: Motion,
+    /// A sentence for each thing that was looked at.
+    pub remarks: Vec<Remark>,
+}
+
+/// Counts the frames of a log.
+#[derive(Clone, Debug, Default)]
+pub struct Checkup {
+    info: LogInfo,
+    beams: usize,
+    valid: usize,
+    covered: usize,
+    range_min_m: f64,
+    range_max_m: f64,
+}
+
+impl Checkup {
+    /// Takes the next frame.
+    pub fn take(&mut self, frame: &LogFrame) {
+        self.info.take(frame);
+        let scan = &frame.scan;
+        self.beams += scan.ranges_m.len();
+        self.valid += scan
+            .ranges_m
+            .iter()
+            .filter(|&&range_m| scan.is_return(range_m))
+            .count();
+        self.covered += usize::from(frame.odometry.is_some());
+        (self.range_min_m, self.range_max_m) = (scan.range_min_m, scan.range_max_m);
+    }
+
+    /// Scans so far.
+    #[must_use]
+    pub fn scans(&self) -> usize {
+        self.info.scans
+    }
+
+    /// The diagnosis of the log of that name.
+    #[must_use]
+    pub fn finish(&self, name: &str, notes: &LogNotes, motion: &Motion) -> Diagnosis {
+        let info = &self.info;
+        let per_second = |count: usize| {
+            let gaps = count.saturating_sub(1) as f64;
+            if info.duration_s > 0.0 {
+                gaps / info.duration_s
+            } else {
+                0.0
+            }
+        };
+        let sensor = SensorSummary {
+            scans: info.scans,
+            beams: info.most_beams,
+            field_of_view_deg: info.field_of_view_deg,
+            range_min_m: self.range_min_m,
+            range_max_m: self.range_max_m.is_finite().then_some(self.range_max_m),
+            rate_hz: per_second(info.scans),
+            valid: self.valid as f64 / self.beams.max(1) as f64,
+        };
+        let odometry = info.odometry_way_m.map(|path_m| {
+            let taken = notes
+                .offers
+                .iter()
+                .find(|offer| offer.option == LogOption::OdometryTopic);
+            let source = taken.and_then(|offer| offer.taken.clone());
+            let count = source.as_ref().and_then(|topic| {
+                let start = format!("{topic} ");
+                let of_topic = notes
+                    .records
+                    .iter()
+                    .find(|(key, _)| key.starts_with(&start));
+                of_topic.map(|(_, &count)| count)
+            });
+            OdometrySummary {
+                rate_hz: count.map(per_second),
+                source,
+                path_m,
+                covered: self.covered as f64 / info.scans.max(1) as f64,
+            }
+        });
+        let mut remarks = vec![file(notes), of_sensor(&sensor)];
+        remarks.push(of_odometry(odometry.as_ref(), motion));
+        remarks.extend(of_mounting(notes, motion));
+        remarks.extend(of_clocks(notes, info));
+        remarks.extend(notes.warnings.iter().cloned());
+        remarks.sort_by_key(|remark| remark.part);
+        let worst = remarks.iter().map(|remark| remark.verdict).max();
+        Diagnosis {
+            name: name.to_owned(),
+            verdict: worst.unwrap_or(Verdict::Good),
+            sensor,
+            odometry,
+            motion: motion.clone(),
+            remarks,
+        }
+    }
+}
+
+fn file(notes: &LogNotes) -> Remark {
+    let records: usize = notes.records.values().sum();
+    let plain = LogNotes {
+        broken: notes.broken,
+        first_broken: notes.first_broken.clone(),
+        half_written: notes.half_written.clone(),
+        ended_early: notes.ended_early.clone(),
+        ..LogNotes::default()
+    };
+    let said = plain.sentences("the file").join("; ");
+    match (said.is_empty(), notes.ended_early.is_some()) {
+        (true, _) => Remark::good(
+            Part::File,
+            format!("all of its {records} records were read"),
+        ),
+        (false, false) => Remark::mended(Part::File, said),
+        (false, true) => Remark::wrong(Part::File, said),
+    }
+}
+
+fn of_sensor(sensor: &SensorSummary) -> Remark {
+    let reach = sensor
+        .range_max_m
+        .map_or("no limit".to_owned(), |range_m| format!("{range_m:.1} m"));
+    let text = format!(
+        "{} scans of {} beams over {:.0}°, from {:.2} m to {reach}, {:.1} a second; {:.0} % of the beams see something",
+        sensor.scans,
+        sensor.beams,
+        sensor.field_of_view_deg,
+        sensor.range_min_m,
+        sensor.rate_hz,
+        100.0 * sensor.valid
+    );
+    if sensor.valid < LEAST_VALID {
+        let text = format!("{text}. Check range_min and range_max, and what covers the laser");
+        return Remark::wrong(Part::Sensor, text);
+    }
+    Remark::good(Part::Sensor, text)
+}
+
+fn of_odometry(odometry: Option<&OdometrySummary>, motion: &Motion) -> Remark {
+    let Some(odometry) = odometry else {
+        let text = "there is none; scans go alone, which needs many of them and no bare corridor";
+        return Remark::mended(Part::Odometry, text.to_owned());
+    };
+    let source = odometry.source.as_deref().unwrap_or("the log's own");
+    let mut text = format!("{source}, {:.1} m of path", odometry.path_m);
+    if let Some(rate_hz) = odometry.rate_hz {
+        text.push_str(&format!(", {rate_hz:.1} poses a second"));
+    }
+    if let (Some(scale), Some(drift)) = (motion.scale, motion.drift_m_per_m) {
+        text.push_str(&format!(
+            "; {scale:.2} m for each metre by scans, from which it differs by {:.1} cm a metre",
+            100.0 * drift
+        ));
+    }
+    if let Some(turn) = motion.turn_scale {
+        text.push_str(&format!("; {turn:.2}° for each degree by scans"));
+    }
+    Remark::good(Part::Odometry, text)
+}
+
+fn of_mounting(notes: &LogNotes, motion: &Motion) -> Option<Remark> {
+    if notes
+        .warnings
+        .iter()
+        .any(|remark| remark.part == Part::Mounting)
+    {
+        return None;
+    }
+    let place = notes.laser.map_or("the laser".to_owned(), |mount| {
+        let [x, y, theta] = mount.body_from_sensor.to_array();
+        let flipped = if mount.is_flipped {
+            ", upside down"
+        } else {
+            ""
+        };
+        format!(
+            "the laser at {x:.2} m, {y:.2} m, {:.0}°{flipped}",
+            theta.to_degrees()
+        )
+    });
+    Some(match (motion.direction_rad, motion.correlation) {
+        (Some(direction_rad), Some(correlation)) => Remark::good(
+            Part::Mounting,
+            format!(
+                "{place} looks where it is said to, to {:.1}°, and turns as odometry does (correlation {correlation:.2})",
+                direction_rad.to_degrees().abs()
+            ),
+        ),
+        _ => Remark::mended(
+            Part::Mounting,
+            format!(
+                "{place}: whether that holds cannot be checked; it takes odometry, and a path with metres and turns"
+            ),
+        ),
+    })
+}
+
+fn of_clocks(notes: &LogNotes, info: &LogInfo) -> Option<Remark> {
+    if notes
+        .warnings
+        .iter()
+        .any(|remark| remark.part == Part::Clocks)
+    {
+        return None;
+    }
+    Some(match info.late {
+        0 => Remark::good(
+            Part::Clocks,
+            format!("all stamps are in order, over {:.1} s", info.duration_s),
+        ),
+        late => Remark::wrong(
+            Part::Clocks,
+            format!("{late} scans are not after the one before"),
+        ),
+    })
+}
+
+impl Diagnosis {
+    /// The screen: a line for each remark, under the name of its part.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = format!("{} {}\n", self.verdict.sign(), self.name);
+        let mut last = None;
+        for remark in &self.remarks {
+            let part = match remark.part {
+                Part::File => "file",
+                Part::Sensor => "sensor",
+                Part::Odometry => "odometry",
+                Part::Mounting => "mounting",
+                Part::Clocks => "clocks",
+            };
+            let shown = if last == Some(remark.part) { "" } else { part };
+            last = Some(remark.part);
+            text.push_str(&format!(
+                "{} {shown:<9} {}\n",
+                remark.verdict.sign(),
+                remark.text
+            ));
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ch16_slam2d::scan::LaserScan;
+    use pr_geom::SE2;
+
+    use super::*;
+
+    #[test]
+    fn each_part_has_a_sign_and_a_sentence_and_the_worst_stands_on_top() {
+        let mut checkup = Checkup::default();
+        for number in 0..3 {
+            checkup.take(&LogFrame {
+                stamp_s: f64::from(number),
+                odometry: Some(SE2::translation(f64::from(number), 0.0)),
+                scan: LaserScan {
+                    angle_step_rad: 0.1,
+                    ranges_m: vec![1.0, 0.0],
+                    ..LaserScan::default()
+                },
+            });
+        }
+        let diagnosis = checkup.finish("x.mcap", &LogNotes::default(), &Motion::default());
+        assert_eq!(diagnosis.verdict, Verdict::Mended);
+        assert_eq!(
+            (diagnosis.sensor.valid, diagnosis.sensor.rate_hz),
+            (0.5, 1.0)
+        );
+        let text = diagnosis.text();
+        assert!(text.starts_with("! x.mcap\n✓ file "), "{text}");
+        for part in ["sensor", "odometry", "mounting", "clocks"] {
+            assert!(text.contains(&format!(" {part} ")), "{text}");
+        }
+    }
+}
