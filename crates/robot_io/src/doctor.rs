@@ -224,18 +224,20 @@ fn of_mounting(notes: &LogNotes, motion: &Motion) -> Option<Remark> {
     {
         return None;
     }
-    let place = notes.laser.map_or("the laser".to_owned(), |mount| {
-        let [x, y, theta] = mount.body_from_sensor.to_array();
-        let flipped = if mount.is_flipped {
-            ", upside down"
-        } else {
-            ""
-        };
-        format!(
-            "the laser at {x:.2} m, {y:.2} m, {:.0}°{flipped}",
-            theta.to_degrees()
-        )
-    });
+    let place = notes
+        .laser
+        .map_or("the laser, as its log has it,".to_owned(), |mount| {
+            let [x, y, theta] = mount.body_from_sensor.to_array();
+            let flipped = if mount.is_flipped {
+                ", upside down"
+            } else {
+                ""
+            };
+            format!(
+                "the laser at {x:.2} m, {y:.2} m, {:.0}°{flipped}",
+                theta.to_degrees()
+            )
+        });
     Some(match (motion.direction_rad, motion.correlation) {
         (Some(direction_rad), Some(correlation)) => Remark::good(
             Part::Mounting,
@@ -247,7 +249,7 @@ fn of_mounting(notes: &LogNotes, motion: &Motion) -> Option<Remark> {
         _ => Remark::mended(
             Part::Mounting,
             format!(
-                "{place}: whether that holds cannot be checked; it takes odometry, and a path with metres and turns"
+                "{place} cannot be checked against odometry, which takes a path with metres and turns"
             ),
         ),
     })

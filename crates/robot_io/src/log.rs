@@ -54,6 +54,8 @@ pub struct LogOptions {
     pub body_frame: Option<String>,
     /// Where the laser sits, in place of what the recording says.
     pub laser: Option<LaserMount>,
+    /// Where the laser sits if neither an option nor the recording says: as in the session that it goes on with.
+    pub laser_before: Option<LaserMount>,
     /// Heights (m) that points of a 3-D sensor have to lie between, on the body; else only clouds of one ring are read.
     pub heights_m: Option<(f64, f64)>,
 }

@@ -37,6 +37,9 @@ pub struct TopicArgs {
     /// Cut clouds of a 3-D sensor to the points between these heights above the body's origin, m.
     #[arg(long, value_name = "LOW,HIGH", value_parser = heights, allow_hyphen_values = true)]
     heights: Option<(f64, f64)>,
+    /// Where the laser sits in the session that the log goes on with.
+    #[arg(skip)]
+    laser_before: Option<LaserMount>,
 }
 
 /// Two heights, the lower one first.
@@ -54,6 +57,14 @@ fn heights(text: &str) -> Result<(f64, f64), String> {
 }
 
 impl TopicArgs {
+    /// The same choice for a log that goes on with a session whose laser sits so.
+    pub fn going_on_with(&self, laser: Option<LaserMount>) -> Self {
+        Self {
+            laser_before: laser,
+            ..self.clone()
+        }
+    }
+
     fn options(&self) -> LogOptions {
         LogOptions {
             scan_topic: self.scan_topic.clone(),
@@ -61,6 +72,7 @@ impl TopicArgs {
             odometry_frame: self.odom_frame.clone(),
             body_frame: self.body_frame.clone(),
             laser: self.laser,
+            laser_before: self.laser_before,
             heights_m: self.heights,
         }
     }

@@ -10,6 +10,7 @@ use ch16_slam2d::slam::parameters::{Parameter, ParameterError};
 use ch16_slam2d::submaps::FrontEndChoice;
 use clap::Args;
 use measuring::{process, timed};
+use robot_io::laser_mount::LaserMount;
 use robot_io::log::LogReader;
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
@@ -143,8 +144,9 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
             source,
         })?;
     }
-    let (mut run, mut recorder) = start(args)?;
-    let (reader, mut progress) = open_compared(&args.log, &args.topics)?;
+    let (mut run, mut recorder, laser_before) = start(args)?;
+    let topics = args.topics.going_on_with(laser_before);
+    let (reader, mut progress) = open_compared(&args.log, &topics)?;
     let mut reader = reader.for_scans_alone(args.no_odometry);
     let mut broken = None;
     let mut costs = TickCosts::default();
@@ -239,8 +241,8 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     Ok(())
 }
 
-/// A run that has seen nothing, or one that goes on from a session.
-fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder), RunError> {
+/// A run that has seen nothing, or one that goes on from a session, and where the session has its laser.
+fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder, Option<LaserMount>), RunError> {
     let odometry_use = if args.no_odometry {
         OdometryUse::None
     } else {
@@ -253,7 +255,7 @@ fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder), RunError> {
             parameter.check(*value)?;
             run = run.with_parameter(parameter, *value);
         }
-        return Ok((run, RunRecorder::default()));
+        return Ok((run, RunRecorder::default(), None));
     };
     let (session, _) = read_session(path)?;
     let told = |problem| RunError::Snapshot {
@@ -261,7 +263,11 @@ fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder), RunError> {
         problem,
     };
     let run = LogRun::resume(&session, odometry_use).map_err(told)?;
-    Ok((run, RunRecorder::resume(&session)))
+    let mount = session.sensor.as_ref().map(|sensor| LaserMount {
+        body_from_sensor: sensor.body_from_sensor,
+        is_flipped: false,
+    });
+    Ok((run, RunRecorder::resume(&session), mount))
 }
 
 /// Writes trajectory, graph, quality and doubts into a folder, which is made where it is missing.

@@ -17,6 +17,7 @@ use pr_geom::SE2;
 use robot_io::log::{LogOptions, LogReader};
 use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
+use robot_io::motion::ComparedReader;
 use robot_io::recorder::RunRecorder;
 use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
 use robot_io::session::{self, Session};
@@ -131,7 +132,9 @@ impl<'a> Engine<'a> {
             } else {
                 drop(source);
                 let reader = LogFormat::open(bytes, name, options);
-                Work::Reading(reader.map_err(|problem| problem.to_string())?)
+                let reader = reader.map_err(|problem| problem.to_string())?;
+                let is_told = options.laser.is_some();
+                Work::Reading(Box::new(ComparedReader::new(reader, is_told)))
             };
         Ok(Self::beginning(work, name, size_bytes))
     }
@@ -224,6 +227,11 @@ impl<'a> Engine<'a> {
                 if let Some(report) = self.run.step(frame.clone()) {
                     if is_first {
                         self.tell_offers(&reader.notes().offers);
+                        // What is wrong with the recording comes before its map.
+                        let said = reader.notes().sentences(&self.name);
+                        if !said.is_empty() {
+                            self.waiting.push(Update::text("remarks", said.join("\n")));
+                        }
                     }
                     self.recorder.take(&frame, &report);
                     if report.new_keyframe.is_some() {

@@ -11,6 +11,7 @@ use robot_io::localize::LocalizeRun;
 use robot_io::log::{LogNotes, LogOptions, LogReader};
 use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
+use robot_io::motion::ComparedReader;
 use robot_io::quality::KeyframeQuality;
 use robot_io::run::{OdometryUse, late_scans};
 use robot_io::session::Session;
@@ -66,12 +67,13 @@ impl<'a> Whereabouts<'a> {
     ) -> Result<Self, String> {
         let reader =
             LogFormat::open(source, name, options).map_err(|problem| problem.to_string())?;
+        let reader = ComparedReader::new(reader, options.laser.is_some());
         let run = LocalizeRun::new(session, OdometryUse::Log, start)
             .map_err(|problem| format!("The map cannot be searched: {problem}."))?;
         Ok(Self {
             name: name.to_owned(),
             size_bytes,
-            reader,
+            reader: Box::new(reader),
             run,
             map: session.poses(),
             places: Vec::new(),

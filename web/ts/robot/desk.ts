@@ -16,9 +16,9 @@ declare const SAMPLE_FILES: readonly string[];
 /** What is a reference and no log, by the ends of names. */
 const REFERENCES = ['.relations', '.tum'];
 /** What the file picker offers first. */
-const LOGS = '.log,.clf,.mcap,.bag,.jsonl,.g2o,.graph,.toro,.slam2d';
+const LOGS = '.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd,.g2o,.graph,.toro,.slam2d';
 /** The same for the log of a robot that is looked for. */
-const SCANS = '.log,.clf,.mcap,.bag,.jsonl';
+const SCANS = '.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd';
 /** The end of a session's name. */
 const SESSION = '.slam2d';
 /** The stage in which the map stands. */

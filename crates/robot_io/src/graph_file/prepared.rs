@@ -7,6 +7,7 @@
 //! - `EDGE_PRIOR_SE2 id x y θ I…` becomes an edge from a fixed vertex at the origin.
 
 use std::borrow::Cow;
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use pr_geom::SE2;
@@ -202,8 +203,8 @@ fn spanning_tree(edges: &[Edge]) -> BTreeMap<i64, SE2> {
         while let Some(id) = waiting.pop_front() {
             let pose = poses[&id];
             for &(next, motion) in near.get(&id).into_iter().flatten() {
-                if !poses.contains_key(&next) {
-                    poses.insert(next, pose * motion);
+                if let Entry::Vacant(free) = poses.entry(next) {
+                    free.insert(pose * motion);
                     waiting.push_back(next);
                 }
             }

@@ -198,9 +198,8 @@ impl Motion {
         let direction_rad = math::atan2(sum.im, sum.re);
         let off_rad = wrap_angle(direction_rad - mount.theta());
         self.direction_rad = Some(off_rad);
-        let longer = pairs.iter().filter_map(|(by_scans, by_body)| {
-            (size(by_scans) > 0.15).then(|| size(by_body) / size(by_scans))
-        });
+        let longer = pairs.iter().filter(|(by_scans, _)| size(by_scans) > 0.15);
+        let longer = longer.map(|(by_scans, by_body)| size(by_body) / size(by_scans));
         let scale = median(longer.collect()).unwrap_or(1.0);
         self.scale = Some(scale / metres);
         let (sin, cos) = math::sin_cos(direction_rad);

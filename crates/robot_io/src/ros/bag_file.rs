@@ -8,10 +8,11 @@ mod records;
 
 use std::io::BufRead;
 
-use super::container::{Container, ContainerError, MOST_BYTES, Recorded};
+use super::container::{Announced, Container, ContainerError, MOST_BYTES, Recorded};
 use super::decompress::Packing;
 use super::file_bytes::FileBytes;
-use records::{Connections, Fields, LONGEST_START, begins, op, piece};
+pub use records::Connections;
+use records::{Fields, LONGEST_START, begins, op, piece};
 
 const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
 
@@ -35,6 +36,12 @@ impl<R: BufRead> BagFile<R> {
             chunk: Vec::new(),
             chunk_at: 0,
         }
+    }
+
+    /// The same reader, which knows topics that are announced later.
+    pub fn knowing(mut self, connections: Connections) -> Self {
+        self.connections = connections;
+        self
     }
 
     /// A length and as many bytes, which are added to `taken`; false where they cannot be.
@@ -159,6 +166,14 @@ impl<R: BufRead> Container for BagFile<R> {
 
     fn offset(&self) -> u64 {
         self.file.offset()
+    }
+
+    fn announced(&self) -> Option<Announced> {
+        let connections = self
+            .connections
+            .has_orphans()
+            .then(|| self.connections.clone());
+        connections.map(Announced::Bag)
     }
 }
 

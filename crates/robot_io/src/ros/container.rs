@@ -2,6 +2,8 @@
 
 use std::io;
 
+use super::bag_file::Connections;
+use super::mcap_file::Records;
 use super::wire::Wire;
 
 /// Longer records, and chunks that unpack to more, are no recording of a robot's laser.
@@ -42,6 +44,15 @@ impl ContainerError {
     }
 }
 
+/// The topics of a file by their numbers, which may be announced again at its end.
+#[derive(Clone, Debug)]
+pub enum Announced {
+    /// Of an MCAP file.
+    Mcap(Records),
+    /// Of a bag.
+    Bag(Connections),
+}
+
 /// Messages in the order of the file.
 pub trait Container {
     /// The next message; none at the end.
@@ -53,6 +64,11 @@ pub trait Container {
 
     /// Bytes read so far: where an error is.
     fn offset(&self) -> u64;
+
+    /// The topics that are known now, if messages were lost because their topic was not known before.
+    fn announced(&self) -> Option<Announced> {
+        None
+    }
 
     /// What stands in the file in place of messages of ROS; none where it has such messages or nothing.
     fn instead(&self) -> Option<String> {

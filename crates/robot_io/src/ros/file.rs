@@ -1,9 +1,12 @@
 //! The files of a recording: opened for each pass, one after the other.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::io::BufRead;
+use std::rc::Rc;
 
 use super::bag_file::BagFile;
-use super::container::{Container, ContainerError, MOST_BYTES, Recorded};
+use super::container::{Announced, Container, ContainerError, MOST_BYTES, Recorded};
 use super::decompress::Packing;
 use super::mcap_file::McapFile;
 use super::sqlite_file::SqliteFile;
@@ -18,19 +21,25 @@ const ZSTD: &[u8] = b"\x28\xb5\x2f\xfd";
 #[derive(Clone)]
 pub struct RosFiles<'a> {
     parts: Vec<LogBytes<'a>>,
+    /// Topics of a part that are announced only behind damage.
+    announced: Rc<RefCell<BTreeMap<usize, Announced>>>,
 }
 
 impl<'a> RosFiles<'a> {
     /// The files of a recording.
     pub fn new(parts: Vec<LogBytes<'a>>) -> Self {
-        Self { parts }
+        Self {
+            parts,
+            announced: Rc::default(),
+        }
     }
 
     /// Their messages from the first on.
     pub fn messages(&self) -> Messages<'a> {
         Messages {
-            parts: self.parts.clone(),
+            files: self.clone(),
             opened: 0,
+            learned: false,
             current: None,
             before: 0,
         }
@@ -39,20 +48,42 @@ impl<'a> RosFiles<'a> {
 
 /// The messages of several files, one file after the other.
 pub struct Messages<'a> {
-    parts: Vec<LogBytes<'a>>,
+    files: RosFiles<'a>,
     opened: usize,
+    /// Whether topics were met behind messages that were lost for want of them.
+    learned: bool,
     current: Option<Box<dyn Container + 'a>>,
     /// Bytes of the files before.
     before: u64,
 }
 
 impl Messages<'_> {
-    /// Opens the next file; false where there is none.
-    fn open_next(&mut self) -> Result<bool, ContainerError> {
+    /// Whether another pass finds messages that this one lost for want of their topic.
+    pub fn has_learned(&self) -> bool {
+        self.learned
+    }
+
+    /// Keeps what the file under way has announced too late.
+    fn learn(&mut self) {
+        let announced = self
+            .current
+            .as_ref()
+            .and_then(|current| current.announced());
+        if let Some(announced) = announced {
+            let part = self.opened - 1;
+            self.files.announced.borrow_mut().insert(part, announced);
+            self.learned = true;
+        }
+    }
+
+    /// Opens the next file, where there is one.
+    fn open_next(&mut self) -> Result<(), ContainerError> {
+        self.learn();
         self.before = self.offset();
-        let Some(part) = self.parts.get(self.opened) else {
-            return Ok(false);
+        let Some(part) = self.files.parts.get(self.opened) else {
+            return Ok(());
         };
+        let known = self.files.announced.borrow().get(&self.opened).cloned();
         self.opened += 1;
         let mut source = part.stream().map_err(ContainerError::Io)?;
         let start = source.fill_buf().map_err(ContainerError::Io)?;
@@ -62,10 +93,16 @@ impl Messages<'_> {
                 let source = part.seekable().map_err(ContainerError::Io)?;
                 Box::new(SqliteFile::new(source))
             }
-            LogFormat::RosBag => Box::new(BagFile::new(source)),
-            _ => Box::new(McapFile::new(source)),
+            LogFormat::RosBag => Box::new(match known {
+                Some(Announced::Bag(known)) => BagFile::new(source).knowing(known),
+                _ => BagFile::new(source),
+            }),
+            _ => Box::new(match known {
+                Some(Announced::Mcap(known)) => McapFile::new(source).knowing(known),
+                _ => McapFile::new(source),
+            }),
         });
-        Ok(true)
+        Ok(())
     }
 }
 
@@ -78,7 +115,7 @@ impl Container for Messages<'_> {
                     Ok(None) => {}
                     // A file that breaks off does not end those after it.
                     Err(ContainerError::CutOff(problem) | ContainerError::Broken(problem))
-                        if self.opened < self.parts.len() =>
+                        if self.opened < self.files.parts.len() =>
                     {
                         self.open_next()?;
                         return Err(ContainerError::Skipped(problem));
@@ -86,9 +123,11 @@ impl Container for Messages<'_> {
                     Err(other) => return Err(other),
                 }
             }
-            if self.opened >= self.parts.len() || !self.open_next()? {
+            if self.opened >= self.files.parts.len() {
+                self.learn();
                 return Ok(None);
             }
+            self.open_next()?;
         }
     }
 

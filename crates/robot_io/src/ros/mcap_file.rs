@@ -8,9 +8,10 @@ mod records;
 
 use std::io::BufRead;
 
-use super::container::{Container, ContainerError, MOST_BYTES, Recorded};
+use super::container::{Announced, Container, ContainerError, MOST_BYTES, Recorded};
 use super::file_bytes::FileBytes;
-use records::{HEAD_BYTES, Records, head, op};
+pub use records::Records;
+use records::{HEAD_BYTES, head, op};
 
 /// A file begins and ends with it.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
@@ -40,6 +41,12 @@ impl<R: BufRead> McapFile<R> {
             chunk_at: 0,
             is_cut_off: false,
         }
+    }
+
+    /// The same reader, which knows topics that are announced later.
+    pub fn knowing(mut self, records: Records) -> Self {
+        self.records = records;
+        self
     }
 
     fn magic(&mut self) -> Result<(), ContainerError> {
@@ -182,6 +189,11 @@ impl<R: BufRead> Container for McapFile<R> {
 
     fn offset(&self) -> u64 {
         self.file.offset()
+    }
+
+    fn announced(&self) -> Option<Announced> {
+        let records = self.records.has_orphans().then(|| self.records.clone());
+        records.map(Announced::Mcap)
     }
 
     fn instead(&self) -> Option<String> {

@@ -8,7 +8,7 @@ use pr_geom::{Point2, math};
 use super::binned::binned;
 use super::container::{Container, ContainerError};
 use super::cursor::{ScanCursor, StampedScan};
-use super::file::RosFiles;
+use super::file::{Messages, RosFiles};
 use super::plan::Plan;
 use super::survey::Survey;
 use crate::log::{BrokenRecord, LogError, LogFrame, LogNotes, LogOptions, LogReader, Place};
@@ -56,8 +56,8 @@ impl<'a> RosReader<'a> {
         }
     }
 
-    /// The first pass: what is in the recording, and what is taken of it.
-    fn survey(&mut self) -> Result<Reading<'a>, LogError> {
+    /// Goes through all messages.
+    fn look_through(&mut self) -> Result<(Survey, Messages<'a>), LogError> {
         let mut survey = Survey::default();
         let mut messages = self.files.messages();
         loop {
@@ -76,6 +76,17 @@ impl<'a> RosReader<'a> {
                     }
                 }
             }
+        }
+        Ok((survey, messages))
+    }
+
+    /// The first pass: what is in the recording, and what is taken of it.
+    fn survey(&mut self) -> Result<Reading<'a>, LogError> {
+        let (mut survey, mut messages) = self.look_through()?;
+        if messages.has_learned() {
+            // Damage took the names of topics; now that they are known, its neighbours can be read.
+            self.notes = LogNotes::default();
+            (survey, messages) = self.look_through()?;
         }
         self.notes.bytes = messages.offset();
         let plan = Plan::of(&survey, &self.options);

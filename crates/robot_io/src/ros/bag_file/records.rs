@@ -1,6 +1,6 @@
 //! Records of a bag: a header with named fields, and data.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::ros::container::{MOST_BYTES, Recorded, kind_of};
 use crate::ros::wire::Wire;
@@ -26,8 +26,12 @@ struct Connection {
 }
 
 /// The connections that were announced so far, by their numbers.
-#[derive(Debug, Default)]
-pub struct Connections(BTreeMap<u32, Connection>);
+#[derive(Clone, Debug, Default)]
+pub struct Connections {
+    known: BTreeMap<u32, Connection>,
+    /// Numbers that messages named before they were announced.
+    orphans: BTreeSet<u32>,
+}
 
 impl Connections {
     /// Takes a record that is no chunk; answers with its message where it is one.
@@ -43,16 +47,24 @@ impl Connections {
         let number = named.u32("conn")?;
         let topic = named.name("topic")?;
         let kind = Fields::of(data)?.name("type")?;
-        if self.0.len() < MOST_CONNECTIONS {
+        if self.known.len() < MOST_CONNECTIONS {
             let kind = kind_of(&kind);
-            self.0.insert(number, Connection { topic, kind });
+            self.known.insert(number, Connection { topic, kind });
         }
         Ok(())
     }
 
-    fn message(&self, named: &Fields<'_>, data: &[u8]) -> Result<Recorded, String> {
+    /// Whether messages were lost whose connection is known by now.
+    pub fn has_orphans(&self) -> bool {
+        self.orphans
+            .iter()
+            .any(|number| self.known.contains_key(number))
+    }
+
+    fn message(&mut self, named: &Fields<'_>, data: &[u8]) -> Result<Recorded, String> {
         let number = named.u32("conn")?;
-        let Some(connection) = self.0.get(&number) else {
+        let Some(connection) = self.known.get(&number) else {
+            self.orphans.insert(number);
             return Err(format!(
                 "a message names connection {number}, which is unknown"
             ));

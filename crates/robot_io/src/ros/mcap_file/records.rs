@@ -1,6 +1,6 @@
 //! Schemas, channels and messages: what the records of MCAP say.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::lines::printable;
 use crate::ros::container::{ContainerError, Recorded, kind_of};
@@ -37,6 +37,7 @@ pub fn broken(problem: WireError) -> ContainerError {
 }
 
 /// Where messages of a type are published.
+#[derive(Clone, Debug)]
 struct Channel {
     topic: String,
     kind: String,
@@ -45,8 +46,10 @@ struct Channel {
 }
 
 /// What was announced so far, by its numbers.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Records {
+    /// Numbers of channels that messages named before they were announced.
+    orphans: BTreeSet<u16>,
     kinds: BTreeMap<u16, String>,
     channels: BTreeMap<u16, Channel>,
     /// Topic and encoding of the first message that is not of ROS.
@@ -55,6 +58,13 @@ pub struct Records {
 }
 
 impl Records {
+    /// Whether messages were lost whose channel is known by now.
+    pub fn has_orphans(&self) -> bool {
+        self.orphans
+            .iter()
+            .any(|number| self.channels.contains_key(number))
+    }
+
     /// What stands in the file in place of messages of ROS; none where it has such messages or nothing.
     pub fn instead(&self) -> Option<String> {
         let (topic, encoding) = self.other.as_ref().filter(|_| !self.has_ros)?;
@@ -105,6 +115,7 @@ impl Records {
         let recorded_ns = fields.u64("a time").map_err(broken)?;
         fields.u64("a time").map_err(broken)?;
         let Some(channel) = self.channels.get(&number) else {
+            self.orphans.insert(number);
             return Err(ContainerError::Broken(format!(
                 "a message names channel {number}, which is unknown"
             )));

@@ -79,6 +79,14 @@ pub fn find(
         None if sensor.is_empty() => "the scans do not name their frame".to_owned(),
         None => format!("no transform leads from {body} to {sensor}"),
     };
+    if let Some(mount) = options.laser_before {
+        found.mount = mount;
+        found.is_known = true;
+        found.warning = Some(format!(
+            "{why}; the laser is taken to sit where the session has it"
+        ));
+        return found;
+    }
     found.warning = Some(format!(
         "{why}; the laser is taken to sit at the body's origin, looking ahead. Set its place with --laser x,y,degrees"
     ));

@@ -63,7 +63,7 @@ pub fn chosen<'a>(
         (score, topic, track, clock, is_transform)
     });
     let mut scored: Vec<_> = scored.collect();
-    scored.sort_by(|a, b| b.0.cmp(&a.0));
+    scored.sort_by_key(|candidate| std::cmp::Reverse(candidate.0));
     let mut scored = scored.into_iter();
     let (_, topic, track, mut clock, is_transform) = scored.next()?;
     clock.take_steps_of(scans);
