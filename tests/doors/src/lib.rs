@@ -4,6 +4,7 @@
 //! keeping lies in `fuzz/corpus` and `fuzz/found`, and the tests of this package replay it.
 
 pub mod clouds;
+pub mod databases;
 pub mod files;
 pub mod g2o;
 pub mod graphs;
@@ -24,13 +25,14 @@ mod widgets;
 pub type Door = fn(&[u8]);
 
 /// Every door with the name of its fuzz target.
-pub const DOORS: [(&str, Door); 10] = [
+pub const DOORS: [(&str, Door); 11] = [
     ("links", links::door),
     ("messages", messages::door),
     ("g2o", g2o::door),
     ("clouds", clouds::door),
     ("files", files::door),
     ("logs", logs::door),
+    ("databases", databases::door),
     ("sessions", sessions::door),
     ("graphs", graphs::door),
     ("registration", registration::door),

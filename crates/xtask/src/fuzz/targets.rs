@@ -9,7 +9,7 @@ pub struct Target {
 }
 
 /// Every target, the fast ones first.
-pub const TARGETS: [Target; 10] = [
+pub const TARGETS: [Target; 11] = [
     Target {
         name: "links",
         sources: &["widgets/kit/src/param.rs"],
@@ -49,8 +49,15 @@ pub const TARGETS: [Target; 10] = [
             "crates/robot_io/src/line_log.rs",
             "crates/robot_io/src/lines.rs",
             "crates/robot_io/src/log.rs",
+            "crates/robot_io/src/motion",
+            "crates/robot_io/src/restamped.rs",
             "crates/robot_io/src/ros",
+            "crates/robot_io/src/stamps.rs",
         ],
+    },
+    Target {
+        name: "databases",
+        sources: &["crates/robot_io/src/ros/sqlite_file"],
     },
     Target {
         name: "sessions",

@@ -88,7 +88,9 @@ impl<'a> Pages<'a> {
             .read_to_end(&mut page)
             .map_err(ContainerError::Io)?;
         self.at = start + count as u64;
-        self.offset = self.offset.max(self.at.min(start + self.size as u64));
+        if count > 0 {
+            self.offset = self.offset.max(self.at);
+        }
         if count < self.size {
             return Err(ContainerError::Skipped(format!(
                 "page {number} of the database was expected, and {count} of its {} bytes are there",

@@ -1,0 +1,20 @@
+//! Recordings of ROS 2 in SQLite: any bytes behind a header that is in order.
+
+use crate::logs;
+
+/// Bytes of the header, and of a page: the smallest that SQLite has, so that trees come soon.
+const HEADER: usize = 100;
+const PAGE: u16 = 512;
+
+/// As of the door `logs`; the header is put right, which no fuzzer would find.
+pub fn door(bytes: &[u8]) {
+    if bytes.len() < HEADER {
+        return;
+    }
+    let mut file = bytes.to_vec();
+    file[..16].copy_from_slice(b"SQLite format 3\0");
+    file[16..18].copy_from_slice(&PAGE.to_be_bytes());
+    file[20] = 0;
+    file[56..60].copy_from_slice(&1_u32.to_be_bytes());
+    logs::door(&file);
+}
