@@ -19,8 +19,11 @@ const NEIGHBOURS: usize = 5;
 const LEAST_OFF_S: f64 = 0.5;
 /// The same in periods of the stream.
 const LEAST_OFF_PERIODS: f64 = 8.0;
-/// Smaller steps of a clock are left to the estimator, s.
+/// Smaller steps back are messages that changed places, s.
 const LEAST_STEP_S: f64 = 1.0;
+/// Where the recording's time shows a step, it may be as small as this, s, and so many times the jitter.
+const LEAST_STEP_BY_RECORD_S: f64 = 0.15;
+const JITTERS: f64 = 8.0;
 /// Scans of which only coarse stamps are known are taken to be no farther apart, s.
 const LONGEST_SPREAD_S: f64 = 1.0;
 
@@ -236,6 +239,16 @@ impl<'a> Work<'a> {
         })
     }
 
+    /// How much the difference of stamps and recorded times changes from one message to the next, median, s.
+    fn jitter_s(&self, good: &[usize]) -> f64 {
+        let ahead = good
+            .iter()
+            .filter_map(|&at| Some(self.stamps_s[at] - self.recorded(at)?));
+        let ahead: Vec<f64> = ahead.collect();
+        let changes = ahead.windows(2).map(|two| (two[1] - two[0]).abs());
+        median(changes.collect()).unwrap_or(0.0)
+    }
+
     /// Finds steps of the clock and moves what follows.
     fn take_steps_out(&mut self) -> Vec<ClockStep> {
         let good: Vec<usize> = (0..self.stamps_s.len())
@@ -243,6 +256,7 @@ impl<'a> Work<'a> {
             .collect();
         let period_s = period_s(&good.iter().map(|&at| self.stamps_s[at]).collect::<Vec<_>>());
         let original: Vec<f64> = self.stamps_s.clone();
+        let least_s = (JITTERS * self.jitter_s(&good)).max(LEAST_STEP_BY_RECORD_S);
         let mut steps = Vec::new();
         for k in 1..good.len() {
             let (last, now) = (good[k - 1], good[k]);
@@ -258,11 +272,15 @@ impl<'a> Work<'a> {
             let by_record = ahead(before)
                 .zip(ahead(after))
                 .map(|(old_s, new_s)| new_s - old_s);
+            let recorded_s = self.recorded(now).zip(self.recorded(last));
             let by_record = by_record.filter(|by_s| {
-                // The stamps have to jump by it while the recording goes on as ever.
+                // The stamps have to jump by it while the recording goes on as ever: a recorder that was
+                // held up is no step.
                 let jumps = (moved_s - period_s - by_s).abs() < 0.5 * by_s.abs();
-                let is_irregular = (moved_s - period_s).abs() > 3.0 * period_s;
-                jumps && is_irregular && by_s.abs() >= LEAST_STEP_S
+                let off_s = (moved_s - period_s).abs();
+                let goes_on = recorded_s
+                    .is_none_or(|(now_s, last_s)| 2.0 * (now_s - last_s - period_s).abs() < off_s);
+                jumps && goes_on && by_s.abs() >= least_s
             });
             let stamps = |of: &[usize]| of.iter().map(|&at| original[at]).collect::<Vec<_>>();
             let goes_back = lowest(&stamps(before)) > highest(&stamps(after)) + LEAST_STEP_S;

@@ -10,7 +10,7 @@ use super::container::{Container, Recorded};
 use super::messages::{laser_scan, multi_echo_scan};
 use super::plan::PlannedScans;
 use super::point_cloud::{cloud_points, point_cloud};
-use super::survey::{SCANS, named, reader};
+use super::survey::{SCANS, is_repeated, named, reader};
 use crate::log::{LogNotes, Place};
 
 /// A scan waits for so many others at most that stand after it in the file and before it in time.
@@ -58,6 +58,8 @@ pub struct ScanCursor<'a> {
     /// Earliest stamp of any message after this one, by the number of the message, s.
     earliest_after_s: Vec<f64>,
     read: usize,
+    /// Checksum of the last message.
+    last_sum: Option<u32>,
     waiting: BinaryHeap<Waiting>,
     is_done: bool,
     /// What is wrong with the fields of the first scan that has a fault, a sentence each.
@@ -89,6 +91,7 @@ impl<'a> ScanCursor<'a> {
             heights_m,
             earliest_after_s,
             read: 0,
+            last_sum: None,
             waiting: BinaryHeap::new(),
             is_done: false,
             said: Vec::new(),
@@ -139,6 +142,9 @@ impl<'a> ScanCursor<'a> {
 
     fn take(&mut self, message: &Recorded, notes: &mut LogNotes) {
         if message.topic != self.scans.topic || !SCANS.contains(&message.kind.as_str()) {
+            return;
+        }
+        if is_repeated(message, &mut self.last_sum) {
             return;
         }
         let number = self.read;

@@ -7,6 +7,7 @@ mod wheels;
 use nalgebra::Isometry3;
 
 use super::survey::{SCANS, ScanStream, Survey};
+use crate::counted::counted;
 use crate::laser_mount::LaserMount;
 use crate::lines::listed;
 use crate::log::{LogNotes, LogOffer, LogOption, LogOptions};
@@ -114,6 +115,14 @@ impl Plan {
                 plan.scans.push(planned(other, &clock, &other_mount));
                 clocks.push(clock);
             }
+        }
+        if stream.repeated > 0 {
+            let text = format!(
+                "{} of {topic} {} the one before once more and left out",
+                counted(stream.repeated, "scan"),
+                if stream.repeated == 1 { "is" } else { "are" }
+            );
+            plan.warnings.push(Remark::mended(Part::File, text));
         }
         plan.name_other_scans(survey, options);
         for (scans, clock) in plan.scans.iter().zip(&clocks) {

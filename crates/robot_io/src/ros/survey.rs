@@ -46,6 +46,10 @@ pub struct ScanStream {
     pub stamps_s: Vec<f64>,
     /// When each was recorded, s.
     pub recorded_s: Vec<f64>,
+    /// Messages that are the one before once more, which are left out.
+    pub repeated: usize,
+    /// Checksum of the last message.
+    last_sum: Option<u32>,
     /// The sensor's frame, as the first message names it.
     pub frame: String,
     /// Whether one that was tried can be used.
@@ -178,6 +182,10 @@ impl Survey {
             return;
         }
         let stream = self.scans.entry(message.topic.clone()).or_default();
+        if is_repeated(message, &mut stream.last_sum) {
+            stream.repeated += 1;
+            return;
+        }
         if stream.stamps_s.is_empty() {
             (stream.kind, stream.order) = (kind, order);
         }
@@ -255,6 +263,12 @@ fn scan_header(message: &Recorded, options: &LogOptions) -> Result<Header, Strin
             Ok(header)
         }
     }
+}
+
+/// Whether a message is the last one of its topic once more, as of bags that were merged with themselves.
+pub fn is_repeated(message: &Recorded, last_sum: &mut Option<u32>) -> bool {
+    let sum = crc32fast::hash(&message.bytes);
+    last_sum.replace(sum) == Some(sum)
 }
 
 /// The fields of a message.

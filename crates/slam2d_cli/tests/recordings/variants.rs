@@ -545,6 +545,52 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         "steps back by 40.0 s",
     ),
     (
+        "a small step of NTP",
+        |all| {
+            for message in all.iter_mut() {
+                let by_s = if message.recorded_s > START_S + 16.0 {
+                    -0.4
+                } else {
+                    0.0
+                };
+                match &mut message.body {
+                    Body::Scan(scan) => scan.stamp_s += by_s,
+                    Body::Odometry { stamp_s, .. } => *stamp_s += by_s,
+                    _ => {}
+                }
+            }
+        },
+        NEAR_M,
+        "steps back by 0.4 s",
+    ),
+    (
+        "scans half a second ahead of their recording",
+        |all| scans(all, |_, scan| scan.stamp_s += 0.5),
+        NEAR_M,
+        "differ by 0.5 s",
+    ),
+    (
+        "every scan twice",
+        |all| {
+            let twice = all.iter().flat_map(|message| {
+                let count = if message.topic == "/scan" { 2 } else { 1 };
+                std::iter::repeat_n(message.clone(), count)
+            });
+            *all = twice.collect();
+        },
+        NEAR_M,
+        "130 scans of /scan are the one before once more",
+    ),
+    (
+        "stamps in whole seconds",
+        |all| {
+            scans(all, |_, scan| scan.stamp_s = scan.stamp_s.floor());
+            poses(all, |_, stamp_s, _| *stamp_s = stamp_s.floor());
+        },
+        BY_SCANS_M,
+        "the same stamp as the one before",
+    ),
+    (
         "a step of the scans' clock alone",
         |all| {
             scans(all, |number, scan| {

@@ -60,7 +60,7 @@ struct Cdr(Vec<u8>);
 
 impl Cdr {
     fn align(&mut self, size: usize) {
-        while (self.0.len() - 4) % size != 0 {
+        while !(self.0.len() - 4).is_multiple_of(size) {
             self.0.push(0);
         }
     }

@@ -10,6 +10,8 @@ use crate::wheel_poses::WheelPoses;
 
 /// Clocks that differ by less are one clock with a delay, s.
 const SAME_CLOCK_S: f64 = 1.0;
+/// A stamp that is later than its recording by more is of another clock, s.
+const AHEAD_S: f64 = 0.1;
 /// Odometry of fewer scans than this share does not cover them.
 const COVERS: f64 = 0.8;
 
@@ -134,8 +136,15 @@ fn ends_s(stamps_s: &[f64]) -> (f64, f64) {
 
 /// How far the scans' clock is ahead of that of the odometry, if the recording's time shows it, s.
 fn clock_offset_s(scans: &MendedStamps, wheels: &MendedStamps) -> Option<f64> {
-    let offset_s = scans.ahead_s? - wheels.ahead_s?;
-    (offset_s.abs() > SAME_CLOCK_S).then_some(offset_s)
+    let (of_scans, of_wheels) = (scans.ahead_s?, wheels.ahead_s?);
+    let offset_s = of_scans - of_wheels;
+    // What is stamped after it was recorded was stamped by another clock; before it, it may have been delayed.
+    let least_s = if of_scans.max(of_wheels) > AHEAD_S {
+        AHEAD_S
+    } else {
+        SAME_CLOCK_S
+    };
+    (offset_s.abs() > least_s).then_some(offset_s)
 }
 
 /// Scans and odometry on one clock.
@@ -155,7 +164,7 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
     if let Some(offset_s) = clock_offset_s(scans, clock) {
         let is_scans_off = scans
             .ahead_s
-            .is_some_and(|ahead_s| ahead_s.abs() > SAME_CLOCK_S);
+            .is_some_and(|ahead_s| ahead_s > AHEAD_S || ahead_s < -SAME_CLOCK_S);
         if is_scans_off {
             scans_by_s = -offset_s;
         } else {
