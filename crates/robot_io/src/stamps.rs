@@ -336,13 +336,19 @@ impl<'a> Work<'a> {
     }
 }
 
-/// How far stamps are ahead of the recording's times, median, s.
+/// How far stamps are ahead of the recording's times, median, s: each in its own order, so that messages which
+/// changed places count for nothing.
 fn ahead_s(stamps_s: &[f64], recorded_s: &[f64]) -> Option<f64> {
-    let ahead = stamps_s
+    let known = stamps_s.iter().zip(recorded_s);
+    let known = known.filter(|(stamp_s, recorded_s)| (**stamp_s - **recorded_s).is_finite());
+    let (mut stamps, mut recorded): (Vec<f64>, Vec<f64>) = known.unzip();
+    sort_numbers(&mut stamps);
+    sort_numbers(&mut recorded);
+    let ahead = stamps
         .iter()
-        .zip(recorded_s)
+        .zip(&recorded)
         .map(|(stamp_s, recorded_s)| stamp_s - recorded_s);
-    median(ahead.filter(|ahead_s| ahead_s.is_finite()).collect())
+    median(ahead.collect())
 }
 
 /// Spreads runs of equal stamps evenly; returns how many stamps were equal to the one before.
