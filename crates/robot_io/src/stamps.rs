@@ -62,6 +62,13 @@ impl MendedStamps {
     /// NaN where the file does not say. A stamp that is not above zero was not set.
     #[must_use]
     pub fn of(stamps_s: &[f64], recorded_s: &[f64]) -> Self {
+        // Times of recording that are all the same say nothing.
+        let is_same = recorded_s.windows(2).all(|two| two[0] == two[1]);
+        let recorded_s = if is_same && recorded_s.len() > 1 {
+            &[]
+        } else {
+            recorded_s
+        };
         let mut work = Work::new(stamps_s, recorded_s);
         work.find_outliers();
         let steps = work.take_steps_out();

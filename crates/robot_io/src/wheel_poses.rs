@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use pr_geom::SE2;
+use pr_geom::{SE2, math, sort_numbers};
 
 /// So many poses are kept of a log that is read once: 20 s at 200 a second.
 const MOST_POSES: usize = 4096;
@@ -12,6 +12,12 @@ const SLACK_S: f64 = 0.25;
 const LONGEST_GAP_S: f64 = 2.0;
 /// The same in periods, for odometry that is slow.
 const LONGEST_GAP_PERIODS: f64 = 10.0;
+
+/// A step that is longer, and so many times as fast as nine of ten steps, is a jump; no robot that moves at all is
+/// slower than the last one, m/s.
+const JUMP: f64 = 0.5;
+const JUMP_SPEEDS: f64 = 10.0;
+const LEAST_SPEED: f64 = 0.3;
 
 /// Poses of the body in the odometry's frame, in the order of time.
 #[derive(Clone, Debug)]
@@ -33,15 +39,19 @@ impl Default for WheelPoses {
 
 impl WheelPoses {
     /// All poses of a recording with their stamps (s), in any order; `period_s` is the usual time between two.
+    /// Also returns the stamps at which odometry jumped, as where it started again at zero: what follows is moved
+    /// back, so that the path goes on.
     #[must_use]
-    pub fn of(mut poses: Vec<(f64, SE2)>, period_s: f64) -> Self {
+    pub fn of(mut poses: Vec<(f64, SE2)>, period_s: f64) -> (Self, Vec<f64>) {
         poses.sort_by(|a, b| a.0.total_cmp(&b.0));
         poses.dedup_by(|later, first| later.0 <= first.0);
-        Self {
+        let jumps = take_jumps_out(&mut poses);
+        let poses = Self {
             poses: poses.into(),
             slack_s: SLACK_S.max(1.5 * period_s),
             gap_s: LONGEST_GAP_S.max(LONGEST_GAP_PERIODS * period_s),
-        }
+        };
+        (poses, jumps)
     }
 
     /// Takes a pose; one that is not after the one before it is left out.
@@ -99,6 +109,35 @@ impl WheelPoses {
     }
 }
 
+/// Moves what follows a jump back to where the path was; returns the stamps of the jumps, s.
+fn take_jumps_out(poses: &mut [(f64, SE2)]) -> Vec<f64> {
+    let step = |two: &[(f64, SE2)]| {
+        let motion = two[0].1.between(&two[1].1);
+        let moved = math::norm2(motion.x(), motion.y());
+        (moved, moved / (two[1].0 - two[0].0))
+    };
+    let mut speeds: Vec<f64> = poses.windows(2).map(|two| step(two).1).collect();
+    sort_numbers(&mut speeds);
+    // Nine of ten steps are slower; in any unit of length.
+    let Some(&usual) = speeds.get(speeds.len() * 9 / 10) else {
+        return Vec::new();
+    };
+    let mut jumps = Vec::new();
+    let mut moved_back = SE2::identity();
+    for at in 1..poses.len() {
+        let (before, after) = (poses[at - 1].1, poses[at].1);
+        // The pose before was moved already.
+        let unmoved = moved_back.inverse() * before;
+        let (moved, speed) = step(&[(poses[at - 1].0, unmoved), (poses[at].0, after)]);
+        if moved > JUMP && speed > JUMP_SPEEDS * usual.max(LEAST_SPEED) {
+            jumps.push(poses[at].0);
+            moved_back = before * after.inverse();
+        }
+        poses[at].1 = moved_back * after;
+    }
+    jumps
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,6 +155,16 @@ mod tests {
             assert!((pose.x() - x).abs() < 1e-12, "{stamp_s}: {}", pose.x());
         }
         assert!(wheels.reaches(4.0) && !wheels.reaches(4.1));
+    }
+
+    #[test]
+    fn odometry_that_starts_again_goes_on_where_it_was() {
+        let pose = |k: u32| SE2::translation(5.0 + 0.1 * f64::from(k % 30), 0.0);
+        let poses = (0..60).map(|k| (0.1 * f64::from(k), pose(k)));
+        let (wheels, jumps) = WheelPoses::of(poses.collect(), 0.1);
+        assert_eq!(jumps.len(), 1);
+        // 29 steps before and 29 after it.
+        assert!((wheels.at(5.9).unwrap().x() - 10.8).abs() < 1e-9);
     }
 
     #[test]

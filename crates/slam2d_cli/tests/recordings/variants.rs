@@ -591,6 +591,41 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         "the same stamp as the one before",
     ),
     (
+        "odometry starts again at zero",
+        |all| {
+            let mut at_half = None;
+            poses(all, |number, _, pose| {
+                let now = SE2::new(pose[0], pose[1], pose[2]);
+                if number >= 300 {
+                    *pose = at_half.get_or_insert(now).between(&now).to_array();
+                }
+            });
+        },
+        NEAR_M,
+        "odometry jumps 1 time",
+    ),
+    (
+        "one pose of odometry far away",
+        |all| {
+            poses(all, |number, _, pose| {
+                if number == 300 {
+                    pose[0] += 500.0;
+                }
+            })
+        },
+        NEAR_M,
+        "odometry jumps 2 times",
+    ),
+    (
+        "no times of recording",
+        |all| {
+            all.retain(|message| message.topic != "/odom" || message.recorded_s > START_S + 12.0);
+            all.iter_mut().for_each(|message| message.recorded_s = 0.0);
+        },
+        BY_SCANS_M,
+        "have no odometry of their time",
+    ),
+    (
         "a step of the scans' clock alone",
         |all| {
             scans(all, |number, scan| {

@@ -1,6 +1,7 @@
 //! Which odometry is taken, and how its clock and that of the scans go together.
 
 use super::TRANSFORMS;
+use crate::counted::counted;
 use crate::lines::listed;
 use crate::log::LogOptions;
 use crate::remark::{Part, Remark};
@@ -154,13 +155,13 @@ pub struct Aligned {
     /// What is added to the scans' stamps, s.
     pub scans_by_s: f64,
     /// What was done.
-    pub said: Option<Remark>,
+    pub said: Vec<Remark>,
 }
 
 /// Puts both on the clock of the recording, or on that of the odometry.
 pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
     let clock = &wheels.clock;
-    let (mut scans_by_s, mut wheels_by_s, mut said) = (0.0, 0.0, None);
+    let (mut scans_by_s, mut wheels_by_s, mut said) = (0.0, 0.0, Vec::new());
     if let Some(offset_s) = clock_offset_s(scans, clock) {
         let is_scans_off = scans
             .ahead_s
@@ -171,7 +172,7 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
             wheels_by_s = offset_s;
         }
         let whose = if is_scans_off { "scans" } else { "odometry" };
-        said = Some(Remark::mended(
+        said.push(Remark::mended(
             Part::Clocks,
             format!(
                 "the clocks of scans and odometry differ by {:.1} s, as the recording's own time shows; that of the {whose} is moved. Set both computers' clocks by NTP",
@@ -183,7 +184,7 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
             (ends_s(&clock.stamps_s), ends_s(&scans.stamps_s));
         if last_s < scan_s || first_s > end_s {
             let apart_s = scan_s - first_s;
-            said = Some(Remark::wrong(
+            said.push(Remark::wrong(
                 Part::Clocks,
                 format!(
                     "the clocks of scans and odometry differ by {:.0} s, and the recording does not show which is right; set both computers' clocks by NTP and record again, or go by scans alone with --no-odometry",
@@ -196,8 +197,18 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
     let poses = stamped
         .filter(|(stamp_s, _)| stamp_s.is_finite())
         .map(|(stamp_s, pose)| (stamp_s + wheels_by_s, *pose));
+    let (poses, jumps) = WheelPoses::of(poses.collect(), clock.period_s);
+    if let Some(first_s) = jumps.first() {
+        said.push(Remark::mended(
+            Part::Odometry,
+            format!(
+                "odometry jumps {}, first at {first_s:.2} s, as a driver that starts again makes it; what follows is moved back, so that the path goes on",
+                counted(jumps.len(), "time")
+            ),
+        ));
+    }
     Aligned {
-        poses: WheelPoses::of(poses.collect(), clock.period_s),
+        poses,
         scans_by_s,
         said,
     }
