@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 /// A log of a robot that drives along x in a hall 6 m wide, 0.1 m a scan, with wheels that measure a
 /// tenth too much.
-fn corridor(folder: &TempDir, scans: usize) -> PathBuf {
+pub fn corridor(folder: &TempDir, scans: usize) -> PathBuf {
     let mut text = String::new();
     for scan in 0..scans {
         let x = 0.1 * scan as f64;
@@ -33,7 +33,7 @@ fn write(folder: &TempDir, name: &str, text: &str) -> PathBuf {
     path
 }
 
-fn text(path: &Path) -> &str {
+pub fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
 
@@ -404,45 +404,4 @@ fn the_page_of_parameters_names_exactly_those_that_there_are_with_what_they_do_a
         let unit = row[2].split_once(' ').map_or("", |(_, unit)| unit);
         assert_eq!(unit, parameter.unit, "{}", parameter.name);
     }
-}
-
-#[test]
-fn the_doctor_tells_each_part_of_a_recording_with_a_sign() {
-    let folder = TempDir::new().unwrap();
-    let log = corridor(&folder, 40);
-    let output = slam2d(&["doctor", text(&log)]);
-    assert!(output.status.success());
-    let screen = String::from_utf8(output.stdout).unwrap();
-    assert!(screen.starts_with("✗ corridor.clf\n✓ file "), "{screen}");
-    for part in ["sensor", "odometry", "mounting", "clocks"] {
-        assert!(screen.contains(&format!(" {part} ")), "{screen}");
-    }
-    // The corridor's wheels measure a tenth too much.
-    assert!(
-        screen.contains("odometry measures 1.10 m for each metre"),
-        "{screen}"
-    );
-    let told = json(&["doctor", text(&log), "--json"]);
-    assert_eq!(
-        (&told["sensor"]["scans"], &told["verdict"]),
-        (&Value::from(40), &Value::from("wrong"))
-    );
-    assert_refused(&["doctor", "/absent"], "/absent: ");
-}
-
-#[test]
-fn a_run_leaves_the_map_and_a_report_under_the_file_s_name() {
-    let folder = TempDir::new().unwrap();
-    let log = corridor(&folder, 40);
-    let out = folder.path().join("out");
-    let run = slam2d(&["run", text(&log), "-o", text(&out)]);
-    assert!(run.status.success());
-    for name in ["map.pgm", "map.png", "map.yaml"] {
-        assert!(out.join(name).is_file(), "{name}");
-    }
-    let report = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(
-        report.contains("<title>Map of corridor.clf</title>"),
-        "the title is a name, not a path"
-    );
 }

@@ -2,6 +2,7 @@
 
 mod commands;
 mod dask;
+mod doctor;
 mod estimators;
 mod files;
 mod logs;

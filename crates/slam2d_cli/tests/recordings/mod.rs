@@ -1,5 +1,7 @@
 //! Recordings as people have them: each with one fault, and what has to come of it.
 
+mod base;
+mod damage;
 mod field;
 mod variants;
 mod write;
@@ -11,6 +13,12 @@ use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
 use robot_io::motion::ComparedReader;
 use robot_io::run::{LogRun, OdometryUse};
+
+/// Messages in a chunk.
+const PER_CHUNK: usize = 40;
+/// Largest distance from the truth, m; and by scans alone.
+const NEAR_M: f64 = 0.1;
+const BY_SCANS_M: f64 = 0.15;
 
 /// What comes of a recording: where each scan was taken, and what its owner is told.
 pub struct Outcome {
@@ -83,4 +91,12 @@ pub fn distance_m(path: &[SE2], truth: &[SE2]) -> f64 {
 /// The simulated drive that every variant is made of.
 pub fn drive() -> Drive {
     Drive::simulate(&DriveConfig::default())
+}
+
+pub fn read(bytes: &[u8], options: &LogOptions) -> Outcome {
+    mapped(vec![LogBytes::from(bytes)], "x.mcap", options)
+}
+
+pub fn path(outcome: &Outcome) -> Vec<SE2> {
+    outcome.path.iter().map(|(_, pose)| *pose).collect()
 }

@@ -1,0 +1,111 @@
+//! Images and texts of small maps.
+
+use core::f64::consts::TAU;
+
+use super::*;
+
+/// A robot in a room of 4 m × 3 m whose lower left corner is at (1, 2), seen five times.
+fn room() -> MapImage {
+    let mut map = MapBuilder::new(0.1);
+    let step = TAU / 720.0;
+    for x in [2.0, 2.5, 3.0, 3.5, 4.0] {
+        let (left, right, down, up) = (x - 1.0, 5.0 - x, 1.5, 1.5);
+        let ranges_m = (0..720).map(|beam| {
+            let (sin, cos) = (-3.0 + f64::from(beam) * step).sin_cos();
+            let along = if cos > 0.0 { right / cos } else { -left / cos };
+            let across = if sin > 0.0 { up / sin } else { -down / sin };
+            along.min(across)
+        });
+        let scan = LaserScan {
+            first_angle_rad: -3.0,
+            angle_step_rad: step,
+            ranges_m: ranges_m.collect(),
+            ..LaserScan::default()
+        };
+        map.add(&SE2::new(x, 3.5, 0.0), &scan).unwrap();
+    }
+    map.finish().unwrap()
+}
+
+/// The pixel that Nav2 takes for a place.
+fn pixel(map: &MapImage, pgm: &[u8], x: f64, y: f64) -> u8 {
+    let column = ((x - map.origin_m[0]) / map.cell_m).floor() as usize;
+    let row = ((y - map.origin_m[1]) / map.cell_m).floor() as usize;
+    let pixels = &pgm[pgm.len() - map.width * map.height..];
+    pixels[(map.height - 1 - row) * map.width + column]
+}
+
+#[test]
+fn walls_are_black_floors_white_and_what_lies_beyond_is_unknown() {
+    let map = room();
+    let mut pgm = Vec::new();
+    map.write_pgm(&mut pgm).unwrap();
+    assert!(pgm.starts_with(format!("P5\n{} {}\n255\n", map.width, map.height).as_bytes()));
+    for (x, y) in [(1.5, 2.5), (3.0, 3.5), (4.5, 4.5)] {
+        assert_eq!(pixel(&map, &pgm, x, y), 254, "{x} {y}");
+    }
+    // A wall lies on the border of two cells: one of them is black.
+    for (x, y, dx, dy) in [
+        (1.0, 3.45, 0.04, 0.0),
+        (5.0, 3.45, 0.04, 0.0),
+        (2.95, 2.0, 0.0, 0.04),
+    ] {
+        let sides = [-1.0, 1.0].map(|side| pixel(&map, &pgm, x + side * dx, y + side * dy));
+        assert!(sides.contains(&0), "{x} {y}: {sides:?}");
+    }
+    assert_eq!(pixel(&map, &pgm, 0.85, 1.85), 205);
+    let [occupied, free, unknown] = map.counts();
+    // 14 m of wall in cells of 0.1 m, one or two thick; 12 m² of floor.
+    assert!((120..=300).contains(&occupied), "{occupied}");
+    assert!((1000..=1200).contains(&free), "{free}");
+    assert_eq!(occupied + free + unknown, map.width * map.height);
+}
+
+#[test]
+fn unknown_is_transparent_in_scale_and_every_pixel_reads_back() {
+    let map = room();
+    let mut bytes = Vec::new();
+    map.write_png(&mut bytes, MapMode::Scale).unwrap();
+    let mut reader = png::Decoder::new(io::Cursor::new(&bytes))
+        .read_info()
+        .unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    assert_eq!(
+        (info.width as usize, info.height as usize),
+        (map.width, map.height)
+    );
+    for (pixel, &log_odds) in pixels.chunks(2).zip(&map.log_odds) {
+        assert_eq!(pixel[1] == 0, log_odds == 0.0);
+        if log_odds != 0.0 {
+            // What Nav2 makes of it, by lightness: within half a step of 255.
+            let p = 1.0 - f64::from(pixel[0]) / 255.0;
+            let expected = 1.0 / (1.0 + (-log_odds).exp());
+            assert!((p - expected).abs() < 0.007, "{p} {expected}");
+        }
+    }
+}
+
+#[test]
+fn the_yaml_names_what_the_map_server_needs() {
+    let map = room();
+    let yaml = map.yaml("map.pgm", MapMode::Trinary);
+    let [x, y] = map.origin_m;
+    assert_eq!(
+        yaml,
+        format!(
+            "image: map.pgm\nmode: trinary\nresolution: 0.1\norigin: [{x}, {y}, 0]\nnegate: 0\n\
+             occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+        )
+    );
+    // Unknown is 205: neither above the one nor below the other.
+    let unknown = 1.0 - 205.0 / 255.0;
+    assert!(unknown > FREE_PIXEL && unknown < OCCUPIED);
+}
+
+#[test]
+fn a_map_of_nothing_is_refused() {
+    let mut map = MapBuilder::new(0.05);
+    map.add(&SE2::identity(), &LaserScan::default()).unwrap();
+    assert_eq!(map.finish(), Err(MapError::Nothing));
+}

@@ -1,0 +1,151 @@
+//! Fields that agree, and fields that contradict each other.
+
+use super::*;
+
+fn fields() -> ScanFields {
+    ScanFields {
+        angle_min: -PI,
+        angle_max: PI - TAU / 360.0,
+        angle_increment: TAU / 360.0,
+        range_max: 12.0,
+        ranges_m: vec![2.0; 360],
+        ..ScanFields::default()
+    }
+}
+
+#[track_caller]
+fn assert_taken(fields: ScanFields, first: f64, step: f64, words: &str) {
+    let (scan, said) = fields.checked(0.1).unwrap();
+    // 1e-6: four-byte numbers.
+    assert!(
+        (scan.first_angle_rad - first).abs() < 1e-6,
+        "{}",
+        scan.first_angle_rad
+    );
+    assert!(
+        (scan.angle_step_rad - step).abs() < 1e-6,
+        "{}",
+        scan.angle_step_rad
+    );
+    let said = said.join(" ");
+    assert_eq!(said.is_empty(), words.is_empty(), "{said}");
+    assert!(said.contains(words), "{said}");
+}
+
+#[test]
+fn angles_that_agree_are_taken_and_others_by_what_two_say() {
+    let (first, step) = (-PI, TAU / 360.0);
+    assert_taken(fields(), first, step, "");
+    // Some drivers state the angle after the last beam.
+    assert_taken(
+        ScanFields {
+            angle_max: PI,
+            ..fields()
+        },
+        first,
+        step,
+        "",
+    );
+    for increment in [0.0, f64::NAN, -step, 0.5 * step, 2.0 * step] {
+        let other = ScanFields {
+            angle_increment: increment,
+            ..fields()
+        };
+        assert_taken(other, first, step, "angle_increment");
+    }
+    let degrees = ScanFields {
+        angle_min: -180.0,
+        angle_max: 179.0,
+        angle_increment: 1.0,
+        ..fields()
+    };
+    assert_taken(degrees.clone(), first, step, "degrees");
+    assert_taken(
+        ScanFields {
+            angle_increment: step,
+            ..degrees
+        },
+        first,
+        step,
+        "degrees",
+    );
+    assert_taken(
+        ScanFields {
+            angle_increment: 1.0,
+            ..fields()
+        },
+        first,
+        step,
+        "degrees",
+    );
+    assert_taken(
+        ScanFields {
+            angle_max: f64::NAN,
+            ..fields()
+        },
+        first,
+        step,
+        "",
+    );
+    assert_taken(
+        ScanFields {
+            angle_max: 40.0,
+            ..fields()
+        },
+        first,
+        step,
+        "angle_increment is taken",
+    );
+}
+
+#[test]
+fn angles_of_which_nothing_agrees_are_refused() {
+    let bad = ScanFields {
+        angle_max: 40.0,
+        angle_increment: 3.0,
+        ..fields()
+    };
+    let said = bad.checked(0.1).unwrap_err();
+    assert!(said.contains("neither is a sweep"), "{said}");
+    let bad = ScanFields {
+        angle_max: f64::NAN,
+        angle_increment: f64::NAN,
+        ..fields()
+    };
+    assert!(
+        bad.checked(0.1)
+            .unwrap_err()
+            .contains("set it in the driver")
+    );
+}
+
+#[test]
+fn the_time_of_a_beam_is_checked_against_the_period() {
+    let interval = |time_increment: f64| {
+        let fields = ScanFields {
+            time_increment,
+            ..fields()
+        };
+        let (scan, said) = fields.checked(0.1).unwrap();
+        (scan.beam_interval_s, said.join(" "))
+    };
+    assert_eq!(interval(0.1 / 360.0), (0.1 / 360.0, String::new()));
+    let (taken_s, said) = interval(0.1e9 / 360.0);
+    assert!(
+        (taken_s - 0.1 / 360.0).abs() < 1e-9 && said.contains("nanoseconds"),
+        "{said}"
+    );
+    let (taken_s, said) = interval(7.0);
+    assert!(taken_s == 0.0 && said.contains("one moment"), "{said}");
+}
+
+#[test]
+fn millimetres_are_divided() {
+    let fields = ScanFields {
+        ranges_m: vec![2000.0; 360],
+        ..fields()
+    };
+    let (scan, said) = fields.checked(0.1).unwrap();
+    assert_eq!((scan.ranges_m[0], scan.range_max_m), (2.0, 12.0));
+    assert!(said[0].contains("millimetres"));
+}

@@ -1,0 +1,136 @@
+//! Damaged and split recordings, clouds, and a laser that is placed by hand.
+
+use pr_geom::SE2;
+use robot_io::log::LogOptions;
+use robot_io::log_bytes::LogBytes;
+
+use super::base::{START_S, messages, mirrored, truth, turned, without};
+use super::write::{Body, mcap};
+use super::{BY_SCANS_M, Outcome, PER_CHUNK, distance_m, mapped, path, read};
+
+/// Where the first chunk's records begin and end.
+fn first_chunk(bytes: &[u8]) -> std::ops::Range<usize> {
+    let header = 8 + 9 + 12;
+    let at = header + usize::from_le_bytes(bytes[9..17].try_into().unwrap()) - 12;
+    let length = usize::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap());
+    at + 9 + 40..at + 9 + length
+}
+
+#[track_caller]
+fn assert_mapped(outcome: &Outcome, least_scans: usize, word: &str) {
+    let said = &outcome.said;
+    assert!(
+        outcome.path.len() >= least_scans,
+        "{} scans: {said}",
+        outcome.path.len()
+    );
+    assert!(
+        said.contains(word) && said.is_empty() == word.is_empty(),
+        "{said}"
+    );
+    let number = |stamp_s: f64| ((stamp_s - START_S) / 0.25).round() as usize;
+    let truth: Vec<SE2> = outcome
+        .path
+        .iter()
+        .map(|(stamp_s, _)| truth()[number(*stamp_s)])
+        .collect();
+    let off_m = distance_m(&path(outcome), &truth);
+    assert!(off_m <= BY_SCANS_M, "{off_m} m: {said}");
+}
+
+#[test]
+fn damage_costs_the_chunk_that_it_is_in() {
+    let whole = mcap(&messages(), PER_CHUNK);
+    let options = LogOptions::default();
+    // The first chunk announces the topics; so does the end of the file.
+    let chunk = first_chunk(&whole);
+    let mut bytes = whole.clone();
+    bytes[chunk.start + 400] ^= 0x55;
+    assert_mapped(&read(&bytes, &options), 120, "another checksum");
+    // A length that reaches far over the next chunks.
+    let mut bytes = whole.clone();
+    bytes[chunk.end + 1 + 2] ^= 0x7f;
+    assert_mapped(&read(&bytes, &options), 120, "left out");
+    // Zeros from here to there, as of a disk that lost a block.
+    let mut bytes = whole.clone();
+    let middle = whole.len() / 2;
+    bytes[middle..middle + 8192].fill(0);
+    assert_mapped(&read(&bytes, &options), 110, "left out");
+    assert_mapped(
+        &read(&whole[..whole.len() * 2 / 3], &options),
+        80,
+        "cut off",
+    );
+}
+
+#[test]
+fn split_files_are_one_recording() {
+    let all = messages();
+    let (first, second) = all.split_at(all.len() / 2);
+    let [first, second] = [first, second].map(|part| mcap(part, PER_CHUNK));
+    let parts = || vec![LogBytes::from(&first[..]), LogBytes::from(&second[..])];
+    assert_mapped(&mapped(parts(), "x", &LogOptions::default()), 130, "");
+    // The end of the first file is missing: the second one is read all the same.
+    let cut = &first[..first.len() - 3000];
+    let parts = vec![LogBytes::from(cut), LogBytes::from(&second[..])];
+    assert_mapped(&mapped(parts, "x", &LogOptions::default()), 125, "left out");
+}
+
+#[test]
+fn a_cloud_of_several_rings_is_cut_by_heights() {
+    let mut all = messages();
+    for message in &mut all {
+        if let Body::Scan(scan) = &message.body {
+            let mut points = Vec::new();
+            for (beam, &range) in scan.ranges.iter().enumerate() {
+                let bearing = scan.angle_min + beam as f32 * scan.angle_increment;
+                if range < scan.range_max {
+                    points.push([range * bearing.cos(), range * bearing.sin(), 0.1]);
+                }
+                // The floor, which is no wall.
+                points.push([bearing.cos(), bearing.sin(), -0.4]);
+            }
+            message.body = Body::Cloud {
+                stamp_s: scan.stamp_s,
+                frame: scan.frame.clone(),
+                points,
+            };
+        }
+    }
+    let bytes = mcap(&all, PER_CHUNK);
+    let refused = read(&bytes, &LogOptions::default());
+    assert!(
+        refused.path.is_empty() && refused.said.contains("--heights LOW,HIGH"),
+        "{}",
+        refused.said
+    );
+    let options = LogOptions {
+        heights_m: Some((0.0, 0.3)),
+        ..LogOptions::default()
+    };
+    assert_mapped(&read(&bytes, &options), 130, "");
+}
+
+#[test]
+fn a_laser_may_be_placed_by_hand() {
+    let mut all = messages();
+    turned(&mut all, 180);
+    mirrored(&mut all);
+    without(&mut all, "/tf_static");
+    let options = LogOptions {
+        laser: Some("0,0,180,flipped".parse().unwrap()),
+        ..LogOptions::default()
+    };
+    assert_mapped(&read(&mcap(&all, PER_CHUNK), &options), 130, "");
+    // What was set by hand stays, and the comparison tells what it thinks of it.
+    let options = LogOptions {
+        laser: Some("0,0,0".parse().unwrap()),
+        ..LogOptions::default()
+    };
+    let outcome = read(&mcap(&all, PER_CHUNK), &options);
+    assert!(
+        outcome.said.contains("mend it with --laser 0,0,"),
+        "{}",
+        outcome.said
+    );
+}
