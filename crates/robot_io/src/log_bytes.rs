@@ -132,7 +132,10 @@ impl<R: BufRead> Read for ZstdFrames<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         loop {
             if let Some(decoder) = &mut self.decoder {
-                let count = decoder.read(into)?;
+                // What the decoder cannot read is damage, not a fault of the system.
+                let damaged =
+                    |problem: io::Error| io::Error::new(io::ErrorKind::InvalidData, problem);
+                let count = decoder.read(into).map_err(damaged)?;
                 if count > 0 || into.is_empty() {
                     return Ok(count);
                 }

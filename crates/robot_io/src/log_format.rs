@@ -31,6 +31,8 @@ pub enum LogFormat {
     Gfs,
     /// A log of the canonical scan matcher, in JSON.
     Csm,
+    /// Stamped poses: TUM or EuRoC.
+    Trajectory,
     /// A zip or tar archive.
     Archive,
     /// A pose graph of g2o or TORO.
@@ -60,6 +62,8 @@ impl LogFormat {
             Self::Metadata
         } else if starts(b"PK\x03\x04") || start.get(257..262) == Some(b"ustar") {
             Self::Archive
+        } else if is_trajectory(start) {
+            Self::Trajectory
         } else if is_gfs(start) {
             Self::Gfs
         } else if starts(b"{")
@@ -117,7 +121,9 @@ impl LogFormat {
         let packed = |problem: io::Error| match first.is_packed() {
             Ok(true) => LogError::NoScans {
                 name: name.to_owned(),
-                detail: format!("it is packed by gzip or zstd and does not unpack: {problem}"),
+                detail: format!(
+                    "it is packed by gzip or zstd and does not unpack: {problem}; copy it once more from where it was recorded"
+                ),
             },
             _ => io(problem),
         };
@@ -176,6 +182,10 @@ impl LogFormat {
                 "a log of CSM, the canonical scan matcher",
                 "convert it to CARMEN with json2carmen of CSM and give the result",
             )),
+            Self::Trajectory => Err(foreign(
+                "a trajectory, not a log of scans",
+                "give a log; slam2d evaluate grades a trajectory",
+            )),
             Self::Archive => Err(foreign(
                 "an archive of files",
                 "unpack it and give the recording in it",
@@ -201,6 +211,21 @@ fn holds(bytes: &[u8], key: &[u8]) -> bool {
     bytes.windows(key.len()).any(|window| window == key)
 }
 
+/// Whether the first line that is no comment has the eight numbers of a stamped pose, or more.
+fn is_trajectory(start: &[u8]) -> bool {
+    let mut lines = start.split(|&byte| byte == b'\n');
+    let line = lines.find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"));
+    let Some(Ok(line)) = line.map(std::str::from_utf8) else {
+        return false;
+    };
+    let separates = |c: char| c.is_ascii_whitespace() || c == ',';
+    let words: Vec<&str> = line
+        .split(separates)
+        .filter(|word| !word.is_empty())
+        .collect();
+    words.len() >= 8 && words.iter().all(|word| word.parse::<f64>().is_ok())
+}
+
 /// Whether a line starts as those of GMapping do.
 fn is_gfs(start: &[u8]) -> bool {
     let words: [&[u8]; 5] = [
@@ -224,7 +249,7 @@ mod tests {
             (&b""[..], "x.log is empty; give a recorded log"),
             (
                 b"\x1f\x8b\x08",
-                "x.log holds no scan that can be used: it is packed by gzip or zstd and does not unpack: unexpected end of file",
+                "x.log holds no scan that can be used: it is packed by gzip or zstd and does not unpack: unexpected end of file; copy it once more from where it was recorded",
             ),
             (
                 b"\xff\xfeF\0L\0",
@@ -233,6 +258,10 @@ mod tests {
             (
                 b"#ROSRECORD V1.1\n",
                 "x.log is a recording of ROS 1 older than version 2.0; convert it with rosbag fix and give the result",
+            ),
+            (
+                b"# stamp\n1,0,0,0,0,0,0,1\n",
+                "x.log is a trajectory, not a log of scans; give a log; slam2d evaluate grades a trajectory",
             ),
             (
                 b"LASER_READING 361 1.2\n",

@@ -11,7 +11,7 @@ fn room() -> MapImage {
     for x in [2.0, 2.5, 3.0, 3.5, 4.0] {
         let (left, right, down, up) = (x - 1.0, 5.0 - x, 1.5, 1.5);
         let ranges_m = (0..720).map(|beam| {
-            let (sin, cos) = (-3.0 + f64::from(beam) * step).sin_cos();
+            let (sin, cos) = math::sin_cos(-3.0 + f64::from(beam) * step);
             let along = if cos > 0.0 { right / cos } else { -left / cos };
             let across = if sin > 0.0 { up / sin } else { -down / sin };
             along.min(across)
@@ -80,7 +80,7 @@ fn unknown_is_transparent_in_scale_and_every_pixel_reads_back() {
         if log_odds != 0.0 {
             // What Nav2 makes of it, by lightness: within half a step of 255.
             let p = 1.0 - f64::from(pixel[0]) / 255.0;
-            let expected = 1.0 / (1.0 + (-log_odds).exp());
+            let expected = 1.0 / (1.0 + math::exp(-log_odds));
             assert!((p - expected).abs() < 0.007, "{p} {expected}");
         }
     }
@@ -108,4 +108,32 @@ fn a_map_of_nothing_is_refused() {
     let mut map = MapBuilder::new(0.05);
     map.add(&SE2::identity(), &LaserScan::default()).unwrap();
     assert_eq!(map.finish(), Err(MapError::Nothing));
+}
+
+#[test]
+fn beams_that_saw_nothing_mark_free_space_by_option() {
+    // A hall without end: a wall behind the robot, nothing before it within 5 m.
+    let scan = LaserScan {
+        first_angle_rad: -TAU / 2.0,
+        angle_step_rad: TAU / 360.0,
+        range_max_m: 5.0,
+        ranges_m: (0..360)
+            .map(|beam| if (90..270).contains(&beam) { 5.0 } else { 2.0 })
+            .collect(),
+        ..LaserScan::default()
+    };
+    let counts = |map: MapBuilder| {
+        let mut map = map;
+        map.add(&SE2::identity(), &scan).unwrap();
+        map.finish().unwrap().counts()
+    };
+    let [occupied, free, _] = counts(MapBuilder::new(0.1));
+    let [occupied_too, more, _] = counts(MapBuilder::new(0.1).with_free_space());
+    assert_eq!(occupied, occupied_too);
+    // Half a disk of 5 m in cells of 0.1 m, to a tenth for its rim.
+    let half_disk = 0.5 * TAU / 2.0 * 50.0 * 50.0;
+    let gained = (more - free) as f64;
+    assert!((gained / half_disk - 1.0).abs() < 0.1, "{gained}");
+    // The map reaches to the limit, and nothing stands there.
+    assert!(more > 3 * free);
 }
