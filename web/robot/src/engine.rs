@@ -100,8 +100,9 @@ impl<'a> Engine<'a> {
         options: &LogOptions,
     ) -> Result<Self, String> {
         let bytes = source.into();
-        let told = |problem: io::Error| {
-            format!("{name} cannot be read: {problem}; it may have moved or changed")
+        let told = |problem: io::Error| match bytes.is_packed() {
+            Ok(true) => format!("{name} does not unpack: {problem}; copy it once more"),
+            _ => format!("{name} cannot be read: {problem}; it may have moved or changed"),
         };
         let mut source = bytes.stream().map_err(told)?;
         let start = source.fill_buf().map_err(told)?;

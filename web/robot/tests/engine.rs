@@ -338,7 +338,7 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
         open(b"\x1f\x8b\x08", "x.gz")
             .err()
             .unwrap()
-            .contains("gunzip")
+            .contains("does not unpack")
     );
     assert!(
         open(b"VERTEX_SE2 0 0\n", "x.g2o")

@@ -165,7 +165,7 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
     if let Some(offset_s) = clock_offset_s(scans, clock) {
         let is_scans_off = scans
             .ahead_s
-            .is_some_and(|ahead_s| ahead_s > AHEAD_S || ahead_s < -SAME_CLOCK_S);
+            .is_some_and(|ahead_s| !(-SAME_CLOCK_S..=AHEAD_S).contains(&ahead_s));
         if is_scans_off {
             scans_by_s = -offset_s;
         } else {
