@@ -7,8 +7,10 @@
 pub mod document;
 mod drawings;
 mod figures;
+mod length;
 mod printed;
 mod registrations;
+mod thousand_laps;
 mod widgets;
 
 use document::{Document, Figure, NumberLink, numbers_in, source};
@@ -148,6 +150,14 @@ fn every_question_has_an_answer_in_its_widget() {
             let fact = outcome.facts.iter().find(|fact| fact.id == question.fact);
             let fact = fact.unwrap_or_else(|| panic!("no such fact: {question:?}"));
             assert!(fact.value.is_finite(), "{question:?}");
+            let holds = |[from, to]: &&[f64; 2]| (*from..*to).contains(&fact.value);
+            let right = question.ranges.iter().filter(holds).count();
+            let asked = usize::from(!question.ranges.is_empty());
+            assert_eq!(
+                right, asked,
+                "{} is {}: {question:?}",
+                question.fact, fact.value
+            );
         }
     }
 }

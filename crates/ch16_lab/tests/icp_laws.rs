@@ -130,7 +130,7 @@ fn trimming_keeps_the_nearest_share_of_the_pairs() {
     let scene = BasinScene::new();
     let all = BasinScene::config(IcpVariant::PointToPoint, 0.7);
     let half = IcpConfig {
-        trim_fraction: 0.5,
+        trim: 0.5,
         ..all
     };
     let init = scene.guess(&BasinStart::default());

@@ -155,7 +155,7 @@ fn a_registration_takes_the_same_steps_and_knows_the_same() {
             };
             let core_cfg = icp::IcpConfig {
                 variant: core_variant,
-                trim_fraction: 1.0 - trim,
+                trim,
                 ..icp::IcpConfig::default()
             };
             let found = icp(&source, &map, SE2::identity(), &cfg);

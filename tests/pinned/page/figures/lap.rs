@@ -10,6 +10,9 @@ use pr_geom::Translation;
 
 use super::loops;
 
+/// The least noise of the wheels that the page drives with.
+const QUIET_NOISE: f64 = 0.25;
+
 /// The parameters of the lap of that name.
 pub fn config(name: &str) -> Option<LapConfig> {
     Some(match name {
@@ -29,6 +32,14 @@ pub fn config(name: &str) -> Option<LapConfig> {
         }
         "twins" => LapConfig::in_world(BuiltInWorld::TwinRooms, CANONICAL_SEED, 1.0),
         "corridor" => LapConfig::in_world(BuiltInWorld::Corridor, CANONICAL_SEED, 1.0),
+        "p2l" => LapConfig::default().with_matcher(LapMatcher::PointToPlane),
+        "p2l-narrow" => narrow_normals(),
+        "ndt" => LapConfig::default().with_matcher(LapMatcher::Ndt),
+        "quiet" => quiet(LapMatcher::PointToPoint),
+        "quiet-p2l" => quiet(LapMatcher::PointToPlane),
+        "quiet-ndt" => quiet(LapMatcher::Ndt),
+        "corridor-p2l" => bare(LapMatcher::PointToPlane),
+        "corridor-ndt" => bare(LapMatcher::Ndt),
         "hall" => LapConfig::in_world(BuiltInWorld::Hall, CANONICAL_SEED, 1.0)
             .with_matcher(LapMatcher::PointToPlane),
         "six" => LapConfig::with_seed_and_noise(6, 1.0),
@@ -41,6 +52,25 @@ fn noisy() -> LapConfig {
     let mut config = LapConfig::default();
     config.drive.noise_factor = 4.0;
     config
+}
+
+/// Point to plane with the normals of the chapter's lap, which only weigh edges there.
+fn narrow_normals() -> LapConfig {
+    let config = LapConfig::default();
+    let scan = config.slam.scan;
+    config
+        .with_matcher(LapMatcher::PointToPlane)
+        .with_scan(scan)
+}
+
+/// The canonical run with wheels that hardly slip.
+fn quiet(matcher: LapMatcher) -> LapConfig {
+    LapConfig::with_seed_and_noise(CANONICAL_SEED, QUIET_NOISE).with_matcher(matcher)
+}
+
+/// A corridor without doors.
+fn bare(matcher: LapMatcher) -> LapConfig {
+    LapConfig::in_world(BuiltInWorld::Corridor, CANONICAL_SEED, 1.0).with_matcher(matcher)
 }
 
 /// A lap that drifts farther than the gate allows for.
@@ -60,6 +90,16 @@ pub fn value(record: &LapRecord, path: &[&str]) -> Option<f64> {
         }
         ["own", claim, from, to, kernel, what] => own(record, [from, to], claim, kernel, what),
         ["right_refused"] => Some(loops::right_refused(&record.lap)),
+        ["front_end", "turn", what] => turn(&record.front_end, what),
+        ["rms_fall_percent"] => {
+            let [front_end, lap] = [&record.front_end, &record.lap];
+            let left = lap.summary.keyframe_rms_m / front_end.summary.keyframe_rms_m;
+            Some(100.0 * (1.0 - left))
+        }
+        ["normals_cells"] => {
+            let scan = record.config.slam.scan;
+            Some(scan.normal_radius_m / scan.cell_m)
+        }
         ["front_end", what] => summary(&record.front_end, what),
         [what] => summary(&record.lap, what),
         _ => None,
@@ -104,6 +144,7 @@ fn summary(lap: &LapTrace, what: &str) -> Option<f64> {
     Some(match what {
         "ticks" => summary.ticks as f64,
         "loops" => summary.loops as f64,
+        "keyframes" => lap.keyframes.len() as f64,
         "turn_node" => lap.turn_node? as f64,
         "odometry_end_error" => summary.odometry_end_error_m,
         "odometry_rms" => summary.odometry_rms_m,

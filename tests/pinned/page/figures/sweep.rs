@@ -3,6 +3,7 @@
 //! The same laps as `slam2d sweep` drives by default, and the same statistics of the core.
 
 use std::ops::RangeInclusive;
+use std::sync::OnceLock;
 use std::thread;
 
 use ch16_lab::lap::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LapConfig, LapRunner, LapSummary};
@@ -36,8 +37,14 @@ pub struct Sweep {
 }
 
 impl Sweep {
+    /// The sweep, driven when it is first asked for.
+    pub fn shared() -> &'static Self {
+        static SWEEP: OnceLock<Sweep> = OnceLock::new();
+        SWEEP.get_or_init(Self::run)
+    }
+
     /// Drives all of them over all cores; the laps are independent, so threads change nothing.
-    pub fn run() -> Self {
+    fn run() -> Self {
         let seeds: Vec<u32> = SEEDS.collect();
         let workers = thread::available_parallelism().map_or(1, usize::from);
         let shares = seeds.chunks(seeds.len().div_ceil(workers));
