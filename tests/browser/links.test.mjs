@@ -17,7 +17,7 @@ const scrolled = (tab) => tab.evaluate(() => Math.round(scrollY));
 describe('a link in the text', () => {
   it('changes the scene beside it without a jump, on a wide screen', async () => {
     await reading(async (tab) => {
-      for (const [id, words] of [['w16.1', '75°'], ['w16.1', '180°'], ['w16.3', 'across'], ['w16.2', '119']]) {
+      for (const [id, words] of [['w16.1', '75°'], ['w16.1', 'Turned right round'], ['w16.3', 'small cells'], ['w16.2', '119']]) {
         await link(tab, words).scrollIntoViewIfNeeded();
         await tab.evaluate((css) => document.querySelector(css).scrollIntoView({ block: 'nearest' }), widget(id));
         await link(tab, words).evaluate((a) => a.scrollIntoView({ block: 'center' }));
@@ -109,7 +109,7 @@ describe('a link in the text', () => {
       const question = tab.locator('#exercise-7 slam-predict');
       await question.scrollIntoViewIfNeeded();
       await tab.waitForFunction(() => customElements.get('slam-predict') !== undefined);
-      await question.locator('input').fill('0.05');
+      await question.locator('input').first().check();
       await question.locator('button').first().click();
       const show = question.getByRole('button', { name: 'Show it in the widget' });
       await show.click();
