@@ -4,6 +4,7 @@
 //! widget, the year of a citation, or marked as a count that the reader makes on the spot. Any other
 //! digit or number word on the page fails.
 
+mod claims;
 pub mod document;
 mod drawings;
 mod figures;

@@ -40,7 +40,6 @@ pub fn value(what: &str) -> Option<f64> {
         "trace_bound" => aligned.trace_bound,
         "dot" => moments.trace(),
         "cross" => moments[(0, 1)] - moments[(1, 0)],
-        "sigma" => moments.singular_values().min(),
         "spread_p" => spread(&source, p_mean),
         "spread_q" => spread(&target, q_mean),
         "residual" => source.iter().zip(&target).map(residual).sum(),

@@ -92,7 +92,6 @@ fn registration(found: &BasinOutcome, what: &str) -> Option<f64> {
         "error_m" => found.error_m,
         "error_deg" => found.error_deg.abs(),
         "rmse" => found.rmse,
-        "inliers" => found.inliers as f64,
         "iterations" => found.iterations as f64,
         _ => return None,
     })

@@ -2,7 +2,6 @@
 
 use ch16_lab::basin::BasinScene;
 use ch16_lab::lap::{LAST_KEYFRAMES, LapConfig};
-use ch16_lab::terrain::TerrainSettings;
 use ch16_slam2d::chi_squared::{cdf3, gate_threshold};
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::icp::{
@@ -44,7 +43,6 @@ pub fn value(path: &[&str]) -> Option<f64> {
         ["ndt", "clamp"] => ndt_clamp(),
         ["lap", "tick_s"] => config.drive.dt_s,
         ["lap", "last_keyframes"] => LAST_KEYFRAMES as f64,
-        ["lap", "window"] => config.slam.window_sweeps as f64,
         ["lap", "keyframe_m"] => config.slam.keyframe_distance_m,
         ["lap", "keyframe_rad"] => config.slam.keyframe_turn_rad,
         ["loop", "every_ordinal"] => loops.attempt_every_nodes as f64,
@@ -57,15 +55,12 @@ pub fn value(path: &[&str]) -> Option<f64> {
         ["loop", "inflate"] => loops.trust.inflate,
         ["odometry", "inflate"] => config.slam.odometry_trust.inflate,
         ["lap", "tau_deviations"] => tau_deviations(),
-        ["noise", "fourfold_std"] => fourfold_std(),
         ["information", "ridge"] => INFORMATION_RIDGE,
         ["information", "cap"] => INFORMATION_CAP,
         ["information", "cap_std_m"] => 1.0 / INFORMATION_CAP.sqrt(),
         ["basin", "tau"] => basin.tau,
         ["basin", "tau_wide"] => WIDE_TAU_M,
-        ["basin", "max_iters"] => basin.max_iters as f64,
         ["normals", "min_neighbors"] => min_neighbors() as f64,
-        ["terrain", "span_m"] => TerrainSettings::default().span_m,
         _ => return None,
     })
 }
@@ -102,12 +97,6 @@ fn ndt_clamp() -> f64 {
     let map = NdtMap::build(&line.collect::<PointCloud>(), 1.0, 4);
     let values = map.cells()[0].covariance.symmetric_eigenvalues();
     values.min() / values.max()
-}
-
-/// By how much noise factor 4 multiplies the standard deviation of the wheels' speed.
-fn fourfold_std() -> f64 {
-    let noise = LapConfig::default().drive.odometry_noise;
-    (noise.scaled(4.0).alpha[0] / noise.alpha[0]).sqrt()
 }
 
 /// How many times the usual difference of prediction and registration the adaptive τ is.
