@@ -292,6 +292,8 @@ describe('the chapter', () => {
         window.copied = [];
         navigator.clipboard.writeText = (text) => Promise.resolve(void window.copied.push(text));
       });
+      // The code stands folded.
+      await tab.evaluate(() => { document.querySelector('figure.listing').closest('details').open = true; });
       await tab.locator('figure.listing').first().getByRole('button', { name: 'Copy' }).click();
       assert.deepEqual(await tab.evaluate(() => copied), [listings[0].code]);
     });

@@ -17,7 +17,7 @@ pub(super) const SKETCH: Sketch = Sketch {
     name: "push",
     title: "The sweeps after a loop",
     slider: Slider {
-        label: "share of the correction that the front end gets",
+        label: "correction that the front end gets",
         unit: " %",
         min: 0.0,
         max: 100.0,
