@@ -52,6 +52,12 @@ fn one_residual_buys_more_than_all_loops_and_the_covariance_does_not_see_it() {
 }
 
 #[test]
+fn a_start_out_of_reach_of_the_bells_ends_farther_off_than_it_began() {
+    let far = of(&["ndt.far_start.offset_m", "ndt.far_start.error_m"]);
+    assert!(far[1] > far[0], "{far:?}");
+}
+
+#[test]
 fn the_gate_refuses_the_true_loop_that_drift_does_not_explain() {
     let [chi2, gate] = of(&[
         "lap.canonical.own.truth.25.0.quadratic.gate_chi2",
