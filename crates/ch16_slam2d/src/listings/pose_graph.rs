@@ -78,8 +78,8 @@ impl PoseGraph {
     /// Gauss–Newton until the largest correction is below `tolerance`; returns the number of steps.
     pub fn optimize(&mut self, max_iters: usize, tolerance: f64, huber: f64) -> usize {
         for step in 1..=max_iters {
-            // Written so that NaN ends it.
-            if !(self.optimize_once(huber) >= tolerance) {
+            let largest = self.optimize_once(huber);
+            if largest.is_nan() || largest < tolerance {
                 return step;
             }
         }
