@@ -17,7 +17,7 @@ export interface BasinExplorerState {
   variant: 'point-to-point' | 'point-to-plane';
   /** A point farther than this from the target has no pair. 0.1 to 1.6 m. */
   tau: number;
-  /** Only this share of the pairs counts, the closest first; 1 keeps all. 0.3 to 1. */
+  /** Trimming drops this share of the pairs in each iteration, the longest first; 0 keeps all. 0 to 0.7. */
   trim: number;
   /** Longer pairs pull less; at 1.6 m all pairs pull alike. 0.02 to 1.6 m. */
   huber: number;

@@ -124,7 +124,7 @@ describe('the chapter', () => {
 
   it('sets a widget by a number in the text and brings it into view', async () => {
     await reading(async (tab) => {
-      await tab.locator('a.slam-link[href*="w=16.1"]', { hasText: '75°' }).click();
+      await tab.locator('a.slam-link[href*="w=16.1"]', { hasText: '75°' }).first().click();
       await tab.waitForFunction((css) => document.querySelector(css).get('heading') === 75, widget('w16.1'));
       await h.ready(tab, widget('w16.1'));
       const verdict = await tab.evaluate((css) => document.querySelector(css).outcome.verdict, widget('w16.1'));
@@ -139,11 +139,11 @@ describe('the chapter', () => {
       await question.scrollIntoViewIfNeeded();
       await tab.waitForFunction(() => customElements.get('slam-predict') !== undefined);
       assert.equal(await why.isVisible(), false);
-      await question.locator('input').fill('0.2');
+      await question.getByRole('radio', { name: /^larger/ }).check();
       await question.locator('button').first().click();
       await why.waitFor({ state: 'visible' });
       const said = await question.evaluate((element) => element.shadowRoot.querySelector('.answer').textContent);
-      assert.match(said, /^Not right\. It is 0\.015 m\. You said 0\.2 m and are off by 0\.18 m\./);
+      assert.match(said, /^Not right\. You said: larger: it is the wrong place\. It is 0\.015 m\./);
       assert.ok(await tab.evaluate(isSeen, '#further-variants slam-predict'), 'the page stays at the answer');
       await question.getByRole('button', { name: 'Show it in the widget' }).click();
       await tab.waitForFunction(isSeen, widget('w16.1'));
@@ -183,10 +183,34 @@ describe('the chapter', () => {
       }
       const width = await tab.evaluate(() => document.documentElement.scrollWidth);
       assert.equal(width, 390);
-      const tables = await tab.evaluate(() =>
-        [...document.querySelectorAll('.scroll')].map((box) => box.scrollWidth - box.clientWidth));
-      assert.deepEqual(tables, [0, 0, 0], 'no table has to be scrolled to be read');
+      const tables = await tab.evaluate(() => {
+        for (const folded of document.querySelectorAll('main details')) folded.open = true;
+        return [...document.querySelectorAll('.scroll')].map((box) => box.scrollWidth - box.clientWidth);
+      });
+      assert.deepEqual(tables, [0, 0, 0, 0], 'no table has to be scrolled to be read');
+      const opened = await tab.evaluate(() => document.documentElement.scrollWidth);
+      assert.equal(opened, 390, 'nor with all of it unfolded');
     }, { viewport: PHONE, deviceScaleFactor: 1 });
+  });
+
+  it('shows at most five numbers a screen before the exercises', async () => {
+    await reading(async (tab) => {
+      const places = await tab.evaluate(() => {
+        const end = document.querySelector('#exercises').getBoundingClientRect().top;
+        const isSeen = (element) => element.checkVisibility() && element.getBoundingClientRect().top < end;
+        const marked = [...document.querySelectorAll('main .figure, main a.slam-link')].filter(
+          (element) => element.matches('.figure') || /\d/.test(element.textContent));
+        // A formula names and counts with single digits; it measures with more.
+        const written = [...document.querySelectorAll('main .katex-html .mord')].filter(
+          (element) => element.childElementCount === 0 && /^[\d.]{2,}$/.test(element.textContent));
+        return [...marked, ...written].filter(isSeen)
+          .map((element) => element.getBoundingClientRect().top + scrollY)
+          .sort((a, b) => a - b);
+      });
+      assert.ok(places.length > 40, `${places.length} numbers`);
+      const crowded = places.filter((top, k) => places[k + 5] < top + 900).map(Math.round);
+      assert.deepEqual(crowded, [], 'a screen that begins there has six');
+    }, { viewport: { width: 1440, height: 900 } });
   });
 
   it('breaks no rule of accessibility that axe knows, in light and dark', async () => {
@@ -219,11 +243,18 @@ describe('the chapter', () => {
       const question = tab.locator('#exercise-5 slam-predict[fact="map_disagreement_m"]');
       await question.scrollIntoViewIfNeeded();
       await tab.waitForFunction(() => customElements.get('slam-predict') !== undefined);
-      await question.locator('input').fill('0.1');
+      await question.getByRole('radio', { name: /^a smaller share/ }).check();
       await question.locator('button').first().click();
       await question.locator('[data-why]').waitFor({ state: 'visible' });
-      const said = await question.evaluate((element) => element.shadowRoot.querySelector('.answer p').textContent);
-      assert.match(said, /^Right\. It is 0\.090 m\. You said 0\.1 m and are off by 0\.0099 m\.$/);
+      const answer = (at) => at.evaluate((element) => element.shadowRoot.querySelector('.answer p').textContent);
+      assert.match(await answer(question), /^Right\. You said: a smaller share than of the error\. It is 0\.090 m\.$/);
+
+      const rank = tab.locator('#exercise-2 slam-predict');
+      await rank.scrollIntoViewIfNeeded();
+      await rank.locator('input').fill('3');
+      await rank.locator('button').first().click();
+      await rank.locator('[data-why]').waitFor({ state: 'visible' });
+      assert.match(await answer(rank), /^Not right\. It is 2\.000\. You said 3 and are off by 1\.0\.$/);
     });
   });
 
@@ -261,8 +292,38 @@ describe('the chapter', () => {
         window.copied = [];
         navigator.clipboard.writeText = (text) => Promise.resolve(void window.copied.push(text));
       });
+      // The code stands folded.
+      await tab.evaluate(() => { document.querySelector('figure.listing').closest('details').open = true; });
       await tab.locator('figure.listing').first().getByRole('button', { name: 'Copy' }).click();
       assert.deepEqual(await tab.evaluate(() => copied), [listings[0].code]);
+    });
+  });
+
+  it('lets the reader judge ten loop candidates by the keyboard, and draws what a gate does', async () => {
+    await reading(async (tab) => {
+      const place = tab.locator('#decide .decide-place');
+      await tab.locator('#decide').scrollIntoViewIfNeeded();
+      await place.getByRole('button', { name: 'Accept' }).waitFor();
+      await place.getByRole('button', { name: 'Accept' }).focus();
+      for (let count = 1; count <= 10; count += 1) {
+        assert.equal(await place.locator('.decide-count').textContent(), `Candidate ${count} of 10`);
+        assert.match(await place.locator('.sketch-says').textContent(), /^It fits to 0\.\d{3} m over \d+ pairs\./);
+        await tab.keyboard.press('Enter');
+      }
+      assert.match(await place.locator('.sketch-says').textContent(), /^You took 5 of 5 right ones and 5 of 5 false ones\./);
+      assert.equal(await place.locator('.decide-each li').count(), 10);
+      assert.match(await place.locator('svg').innerHTML(), /false ones taken/);
+      await place.getByRole('button', { name: 'Judge again' }).click();
+      assert.equal(await place.locator('.decide-count').textContent(), 'Candidate 1 of 10');
+    });
+  });
+
+  it('links to the table of the thousand laps', async () => {
+    await reading(async (tab, server) => {
+      const href = await tab.locator('a[download]').getAttribute('href');
+      const table = await (await tab.request.get(`${server.url}/${href}`)).text();
+      assert.match(table, /^wheel noise,estimate,result,statistic,value,unit\n0\.25,/);
+      assert.ok(table.split('\n').length > 150);
     });
   });
 
@@ -286,7 +347,7 @@ describe('the chapter', () => {
       assert.equal(await tab.locator('.contents').isVisible(), false);
       assert.ok(await tab.locator('h1').isVisible());
       // The answers stand open, asked or not.
-      for (const css of ['.exercise details > p', 'slam-predict [data-why]', 'table.spread']) {
+      for (const css of ['.exercise details > p', 'slam-predict [data-why]', 'table.results']) {
         for (const part of await tab.locator(css).all()) assert.ok(await part.isVisible(), css);
       }
       const pdf = await tab.pdf({ format: 'A4', margin: { top: '1cm', bottom: '1cm', left: '1cm', right: '1cm' } });

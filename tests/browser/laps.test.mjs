@@ -84,13 +84,4 @@ describe('the thousand laps', () => {
       await tab.waitForFunction(() => document.querySelector('slam-widget[name="w16.2"]').get('noise') === 1);
     });
   });
-
-  it('leave their table folded, and open for those who ask', async () => {
-    await reading(async (tab) => {
-      const table = tab.locator('table.spread');
-      assert.equal(await table.isVisible(), false);
-      await tab.getByText('The same laps as a table').click();
-      assert.equal(await table.isVisible(), true);
-    });
-  });
 });

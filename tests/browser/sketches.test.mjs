@@ -6,10 +6,14 @@ import * as h from './harness.mjs';
 
 const visit = h.visitor();
 const reading = (test, options = {}) => visit('', test, { path: '/index.html', options });
-const NAMES = ['nearest', 'slide', 'bells', 'ellipse', 'gate', 'ancestor'];
+const NAMES = ['nearest', 'slide', 'bells', 'ellipse', 'gate', 'push', 'ancestor'];
 const figure = (tab, name) => tab.locator(`[data-sketch="${name}"]`);
+/** Some stand in a fold. */
+const unfold = (tab, name) => tab.evaluate(
+  (id) => document.querySelector(`[data-sketch="${id}"]`).closest('details')?.setAttribute('open', ''), name);
 /** Its slider, once the core has come. */
 async function slider(tab, name) {
+  await unfold(tab, name);
   await tab.waitForFunction((id) => document.querySelector(`[data-sketch="${id}"] input`).disabled === false, name);
   return figure(tab, name).locator('input');
 }
@@ -85,6 +89,7 @@ describe('a small figure', () => {
   it('stands as a picture with its sentence where no script runs', async () => {
     await reading(async (tab) => {
       for (const name of NAMES) {
+        await unfold(tab, name);
         await figure(tab, name).scrollIntoViewIfNeeded();
         const picture = figure(tab, name).locator('img');
         assert.ok(await picture.evaluate((img) => img.decode().then(() => img.naturalWidth > 100)), name);

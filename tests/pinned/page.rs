@@ -4,11 +4,14 @@
 //! widget, the year of a citation, or marked as a count that the reader makes on the spot. Any other
 //! digit or number word on the page fails.
 
+mod claims;
 pub mod document;
 mod drawings;
 mod figures;
+mod length;
 mod printed;
 mod registrations;
+mod thousand_laps;
 mod widgets;
 
 use document::{Document, Figure, NumberLink, numbers_in, source};
@@ -148,23 +151,40 @@ fn every_question_has_an_answer_in_its_widget() {
             let fact = outcome.facts.iter().find(|fact| fact.id == question.fact);
             let fact = fact.unwrap_or_else(|| panic!("no such fact: {question:?}"));
             assert!(fact.value.is_finite(), "{question:?}");
+            let holds = |[from, to]: &&[f64; 2]| (*from..*to).contains(&fact.value);
+            let right = question.ranges.iter().filter(holds).count();
+            let asked = usize::from(!question.ranges.is_empty());
+            assert_eq!(
+                right, asked,
+                "{} is {}: {question:?}",
+                question.fact, fact.value
+            );
         }
     }
 }
 
 #[test]
-fn a_number_that_sets_a_tick_of_a_loop_is_the_tick_of_that_loop() {
+fn a_link_to_a_loop_sets_the_tick_of_that_loop() {
     let html = source("index.html");
     let mut figures = Figures::default();
-    let ticks: Vec<_> = html.split("data-tick-of=\"").skip(1).collect();
+    let links: Vec<_> = html.split("href=\"").skip(1).collect();
+    let ticks = links.iter().filter_map(|link| {
+        let (query, rest) = link.split_once('"')?;
+        let (tag, _) = rest.split_once('>')?;
+        let (_, name) = tag.split_once("data-tick-of=\"")?;
+        Some((query, name.split_once('"')?.0))
+    });
+    let ticks: Vec<_> = ticks.collect();
     assert!(ticks.len() >= 3);
-    for tail in ticks {
-        let (name, after) = tail.split_once("\">").expect("the attribute comes last");
-        let text = &after[..after.find('<').expect("the link ends")];
+    for (query, name) in ticks {
         let tick = figures
             .value(name)
             .unwrap_or_else(|| panic!("no figure {name}"));
-        assert!(numbers_in(text).contains(&tick), "{name}: {text}");
+        let set = query
+            .split("&amp;")
+            .filter_map(|pair| pair.strip_prefix("t="));
+        let set: Vec<f64> = set.filter_map(|text| text.parse().ok()).collect();
+        assert_eq!(set, [tick], "{name}: {query}");
     }
 }
 

@@ -51,11 +51,13 @@ fn rust_files(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// The modules of a folder that its `main.rs` does not name.
-fn left_out(main: &str, files: &[PathBuf]) -> Vec<String> {
+/// What the manifest makes a program of its own is not one of them.
+fn left_out(main: &str, manifest: &str, files: &[PathBuf]) -> Vec<String> {
     let names = files.iter().filter_map(|path| path.file_stem()?.to_str());
     names
         .filter(|name| *name != "main")
         .filter(|name| !main.lines().any(|line| line == format!("mod {name};")))
+        .filter(|name| !manifest.contains(&format!("\npath = \"tests/{name}.rs\"")))
         .map(str::to_owned)
         .collect()
 }
@@ -86,7 +88,7 @@ fn every_integration_test_is_part_of_the_one_binary_of_its_package() {
         let tests = folder.join("tests");
         let main = fs::read_to_string(tests.join("main.rs")).unwrap_or_default();
         assert_eq!(
-            left_out(&main, &entries(&tests)),
+            left_out(&main, &manifest, &entries(&tests)),
             Vec::<String>::new(),
             "{} does not name them",
             tests.join("main.rs").display()
@@ -95,7 +97,9 @@ fn every_integration_test_is_part_of_the_one_binary_of_its_package() {
     }
     assert!(seen >= 7, "only {seen} packages have one binary");
     let files = ["main.rs", "named.rs", "forgotten.rs"].map(PathBuf::from);
-    assert_eq!(left_out("mod named;\n", &files), ["forgotten"]);
+    assert_eq!(left_out("mod named;\n", "", &files), ["forgotten"]);
+    let own = "[[test]]\nname = \"forgotten\"\npath = \"tests/forgotten.rs\"\n";
+    assert_eq!(left_out("mod named;\n", own, &files), [""; 0]);
 }
 
 /// The section of a manifest, without its title.

@@ -41,7 +41,6 @@ fn recorded(world: &str, matcher: &str, frame: &str) -> Option<Value> {
 /// `ring.p2l.exact.with_loops.rms.median`, `apartment.p2p.chapter.closed_percent`: by world, matcher and frame.
 pub fn value(path: &[&str]) -> Option<f64> {
     let (world, matcher, frame, what) = match path {
-        ["picture_m"] => return Some(PICTURE_M),
         [world, matcher, frame, what @ ..] => (world, matcher, frame, what),
         _ => return None,
     };

@@ -113,8 +113,10 @@ function unescapeHtml(text) {
   return text.replaceAll('&lt;', '<').replaceAll('&gt;', '>').replaceAll('&amp;', '&');
 }
 
+/** And the table that the page links to. */
 async function copyStyle() {
   await cp(path.join(here, 'page.css'), path.join(outDir, 'page.css'));
+  await cp(path.join(here, 'thousand-laps.csv'), path.join(outDir, 'thousand-laps.csv'));
 }
 
 /** Browsers that run WebAssembly all read woff2: the older font formats stay out. */

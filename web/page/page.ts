@@ -6,6 +6,7 @@
 import { core, coreModule } from './slam-widget.js';
 import type { Glue } from '../pkg/glue.js';
 import { addCopyButtons } from './copy';
+import { DecideFigure } from './decide';
 import { LapPlayer } from './lap/player';
 import type { Story } from './lap/story';
 import { LapsFigure } from './laps/laps';
@@ -24,6 +25,7 @@ addCopyButtons(document.querySelectorAll<HTMLElement>('figure.listing'));
 void replayLap();
 driveLaps();
 void moveSketches();
+void askForLoops();
 
 /** The core, which every picture of the page shares; undefined where it cannot be had. */
 function coreIfAny(): Promise<Glue | undefined> {
@@ -47,6 +49,13 @@ async function moveSketches(): Promise<void> {
     const figure = document.querySelector<HTMLElement>(`[data-sketch="${schema.name}"]`);
     if (figure !== null) new SketchFigure(figure, schema, glue);
   }
+}
+
+/** Ten loop candidates for the reader to judge. */
+async function askForLoops(): Promise<void> {
+  const figure = document.querySelector<HTMLElement>('#decide');
+  const glue = await coreIfAny();
+  if (figure !== null && glue !== undefined) new DecideFigure(figure, glue);
 }
 
 /** A thousand laps, once one comes to look at them. */

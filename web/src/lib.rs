@@ -2,9 +2,10 @@
 //!
 //! [`registry`] lists the widgets, [`schema`] and [`state`] write as JSON what the host page needs
 //! to know of them; [`story`] and [`outcomes`] drive laps for the pictures that the page draws by
-//! itself, and [`sketches`] are its small figures. All of it is plain Rust and tested natively. The browser half adapts a widget to
+//! itself, [`sketches`] are its small figures, and [`candidates`] are loops for the reader to judge. All of it is plain Rust and tested natively. The browser half adapts a widget to
 //! eframe and to JavaScript; what the host page does with it is in `web/ts`.
 
+pub mod candidates;
 pub mod outcomes;
 pub mod registry;
 pub mod schema;

@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::*;
 
 use crate::app::theme_of;
 use crate::outcomes::Outcomes;
-use crate::{registry, schema, sketches, state, story};
+use crate::{candidates, registry, schema, sketches, state, story};
 
 /// The schema of every widget, a JSON array.
 #[wasm_bindgen(js_name = widgetSchemas)]
@@ -64,6 +64,19 @@ pub fn draw_sketch(name: &str, value: f64, width_px: f32, theme: &str) -> Result
     let sketch = sketches::find(name)
         .ok_or_else(|| JsError::new(&format!("there is no figure `{name}`")))?;
     Ok(sketch.drawn(value, width_px, theme_of(theme)).to_string())
+}
+
+/// Ten loop candidates for the reader to judge, a JSON array of `{"svg", "says"}`; see [`candidates`].
+#[wasm_bindgen(js_name = loopCandidates)]
+pub fn loop_candidates(width_px: f32, theme: &str) -> String {
+    candidates::shown(width_px, theme_of(theme)).to_string()
+}
+
+/// What became of the reader's answers, a letter for each candidate, `1` where it was taken.
+#[wasm_bindgen(js_name = judgeCandidates)]
+pub fn judge_candidates(answers: &str, width_px: f32, theme: &str) -> String {
+    let answers: Vec<bool> = answers.chars().map(|letter| letter == '1').collect();
+    candidates::judged(&answers, width_px, theme_of(theme)).to_string()
 }
 
 /// Drives one lap after the other.

@@ -8,6 +8,7 @@ mod bells;
 mod ellipse;
 mod gate;
 mod nearest;
+mod push;
 mod slide;
 
 use kit::palette::Theme;
@@ -56,12 +57,13 @@ pub struct Sketch {
 }
 
 /// All figures, in the order of the page.
-pub const SKETCHES: [Sketch; 6] = [
+pub const SKETCHES: [Sketch; 7] = [
     nearest::SKETCH,
     slide::SKETCH,
     bells::SKETCH,
     ellipse::SKETCH,
     gate::SKETCH,
+    push::SKETCH,
     ancestor::SKETCH,
 ];
 

@@ -8,7 +8,8 @@
 //   </slam-predict>
 //
 // A choice is compared with the verdict of the widget. With `fact="rmse_m" tolerance="0.02"` the
-// reader types a number, which is compared with that fact of the outcome.
+// reader types a number, which is compared with that fact of the outcome. With a fact and choices, a choice says of
+// which values it is right: `<li data-choice="smaller" data-to="0.02">`, from the first value to below the second.
 
 // @ts-expect-error: stays a file of its own beside this one.
 import './slam-widget.js';
@@ -67,8 +68,8 @@ export class SlamPredict extends HTMLElement {
     legend.textContent = 'Your prediction';
     fields.append(legend);
     const fact = this.getAttribute('fact');
-    if (fact === null) {
-      const choices = this.querySelectorAll<HTMLElement>('[data-choice]');
+    const choices = this.querySelectorAll<HTMLElement>('[data-choice]');
+    if (fact === null || choices.length > 0) {
       for (const choice of choices) fields.append(radio(choice));
     } else {
       fields.append(numberField(this.getAttribute('unit') ?? ''));
@@ -116,6 +117,12 @@ export class SlamPredict extends HTMLElement {
     }
     const result = outcome.facts[fact] ?? undefined;
     if (result === undefined) throw new RangeError(`the widget tells no number \`${fact}\` here`);
+    const choice = this.#item(prediction);
+    if (choice !== null) {
+      const { from, to } = choice.dataset;
+      const correct = result >= Number(from ?? -Infinity) && result < Number(to ?? Infinity);
+      return { prediction, result: String(result), correct, gap: null };
+    }
     const gap = Number(prediction) - result;
     const tolerance = Number(this.getAttribute('tolerance') ?? 0);
     return { prediction, result: String(result), correct: Math.abs(gap) <= tolerance, gap };
@@ -125,12 +132,13 @@ export class SlamPredict extends HTMLElement {
     const { correct, gap, prediction, result } = verdict;
     const unit = this.getAttribute('unit') ?? '';
     const judged = correct ? 'Right.' : 'Not right.';
+    // The widget's own sentence may be about another moment than the number that was asked for.
+    const digits = Math.max(gap === null ? 0 : decimalsOf(prediction), DECIMALS);
+    const said = `It is ${Number(result).toFixed(digits)}${unit}.`;
     if (gap === null) {
-      this.#say([`${judged} You said: ${this.#wordsOf(prediction)}. ${outcome.sentence}`]);
+      const told = this.hasAttribute('fact') ? said : outcome.sentence;
+      this.#say([`${judged} You said: ${this.#wordsOf(prediction)}. ${told}`]);
     } else {
-      // The widget's own sentence may be about another moment than the number that was asked for.
-      const digits = Math.max(decimalsOf(prediction), DECIMALS);
-      const said = `It is ${Number(result).toFixed(digits)}${unit}.`;
       this.#say([`${judged} ${said} You said ${prediction}${unit} and are off by ${Math.abs(gap).toPrecision(2)}${unit}.`]);
     }
     // The widget may stand pages away: the reader decides when to leave the answer.
@@ -144,8 +152,11 @@ export class SlamPredict extends HTMLElement {
 
   /** A choice as the page words it. */
   #wordsOf(choice: string): string {
-    const item = this.querySelector(`[data-choice="${CSS.escape(choice)}"]`);
-    return item?.textContent?.trim() ?? choice;
+    return this.#item(choice)?.textContent?.trim() ?? choice;
+  }
+
+  #item(choice: string): HTMLElement | null {
+    return this.querySelector<HTMLElement>(`[data-choice="${CSS.escape(choice)}"]`);
   }
 
   #reset(): void {

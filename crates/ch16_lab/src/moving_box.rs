@@ -90,7 +90,7 @@ impl BoxMethods {
         [
             plain,
             IcpConfig {
-                trim_fraction: 1.0 - self.dropped,
+                trim: self.dropped,
                 ..plain
             },
             IcpConfig {

@@ -129,10 +129,7 @@ fn point_to_plane_does_not_promise_the_same() {
 fn trimming_keeps_the_nearest_share_of_the_pairs() {
     let scene = BasinScene::new();
     let all = BasinScene::config(IcpVariant::PointToPoint, 0.7);
-    let half = IcpConfig {
-        trim_fraction: 0.5,
-        ..all
-    };
+    let half = IcpConfig { trim: 0.5, ..all };
     let init = scene.guess(&BasinStart::default());
     let pairs = correspondences(scene.source(), scene.map(), init, &all);
     let kept = correspondences(scene.source(), scene.map(), init, &half);

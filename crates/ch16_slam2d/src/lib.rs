@@ -7,6 +7,8 @@ pub mod digest;
 pub mod field;
 pub mod graph;
 pub mod icp;
+#[cfg(feature = "listings")]
+pub mod listings;
 pub mod localize;
 pub mod loops;
 pub mod matching;

@@ -74,7 +74,7 @@ fn align_by_icp(
         tau: *bytes.choose(&[0.6, 0.01, 0.1, 2.0, 10.0])?,
         tolerance: *bytes.choose(&[1e-4, 0.0])?,
         min_pairs: bytes.int_in_range(0..=8)?,
-        trim_fraction: *bytes.choose(&[1.0, 0.5, 0.1, 0.0])?,
+        trim: *bytes.choose(&[0.0, 0.5, 0.9, 1.0])?,
         huber_width_m: *bytes.choose(&[f64::INFINITY, 0.1, 1e-9])?,
     };
     let cell_m = *bytes.choose(&[0.25, 0.05, 3.0])?;

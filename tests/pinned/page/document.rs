@@ -40,8 +40,10 @@ pub struct Prediction {
     pub state: String,
     /// The fact of its outcome that is asked for; empty where the verdict is.
     pub fact: String,
-    /// The verdicts to choose from.
+    /// The verdicts to choose from, or names of choices of a value.
     pub choices: Vec<String>,
+    /// Of which values of the fact each choice is right: from the first to below the second.
+    pub ranges: Vec<[f64; 2]>,
 }
 
 /// The source of the page, taken apart.
@@ -154,11 +156,18 @@ impl Document {
                 widget: attribute("widget").unwrap_or_default(),
                 state: attribute("state").unwrap_or_default(),
                 fact: attribute("fact").unwrap_or_default(),
-                choices: Vec::new(),
+                ..Prediction::default()
             }),
             "li" if attribute("data-choice").is_some() => {
                 if let Some(prediction) = self.predictions.last_mut() {
+                    let end = |name: &str, open: f64| {
+                        attribute(name).map_or(open, |text| text.parse().expect("a number"))
+                    };
                     prediction.choices.extend(attribute("data-choice"));
+                    prediction.ranges.push([
+                        end("data-from", f64::NEG_INFINITY),
+                        end("data-to", f64::INFINITY),
+                    ]);
                 }
             }
             "code" => *open = Some(Open::Code),

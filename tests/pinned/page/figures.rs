@@ -20,7 +20,7 @@ mod robots;
 mod rows;
 mod search;
 mod setup;
-mod sweep;
+pub mod sweep;
 mod terrain;
 
 use std::cell::OnceCell;
@@ -36,7 +36,6 @@ use sweep::Sweep;
 pub struct Figures {
     laps: HashMap<String, LapRecord>,
     basin: OnceCell<BasinScene>,
-    sweep: OnceCell<Sweep>,
     places: HashMap<String, places::World>,
 }
 
@@ -73,7 +72,7 @@ impl Figures {
             ["lap", run, what @ ..] => lap::value(self.lap(run)?, what),
             ["robots", row, column] => robots::value(row, column),
             ["worlds", what @ ..] => crate::worlds::value(what),
-            ["sweep", what @ ..] => self.sweep.get_or_init(Sweep::run).value(what),
+            ["sweep", what @ ..] => Sweep::shared().value(what),
             _ => None,
         }
     }

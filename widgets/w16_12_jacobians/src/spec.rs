@@ -98,7 +98,7 @@ pub const PARAMS: &[ParamSpec] = &[
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.12",
     title: "Wrong Jacobians, wrong residual",
-    misconception: "A wrong Jacobian costs steps. A wrong residual costs the answer, and converges as if all were well.",
+    misconception: "An approximate Jacobian costs steps, and where residuals remain moves the answer to second order. A wrong residual moves it to first order, and converges as if all were well.",
     notice: &[
         "With the exact Jacobian each step takes the distance down by some two powers of ten, until only rounding is left.",
         "The Jacobian that is twice too long goes half the way each time, and still ends at the optimum.",

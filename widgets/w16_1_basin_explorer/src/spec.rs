@@ -93,15 +93,15 @@ pub const PARAMS: &[ParamSpec] = &[
     },
     ParamSpec {
         id: "trim",
-        label: "share of pairs kept",
+        label: "share of pairs dropped",
         unit: "",
         kind: ParamKind::Slider {
-            min: 0.3,
-            max: 1.0,
+            min: 0.0,
+            max: 0.7,
             step: 0.05,
         },
-        default: 1.0,
-        help: "Only this share of the pairs counts, the closest first; 1 keeps all.",
+        default: 0.0,
+        help: "Trimming drops this share of the pairs in each iteration, the longest first; 0 keeps all.",
     },
     ParamSpec {
         id: "huber",

@@ -23,6 +23,7 @@ fn the_basin_map_has_a_band_at_each_spacing() {
             "R right minimum",
             "1 one post off",
             "2 two posts off or more",
+            "W right place, wrong heading",
             "F another false minimum"
         ]
     );

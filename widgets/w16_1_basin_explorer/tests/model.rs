@@ -212,7 +212,7 @@ fn basin_maps_fill_in_small_pieces_and_only_start_over_when_they_must() {
     for (id, value) in [
         ("tau", 1.0),
         ("dy", 0.2),
-        ("trim", 0.8),
+        ("trim", 0.2),
         ("huber", 0.1),
         ("seed", 5.0),
         ("axis", 1.0),

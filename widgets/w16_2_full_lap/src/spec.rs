@@ -697,8 +697,8 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         },
         Preset {
             id: "true-loop",
-            label: "A true loop that no gate lets in",
-            help: "From the far end of the corridor to the start, as it truly is: the typical error over the keyframes falls from 0.59 m to 0.14 m. The gate would call it drift.",
+            label: "A true loop that the gate refuses",
+            help: "From keyframe 25, on the way back, to the start, as it truly is: the typical error over the keyframes falls from 0.59 m to 0.14 m. The gate refuses it, at χ² 13.0: drift does not explain it.",
             set: &[
                 ("own", 2.0),
                 ("own-from", 25.0),

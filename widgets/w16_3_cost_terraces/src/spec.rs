@@ -336,7 +336,7 @@ const PRESETS: &[Preset] = &[
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.3",
     title: "Cost terraces",
-    misconception: "Where ICP sticks, a better solver would stick too: the terraces are in the cost.",
+    misconception: "False minima are in the cost: the closed form jumps over small ridges, not out of those.",
     notice: &[
         "Both maps hold the same sweep against the same points; only the measure differs. Dark is low, and the balls seek the dark.",
         "A small τ breaks ICP's bowl into terraces and hollows; colours by rank show them. A ball rests in the next one, however good the solver.",

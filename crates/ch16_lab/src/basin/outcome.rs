@@ -24,6 +24,8 @@ pub enum Minimum {
     OnePost,
     /// At the fence, two posts or more beside the right place.
     MorePosts,
+    /// The right place, but turned by more than 3°: the heading is a part of home.
+    WrongHeading,
     /// Another false minimum, or on the way to one when the iterations ran out.
     Other,
 }
@@ -38,6 +40,7 @@ impl Minimum {
             Self::HalfTurn => 'H',
             Self::OnePost => '1',
             Self::MorePosts => '2',
+            Self::WrongHeading => 'W',
             Self::Other => 'F',
         }
     }
@@ -51,17 +54,19 @@ impl Minimum {
             Self::HalfTurn => "half turn",
             Self::OnePost => "one post off",
             Self::MorePosts => "two posts off or more",
+            Self::WrongHeading => "right place, wrong heading",
             Self::Other => "another false minimum",
         }
     }
 
     /// Those that a place has, for legends.
     #[must_use]
-    pub fn of(place: BasinPlace) -> [Self; 4] {
-        match place {
-            BasinPlace::Room => [Self::Right, Self::QuarterTurn, Self::HalfTurn, Self::Other],
-            BasinPlace::Fence => [Self::Right, Self::OnePost, Self::MorePosts, Self::Other],
-        }
+    pub fn of(place: BasinPlace) -> [Self; 5] {
+        let [next, farther] = match place {
+            BasinPlace::Room => [Self::QuarterTurn, Self::HalfTurn],
+            BasinPlace::Fence => [Self::OnePost, Self::MorePosts],
+        };
+        [Self::Right, next, farther, Self::WrongHeading, Self::Other]
     }
 }
 
@@ -117,10 +122,12 @@ impl BasinOutcome {
         let posts = (off_m.x / FENCE_SPACING_M).round();
         let beside_m = math::norm2(off_m.x - posts * FENCE_SPACING_M, off_m.y);
         let minimum = |home_deg: f64| {
-            if beside_m >= SUCCESS_RADIUS_M || outcome.error_deg.abs() > home_deg {
+            let is_turned = outcome.error_deg.abs() > home_deg;
+            if beside_m >= SUCCESS_RADIUS_M || (is_turned && posts != 0.0) {
                 return Minimum::Other;
             }
             match posts.abs() {
+                0.0 if is_turned => Minimum::WrongHeading,
                 0.0 => Minimum::Right,
                 1.0 => Minimum::OnePost,
                 _ => Minimum::MorePosts,
@@ -142,6 +149,8 @@ fn classify(error_m: f64, error_deg: f64, home_deg: f64) -> Minimum {
         Minimum::QuarterTurn
     } else if turned_by(180.0) {
         Minimum::HalfTurn
+    } else if error_m < SUCCESS_RADIUS_M {
+        Minimum::WrongHeading
     } else {
         Minimum::Other
     }
@@ -167,8 +176,8 @@ mod tests {
     fn home_is_the_place_and_the_heading() {
         let home = |error_m, error_deg| classify(error_m, error_deg, HOME_HEADING_DEG);
         assert_eq!(home(0.119, 3.0), Minimum::Right);
-        assert_eq!(home(0.0, -3.1), Minimum::Other);
-        assert_eq!(home(0.0, 25.0), Minimum::Other);
+        assert_eq!(home(0.0, -3.1), Minimum::WrongHeading);
+        assert_eq!(home(0.11, 25.0), Minimum::WrongHeading);
         assert_eq!(home(0.0, 90.0), Minimum::QuarterTurn);
         assert_eq!(home(0.121, 0.0), Minimum::Other);
     }

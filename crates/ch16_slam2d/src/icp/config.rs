@@ -23,8 +23,8 @@ pub struct IcpConfig {
     pub tolerance: f64,
     /// With fewer pairs than this the run ends.
     pub min_pairs: usize,
-    /// Share of the pairs to keep, the nearest first; 1 keeps all (Chetverikov et al. 2002).
-    pub trim_fraction: f64,
+    /// Share of the pairs to drop, the longest first; 0 keeps all (Chetverikov et al. 2002).
+    pub trim: f64,
     /// Residual beyond which a pair's weight falls as width/residual, m; infinite weighs all pairs alike
     /// (Huber 1964).
     pub huber_width_m: f64,
@@ -38,7 +38,7 @@ impl Default for IcpConfig {
             tau: 0.6,
             tolerance: 1e-4,
             min_pairs: 8,
-            trim_fraction: 1.0,
+            trim: 0.0,
             huber_width_m: f64::INFINITY,
         }
     }

@@ -41,7 +41,7 @@ impl Pair {
 
 /// The pairs that a registration would use with the cloud at `target_from_source`.
 ///
-/// Pairs are closer than `config.tau`; with trimming only the nearest share of them is left.
+/// Pairs are closer than `config.tau`; trimming has dropped the longest share of them.
 #[must_use]
 pub fn correspondences<M: NearestMap>(
     cloud: &PointCloud,
@@ -188,15 +188,15 @@ impl IcpWorkspace {
             self.pairs.push(pair);
         }
         self.truncated_cost_m2 = cost / cloud.len().max(1) as f64;
-        self.trim(config.trim_fraction);
+        self.drop_longest(config.trim);
     }
 
-    /// Keeps the nearest `fraction` of the pairs, and with the last of them all at its distance.
-    fn trim(&mut self, fraction: f64) {
-        if fraction >= 1.0 || self.pairs.is_empty() {
+    /// Drops the longest `share` of the pairs; those as long as the last that stays, stay with it.
+    fn drop_longest(&mut self, share: f64) {
+        if share <= 0.0 || self.pairs.is_empty() {
             return;
         }
-        let kept = (fraction * self.pairs.len() as f64).ceil().max(1.0) as usize;
+        let kept = ((1.0 - share) * self.pairs.len() as f64).ceil().max(1.0) as usize;
         self.distances.clear();
         self.distances
             .extend(self.pairs.iter().map(|pair| pair.distance_squared_m2));

@@ -389,7 +389,7 @@ fn icp(of: &str, config: &mut IcpConfig, f: &mut impl Fields) {
         tau,
         tolerance,
         min_pairs,
-        trim_fraction,
+        trim,
         huber_width_m,
     } = config;
     let variants = [
@@ -401,7 +401,13 @@ fn icp(of: &str, config: &mut IcpConfig, f: &mut impl Fields) {
     f.number(&format!("{of}.tau_m"), tau);
     f.number(&format!("{of}.tolerance"), tolerance);
     f.count(&format!("{of}.min_pairs"), min_pairs);
-    f.within(&format!("{of}.trim_fraction"), trim_fraction, 0.0..=1.0);
+    // The file names the share that is kept.
+    let before = 1.0 - *trim;
+    let mut kept = before;
+    f.within(&format!("{of}.trim_fraction"), &mut kept, 0.0..=1.0);
+    if kept != before {
+        *trim = 1.0 - kept;
+    }
     f.number(&format!("{of}.huber_width_m"), huber_width_m);
 }
 

@@ -12,7 +12,7 @@ const POINTS: [([f64; 2], [f64; 2]); 4] = [
     ([0.0, -1.0], [2.6, 0.2]),
 ];
 
-/// `theta_deg`, `trace_bound`: results by name; `p0x` or `q3y`: a coordinate of a point.
+/// `theta_deg`, `dot`: results by name; `p0x` or `q3y`: a coordinate of a point.
 pub fn value(what: &str) -> Option<f64> {
     let source = POINTS.map(|(p, _)| Point2::from(p));
     let target = POINTS.map(|(_, q)| Point2::from(q));
@@ -38,7 +38,8 @@ pub fn value(what: &str) -> Option<f64> {
         "cos" => aligned.pose.rotation().cos,
         "sin" => aligned.pose.rotation().sin,
         "trace_bound" => aligned.trace_bound,
-        "sigma" => moments.singular_values().min(),
+        "dot" => moments.trace(),
+        "cross" => moments[(0, 1)] - moments[(1, 0)],
         "spread_p" => spread(&source, p_mean),
         "spread_q" => spread(&target, q_mean),
         "residual" => source.iter().zip(&target).map(residual).sum(),

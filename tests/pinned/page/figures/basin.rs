@@ -23,6 +23,9 @@ pub fn value(scene: &BasinScene, path: &[&str]) -> Option<f64> {
         [variant, "to_deg"] => basin_edge(scene, variant, TAU_M, 1),
         [variant, "wide", "from_deg"] => basin_edge(scene, variant, WIDE_TAU_M, -1),
         [variant, "wide", "to_deg"] => basin_edge(scene, variant, WIDE_TAU_M, 1),
+        [name, "quarter_from_deg"] => quarter_from_deg(scene, name),
+        [name, "iterations_least"] => iterations_in_basin(scene, name)?.min(),
+        [name, "iterations_most"] => iterations_in_basin(scene, name)?.max(),
         [_, "short", "starts"] => Some(whole_degrees().count() as f64),
         [variant, "short", "right"] => {
             let ends_right = |degrees: &i32| {
@@ -89,7 +92,6 @@ fn registration(found: &BasinOutcome, what: &str) -> Option<f64> {
         "error_m" => found.error_m,
         "error_deg" => found.error_deg.abs(),
         "rmse" => found.rmse,
-        "inliers" => found.inliers as f64,
         "iterations" => found.iterations as f64,
         _ => return None,
     })
@@ -97,6 +99,37 @@ fn registration(found: &BasinOutcome, what: &str) -> Option<f64> {
 
 fn whole_degrees() -> impl Iterator<Item = i32> {
     -180..=180
+}
+
+/// The least whole degree from which, and from each up to 90°, a registration ends a quarter turn off.
+fn quarter_from_deg(scene: &BasinScene, name: &str) -> Option<f64> {
+    let is_quarter = |degrees: &i32| {
+        register(scene, name, TAU_M, f64::from(*degrees))
+            .is_some_and(|found| found.ending == Minimum::QuarterTurn)
+    };
+    let last_other = (0..=90).rev().find(|degrees| !is_quarter(degrees))?;
+    Some(f64::from(last_other + 1))
+}
+
+/// Iterations from each whole degree of the right basin, but for the truth itself.
+fn iterations_in_basin(scene: &BasinScene, name: &str) -> Option<Iterations> {
+    let [from, to] = [-1, 1].map(|side| basin_edge(scene, name, TAU_M, side));
+    let degrees = (from? as i32..=to? as i32).filter(|degrees| *degrees != 0);
+    let found = degrees.filter_map(|degrees| register(scene, name, TAU_M, f64::from(degrees)));
+    Some(Iterations(found.map(|found| found.iterations).collect()))
+}
+
+/// Counts of iterations.
+struct Iterations(Vec<usize>);
+
+impl Iterations {
+    fn min(&self) -> Option<f64> {
+        self.0.iter().min().map(|count| *count as f64)
+    }
+
+    fn max(&self) -> Option<f64> {
+        self.0.iter().max().map(|count| *count as f64)
+    }
 }
 
 /// The last whole degree, going from 0 to one side, from which the right minimum is reached.

@@ -7,19 +7,18 @@ use super::terrain::scene_kind;
 /// How many the text drops.
 const COUNT: usize = 100;
 
-/// `count`, `room.std_x_cm`, `long.std_y_cm`.
+/// `count`, `long.std_x_cm`.
 pub fn value(path: &[&str]) -> Option<f64> {
-    let (place, axis) = match *path {
+    let place = match *path {
         ["count"] => return Some(COUNT as f64),
-        [place, "std_x_cm"] => (place, 0),
-        [place, "std_y_cm"] => (place, 1),
+        [place, "std_x_cm"] => place,
         _ => return None,
     };
     let kind = scene_kind(place)?;
     let scene = TerrainScene::new(kind, TerrainScene::DEFAULT_NDT_CELL_M);
     let mut drops = Drops::new(kind);
     let rests_cm: Vec<f64> = (0..COUNT)
-        .filter_map(|number| Some(100.0 * drops.path_m(&scene, number).last()?[axis]))
+        .filter_map(|number| Some(100.0 * drops.path_m(&scene, number).last()?[0]))
         .collect();
     let mean = rests_cm.iter().sum::<f64>() / COUNT as f64;
     let squares = rests_cm.iter().map(|at| (at - mean).powi(2));

@@ -18,7 +18,6 @@ pub fn value(path: &[&str]) -> Option<f64> {
                 "exact" => Recipe::Exact,
                 "approximate" => Recipe::Approximate,
                 "twice" => Recipe::WrongJacobian(WrongJacobian::TwiceTooLong),
-                "left" => Recipe::WrongJacobian(WrongJacobian::LeftForRight),
                 "residual" => Recipe::WrongResidual,
                 _ => return None,
             };

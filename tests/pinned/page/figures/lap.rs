@@ -5,10 +5,12 @@ use ch16_lab::lap::{
     LapTrace, OwnKernel, OwnLoopRequest,
 };
 use ch16_slam2d::chi_squared::gate_threshold;
-use ch16_slam2d::loops::GateModel;
 use pr_geom::Translation;
 
 use super::loops;
+
+/// The least noise of the wheels that the page drives with.
+const QUIET_NOISE: f64 = 0.25;
 
 /// The parameters of the lap of that name.
 pub fn config(name: &str) -> Option<LapConfig> {
@@ -21,16 +23,16 @@ pub fn config(name: &str) -> Option<LapConfig> {
             config.slam.loops.gate_chi2 = gate_threshold(0.9);
             config
         }
-        "locked" => drifting(),
-        "exact" => {
-            let mut config = drifting();
-            config.slam.loops.gate_model = GateModel::ExactMarginal;
-            config
-        }
         "twins" => LapConfig::in_world(BuiltInWorld::TwinRooms, CANONICAL_SEED, 1.0),
         "corridor" => LapConfig::in_world(BuiltInWorld::Corridor, CANONICAL_SEED, 1.0),
-        "hall" => LapConfig::in_world(BuiltInWorld::Hall, CANONICAL_SEED, 1.0)
-            .with_matcher(LapMatcher::PointToPlane),
+        "p2l" => LapConfig::default().with_matcher(LapMatcher::PointToPlane),
+        "p2l-narrow" => narrow_normals(),
+        "ndt" => LapConfig::default().with_matcher(LapMatcher::Ndt),
+        "quiet" => quiet(LapMatcher::PointToPoint),
+        "quiet-p2l" => quiet(LapMatcher::PointToPlane),
+        "quiet-ndt" => quiet(LapMatcher::Ndt),
+        "corridor-p2l" => bare(LapMatcher::PointToPlane),
+        "corridor-ndt" => bare(LapMatcher::Ndt),
         "six" => LapConfig::with_seed_and_noise(6, 1.0),
         _ => return None,
     })
@@ -43,9 +45,23 @@ fn noisy() -> LapConfig {
     config
 }
 
-/// A lap that drifts farther than the gate allows for.
-fn drifting() -> LapConfig {
-    LapConfig::with_seed_and_noise(2, 3.0)
+/// Point to plane with the normals of the chapter's lap, which only weigh edges there.
+fn narrow_normals() -> LapConfig {
+    let config = LapConfig::default();
+    let scan = config.slam.scan;
+    config
+        .with_matcher(LapMatcher::PointToPlane)
+        .with_scan(scan)
+}
+
+/// The canonical run with wheels that hardly slip.
+fn quiet(matcher: LapMatcher) -> LapConfig {
+    LapConfig::with_seed_and_noise(CANONICAL_SEED, QUIET_NOISE).with_matcher(matcher)
+}
+
+/// A corridor without doors.
+fn bare(matcher: LapMatcher) -> LapConfig {
+    LapConfig::in_world(BuiltInWorld::Corridor, CANONICAL_SEED, 1.0).with_matcher(matcher)
 }
 
 /// `rms`, `turn.short_m`, `loop.0.chi2`, `front_end.rms`: results of a lap, by name.
@@ -59,7 +75,16 @@ pub fn value(record: &LapRecord, path: &[&str]) -> Option<f64> {
             loops::attempt(attempt, &record.lap, what)
         }
         ["own", claim, from, to, kernel, what] => own(record, [from, to], claim, kernel, what),
-        ["right_refused"] => Some(loops::right_refused(&record.lap)),
+        ["front_end", "turn", what] => turn(&record.front_end, what),
+        ["rms_fall_percent"] => {
+            let [front_end, lap] = [&record.front_end, &record.lap];
+            let left = lap.summary.keyframe_rms_m / front_end.summary.keyframe_rms_m;
+            Some(100.0 * (1.0 - left))
+        }
+        ["normals_cells"] => {
+            let scan = record.config.slam.scan;
+            Some(scan.normal_radius_m / scan.cell_m)
+        }
         ["front_end", what] => summary(&record.front_end, what),
         [what] => summary(&record.lap, what),
         _ => None,
@@ -83,8 +108,6 @@ fn own(record: &LapRecord, ends: [&str; 2], claim: &str, kernel: &str, what: &st
         "gate_chi2" => attempt.verification.gate.chi2,
         "max_shift" => effect.max_shift_m,
         "chi2_after" => effect.chi2.after,
-        "rms_before" => effect.keyframe_rms_m.before,
-        "rms_after" => effect.keyframe_rms_m.after,
         _ => return None,
     })
 }
@@ -104,7 +127,7 @@ fn summary(lap: &LapTrace, what: &str) -> Option<f64> {
     Some(match what {
         "ticks" => summary.ticks as f64,
         "loops" => summary.loops as f64,
-        "turn_node" => lap.turn_node? as f64,
+        "keyframes" => lap.keyframes.len() as f64,
         "odometry_end_error" => summary.odometry_end_error_m,
         "odometry_rms" => summary.odometry_rms_m,
         "end_error" => summary.keyframe_end_error_m,
@@ -117,14 +140,13 @@ fn summary(lap: &LapTrace, what: &str) -> Option<f64> {
     })
 }
 
-/// The turn's keyframe against the truth: too short along the corridor, and off to the side.
+/// The turn's keyframe against the truth: too short along the corridor.
 fn turn(lap: &LapTrace, what: &str) -> Option<f64> {
     let node = lap.turn_node?;
     let error =
         lap.poses(lap.summary.ticks)[node].translation() - lap.keyframes[node].truth.translation();
     match what {
         "short_m" => Some(-error.x),
-        "side_m" => Some(error.y.abs()),
         _ => None,
     }
 }

@@ -17,19 +17,8 @@ pub fn attempt(attempt: &LoopAttempt, lap: &LapTrace, what: &str) -> Option<f64>
         "gate_std_m" => gate_std(0),
         "gate_std_deg" => gate_std(2).to_degrees(),
         "max_shift" => attempt.effect?.max_shift_m,
-        "rms_before" => attempt.effect?.keyframe_rms_m.before,
-        "rms_after" => attempt.effect?.keyframe_rms_m.after,
         "error_m" => lap.loop_error(attempt).position_m,
         "error_deg" => lap.loop_error(attempt).heading_deg,
         _ => return None,
     })
-}
-
-/// Attempts that the gate alone turned away although they were right.
-pub fn right_refused(lap: &LapTrace) -> f64 {
-    let is_right = |attempt: &&LoopAttempt| !lap.loop_error(attempt).is_false();
-    let refused = lap
-        .loop_attempts()
-        .filter(|attempt| !attempt.verification.gate.passes());
-    refused.filter(is_right).count() as f64
 }

@@ -1,19 +1,16 @@
 //! The moving box of w16.8: how far it pulls the mean over many seeds.
 
-use ch16_lab::moving_box::{BOX_SIDE_M, BoxConfig, BoxErrors, BoxMethods, BoxScene};
+use ch16_lab::moving_box::{BoxConfig, BoxErrors, BoxMethods, BoxScene};
 use ch16_slam2d::icp::IcpWorkspace;
 
 /// Seeds of the widget's curves, from 1 on.
 const SEEDS: u32 = 100;
 
-/// `20.plain.bias_mm`: by share in percent and by method; `setup.moved_m`.
+/// `20.plain.bias_mm`: by share in percent and by method; `setup.seeds`.
 pub fn value(path: &[&str]) -> Option<f64> {
     let methods = BoxMethods::default();
     match *path {
-        ["setup", "side_m"] => Some(BOX_SIDE_M),
-        ["setup", "moved_m"] => Some(BoxConfig::default().moved_m),
         ["setup", "dropped_percent"] => Some(100.0 * methods.dropped),
-        ["setup", "huber_m"] => Some(methods.huber_width_m),
         ["setup", "seeds"] => Some(f64::from(SEEDS)),
         [share, method, "bias_mm"] => {
             let method = BoxMethods::NAMES

@@ -1,15 +1,13 @@
 //! Places by their looks, over the laps that `slam2d places` drives: precision and recall.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapDetector, LapMatcher};
-use ch16_lab::places::{PlaceCurve, PlacePair, SAME_PLACE_M, place_curves, place_pairs};
-use ch16_slam2d::places::HistogramConfig;
+use ch16_lab::places::{PlaceCurve, place_curves, place_pairs};
 
 /// Laps of each world, from seed 1 on.
 const SEEDS: u32 = 20;
 
 /// The grades of all detectors in one world.
 pub struct World {
-    pairs: Vec<PlacePair>,
     curves: Vec<PlaceCurve>,
 }
 
@@ -23,19 +21,16 @@ impl World {
             .collect();
         Some(Self {
             curves: place_curves(&pairs),
-            pairs,
         })
     }
 
-    /// `pairs`, `same`, `context.area`, `nearby.clean_recall`.
+    /// `context.area`, `nearby.clean_recall`.
     pub fn value(&self, path: &[&str]) -> Option<f64> {
         let detector = |name: &str| {
             let detector = LapDetector::named(name)?;
             self.curves.iter().find(|curve| curve.detector == detector)
         };
         match *path {
-            ["pairs"] => Some(self.pairs.len() as f64),
-            ["same"] => Some(self.pairs.iter().filter(|pair| pair.is_same).count() as f64),
             [name, "area"] => Some(detector(name)?.average_precision),
             [name, "clean_recall"] => Some(detector(name)?.recall_without_errors),
             _ => None,
@@ -47,8 +42,6 @@ impl World {
 pub fn setup(what: &str) -> Option<f64> {
     match what {
         "seeds" => Some(f64::from(SEEDS)),
-        "same_m" => Some(SAME_PLACE_M),
-        "bins" => Some(HistogramConfig::default().bins as f64),
         _ => None,
     }
 }

@@ -19,7 +19,6 @@ pub fn value(path: &[&str]) -> Option<f64> {
         }
         [shape, kind, "cost"] => {
             let shape = match shape {
-                "corners" => Shape::Corners,
                 "upside" => Shape::UpsideDown,
                 _ => return None,
             };

@@ -2,11 +2,14 @@
 
 use ch16_lab::basin::BasinScene;
 use ch16_lab::lap::{LAST_KEYFRAMES, LapConfig};
-use ch16_lab::terrain::TerrainSettings;
 use ch16_slam2d::chi_squared::{cdf3, gate_threshold};
 use ch16_slam2d::cloud::PointCloud;
-use ch16_slam2d::icp::{AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, IcpVariant};
-use pr_geom::{Point2, SE2};
+use ch16_slam2d::icp::{
+    AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, IcpVariant, point_to_plane_step,
+};
+use ch16_slam2d::metrics::DisagreementConfig;
+use ch16_slam2d::ndt::NdtMap;
+use pr_geom::{Point2, SE2, Vector2};
 use pr_sim::World;
 
 use super::basin::{TAU_M, WIDE_TAU_M};
@@ -33,9 +36,13 @@ pub fn value(path: &[&str]) -> Option<f64> {
     let basin = BasinScene::config(IcpVariant::PointToPoint, TAU_M);
     Some(match *path {
         ["lap", "beams"] => config.drive.lidar.beams as f64,
+        ["lap", "range_m"] => config.drive.lidar.max_range_m,
+        ["lap", "noise_cm"] => 100.0 * config.drive.lidar.range_sigma_m,
+        ["map", "disagreement_reach_m"] => DisagreementConfig::default().reach_m,
+        ["p2l", "ridge"] => plane_ridge(),
+        ["ndt", "clamp"] => ndt_clamp(),
         ["lap", "tick_s"] => config.drive.dt_s,
         ["lap", "last_keyframes"] => LAST_KEYFRAMES as f64,
-        ["lap", "window"] => config.slam.window_sweeps as f64,
         ["lap", "keyframe_m"] => config.slam.keyframe_distance_m,
         ["lap", "keyframe_rad"] => config.slam.keyframe_turn_rad,
         ["loop", "every_ordinal"] => loops.attempt_every_nodes as f64,
@@ -48,15 +55,12 @@ pub fn value(path: &[&str]) -> Option<f64> {
         ["loop", "inflate"] => loops.trust.inflate,
         ["odometry", "inflate"] => config.slam.odometry_trust.inflate,
         ["lap", "tau_deviations"] => tau_deviations(),
-        ["noise", "fourfold_std"] => fourfold_std(),
         ["information", "ridge"] => INFORMATION_RIDGE,
         ["information", "cap"] => INFORMATION_CAP,
         ["information", "cap_std_m"] => 1.0 / INFORMATION_CAP.sqrt(),
         ["basin", "tau"] => basin.tau,
         ["basin", "tau_wide"] => WIDE_TAU_M,
-        ["basin", "max_iters"] => basin.max_iters as f64,
         ["normals", "min_neighbors"] => min_neighbors() as f64,
-        ["terrain", "span_m"] => TerrainSettings::default().span_m,
         _ => return None,
     })
 }
@@ -74,10 +78,25 @@ fn min_neighbors() -> usize {
         .expect("ten points in a line give normals")
 }
 
-/// By how much noise factor 4 multiplies the standard deviation of the wheels' speed.
-fn fourfold_std() -> f64 {
-    let noise = LapConfig::default().drive.odometry_noise;
-    (noise.scaled(4.0).alpha[0] / noise.alpha[0]).sqrt()
+/// The ridge of the point-to-plane step as a share of the mean of the diagonal, from how much of a
+/// step it keeps back.
+fn plane_ridge() -> f64 {
+    const OFF_M: f64 = 0.1;
+    let wall = [-1.0, 0.0, 1.0].map(|x| Point2::new(x, 0.0));
+    let lifted = wall.map(|p| Point2::new(p.x, OFF_M));
+    let step = point_to_plane_step(&wall, &lifted, &[Some(Vector2::y()); 3]);
+    // Three rows (0, 1, x) about the centroid.
+    let diagonal = [0.0, 3.0, 2.0];
+    let ridge = diagonal[1] * (OFF_M / step.y() - 1.0);
+    ridge / (diagonal.iter().sum::<f64>() / 3.0)
+}
+
+/// The smaller eigenvalue of a bell whose points lie on a line, as a share of the larger one.
+fn ndt_clamp() -> f64 {
+    let line = (0..8).map(|k| Point2::new(0.05 + 0.1 * f64::from(k), 0.5));
+    let map = NdtMap::build(&line.collect::<PointCloud>(), 1.0, 4);
+    let values = map.cells()[0].covariance.symmetric_eigenvalues();
+    values.min() / values.max()
 }
 
 /// How many times the usual difference of prediction and registration the adaptive τ is.

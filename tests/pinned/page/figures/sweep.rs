@@ -3,10 +3,11 @@
 //! The same laps as `slam2d sweep` drives by default, and the same statistics of the core.
 
 use std::ops::RangeInclusive;
+use std::sync::OnceLock;
 use std::thread;
 
-use ch16_lab::lap::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LapConfig, LapRunner, LapSummary};
-use ch16_lab::nudge::{CHANGED_M, NUDGE, NudgeStatistics, farthest_keyframe_m, nudged};
+use ch16_lab::lap::{LapConfig, LapRunner, LapSummary};
+use ch16_lab::nudge::{NUDGE, NudgeStatistics, farthest_keyframe_m, nudged};
 use ch16_lab::results::{Column, LapOutcome, LapStatistics, Row};
 use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::metrics::position_error_m;
@@ -36,8 +37,14 @@ pub struct Sweep {
 }
 
 impl Sweep {
+    /// The sweep, driven when it is first asked for.
+    pub fn shared() -> &'static Self {
+        static SWEEP: OnceLock<Sweep> = OnceLock::new();
+        SWEEP.get_or_init(Self::run)
+    }
+
     /// Drives all of them over all cores; the laps are independent, so threads change nothing.
-    pub fn run() -> Self {
+    fn run() -> Self {
         let seeds: Vec<u32> = SEEDS.collect();
         let workers = thread::available_parallelism().map_or(1, usize::from);
         let shares = seeds.chunks(seeds.len().div_ceil(workers));
@@ -63,7 +70,7 @@ impl Sweep {
         }
     }
 
-    /// `once.with_loops.end_error.median`, `double.loops.0`, `last`: statistics by name.
+    /// `once.with_loops.end_error.median`, `double.loops.0`, `seeds`: statistics by name.
     pub fn value(&self, path: &[&str]) -> Option<f64> {
         let (&name, rest) = path.split_first()?;
         if let Some(level) = NOISE.iter().position(|&(known, _)| known == name) {
@@ -75,23 +82,11 @@ impl Sweep {
         if name == "exact_gate" {
             return of_laps(&self.exact_gate, rest, &self.canonical);
         }
-        let [_, once, ..] = &self.levels;
-        let end_error = |lap: &LapOutcome| lap.entry(Column::WithLoops, Row::EndError);
-        let spread = once.spread(Column::WithLoops, Row::EndError)?;
-        let below = |limit| 100.0 * once.share(|lap| end_error(lap) < Some(limit));
         match *path {
             ["seeds"] => Some(SEEDS.count() as f64),
             ["levels"] => Some(NOISE.len() as f64),
-            ["first"] => Some(f64::from(*SEEDS.start())),
-            ["last"] => Some(f64::from(*SEEDS.end())),
-            ["below_low_percent"] => Some(below(spread.p05)),
-            ["below_high_percent"] => Some(below(spread.p95)),
-            ["canonical_noise"] => Some(LapConfig::default().drive.noise_factor),
-            ["false_m"] => Some(FALSE_LOOP_DISTANCE_M),
-            ["false_deg"] => Some(FALSE_LOOP_TURN_DEG),
             ["nudge", "laps"] => Some(self.nudged.moved_m.len() as f64),
             ["nudge", "start_fm"] => Some(1e15 * nudge_m()),
-            ["nudge", "changed_um"] => Some(1e6 * CHANGED_M),
             ["nudge", "changed"] => Some(self.nudged.changed() as f64),
             ["nudge", "farthest_m"] => Some(self.nudged.farthest_m()),
             _ => None,
@@ -113,7 +108,6 @@ fn of_laps(laps: &LapStatistics, path: &[&str], canonical: &LapOutcome) -> Optio
             let outcomes: Vec<_> = laps.outcomes.iter().filter(grown).copied().collect();
             100.0 * LapStatistics { outcomes }.false_run_share()
         }
-        ["max_grew_percent"] => percent(|lap| grew(lap, |lap| lap.keyframe_max_m)),
         [column, row, "below_canonical_percent"] => {
             let (column, row) = (column_of(column)?, row_of(row)?);
             let canonical = canonical.entry(column, row)?;
@@ -192,8 +186,6 @@ fn row_of(name: &str) -> Option<Row> {
         "last_nine_min" => Some(Row::LastKeyframesMin),
         "last_nine_max" => Some(Row::LastKeyframesMax),
         "max_error" => Some(Row::KeyframeMax),
-        "half_way" => Some(Row::HalfWay),
-        "half_way_sigma" => Some(Row::HalfWaySigma),
         "map_disagreement" => Some(Row::MapDisagreement),
         _ => None,
     }

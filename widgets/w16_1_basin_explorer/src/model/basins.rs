@@ -166,7 +166,8 @@ pub fn class(minimum: Minimum) -> u8 {
         Minimum::Right => 0,
         Minimum::QuarterTurn | Minimum::OnePost => 1,
         Minimum::HalfTurn | Minimum::MorePosts => 2,
-        Minimum::Other => 3,
+        // Both are no minimum of the room's shape; their letters tell them apart.
+        Minimum::WrongHeading | Minimum::Other => 3,
     }
 }
 

@@ -63,7 +63,7 @@ pub fn axis(values: &Values) -> OffsetAxis {
 pub fn config(values: &Values, variant: IcpVariant) -> IcpConfig {
     let huber_m = values.get("huber");
     IcpConfig {
-        trim_fraction: values.get("trim"),
+        trim: values.get("trim"),
         huber_width_m: if huber_m < HUBER_OFF_M {
             huber_m
         } else {

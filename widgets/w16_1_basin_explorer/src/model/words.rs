@@ -1,6 +1,6 @@
 //! The result in words and numbers.
 
-use ch16_lab::basin::{BasinOutcome, BasinPlace, Minimum, SUCCESS_RADIUS_M};
+use ch16_lab::basin::{BasinPlace, Minimum};
 use ch16_slam2d::icp::StopReason;
 use kit::counted::counted;
 use kit::model::{Fact, Outcome, Standing};
@@ -18,15 +18,6 @@ pub fn standing(minimum: Minimum) -> Standing {
     }
 }
 
-/// Why the right place is not home.
-fn caveat(end: &BasinOutcome) -> &'static str {
-    if end.error_m < SUCCESS_RADIUS_M && end.ending != Minimum::Right {
-        " The place is right, the heading is not."
-    } else {
-        ""
-    }
-}
-
 pub fn outcome(explorer: &BasinExplorer) -> Outcome {
     if let Some(asked) = edge::outcome(explorer) {
         return asked;
@@ -37,7 +28,7 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
         verdict: end.ending.name().to_owned(),
         sentence: format!(
             "From {:.0}° off, {} ends {:.2} m and {:.1}° from the truth: rmse {:.3} m over {} \
-             pairs; it {} {}.{}",
+             pairs; it {} {}.",
             explorer.values.get("heading"),
             variant_name(variant(&explorer.values)),
             end.error_m,
@@ -46,7 +37,6 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
             end.inliers,
             stop_words(&end.stop),
             counted(end.iterations, "iteration"),
-            caveat(end),
         ),
         facts: vec![
             Fact::new("error_m", "position error", end.error_m, "m", 3),

@@ -1,0 +1,114 @@
+//! Iterative closest point: match, move, repeat.
+
+use pr_geom::math;
+
+use super::{Correspondence, PointCloud, SE2, VoxelMap, associate, point_to_plane_step, svd_align};
+
+/// Which error an increment reduces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum IcpVariant {
+    /// The distance between paired points (Besl & McKay 1992).
+    #[default]
+    PointToPoint,
+    /// The distance along the partner's normal (Chen & Medioni 1992).
+    PointToPlane,
+}
+
+/// The settings of a registration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IcpConfig {
+    /// Which error an increment reduces.
+    pub variant: IcpVariant,
+    /// Points farther than this from the map have no partner, m.
+    pub tau: f64,
+    /// At most so many increments.
+    pub max_iters: usize,
+    /// With fewer pairs the registration ends.
+    pub min_pairs: usize,
+    /// An increment smaller than this, m and rad added, ends it, too.
+    pub tolerance: f64,
+    /// Share of the pairs to drop, the longest first (Chetverikov et al. 2002).
+    pub trim: f64,
+}
+
+impl Default for IcpConfig {
+    fn default() -> Self {
+        Self {
+            variant: IcpVariant::default(),
+            tau: 0.6,
+            max_iters: 25,
+            min_pairs: 8,
+            tolerance: 1e-4,
+            trim: 0.0,
+        }
+    }
+}
+
+/// Where a registration ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IcpResult {
+    /// `map_from_cloud`.
+    pub pose: SE2,
+    /// Root mean square residual of the last pairs, m; infinite without pairs.
+    pub rmse: f64,
+    /// Number of the last pairs.
+    pub inliers: usize,
+    /// The initial guess and the pose after each increment: iterations = length − 1.
+    pub trace: Vec<SE2>,
+}
+
+/// Registers a cloud on a map from the guess `init`.
+#[must_use]
+pub fn icp(cloud: &PointCloud, map: &VoxelMap, init: SE2, cfg: &IcpConfig) -> IcpResult {
+    let mut pose = init;
+    let mut trace = vec![pose];
+    let mut pairs = trimmed(associate(cloud, map, &pose, cfg.tau), cfg.trim);
+    while trace.len() <= cfg.max_iters && pairs.len() >= cfg.min_pairs {
+        let increment = match cfg.variant {
+            IcpVariant::PointToPoint => {
+                let (src, dst): (Vec<_>, Vec<_>) = pairs.iter().map(|c| (c.src, c.dst)).unzip();
+                svd_align(&src, &dst)
+            }
+            IcpVariant::PointToPlane => point_to_plane_step(&pairs),
+        };
+        pose = increment * pose;
+        trace.push(pose);
+        pairs = trimmed(associate(cloud, map, &pose, cfg.tau), cfg.trim);
+        if increment.step_size() < cfg.tolerance {
+            break;
+        }
+    }
+    IcpResult {
+        pose,
+        rmse: rmse(&pairs, cfg.variant),
+        inliers: pairs.len(),
+        trace,
+    }
+}
+
+/// The pairs without the longest share; at least one is kept.
+fn trimmed(mut pairs: Vec<Correspondence>, share: f64) -> Vec<Correspondence> {
+    if share <= 0.0 || pairs.is_empty() {
+        return pairs;
+    }
+    let kept = ((1.0 - share) * pairs.len() as f64).ceil().max(1.0) as usize;
+    let mut lengths: Vec<f64> = pairs.iter().map(Correspondence::distance_squared).collect();
+    lengths.sort_by(f64::total_cmp);
+    pairs.retain(|pair| pair.distance_squared() <= lengths[kept - 1]);
+    pairs
+}
+
+/// Root mean square of what the variant reduces; a pair without a normal counts its distance.
+fn rmse(pairs: &[Correspondence], variant: IcpVariant) -> f64 {
+    if pairs.is_empty() {
+        return f64::INFINITY;
+    }
+    let square = |pair: &Correspondence| match (variant, pair.normal) {
+        (IcpVariant::PointToPlane, Some(n)) => {
+            let error = n.dot(&(pair.src - pair.dst));
+            error * error
+        }
+        _ => pair.distance_squared(),
+    };
+    math::sqrt(pairs.iter().map(square).sum::<f64>() / pairs.len() as f64)
+}

@@ -1,0 +1,62 @@
+//! How long the page is before its exercises, as a reader counts it.
+
+use super::document::source;
+
+/// The page keeps below this, folded text included; a formula is one word, and code is none.
+const MOST_WORDS: usize = 7_000;
+/// Of these a reader sees so many without opening anything.
+const MOST_SEEN_WORDS: usize = 5_300;
+
+/// The source between two places without what `dropped` opens and closes, innermost last.
+fn without(html: &str, dropped: &str) -> String {
+    let (open, close) = (format!("<{dropped}"), format!("</{dropped}>"));
+    let mut kept = String::new();
+    let mut rest = html;
+    while let Some(start) = rest.find(&open) {
+        kept.push_str(&rest[..start]);
+        let end = rest[start..].find(&close).expect("it is closed");
+        rest = &rest[start + end + close.len()..];
+    }
+    kept + rest
+}
+
+fn words(html: &str) -> usize {
+    let mut text = String::new();
+    let mut rest = html;
+    while let Some(start) = rest.find('<') {
+        text.push_str(&rest[..start]);
+        let end = start + rest[start..].find('>').expect("a tag ends");
+        let tag = &rest[start + 1..end];
+        // Inline tags do not end a word.
+        if ![
+            "span", "/span", "em", "/em", "b", "/b", "i", "/i", "small", "/small",
+        ]
+        .contains(&tag.split(' ').next().unwrap_or_default())
+        {
+            text.push(' ');
+        }
+        rest = &rest[end + 1..];
+    }
+    text.push_str(rest);
+    let text = text.replace("&nbsp;", " ");
+    text.split_whitespace()
+        .filter(|word| word.contains(char::is_alphanumeric))
+        .count()
+}
+
+#[test]
+fn the_page_is_short_before_its_exercises() {
+    let page = source("index.html");
+    let (_, body) = page.split_once("<body>").expect("a body");
+    let (before, _) = body
+        .split_once("<section id=\"exercises\">")
+        .expect("the exercises");
+    let formulas_as_words = before.replace("<tex", " formula <tex");
+    let before = without(&formulas_as_words, "tex");
+    let (all, seen) = (words(&before), words(&without(&before, "details")));
+    println!("{all} words before the exercises, {seen} of them unfolded");
+    assert!(all <= MOST_WORDS, "{all} words");
+    assert!(seen <= MOST_SEEN_WORDS, "{seen} words unfolded");
+    let counted = words("<p>A <b>bold</b> word, 0.24&nbsp;m – and <i>one</i></p><p>more.</p>");
+    assert_eq!(counted, 8);
+}

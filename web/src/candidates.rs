@@ -1,0 +1,282 @@
+//! Ten loop candidates for the reader to judge, and the curve that the gate draws over them.
+
+use std::sync::OnceLock;
+
+use ch16_lab::lap::{LapConfig, LapRecord, LapRunner, LoopAttempt};
+use ch16_slam2d::loops::LoopRejection;
+use kit::palette::Theme;
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
+use kit::svg::scene_svg;
+use pr_geom::Translation;
+use serde_json::{Value, json};
+
+/// So many are right, and so many are not.
+const OF_EACH: usize = 5;
+/// Wheels of the laps: noisy enough that registration errs.
+const NOISE: f64 = 2.0;
+/// Half of a picture's side, m.
+const REACH_M: f64 = 4.0;
+
+/// A loop that a lap tried, and what is known of it.
+struct Candidate {
+    submap: Vec<[f64; 2]>,
+    sweep: Vec<[f64; 2]>,
+    says: String,
+    chi2: f64,
+    /// Whether the sweep fits: the first test.
+    fits: bool,
+    is_right: bool,
+    error: String,
+}
+
+/// The first of each kind over the seeds, one of a lap at most, in the order of the laps.
+fn candidates() -> &'static [Candidate] {
+    static FOUND: OnceLock<Vec<Candidate>> = OnceLock::new();
+    FOUND.get_or_init(|| {
+        let mut runner = LapRunner::new();
+        let mut found: Vec<Candidate> = Vec::new();
+        let mut missing = [OF_EACH; 2];
+        let mut seed = 1;
+        while missing != [0, 0] {
+            let record = runner.run(&LapConfig::with_seed_and_noise(seed, NOISE));
+            seed += 1;
+            let wanted = record.lap.loop_attempts().find(|attempt| {
+                let kind = usize::from(record.lap.loop_error(attempt).is_false());
+                missing[kind] > 0 && missing[kind] >= missing[1 - kind]
+            });
+            if let Some(attempt) = wanted {
+                let candidate = Candidate::of(&record, attempt);
+                missing[usize::from(!candidate.is_right)] -= 1;
+                found.push(candidate);
+            }
+        }
+        found
+    })
+}
+
+impl Candidate {
+    fn of(record: &LapRecord, attempt: &LoopAttempt) -> Self {
+        let loop_ = &attempt.verification;
+        let lap = &record.lap;
+        let poses = lap.poses(attempt.tick - 1);
+        let half_width = record.config.slam.loops.submap_half_width;
+        let old = loop_.candidate.node;
+        let cloud = |node: usize| record.drive.prepared(lap.keyframes[node].tick).cloud;
+        let around = old.saturating_sub(half_width)..=old + half_width;
+        let submap = around.flat_map(|node| {
+            let pose = poses[old].between(&poses[node]);
+            let points: Vec<_> = cloud(node).iter().map(|p| pose.transform(p)).collect();
+            points
+        });
+        let sweep = cloud(loop_.from_node);
+        let moved = sweep.iter().map(|point| loop_.registered.transform(point));
+        let error = lap.loop_error(attempt);
+        let off = loop_.belief.between(&loop_.registered);
+        Self {
+            submap: submap.map(|point| [point.x, point.y]).collect(),
+            sweep: moved.map(|point| [point.x, point.y]).collect(),
+            says: format!(
+                "It fits to {:.3} m over {} pairs. After {} nodes it lies {:.2} m and {:.1}° from where the graph \
+                 believes it.",
+                loop_.rmse_m,
+                loop_.inliers,
+                loop_.gap(),
+                off.translation().norm(),
+                off.theta().to_degrees().abs(),
+            ),
+            chi2: loop_.gate.chi2,
+            fits: matches!(loop_.rejection, None | Some(LoopRejection::OutsideGate(_))),
+            is_right: !error.is_false(),
+            error: format!(
+                "{:.2} m and {:.1}° off the truth",
+                error.position_m,
+                error.heading_deg.abs()
+            ),
+        }
+    }
+
+    fn picture(&self) -> Panel {
+        let near = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
+            let near = points
+                .iter()
+                .filter(|p| p.iter().all(|c| c.abs() < REACH_M));
+            near.copied().collect()
+        };
+        Panel {
+            id: "candidate",
+            title: "The sweep over the submap".to_owned(),
+            weight: Weight::Main,
+            aspect: Aspect::Equal,
+            x: Axis::new("x of the old keyframe (m)", -REACH_M, REACH_M),
+            y: Axis::new("y (m)", -REACH_M / 2.0, REACH_M / 2.0),
+            layers: vec![
+                Layer::points(near(&self.submap), Mark::Cross, Tone::Measurement, 3.0),
+                Layer::points(near(&self.sweep), Mark::Circle, Tone::Prior, 3.0),
+            ],
+            legend: vec![
+                LegendEntry::mark("submap", Tone::Measurement, Mark::Cross),
+                LegendEntry::mark("newest sweep", Tone::Prior, Mark::Circle),
+            ],
+            color_bar: None,
+        }
+    }
+}
+
+/// How many right and how many wrong candidates are taken.
+fn taken(is_taken: impl Fn(usize, &Candidate) -> bool) -> [usize; 2] {
+    let all = candidates().iter().enumerate();
+    let taken: Vec<_> = all
+        .filter(|(k, candidate)| is_taken(*k, candidate))
+        .collect();
+    let right = taken
+        .iter()
+        .filter(|(_, candidate)| candidate.is_right)
+        .count();
+    [right, taken.len() - right]
+}
+
+/// What both tests take at a threshold of the gate.
+fn taken_by_gate(chi2: f64) -> [usize; 2] {
+    taken(|_, candidate| candidate.fits && candidate.chi2 <= chi2)
+}
+
+/// The candidates, each with its picture and what registration says of it.
+#[must_use]
+pub fn shown(width_px: f32, theme: Theme) -> Value {
+    let shown = candidates().iter().enumerate().map(|(k, candidate)| {
+        let scene = Scene {
+            panels: vec![candidate.picture()],
+        };
+        let title = format!("Candidate {}", k + 1);
+        let svg = scene_svg(&scene, &title, &format!("candidate-{k}"), width_px, theme);
+        json!({ "svg": svg, "says": candidate.says })
+    });
+    Value::from(shown.collect::<Vec<_>>())
+}
+
+/// What became of the reader's answers, one for each candidate: whether it was taken.
+#[must_use]
+pub fn judged(answers: &[bool], width_px: f32, theme: Theme) -> Value {
+    let gate_chi2 = LapConfig::default().slam.loops.gate_chi2;
+    let [right, wrong] = taken(|k, _| answers.get(k) == Some(&true));
+    let [gate_right, gate_wrong] = taken_by_gate(gate_chi2);
+    let scene = Scene {
+        panels: vec![curve([right, wrong], [gate_right, gate_wrong])],
+    };
+    let each = candidates().iter().enumerate().map(|(k, candidate)| {
+        let truth = if candidate.is_right { "right" } else { "false" };
+        let did = if answers.get(k) == Some(&true) {
+            "accepted"
+        } else {
+            "refused"
+        };
+        format!(
+            "You {did} it. It is {truth}, {}; χ² {:.2}.",
+            candidate.error, candidate.chi2
+        )
+    });
+    json!({
+        "svg": scene_svg(&scene, "Right and false ones taken", "candidates", width_px, theme),
+        "says": format!(
+            "You took {right} of {OF_EACH} right ones and {wrong} of {OF_EACH} false ones. Both tests, at their threshold \
+             of {gate_chi2:.3}, take {gate_right} and {gate_wrong}."
+        ),
+        "each": each.collect::<Vec<_>>(),
+    })
+}
+
+fn curve([right, wrong]: [usize; 2], [gate_right, gate_wrong]: [usize; 2]) -> Panel {
+    let mut thresholds: Vec<f64> = candidates()
+        .iter()
+        .map(|candidate| candidate.chi2)
+        .collect();
+    thresholds.push(0.0);
+    thresholds.sort_by(f64::total_cmp);
+    let spot = |[right, wrong]: [usize; 2]| [wrong as f64, right as f64];
+    let points = thresholds.into_iter().map(|chi2| spot(taken_by_gate(chi2)));
+    let most = OF_EACH as f64 + 0.5;
+    Panel {
+        id: "curve",
+        title: "Right and false ones taken".to_owned(),
+        weight: Weight::Main,
+        aspect: Aspect::Free,
+        x: Axis::new("false ones taken", -0.5, most),
+        y: Axis::new("right ones taken", -0.5, most),
+        layers: vec![
+            Layer::Line {
+                points: points.collect(),
+                stroke: Stroke::Dotted,
+                tone: Tone::Ink,
+                width_px: 2.0,
+            },
+            Layer::points(
+                vec![spot([gate_right, gate_wrong])],
+                Mark::Plus,
+                Tone::Ink,
+                8.0,
+            ),
+            Layer::points(
+                vec![spot([right, wrong])],
+                Mark::Square,
+                Tone::Posterior,
+                7.0,
+            ),
+        ],
+        legend: vec![
+            LegendEntry::line("a gate that opens", Tone::Ink, Stroke::Dotted),
+            LegendEntry::mark("the gate as it is", Tone::Ink, Mark::Plus),
+            LegendEntry::mark("you", Tone::Posterior, Mark::Square),
+        ],
+        color_bar: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kit::audit::scene_text_faults;
+
+    #[test]
+    fn half_of_the_candidates_are_right_and_neither_test_tells_all_of_them_apart() {
+        assert_eq!(candidates().len(), 2 * OF_EACH);
+        let right = candidates()
+            .iter()
+            .filter(|candidate| candidate.is_right)
+            .count();
+        assert_eq!(right, OF_EACH);
+        // A reader who knows the truth beats every threshold.
+        for threshold in [0.5, 2.0, 7.815, 20.0, 1e6] {
+            assert_ne!(taken_by_gate(threshold), [OF_EACH, 0], "{threshold}");
+        }
+    }
+
+    #[test]
+    fn an_answer_is_judged_by_the_truth() {
+        let truth: Vec<bool> = candidates()
+            .iter()
+            .map(|candidate| candidate.is_right)
+            .collect();
+        let says = |answers: &[bool]| judged(answers, 360.0, Theme::Light)["says"].to_string();
+        assert!(says(&truth).contains("You took 5 of 5 right ones and 0 of 5 false ones"));
+        let inverse: Vec<bool> = truth.iter().map(|right| !right).collect();
+        assert!(says(&inverse).contains("You took 0 of 5 right ones and 5 of 5 false ones"));
+        assert_eq!(
+            shown(360.0, Theme::Dark).as_array().map(Vec::len),
+            Some(2 * OF_EACH)
+        );
+    }
+
+    #[test]
+    fn no_text_of_a_picture_overlaps_or_is_cut_off() {
+        for width in [320.0, 360.0, 600.0] {
+            let first = candidates()[0].picture();
+            for panel in [first, curve([3, 1], [4, 2])] {
+                let scene = Scene {
+                    panels: vec![panel],
+                };
+                let faults = scene_text_faults(&scene, width);
+                assert!(faults.is_empty(), "{width}: {faults:#?}");
+            }
+        }
+    }
+}
