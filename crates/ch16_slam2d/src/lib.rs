@@ -7,6 +7,7 @@ pub mod digest;
 pub mod field;
 pub mod graph;
 pub mod icp;
+pub mod local_map;
 pub mod localize;
 pub mod loops;
 pub mod matching;
