@@ -27,6 +27,7 @@ mod nearby_loops;
 
 mod parts;
 mod pending;
+mod refinement;
 mod report;
 mod robots;
 mod scales;
@@ -201,6 +202,11 @@ impl Slam {
         self.close_loop(&mut pending);
         let correction = self.mapper.settle(&self.config);
         self.front_end.correct(&correction);
+        if let Some(robot) = self.config.robot
+            && self.config.loop_closure == LoopClosure::On
+        {
+            self.mapper.refine(&robot, &self.config);
+        }
         pending.loop_attempts
     }
 

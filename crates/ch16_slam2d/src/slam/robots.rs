@@ -224,8 +224,6 @@ impl SlamConfig {
             },
             keyframe_distance_m: robot.keyframe_distance_m,
             keyframe_turn_rad: robot.keyframe_turn_rad,
-            odometry_noise: robot.odometry,
-            prediction_noise: robot.constant_velocity,
             loops: LoopConfig {
                 detection: Detection::Visits,
                 radius_m: 4.0,

@@ -14,7 +14,7 @@ const STATED: f64 = 1.0;
 /// A chain strays by so many times the variance of its links: errors of scans that follow each other
 /// go the same way, and loops show less of it than the way between them. Found on simulated laps and
 /// buildings, checked on others; `docs/robots.md` has both.
-const CHAINED: f64 = 8.0;
+const CHAINED: f64 = 3.0;
 
 /// What every covariance of the graph is multiplied by.
 pub(super) fn keyframe_factor(graph: &PoseGraph) -> f64 {
