@@ -68,7 +68,7 @@ fn of_loops(frame: InformationFrame) -> Vec<f64> {
             continue;
         };
         let (pairs, pose) = (
-            lap.slam().loop_workspace().pairs(),
+            lap.slam().loop_workspace().unwrap().pairs(),
             attempt.verification.registered,
         );
         let hessian = numerical_hessian(pairs, &pose, &config.slam.loops.trust);

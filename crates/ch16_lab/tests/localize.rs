@@ -29,7 +29,7 @@ impl Place {
         for tick in 0..=lap.ticks().len() {
             estimator.step_prepared(&lap.prepared(tick)).unwrap();
         }
-        estimator.refine();
+        estimator.conclude();
         let keyframes = estimator.keyframes().to_vec();
         let poses = estimator.graph().poses().to_vec();
         let places = keyframes.iter().zip(&poses);

@@ -9,6 +9,7 @@ pub mod graph;
 pub mod icp;
 #[cfg(feature = "listings")]
 pub mod listings;
+pub mod local_map;
 pub mod localize;
 pub mod loops;
 pub mod matching;

@@ -14,14 +14,13 @@ mod candidates;
 mod config;
 mod detector;
 mod gate;
-mod guard;
+mod pending_loop;
 mod verify;
 
 pub use candidates::{LoopCandidate, detect_loop_candidates, detect_visits};
-pub use config::{Detection, DetectorKind, GateModel, LoopConfig, WideSearch};
+pub use config::{Detection, DetectorKind, GateModel, LoopConfig};
 pub use detector::{CloneDetector, LoopDetector, LoopQuery, NearbyDetector};
 pub use gate::{GateTest, chi_squared_gate, marginal_information, path_information};
-pub(crate) use guard::widest_variance;
-pub use guard::{HeldLoop, LoopGuard, Referee};
+pub use pending_loop::PendingLoop;
 pub(crate) use verify::rejection;
 pub use verify::{KeyframeView, LoopRejection, LoopVerification, LoopWorkspace, verify_loop};

@@ -1,22 +1,30 @@
-//! The estimator: a front end that registers scans, a graph that remembers, and loops that correct.
+//! The estimator: a front end that registers scans, a map that remembers, and loops that correct it.
 //!
-//! One frame: odometry predicts, a matcher on the last few sweeps corrects, every so often a
-//! keyframe enters the pose graph, and now and then an old keyframe is recognized and the graph
-//! optimized. [`Slam::step`] takes one [`Frame`] and reports what it did with it.
+//! One frame: odometry predicts, registration on the last few sweeps corrects, every so often a keyframe
+//! enters the pose graph, and now and then an old place is recognized and the graph optimized.
+//! [`Slam::step`] takes one [`Frame`] and reports what it did with it.
 //!
-//! It knows no truth and no world. Matcher, loop detector, gate and kernel are chosen in the
-//! [`SlamConfig`] or handed to [`Slam::with_parts`].
+//! Three parts, each with its own state. The [`FrontEnd`] turns a frame into a pose and sees nothing but the
+//! last few scans. The [`Mapper`] holds keyframes and pose graph. The [`LoopCloser`] proposes loops and
+//! verifies them; it reads the map, asks it for covariances, and changes nothing. [`Slam`] alone lets one
+//! act on another: an accepted loop corrects the map, and its correction moves the front end.
+//!
+//! It knows no truth and no world. [`SlamConfig::chapter`] and the default drive as the chapter does, with the
+//! matcher, the detector and the gate that they name; [`SlamConfig::for_robot`] is for recorded logs.
 //!
 //! What it cannot fix: drift that no loop sees, such as the bend of a way out before the first
 //! loop, and a place that looks like another one within the gate.
 
+mod bundle_loops;
 mod config;
 mod front_end;
 mod fusion;
-mod guarding;
-mod loop_closing;
+mod loop_closer;
+mod map_matching;
+mod mapper;
 mod motion;
-pub mod parameters;
+mod nearby_loops;
+
 mod parts;
 mod pending;
 mod refinement;
@@ -24,34 +32,42 @@ mod report;
 mod robots;
 mod scales;
 mod snapshot;
-mod submap_loops;
+#[cfg(test)]
+mod submap_tests;
 #[cfg(test)]
 pub(crate) mod test_room;
 mod uncertainty;
 mod upkeep;
-mod wide_search;
+mod window_matching;
 
 use std::sync::Arc;
 
+use nalgebra::Matrix3;
 use pr_geom::SE2;
+use pr_optim::OptimizeError;
 
 pub(crate) use fusion::fuse;
 
-pub use config::{ContradictionConfig, LoopClosure, PredictionUse, SlamConfig, ThresholdConfig};
+pub use config::{LoopClosure, SlamConfig, ThresholdConfig};
 pub use front_end::{FrontEnd, Registration, WindowSweep};
+pub use loop_closer::LoopCloser;
+pub use mapper::Mapper;
 pub use motion::MotionNoise;
 pub use parts::SlamParts;
 pub use pending::PendingFrame;
-pub use refinement::{Refinement, RefinementConfig};
 pub use report::{Change, Keyframe, LoopAttempt, LoopEffect, SlamReport};
+pub use robots::{RobotConfig, SubmapLoopConfig};
 pub use snapshot::{FrontEndSnapshot, SlamSnapshot, SnapshotError};
 pub use upkeep::{Upkeep, UpkeepConfig};
 
 use crate::graph::{EdgeKind, PoseGraph};
-use crate::loops::{HeldLoop, LoopDetector, LoopWorkspace};
+use crate::loops::LoopWorkspace;
 use crate::metrics::position_error_m;
 use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer};
-use crate::submaps::{FrontEndKind, SubmapLoops};
+use crate::submaps::SubmapLoops;
+
+/// The graph is off by so much more than its covariance says, where somebody asks for a loop: m and rad.
+const ASKED_FLOOR: (f64, f64) = (0.15, 0.05);
 
 /// The SLAM system, one frame at a time.
 #[derive(Clone)]
@@ -61,20 +77,8 @@ pub struct Slam {
     frames: usize,
     last_stamp_s: f64,
     front_end: FrontEnd,
-    graph: PoseGraph,
-    keyframes: Vec<Keyframe>,
-    last_attempt_node: Option<usize>,
-    /// The newest node at which a loop was closed; the first before any was.
-    last_loop_node: usize,
-    /// The newest node at which the window of the drift was searched.
-    last_search_node: Option<usize>,
-    /// Loops that wait for others, in order.
-    held: Vec<HeldLoop>,
-    detector: Box<dyn LoopDetector>,
-    loop_workspace: LoopWorkspace,
-    /// The finished submaps, where the front end makes some.
-    submap_loops: Option<SubmapLoops>,
-    chi2: f64,
+    mapper: Mapper,
+    loop_closer: LoopCloser,
 }
 
 impl Slam {
@@ -85,27 +89,16 @@ impl Slam {
         Self::with_parts(config, parts)
     }
 
-    /// An estimator with matchers and a loop detector of one's own.
+    /// An estimator with custom matchers and a custom loop detector; that for robots needs none.
     #[must_use]
     pub fn with_parts(config: SlamConfig, parts: SlamParts) -> Self {
         Self {
-            front_end: FrontEnd::new(&config, parts.front_end),
-            loop_workspace: LoopWorkspace::new(parts.loops),
-            submap_loops: match config.front_end {
-                FrontEndKind::Window => None,
-                FrontEndKind::Submaps(submaps) => Some(SubmapLoops::new(submaps)),
-            },
-            detector: parts.detector,
-            graph: PoseGraph::with_jacobians(config.jacobians),
-            keyframes: Vec::new(),
+            front_end: FrontEnd::new(&config, parts.front_end.clone()),
+            mapper: Mapper::new(&config),
+            loop_closer: LoopCloser::new(&config, parts),
             preparer: ScanPreparer::new(),
             frames: 0,
             last_stamp_s: f64::NEG_INFINITY,
-            last_attempt_node: None,
-            last_loop_node: 0,
-            last_search_node: None,
-            held: Vec::new(),
-            chi2: 0.0,
             config,
         }
     }
@@ -150,7 +143,7 @@ impl Slam {
         let dt_s = frame.seconds_after(self.last_stamp_s, &self.front_end.estimate())?;
         self.last_stamp_s = frame.stamp_s;
         self.frames += 1;
-        let (registration, new_keyframe) = if self.keyframes.is_empty() {
+        let (registration, new_keyframe) = if self.mapper.keyframes.is_empty() {
             self.start(frame);
             (None, Some(0))
         } else {
@@ -159,13 +152,31 @@ impl Slam {
                 .register(frame, dt_s, self.frames - 1, &self.config);
             (Some(registration), self.take_keyframe(frame))
         };
-        self.keep_finished();
-        Ok(PendingFrame {
-            stamp_s: frame.stamp_s,
-            registration,
-            new_keyframe,
-            loop_attempts: Vec::new(),
-        })
+        let finished = self.front_end.take_finished();
+        self.loop_closer.keep(finished);
+        Ok(PendingFrame::new(frame.stamp_s, registration, new_keyframe))
+    }
+
+    /// Second part: looks for loops at a new keyframe.
+    pub fn verify_loops(&mut self, pending: &mut PendingFrame) {
+        if pending.new_keyframe().is_some() {
+            let tried = self.loop_closer.find(&mut self.mapper, &self.config);
+            pending.add(self.frames - 1, tried);
+        }
+    }
+
+    /// Third part: adds the edges of the loops that passed and spreads the correction; takes them back where
+    /// the graph does not bear it.
+    pub fn close_loop(&mut self, pending: &mut PendingFrame) {
+        let accepted = pending.accepted();
+        if accepted.is_empty() {
+            return;
+        }
+        let closed = self.mapper.close(&accepted, pending.trust(), &self.config);
+        if let Ok(effect) = &closed {
+            self.front_end.correct(&effect.correction);
+        }
+        pending.closed(closed);
     }
 
     /// Last part: the report.
@@ -178,8 +189,35 @@ impl Slam {
             estimate: self.front_end.estimate(),
             new_keyframe: pending.new_keyframe,
             loop_attempts: pending.loop_attempts,
-            chi2: self.chi2,
+            chi2: self.mapper.chi2,
         }
+    }
+
+    /// Once no frame follows: closes the loops that wait or that nobody has looked for, and lets all loops
+    /// correct the map. The map is else what it was after the last frame. Returns the loops that were tried.
+    pub fn conclude(&mut self) -> Vec<LoopAttempt> {
+        let mut pending = PendingFrame::new(self.last_stamp_s, None, None);
+        let tried = self.loop_closer.conclude(&mut self.mapper, &self.config);
+        pending.add(self.frames.saturating_sub(1), tried);
+        self.close_loop(&mut pending);
+        let correction = self.mapper.settle(&self.config);
+        self.front_end.correct(&correction);
+        if let Some(robot) = self.config.robot
+            && self.config.loop_closure == LoopClosure::On
+        {
+            self.mapper.refine(&robot, &self.config);
+        }
+        pending.loop_attempts
+    }
+
+    /// Drops what is gone and takes out what was replaced around the newest keyframe; call it after a
+    /// frame that became one. A map on submaps stays as it is.
+    pub fn keep_up(&mut self, config: &UpkeepConfig) -> Upkeep {
+        if self.loop_closer.submaps().is_some() {
+            return Upkeep::default();
+        }
+        let radius_m = self.config.scan.normal_radius_m;
+        upkeep::keep_up(&mut self.mapper, &mut self.loop_closer, config, radius_m)
     }
 
     /// The parameters.
@@ -208,42 +246,83 @@ impl Slam {
     /// The pose graph; node k is keyframe k. It is empty before the first frame.
     #[must_use]
     pub fn graph(&self) -> &PoseGraph {
-        &self.graph
+        &self.mapper.graph
     }
 
     /// The pose graph, to ask for covariances: they need the solver's memory.
     pub fn graph_mut(&mut self) -> &mut PoseGraph {
-        &mut self.graph
+        &mut self.mapper.graph
     }
 
     /// The keyframes in order.
     #[must_use]
     pub fn keyframes(&self) -> &[Keyframe] {
-        &self.keyframes
+        &self.mapper.keyframes
     }
 
-    /// Submap and pairs of the last attempt to close a loop.
+    /// What finds loops, and the loops that wait for others.
     #[must_use]
-    pub fn loop_workspace(&self) -> &LoopWorkspace {
-        &self.loop_workspace
+    pub fn loop_closer(&self) -> &LoopCloser {
+        &self.loop_closer
+    }
+
+    /// Submap and pairs of the chapter's last attempt to close a loop; none for robots.
+    #[must_use]
+    pub fn loop_workspace(&self) -> Option<&LoopWorkspace> {
+        self.loop_closer.workspace()
     }
 
     /// The finished submaps; none where the front end makes no submaps.
     #[must_use]
     pub fn submap_loops(&self) -> Option<&SubmapLoops> {
-        self.submap_loops.as_ref()
+        self.loop_closer.submaps()
     }
 
     /// χ² of the graph.
     #[must_use]
     pub fn chi2(&self) -> f64 {
-        self.chi2
+        self.mapper.chi2
+    }
+
+    /// Covariance of every keyframe against the first one: see [`Mapper::keyframe_covariances`].
+    ///
+    /// # Errors
+    /// Where the normal equations are not positive definite.
+    pub fn keyframe_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
+        self.mapper.keyframe_covariances()
+    }
+
+    /// By how much the variances of the graph's measurements are larger than stated.
+    #[must_use]
+    pub fn variance_factor(&self) -> f64 {
+        uncertainty::variance_factor(&self.mapper.graph)
+    }
+
+    /// What a loop between two keyframes is tested against that somebody asks for: the information of their
+    /// relative pose that the graph holds, less a floor.
+    ///
+    /// # Errors
+    /// Where the graph has no covariance.
+    ///
+    /// # Panics
+    /// Where a node does not exist.
+    pub fn expected_information(
+        &mut self,
+        old: usize,
+        new: usize,
+    ) -> Result<Matrix3<f64>, OptimizeError> {
+        let (floor_m, floor_rad) = ASKED_FLOOR;
+        let floor = nalgebra::Vector3::new(floor_m, floor_m, floor_rad).map(|s| s * s);
+        let covariance = self.mapper.graph.relative_covariance(old, new)?;
+        (covariance + Matrix3::from_diagonal(&floor))
+            .try_inverse()
+            .ok_or(OptimizeError::NotPositiveDefinite { node: new })
     }
 
     fn start(&mut self, frame: &PreparedFrame) {
         self.front_end.start(Arc::clone(&frame.cloud));
-        self.graph.add_fixed_node(self.config.start);
-        self.keyframes.push(Keyframe {
+        self.mapper.graph.add_fixed_node(self.config.start);
+        self.mapper.keyframes.push(Keyframe {
             node: 0,
             frame: 0,
             stamp_s: frame.stamp_s,
@@ -253,8 +332,9 @@ impl Slam {
 
     /// Adds a node where the estimate is far enough from the last keyframe.
     fn take_keyframe(&mut self, frame: &PreparedFrame) -> Option<usize> {
-        let last_node = self.keyframes.len() - 1;
-        let last_pose = self.graph.pose(last_node);
+        let graph = &mut self.mapper.graph;
+        let last_node = self.mapper.keyframes.len() - 1;
+        let last_pose = graph.pose(last_node);
         let estimate = self.front_end.estimate();
         let relative = last_pose.between(&estimate);
         let distance = position_error_m(&relative, &SE2::identity());
@@ -264,23 +344,34 @@ impl Slam {
             return None;
         }
         let is_registered = self.front_end.is_registered();
-        let node = self.graph.add_node(estimate).index();
+        let node = graph.add_node(estimate).index();
         let ties = self.front_end.tie(node, &frame.cloud);
         if ties.is_empty() || !is_registered {
             let information = self.front_end.information(last_pose.theta(), &self.config);
-            let information = information * self.config.confidence;
-            self.graph
-                .add_edge(last_node, node, relative, information, EdgeKind::Odometry);
-        } else {
-            self.tie_to_submaps(last_node, node, relative, &ties);
+            graph.add_edge(last_node, node, relative, information, EdgeKind::Odometry);
         }
-        self.keyframes.push(Keyframe {
+        if is_registered {
+            // One registration, shared by the submaps that the keyframe is tied to.
+            let share = 1.0 / ties.len().max(1) as f64;
+            for (anchor, anchor_from_node) in ties {
+                let theta = graph.pose(anchor).theta();
+                let information = self.front_end.information(theta, &self.config) * share;
+                graph.add_edge(
+                    anchor,
+                    node,
+                    anchor_from_node,
+                    information,
+                    EdgeKind::Odometry,
+                );
+            }
+        }
+        self.mapper.keyframes.push(Keyframe {
             node,
             frame: self.frames - 1,
             stamp_s: frame.stamp_s,
             scan: Arc::clone(&frame.cloud),
         });
-        self.chi2 = self.graph.chi2();
+        self.mapper.chi2 = self.mapper.graph.chi2();
         Some(node)
     }
 }

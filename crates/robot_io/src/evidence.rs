@@ -1,6 +1,7 @@
 //! What a run keeps of its loops and scans, for whoever judges its map.
 
 use ch16_slam2d::loops::LoopVerification;
+use ch16_slam2d::slam::LoopAttempt;
 
 /// A loop that was looked at, with the evidence and whether it is in the graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +10,15 @@ pub struct TriedLoop {
     pub verification: LoopVerification,
     /// Whether it was closed.
     pub accepted: bool,
+}
+
+impl From<&LoopAttempt> for TriedLoop {
+    fn from(attempt: &LoopAttempt) -> Self {
+        Self {
+            verification: attempt.verification,
+            accepted: attempt.accepted(),
+        }
+    }
 }
 
 /// A scan that hardly fits the map.

@@ -12,6 +12,7 @@
 //! - [`info`]: what is in a log.
 //! - [`run`]: a log through [`Slam`](ch16_slam2d::slam::Slam), frame by frame.
 //! - [`session`]: all that a run is, in one file.
+//! - [`settings`]: the numbers of the estimator by name.
 //! - [`localize`]: a log on the map of a session.
 //! - [`evidence`]: what a run keeps of its loops and scans.
 //! - [`quality`]: how far each keyframe and each loop is to be trusted, and what is to be doubted.
@@ -47,6 +48,7 @@ pub mod ros;
 pub mod rosbag2;
 pub mod run;
 pub mod session;
+pub mod settings;
 pub mod trajectory;
 
 mod counted;

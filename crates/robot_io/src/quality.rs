@@ -110,11 +110,12 @@ impl Quality {
             links.iter().filter(|link| link.accepted()).collect()
         };
         for link in evidence {
-            let test = tests
-                .iter()
-                .find(|(view, _)| view.edge.measurement == link.registered);
+            // Loops that others have taken out since are no links.
+            let mut tests = tests.iter();
+            let test = tests.find(|(view, _)| view.edge.measurement == link.registered);
+            let Some((_, chi2)) = test else { continue };
             quality.links.push(LinkQuality {
-                chi2: test.and_then(|(_, chi2)| *chi2),
+                chi2: *chi2,
                 gate_chi2: GATE_CHI2,
                 ..LinkQuality::new(link, true)
             });

@@ -2,15 +2,16 @@
 
 use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::scan::{Frame, FrameError, LaserScan};
-use ch16_slam2d::slam::parameters::Parameter;
-use ch16_slam2d::slam::{Refinement, Slam, SlamConfig, SlamReport, SlamSnapshot, SnapshotError};
-use ch16_slam2d::submaps::FrontEndChoice;
+use ch16_slam2d::slam::{
+    LoopAttempt, RobotConfig, Slam, SlamConfig, SlamReport, SlamSnapshot, SnapshotError,
+};
 use pr_geom::SE2;
 
 use crate::evidence::{PoorFit, TriedLoop};
 use crate::log::LogFrame;
 use crate::quality::Quality;
 use crate::session::{MappedGraph, ScanPlace, Session, places_kept};
+use crate::settings::Setting;
 use crate::trajectory::{StampedPose, Trajectory};
 
 /// What is said of a log in which no beam tells anything.
@@ -38,9 +39,7 @@ const POOR_SCORE: f64 = 0.5;
 /// scans in between as well.
 pub struct LogRun {
     odometry_use: OdometryUse,
-    front_end: FrontEndChoice,
-    config: Option<SlamConfig>,
-    settings: Vec<(&'static Parameter, f64)>,
+    settings: Vec<(&'static Setting, f64)>,
     slam: Option<Slam>,
     last_odometry: Option<SE2>,
     last_stamp_s: f64,
@@ -82,8 +81,6 @@ impl LogRun {
     pub fn new(odometry_use: OdometryUse) -> Self {
         Self {
             odometry_use,
-            front_end: FrontEndChoice::Window,
-            config: None,
             settings: Vec::new(),
             slam: None,
             last_odometry: None,
@@ -102,24 +99,10 @@ impl LogRun {
         }
     }
 
-    /// The same run with a configuration of one's own, in place of [`SlamConfig::for_robot`].
+    /// The same run with another value of a setting, if it can take that value.
     #[must_use]
-    pub fn with_config(mut self, config: SlamConfig) -> Self {
-        self.config = Some(config);
-        self
-    }
-
-    /// The same run with another value of a parameter; what the configuration has no use for has no effect.
-    #[must_use]
-    pub fn with_parameter(mut self, parameter: &'static Parameter, value: f64) -> Self {
-        self.settings.push((parameter, value));
-        self
-    }
-
-    /// The same run with this front end, unless the configuration is one's own.
-    #[must_use]
-    pub fn with_front_end(mut self, front_end: FrontEndChoice) -> Self {
-        self.front_end = front_end;
+    pub fn with_setting(mut self, setting: &'static Setting, value: f64) -> Self {
+        self.settings.push((setting, value));
         self
     }
 
@@ -127,11 +110,9 @@ impl LogRun {
     /// one after the session's last.
     ///
     /// # Errors
-    /// Where the session contradicts itself, or was mapped on submaps.
+    /// Where the session contradicts itself.
     pub fn resume(session: &Session, odometry_use: OdometryUse) -> Result<Self, SnapshotError> {
-        let mut driven = session.driven.clone();
-        driven.config = driven.config.with_referee();
-        let slam = Slam::restore(&driven)?;
+        let slam = Slam::restore(&session.driven)?;
         Ok(Self::holding(session, slam, odometry_use))
     }
 
@@ -191,21 +172,11 @@ impl LogRun {
             scan: log.scan,
         };
         let slam = self.slam.get_or_insert_with(|| {
-            let own = self.config.take();
-            let front_end = match own {
-                Some(_) => FrontEndChoice::Window,
-                None => self.front_end,
-            };
-            let mut config = own.unwrap_or_else(|| SlamConfig::for_robot(&frame.scan));
-            for (parameter, value) in &self.settings {
-                // Only what the configuration lacks is refused here: nothing to set.
-                let _ = parameter.set(&mut config, *value);
+            let mut robot = RobotConfig::for_scan(&frame.scan);
+            for (setting, value) in &self.settings {
+                robot = setting.set(&robot, *value).unwrap_or(robot);
             }
-            // Submaps take their lengths from the values that were set.
-            if front_end == FrontEndChoice::Submaps {
-                config = front_end.of(config);
-            }
-            Slam::new(config.with_referee())
+            Slam::new(SlamConfig::from_robot(robot))
         });
         let report = match slam.step(&frame) {
             Ok(report) => report,
@@ -245,60 +216,42 @@ impl LogRun {
                 score,
             });
         }
-        let tried = report.loop_attempts.iter().map(|attempt| TriedLoop {
-            verification: attempt.verification,
-            accepted: attempt.accepted(),
-        });
-        self.loops.extend(tried);
+        self.note(&report.loop_attempts);
         Some(report)
     }
 
-    /// Says that no scan follows.
+    /// Says that no scan follows: loops that wait are closed where nothing contradicts them.
     pub fn finish(&mut self) {
-        if let Some(mut refinement) = self.finishing() {
-            while self.finish_step(&mut refinement) {}
-        }
-    }
-
-    /// What [`finish`](Self::finish) does, piece by piece; none before the first scan.
-    #[must_use]
-    pub fn finishing(&mut self) -> Option<Refinement> {
-        let slam = self.slam.as_ref()?;
-        self.driven.get_or_insert_with(|| slam.snapshot());
-        Some(slam.refinement())
-    }
-
-    /// The next piece; false once nothing is left to do.
-    pub fn finish_step(&mut self, refinement: &mut Refinement) -> bool {
-        let Some(slam) = &mut self.slam else {
-            return false;
+        let Some(slam) = self.slam.as_mut().filter(|_| self.driven.is_none()) else {
+            return;
         };
-        if slam.refine_step(refinement) {
-            return true;
-        }
-        self.links = refinement.links().to_vec();
-        self.loops
-            .extend(refinement.searched().map(|searched| TriedLoop {
-                verification: *searched,
-                accepted: false,
-            }));
-        if let Some(found) = refinement.concluded() {
+        self.driven = Some(slam.snapshot());
+        let tried = slam.conclude();
+        self.note(&tried);
+    }
+
+    /// Keeps what became of loops; one that waited is the same loop once it is closed.
+    fn note(&mut self, attempts: &[LoopAttempt]) {
+        for attempt in attempts {
+            let found = &attempt.verification;
             let is_it = |tried: &&mut TriedLoop| {
                 let waited = &tried.verification;
                 (waited.from_node, waited.registered) == (found.from_node, found.registered)
             };
-            if let Some(tried) = self.loops.iter_mut().find(is_it) {
-                tried.verification.rejection = None;
-                tried.accepted = true;
-            } else {
-                // It was found before the session was saved.
-                self.loops.push(TriedLoop {
-                    verification: *found,
-                    accepted: true,
-                });
+            match self.loops.iter_mut().rev().find(is_it) {
+                Some(tried) => *tried = TriedLoop::from(attempt),
+                None => self.loops.push(TriedLoop::from(attempt)),
             }
         }
-        false
+    }
+
+    /// Whether the graph holds a loop: those that were closed may have been taken out by others since.
+    #[must_use]
+    pub fn holds(&self, tried: &TriedLoop) -> bool {
+        let measured = tried.verification.registered;
+        let graph = self.slam.as_ref().map(Slam::graph);
+        let mut edges = graph.into_iter().flat_map(|graph| graph.edges());
+        tried.accepted && edges.any(|view| view.edge.measurement == measured)
     }
 
     /// The estimator; none before the first scan.

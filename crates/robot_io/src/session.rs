@@ -6,10 +6,9 @@
 //! again gives the same bytes.
 
 mod bytes;
-mod config_text;
 mod error;
-mod held;
 mod parts;
+mod pending;
 mod rays;
 mod scans;
 #[cfg(test)]
@@ -23,7 +22,6 @@ use ch16_slam2d::scan::LaserScan;
 use ch16_slam2d::slam::SlamSnapshot;
 use pr_geom::SE2;
 
-pub use config_text::config_text;
 pub use error::SessionError;
 pub use rays::rays;
 
@@ -31,8 +29,8 @@ use bytes::{Cursor, Writer};
 
 /// The first bytes of a session.
 pub const MAGIC: [u8; 8] = *b"SLAM2D\r\n";
-/// The version that is written, and the only one there is so far.
-pub const VERSION: u32 = 1;
+/// The version that is written and read; version 1 belongs to an estimator that is no more.
+pub const VERSION: u32 = 2;
 /// The usual name of a session in the folder of a run.
 pub const FILE_NAME: &str = "session.slam2d";
 /// Larger files are refused before they are read, bytes: 150,000 keyframes.

@@ -7,7 +7,6 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::PathBuf;
 
-use ch16_slam2d::metrics::position_error_m;
 use measuring::skip::{NO_RECORDED_LOGS, skip};
 use robot_io::evaluate::relation_errors;
 use robot_io::log::LogOptions;
@@ -53,19 +52,18 @@ fn intel_is_mapped_to_eight_centimetres_with_its_loops() {
     // What a trajectory scores that follows the scans perfectly is 0.06 to 0.08: README of the data.
     assert!(mean_m <= 0.08, "{mean_m}");
     let closed = run.loops().iter().filter(|tried| tried.accepted).count();
-    let links = run.links().iter().filter(|link| link.accepted()).count();
-    // Three rounds, each through the same corridors and most of the rooms: 105 and 866 when this was
-    // written.
-    assert!(closed >= 80 && links >= 500, "{closed} {links}");
+    // Three rounds, each through the same corridors and most of the rooms: 405 when this was written.
+    assert!(closed >= 300, "{closed}");
 }
 
 #[test]
-fn intel_without_its_wheels_is_mapped_to_fifteen_centimetres() {
+fn intel_without_its_wheels_is_mapped_to_eight_centimetres() {
     let Some(run) = mapped("intel.clf", OdometryUse::None) else {
         return skip("the errors on Intel by scans alone", NO_RECORDED_LOGS);
     };
     let mean_m = intel_mean_m(&run);
-    assert!(mean_m <= 0.15, "{mean_m}");
+    // As with them: what scans alone allow.
+    assert!(mean_m <= 0.08, "{mean_m}");
 }
 
 #[test]
@@ -91,17 +89,4 @@ fn duke_comes_back_to_where_it_began() {
         .iter()
         .filter(|(old, new)| *old < 20 && *new > last - 20);
     assert_eq!(around.count(), 1, "{closed:?}");
-
-    // After the end every keyframe is registered once more: so do the scans say where the end is.
-    let ends: Vec<_> = run
-        .links()
-        .iter()
-        .filter(|link| link.accepted() && link.candidate.node < 20 && link.from_node > last - 5)
-        .collect();
-    assert!(!ends.is_empty());
-    for link in ends {
-        let graph = poses[link.candidate.node].between(&poses[link.from_node]);
-        let off_m = position_error_m(&graph, &link.registered);
-        assert!(link.score.unwrap() >= 0.7 && off_m < 0.3, "{off_m}");
-    }
 }

@@ -6,11 +6,11 @@ use std::path::PathBuf;
 
 use ch16_lab::buildings::{Kind, Recording, Robot, Trial, recorded_by};
 use ch16_lab::lap::Choice;
-use ch16_slam2d::slam::parameters::{Parameter, ParameterError};
 use clap::Args;
 use rayon::prelude::*;
 use robot_io::carmen::write_carmen;
 use robot_io::log::LogFrame;
+use robot_io::settings::{Setting, SettingError};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -68,7 +68,7 @@ pub enum BuildingsFailure {
     },
     /// A parameter cannot be set.
     #[error(transparent)]
-    Parameter(#[from] ParameterError),
+    Setting(#[from] SettingError),
     /// The log cannot be written.
     #[error("{path}: {source}")]
     Write {
@@ -132,9 +132,9 @@ pub fn run(args: &BuildingsArgs) -> Result<(), BuildingsFailure> {
         });
     }
     for (name, value) in &args.settings {
-        Parameter::named(name)?.check(*value)?;
+        Setting::named(name)?.check(*value)?;
     }
-    let rows: Result<Vec<Row>, ParameterError> = (args.seeds.first..=args.seeds.last)
+    let rows: Result<Vec<Row>, SettingError> = (args.seeds.first..=args.seeds.last)
         .into_par_iter()
         .map(|seed| row(args, seed))
         .collect();
@@ -147,12 +147,12 @@ pub fn run(args: &BuildingsArgs) -> Result<(), BuildingsFailure> {
     Ok(())
 }
 
-fn row(args: &BuildingsArgs, seed: u32) -> Result<Row, ParameterError> {
-    let (recording, mut config) = recorded_by(args.robot, args.kind, seed);
+fn row(args: &BuildingsArgs, seed: u32) -> Result<Row, SettingError> {
+    let (recording, mut robot) = recorded_by(args.robot, args.kind, seed);
     for (name, value) in &args.settings {
-        Parameter::named(name)?.set(&mut config, *value)?;
+        robot = Setting::named(name)?.set(&robot, *value)?;
     }
-    let trial = Trial::run(&recording, config, !args.no_odometry);
+    let trial = Trial::run(&recording, robot, !args.no_odometry);
     Ok(Row {
         seed,
         scans: recording.frames.len(),

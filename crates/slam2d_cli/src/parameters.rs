@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use ch16_slam2d::slam::SlamConfig;
-use ch16_slam2d::slam::parameters::{PARAMETERS, Parameter};
+use ch16_slam2d::slam::RobotConfig;
 use clap::Args;
 use measuring::{generated, timed};
 use rayon::prelude::*;
@@ -11,6 +10,7 @@ use robot_io::evaluate::relation_errors;
 use robot_io::log::LogFrame;
 use robot_io::relations::{Relation, read_relations};
 use robot_io::run::{LogRun, OdometryUse};
+use robot_io::settings::{SETTINGS, Setting};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -103,19 +103,19 @@ struct Bench {
 }
 
 impl Bench {
-    fn run(&self, setting: Option<(&'static Parameter, f64)>) -> Run {
+    fn run(&self, setting: Option<(&'static Setting, f64)>) -> Run {
         let ((mean_m, value), cpu_ms) = timed(|| {
             let mut run = LogRun::new(OdometryUse::Log);
-            if let Some((parameter, value)) = setting {
-                run = run.with_parameter(parameter, value);
+            if let Some((setting, value)) = setting {
+                run = run.with_setting(setting, value);
             }
             for frame in &self.frames {
                 run.step(frame.clone());
             }
             run.finish();
             let report = relation_errors(&run.trajectory(), &self.relations).report();
-            let set = setting.and_then(|(parameter, _)| parameter.value(run.slam()?.config()));
-            ((report.n > 0).then_some(report.trans.mean), set)
+            let value = setting.map(|(_, value)| value);
+            ((report.n > 0).then_some(report.trans.mean), value)
         });
         Run {
             value: value.unwrap_or_default(),
@@ -125,17 +125,11 @@ impl Bench {
     }
 
     /// The run at so many times the default; none where that changes nothing.
-    fn varied(
-        &self,
-        config: &SlamConfig,
-        parameter: &'static Parameter,
-        times: f64,
-    ) -> Option<Run> {
-        let value = parameter.value(config)?;
-        let mut changed = config.clone();
-        parameter.set(&mut changed, times * value).ok()?;
-        let set = parameter.value(&changed)?;
-        (set != value).then(|| self.run(Some((parameter, set))))
+    fn varied(&self, config: &RobotConfig, setting: &'static Setting, times: f64) -> Option<Run> {
+        let value = setting.value(config);
+        let changed = setting.set(config, times * value).ok()?;
+        let set = setting.value(&changed);
+        (set != value).then(|| self.run(Some((setting, set))))
     }
 }
 
@@ -145,15 +139,15 @@ impl Bench {
 /// Where a file cannot be used or no parameter has that name.
 pub fn run(args: &ParametersArgs) -> Result<(), ParametersFailure> {
     let prefix = args.only.as_deref().unwrap_or_default();
-    let chosen: Vec<&'static Parameter> = PARAMETERS
+    let chosen: Vec<&'static Setting> = SETTINGS
         .iter()
-        .filter(|parameter| parameter.name.starts_with(prefix))
+        .filter(|setting| setting.name.starts_with(prefix))
         .collect();
     if chosen.is_empty() {
         return Err(ParametersFailure::Unknown(prefix.to_owned()));
     }
     let bench = read(args)?;
-    let config = SlamConfig::for_robot(&bench.frames[0].scan);
+    let config = RobotConfig::for_scan(&bench.frames[0].scan);
     let default = bench.run(None);
     if default.mean_m.is_none() {
         return Err(ParametersFailure::Outside {
@@ -163,13 +157,13 @@ pub fn run(args: &ParametersArgs) -> Result<(), ParametersFailure> {
     }
     let rows: Vec<Row> = chosen
         .into_par_iter()
-        .map(|parameter| Row {
-            name: parameter.name,
-            unit: parameter.unit,
-            about: parameter.about,
-            value: parameter.value(&config).unwrap_or_default(),
-            half: bench.varied(&config, parameter, 0.5),
-            twice: bench.varied(&config, parameter, 2.0),
+        .map(|setting| Row {
+            name: setting.name,
+            unit: setting.unit,
+            about: setting.about,
+            value: setting.value(&config),
+            half: bench.varied(&config, setting, 0.5),
+            twice: bench.varied(&config, setting, 2.0),
         })
         .collect();
     if args.json {

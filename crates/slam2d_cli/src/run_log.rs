@@ -6,8 +6,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ch16_slam2d::slam::SnapshotError;
-use ch16_slam2d::slam::parameters::{Parameter, ParameterError};
-use ch16_slam2d::submaps::FrontEndChoice;
 use clap::Args;
 use measuring::{process, timed};
 use robot_io::laser_mount::LaserMount;
@@ -15,6 +13,7 @@ use robot_io::log::LogReader;
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
 use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
+use robot_io::settings::{Setting, SettingError};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -26,7 +25,6 @@ use crate::output::{print_json, say};
 use crate::run_output::write_folder;
 use crate::session_file::{SessionFileError, read_session};
 use crate::tick_costs::{TickCosts, TickSummary};
-use crate::trial::choice;
 
 /// Map a recorded log, and grade the trajectory where a reference is given.
 #[derive(Args, Clone, Debug)]
@@ -38,9 +36,6 @@ pub struct RunArgs {
     /// Write the results into this folder.
     #[arg(short = 'o', long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// What the front end registers scans on.
-    #[arg(long, default_value = "window", value_parser = choice::<FrontEndChoice>())]
-    front_end: FrontEndChoice,
     /// Leave the wheels out: scans alone.
     #[arg(long)]
     no_odometry: bool,
@@ -49,7 +44,7 @@ pub struct RunArgs {
     settings: Vec<(String, f64)>,
     /// Go on from this session, or from the folder of a run: the log is the rest of its drive, and the
     /// parameters stay as they are.
-    #[arg(long = "continue", value_name = "SESSION", conflicts_with_all = ["settings", "front_end"])]
+    #[arg(long = "continue", value_name = "SESSION", conflicts_with = "settings")]
     session: Option<PathBuf>,
     /// In the map, mark as free what lies before the sensor's limit on beams that saw nothing (REP 117).
     #[arg(long)]
@@ -83,7 +78,7 @@ pub enum RunError {
     Grade(#[from] GradeError),
     /// A parameter cannot be set.
     #[error(transparent)]
-    Parameter(#[from] ParameterError),
+    Setting(#[from] SettingError),
     /// The log is not the rest of the session's drive.
     #[error(
         "{name}: no scan is after the session's last one; give the rest of that drive, or run the log alone"
@@ -249,11 +244,11 @@ fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder, Option<LaserMount>), Ru
         OdometryUse::Log
     };
     let Some(path) = &args.session else {
-        let mut run = LogRun::new(odometry_use).with_front_end(args.front_end);
+        let mut run = LogRun::new(odometry_use);
         for (name, value) in &args.settings {
-            let parameter = Parameter::named(name)?;
-            parameter.check(*value)?;
-            run = run.with_parameter(parameter, *value);
+            let setting = Setting::named(name)?;
+            setting.check(*value)?;
+            run = run.with_setting(setting, *value);
         }
         return Ok((run, RunRecorder::default(), None));
     };

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::support::{assert_refused, json, slam2d};
-use ch16_slam2d::slam::parameters::PARAMETERS;
+use robot_io::settings::SETTINGS;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -396,9 +396,9 @@ fn the_page_of_parameters_names_exactly_those_that_there_are_with_what_they_do_a
         .iter()
         .map(|row| row[0].trim_end_matches('`'))
         .collect();
-    let known: Vec<&str> = PARAMETERS.iter().map(|parameter| parameter.name).collect();
+    let known: Vec<&str> = SETTINGS.iter().map(|parameter| parameter.name).collect();
     assert_eq!(names, known);
-    for (row, parameter) in rows.iter().zip(PARAMETERS) {
+    for (row, parameter) in rows.iter().zip(SETTINGS) {
         assert_eq!(row.len(), 5, "{row:?}");
         assert_eq!(row[1], parameter.about);
         let unit = row[2].split_once(' ').map_or("", |(_, unit)| unit);

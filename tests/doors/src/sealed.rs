@@ -3,19 +3,17 @@
 //! `docs/sessions.md` describes the file.
 
 use ch16_slam2d::digest::Digest;
-use ch16_slam2d::loops::DetectorKind;
-use ch16_slam2d::matching::{
-    MatcherKind, NdtMatcherConfig, SearchMatcherConfig, StagedMatcherConfig,
-};
-use ch16_slam2d::places::PlaceDetectorConfig;
-use ch16_slam2d::scan::LaserScan;
-use ch16_slam2d::slam::SlamConfig;
-use robot_io::session::{MAGIC, VERSION, config_text};
+use ch16_slam2d::slam::RobotConfig;
+use robot_io::session::{MAGIC, VERSION};
+use robot_io::settings::Setting;
 
 /// The sections in their order.
 const SECTIONS: [&[u8; 4]; 10] = [
     b"CONF", b"SENS", b"STAT", b"NODE", b"EDGE", b"HELD", b"SCAN", b"MAPD", b"WAYS", b"FRNT",
 ];
+
+/// A pose: three numbers of 64 bits.
+const START_BYTES: usize = 24;
 
 /// A file around these sections.
 pub fn sealed(body: &[u8]) -> Vec<u8> {
@@ -33,9 +31,9 @@ pub fn sealed(body: &[u8]) -> Vec<u8> {
     file
 }
 
-/// The sections of `text`, which follow each other by their letters alone, with their lengths. The
-/// parameters of `kind` stand for the lines that the first section lacks.
-pub fn with_lengths(kind: usize, mut text: &[u8]) -> Vec<u8> {
+/// The sections of `text`, which follow each other by their letters alone, with their lengths. Lines
+/// `NAME VALUE` of the first section change the default parameters.
+pub fn with_lengths(mut text: &[u8]) -> Vec<u8> {
     let mut body = Vec::new();
     for (number, tag) in SECTIONS.iter().enumerate() {
         text = text.strip_prefix(&tag[..]).unwrap_or(text);
@@ -44,7 +42,7 @@ pub fn with_lengths(kind: usize, mut text: &[u8]) -> Vec<u8> {
         let (content, rest) = text.split_at(end.unwrap_or(text.len()));
         text = rest;
         let content = match number {
-            0 => parameters(kind, content),
+            0 => parameters(content),
             _ => content.to_vec(),
         };
         body.extend_from_slice(&tag[..]);
@@ -54,38 +52,25 @@ pub fn with_lengths(kind: usize, mut text: &[u8]) -> Vec<u8> {
     body
 }
 
-/// The parameters of `kind` with these lines in place of its own.
-fn parameters(kind: usize, lines: &[u8]) -> Vec<u8> {
-    let kinds = configs();
-    let mut text = config_text(&kinds[kind % kinds.len()]).into_bytes();
-    // Of two lines of one name the last one counts.
-    text.extend_from_slice(lines);
-    text
-}
-
-/// One of each kind of part.
-fn configs() -> [SlamConfig; 8] {
-    let plain = SlamConfig::default();
-    let matched = |matcher| plain.clone().with_matcher(matcher);
-    let detecting = |places| {
-        let mut config = plain.clone();
-        config.loops.detector = DetectorKind::Place(places);
-        config
-    };
-    [
-        SlamConfig::for_robot(&LaserScan::default()),
-        matched(MatcherKind::PointToPoint),
-        matched(MatcherKind::Ndt(NdtMatcherConfig::default())),
-        matched(MatcherKind::Staged(StagedMatcherConfig::default())),
-        matched(MatcherKind::Search(SearchMatcherConfig::default())),
-        detecting(PlaceDetectorConfig::histogram(0)),
-        detecting(PlaceDetectorConfig::context(0)),
-        plain.clone().with_submaps(),
-    ]
+/// The start at the origin, and the default parameters with those that the lines change.
+fn parameters(lines: &[u8]) -> Vec<u8> {
+    let mut config = RobotConfig::default();
+    for line in String::from_utf8_lossy(lines).lines() {
+        let Some((name, value)) = line.split_once(' ') else {
+            continue;
+        };
+        if let (Ok(setting), Ok(value)) = (Setting::named(name), value.parse()) {
+            config = setting.set(&config, value).unwrap_or(config);
+        }
+    }
+    let mut section = vec![0; START_BYTES];
+    section.extend(serde_json::to_vec(&config).expect("plain numbers"));
+    section
 }
 
 #[cfg(test)]
 mod tests {
+    use ch16_slam2d::scan::LaserScan;
     use pr_geom::SE2;
     use robot_io::log::LogFrame;
     use robot_io::run::{LogRun, OdometryUse};
@@ -93,20 +78,16 @@ mod tests {
     use super::*;
 
     /// What [`sealed`] and [`with_lengths`] put around the sections of a file.
-    fn taken_apart(kind: usize, file: &[u8]) -> Vec<u8> {
+    fn taken_apart(file: &[u8]) -> Vec<u8> {
         let mut rest = &file[20..file.len() - 8];
         let mut text = Vec::new();
         for tag in SECTIONS {
             let length = u64::from_le_bytes(rest[4..12].try_into().unwrap()) as usize;
             let (content, after) = rest[12..].split_at(length);
             text.extend_from_slice(&tag[..]);
+            // The scanner of the test has the default parameters but for one.
             if tag == b"CONF" {
-                let own = config_text(&configs()[kind]);
-                let lines = core::str::from_utf8(content).unwrap().lines();
-                for line in lines.filter(|line| !own.lines().any(|known| known == *line)) {
-                    text.extend_from_slice(line.as_bytes());
-                    text.push(b'\n');
-                }
+                text.extend_from_slice(b"scan_normal_radius_m 0.7\n");
             } else {
                 text.extend_from_slice(content);
             }
@@ -117,25 +98,23 @@ mod tests {
 
     #[test]
     fn a_file_that_is_taken_apart_and_put_together_is_a_session_again() {
-        for kind in 0..configs().len() {
-            let mut run = LogRun::new(OdometryUse::Log).with_config(configs()[kind].clone());
-            for step in 0..3 {
-                let along_m = 0.4 * f64::from(step);
-                run.step(LogFrame {
-                    stamp_s: f64::from(step),
-                    odometry: Some(SE2::new(along_m, 0.0, 0.0)),
-                    scan: LaserScan {
-                        angle_step_rad: 0.75,
-                        ranges_m: (0..8).map(|beam| 1.0 + 0.125 * f64::from(beam)).collect(),
-                        ..LaserScan::default()
-                    },
-                });
-            }
-            run.finish();
-            let session = run.session().unwrap();
-            let file = sealed(&with_lengths(kind, &taken_apart(kind, &session.to_bytes())));
-            let again = robot_io::session::Session::of_bytes(&file, "x").unwrap();
-            assert_eq!(again, session, "{kind}");
+        let mut run = LogRun::new(OdometryUse::Log);
+        for step in 0..3 {
+            let along_m = 0.4 * f64::from(step);
+            run.step(LogFrame {
+                stamp_s: f64::from(step),
+                odometry: Some(SE2::new(along_m, 0.0, 0.0)),
+                scan: LaserScan {
+                    angle_step_rad: 0.75,
+                    ranges_m: (0..8).map(|beam| 1.0 + 0.125 * f64::from(beam)).collect(),
+                    ..LaserScan::default()
+                },
+            });
         }
+        run.finish();
+        let session = run.session().unwrap();
+        let file = sealed(&with_lengths(&taken_apart(&session.to_bytes())));
+        let again = robot_io::session::Session::of_bytes(&file, "x").unwrap();
+        assert_eq!(again, session);
     }
 }

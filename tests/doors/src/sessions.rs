@@ -12,7 +12,8 @@ use robot_io::localize::LocalizeRun;
 use robot_io::log::LogFrame;
 use robot_io::map_image::map_of_session;
 use robot_io::run::{LogRun, OdometryUse};
-use robot_io::session::{Session, config_text};
+use robot_io::session::Session;
+use robot_io::settings::SETTINGS;
 
 use crate::runs::{assert_finite, assert_loads, drive};
 use crate::sealed::{sealed, with_lengths};
@@ -36,7 +37,7 @@ pub fn door(data: &[u8]) {
     let file = match how % 4 {
         0 => text.to_vec(),
         1 => sealed(text),
-        _ => sealed(&with_lengths(how / 4, text)),
+        _ => sealed(&with_lengths(text)),
     };
     let session = match Session::of_bytes(&file, NAME) {
         Ok(session) => session,
@@ -58,14 +59,12 @@ fn is_small(session: &Session) -> bool {
     let driven = &session.driven;
     let scans = driven.keyframes.iter().map(|keyframe| &keyframe.scan);
     let mut scans = scans.chain(&driven.front_end.scans);
-    let text = config_text(&driven.config);
-    let values = text.lines().filter_map(|line| line.split(' ').nth(1));
-    // Most of what has no limit is written so.
-    let mut values = values.filter_map(|value| value.parse().ok().filter(|v: &f64| v.is_finite()));
+    let robot = driven.config.robot.unwrap_or_default();
+    let mut values = SETTINGS.iter().map(|setting| setting.value(&robot));
     driven.keyframes.len() <= MAX_KEYFRAMES
         && driven.front_end.scans.len() <= MAX_KEYFRAMES
         && scans.all(|scan| scan.len() <= MAX_POINTS)
-        && values.all(|value| value.abs() <= MAX_SETTING)
+        && values.all(|value| value <= MAX_SETTING)
 }
 
 /// The next scans: a round room, and the wheels drive on.

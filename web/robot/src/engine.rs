@@ -12,7 +12,6 @@ use std::collections::BTreeMap;
 use std::io::{self, BufRead, Read};
 
 use ch16_slam2d::graph::PoseGraph;
-use ch16_slam2d::slam::Refinement;
 use pr_geom::SE2;
 use robot_io::log::{LogOptions, LogReader};
 use robot_io::log_bytes::LogBytes;
@@ -34,8 +33,8 @@ use crate::whereabouts::Whereabouts;
 /// What is under way.
 enum Work<'a> {
     Reading(Box<dyn LogReader + 'a>),
-    /// With the pieces done.
-    Linking(Box<Refinement>, usize),
+    /// No scan follows: the last loops are closed.
+    Finishing,
     Solving(Box<GraphSolving>),
     Checking,
     Idle,
@@ -197,7 +196,7 @@ impl<'a> Engine<'a> {
     pub fn stage(&self) -> Stage {
         match self.work {
             Work::Reading(_) => Stage::Reading,
-            Work::Linking(..) => Stage::Linking,
+            Work::Finishing => Stage::Finishing,
             Work::Solving(_) => Stage::Solving,
             Work::Checking => Stage::Checking,
             Work::Idle => Stage::Done,
@@ -209,7 +208,7 @@ impl<'a> Engine<'a> {
     pub fn step(&mut self) -> bool {
         match core::mem::replace(&mut self.work, Work::Idle) {
             Work::Reading(reader) => self.read(reader),
-            Work::Linking(refinement, done) => self.link(refinement, done),
+            Work::Finishing => self.close_last_loops(),
             Work::Solving(solving) => self.solve(solving),
             Work::Checking => self.check(),
             Work::Idle => return self.paint() || self.look_around(),
@@ -267,18 +266,18 @@ impl<'a> Engine<'a> {
         let missing = problem.as_ref().or(said.first().filter(|_| is_cut));
         let missing = missing.map_or(String::new(), |missing| format!("{missing}."));
         self.remarks.extend(said);
-        match self.run.finishing() {
+        match self.run.slam() {
             Some(_) if !self.run.has_seen() => {
                 let said = format!("{}: no scan could be used: {NOTHING_SEEN}", self.name);
                 self.work = Work::Failed(said);
             }
-            Some(refinement) => {
+            Some(_) => {
                 self.remarks.extend(problem);
                 self.remarks.extend(self.run.sentences(&self.name));
                 if !missing.is_empty() {
                     self.waiting.push(Update::text("answer", missing));
                 }
-                self.work = Work::Linking(Box::new(refinement), 0);
+                self.work = Work::Finishing;
             }
             None => {
                 let nothing = || match self.run.refused() {
@@ -292,11 +291,8 @@ impl<'a> Engine<'a> {
         self.waiting.push(Update::text("remarks", remarks));
     }
 
-    fn link(&mut self, mut refinement: Box<Refinement>, done: usize) {
-        if self.run.finish_step(&mut refinement) {
-            self.work = Work::Linking(refinement, done + 1);
-            return;
-        }
+    fn close_last_loops(&mut self) {
+        self.run.finish();
         self.begin_editing(links_of(&self.run));
     }
 
@@ -379,22 +375,16 @@ fn poses_of(run: &LogRun) -> &[SE2] {
     run.slam().map_or(&[], |slam| slam.graph().poses())
 }
 
-/// The links of the last pass; before it the loops that were tried.
+/// The loops that were tried, or those that the reader left in the graph.
 fn links_of(run: &LogRun) -> Vec<Link> {
-    let confidence = confidence_of(run);
     if run.links().is_empty() {
         let tried = run.loops().iter();
         return tried
-            .map(|tried| Link::registered(&tried.verification, confidence, tried.accepted))
+            .map(|tried| Link::registered(&tried.verification, run.holds(tried)))
             .collect();
     }
     let links = run.links().iter();
     links
-        .map(|link| Link::registered(link, confidence, link.accepted()))
+        .map(|link| Link::registered(link, link.accepted()))
         .collect()
-}
-
-/// How often the estimator counts the information of an edge.
-fn confidence_of(run: &LogRun) -> f64 {
-    run.slam().map_or(1.0, |slam| slam.config().confidence)
 }

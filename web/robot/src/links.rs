@@ -61,15 +61,15 @@ pub struct Link {
 pub const NUMBERS: usize = 10;
 
 impl Link {
-    /// A loop that was registered; its information counts `confidence` times, as in the estimator.
+    /// A loop that was registered.
     #[must_use]
-    pub fn registered(found: &LoopVerification, confidence: f64, is_in_graph: bool) -> Self {
+    pub fn registered(found: &LoopVerification, is_in_graph: bool) -> Self {
         let chi2 = found.gate.chi2;
         Self {
             old: found.candidate.node,
             new: found.from_node,
             measurement: found.registered,
-            information: found.information * confidence,
+            information: found.information,
             found: Some(*found),
             chi2: chi2.is_finite().then_some(chi2),
             gate_chi2: found.gate.gate_chi2,

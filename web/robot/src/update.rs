@@ -21,8 +21,8 @@
 pub enum Stage {
     /// The file is read, scan by scan.
     Reading = 1,
-    /// Every keyframe is registered once more on what was seen around it.
-    Linking = 2,
+    /// No scan follows: the last loops are closed.
+    Finishing = 2,
     /// A graph from a file is solved.
     Solving = 3,
     /// The covariances are computed.

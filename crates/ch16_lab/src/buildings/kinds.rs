@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use ch16_slam2d::slam::SlamConfig;
+use ch16_slam2d::slam::RobotConfig;
 
 use super::plan::{BuildingConfig, BuildingPlan, Layout, Rooms};
 use super::recording::{Recorder, Recording};
@@ -69,13 +69,13 @@ impl Choice for Kind {
 
 /// What the robot of a kind records in the building of a seed, and the defaults for its scanner.
 #[must_use]
-pub fn recorded(kind: Kind, seed: u32) -> (Recording, SlamConfig) {
+pub fn recorded(kind: Kind, seed: u32) -> (Recording, RobotConfig) {
     recorded_by(Robot::Own, kind, seed)
 }
 
 /// What another robot records there; on the laps the chapter's own drives, whichever is asked for.
 #[must_use]
-pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, SlamConfig) {
+pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, RobotConfig) {
     let plan = BuildingConfig {
         seed,
         ..BuildingConfig::default()
@@ -130,9 +130,9 @@ pub fn recorded_by(driver: Robot, kind: Kind, seed: u32) -> (Recording, SlamConf
     ))
 }
 
-fn with_defaults(recording: Recording) -> (Recording, SlamConfig) {
+fn with_defaults(recording: Recording) -> (Recording, RobotConfig) {
     // As runs of recorded logs do.
-    let config = SlamConfig::for_robot(&recording.frames[0].scan).with_referee();
+    let config = RobotConfig::for_scan(&recording.frames[0].scan);
     (recording, config)
 }
 

@@ -3,7 +3,7 @@
 use ch16_slam2d::chi_squared::CHAPTER_GATE;
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::metrics::position_error_m;
-use ch16_slam2d::slam::{Slam, SlamConfig};
+use ch16_slam2d::slam::{LoopAttempt, RobotConfig, Slam, SlamConfig};
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
@@ -31,7 +31,7 @@ pub struct TrialLoops {
 pub struct Trial {
     /// Loops tried while scans came in.
     pub tried: usize,
-    /// Loops closed while scans came in.
+    /// Loops that were closed.
     pub closed: TrialLoops,
     /// Loops of the final graph.
     pub links: TrialLoops,
@@ -46,16 +46,16 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Runs the estimator to the end of the recording and refines the graph.
+    /// Runs the estimator to the end of the recording.
     ///
     /// # Panics
     /// Where the recording has no frame.
     #[must_use]
-    pub fn run(recording: &Recording, config: SlamConfig, with_wheels: bool) -> Self {
+    pub fn run(recording: &Recording, robot: RobotConfig, with_wheels: bool) -> Self {
         let frames = &recording.frames;
         let mut slam = Slam::new(SlamConfig {
             start: frames[0].truth,
-            ..config
+            ..SlamConfig::from_robot(robot)
         });
         let (mut tried, mut closed) = (0, TrialLoops::default());
         for number in 0..frames.len() {
@@ -63,16 +63,11 @@ impl Trial {
                 continue;
             };
             tried += report.loop_attempts.len();
-            for attempt in report.loop_attempts.iter().filter(|found| found.accepted()) {
-                let found = &attempt.verification;
-                let (old, new) = (found.candidate.node, found.from_node);
-                closed.add(
-                    &truth_between(&slam, recording, old, new),
-                    &found.registered,
-                );
-            }
+            closed.add_all(&slam, recording, &report.loop_attempts);
         }
-        slam.refine();
+        let concluded = slam.conclude();
+        tried += concluded.len();
+        closed.add_all(&slam, recording, &concluded);
         let mut links = TrialLoops::default();
         for view in slam.graph().edges() {
             if view.edge.kind == EdgeKind::Loop {
@@ -111,6 +106,15 @@ impl Trial {
 }
 
 impl TrialLoops {
+    /// Adds the loops that were closed.
+    fn add_all(&mut self, slam: &Slam, recording: &Recording, attempts: &[LoopAttempt]) {
+        for attempt in attempts.iter().filter(|attempt| attempt.accepted()) {
+            let found = &attempt.verification;
+            let (old, new) = (found.candidate.node, found.from_node);
+            self.add(&truth_between(slam, recording, old, new), &found.registered);
+        }
+    }
+
     fn add(&mut self, truth: &SE2, measured: &SE2) {
         let error = truth.between(measured);
         let off_m = position_error_m(&error, &SE2::identity());

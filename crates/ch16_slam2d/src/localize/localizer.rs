@@ -18,6 +18,8 @@ use crate::slam::{SlamConfig, fuse};
 
 /// Disagreement of scan and prediction that both allow: 99 of 100 lie below.
 const BELIEVED_CHI2: f64 = 11.34;
+/// Share of what a registration knows across a wall that it claims along it by noise alone.
+const APERTURE: f64 = 0.05;
 /// A place that a search finds again is so near to the one before, m and rad.
 const AGAIN: f64 = 0.4;
 /// A search is made at least once in so many frames while the robot is lost.
@@ -399,7 +401,7 @@ impl Localizer {
     fn known(&self, found: &MatchSummary, score: f64) -> Matrix3<f64> {
         let trust = &self.slam.loops.trust;
         let known = self.matcher.information(&found.pose, trust);
-        let known = without_aperture(&known, self.slam.loops.aperture);
+        let known = without_aperture(&known, APERTURE);
         known * (score * score * score * score)
     }
 

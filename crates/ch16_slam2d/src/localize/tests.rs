@@ -14,7 +14,7 @@ fn known() -> (Arc<KnownMap>, SlamConfig) {
     for step in 0..=110 {
         slam.step(&frame(step)).unwrap();
     }
-    slam.refine();
+    slam.conclude();
     let poses = slam.graph().poses().to_vec();
     let keyframes = slam.keyframes().to_vec();
     let map = KnownMap::new(keyframes, poses, &LocalizeConfig::default());

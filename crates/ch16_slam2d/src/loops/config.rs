@@ -1,10 +1,7 @@
 //! The constants of loop closure; the defaults are the chapter's.
 
-use pr_geom::math;
-
-use super::LoopGuard;
 use crate::chi_squared::CHAPTER_GATE;
-use crate::matching::{MapConfig, MatcherKind, SearchMatcherConfig, TrustConfig};
+use crate::matching::{MapConfig, MatcherKind, TrustConfig};
 use crate::places::PlaceDetectorConfig;
 
 /// What the gate takes for the drift between two nodes.
@@ -28,23 +25,6 @@ pub enum Detection {
     Nearest,
     /// The nearest of every visit: of each run of keyframes that passed by.
     Visits,
-}
-
-/// A search of a whole window, for a robot that has not seen a known place for long.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WideSearch {
-    /// Grid, score and refinement; the window's width follows from the drift.
-    pub matcher: SearchMatcherConfig,
-    /// It is made once the way since the last loop is longer than this, m.
-    pub min_way_m: f64,
-    /// And again so much of the way after the last one, m; 0: at every attempt.
-    pub every_m: f64,
-    /// At most so many candidates are searched at a node.
-    pub candidates: usize,
-    /// A best place whose score is ahead of the best other place by less is no loop.
-    pub min_margin: f64,
-    /// A search whose score is lower is no loop.
-    pub min_score: f64,
 }
 
 /// Who proposes loops.
@@ -90,18 +70,6 @@ pub struct LoopConfig {
     pub min_score: f64,
     /// Trust in the pairs of an accepted loop.
     pub trust: TrustConfig,
-    /// Share of what a loop knows across a wall that it claims along it by noise alone; see
-    /// [`without_aperture`](crate::matching::without_aperture).
-    pub aperture: f64,
-    /// Drift for each metre since the last loop that goes one way, as that of a wheel of the wrong size: candidates
-    /// are looked for so much farther, and the gate is half of it wider, a standard deviation.
-    pub drift_share: f64,
-    /// The radius grows with the drift up to this, m.
-    pub max_radius_m: f64,
-    /// What is done where every candidate was turned away.
-    pub search: Option<WideSearch>,
-    /// Who is believed at once, and who waits; without it every loop that passes is closed at once.
-    pub guard: Option<LoopGuard>,
     /// What the gate takes for the drift; the two fields below belong to the path approximation.
     pub gate_model: GateModel,
     /// Drift of x and of y over one node, a standard deviation in metres; grows with √gap.
@@ -110,18 +78,6 @@ pub struct LoopConfig {
     pub drift_sigma_rad: f64,
     /// The largest squared innovation that is believed; see [`CHAPTER_GATE`].
     pub gate_chi2: f64,
-}
-
-impl LoopConfig {
-    /// Other places are looked for so far behind the best one: twice as far as they have to be.
-    ///
-    /// The farther, the more of a window has to be searched, for a number that decides nothing.
-    #[must_use]
-    pub fn max_margin(&self) -> f64 {
-        let search = self.search.map_or(0.0, |search| search.min_margin);
-        let guard = self.guard.map_or(0.0, |guard| guard.min_margin);
-        2.0 * math::max(search, guard)
-    }
 }
 
 impl Default for LoopConfig {
@@ -148,11 +104,6 @@ impl Default for LoopConfig {
                 sigma_m: 0.05,
                 inflate: 25.0,
             },
-            aperture: 0.0,
-            drift_share: 0.0,
-            max_radius_m: f64::INFINITY,
-            search: None,
-            guard: None,
             gate_model: GateModel::PathApproximation,
             drift_sigma_m: 0.045,
             drift_sigma_rad: 0.012,

@@ -5,13 +5,10 @@ use pr_geom::SE2;
 use pr_optim::{OptimizeError, StopReason};
 
 use super::gate::{GateTest, chi_squared_gate};
-use super::{LoopCandidate, LoopConfig, WideSearch};
+use super::{LoopCandidate, LoopConfig};
 use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
-use crate::matching::{
-    InformationFrame, MatchRequest, MatchSummary, Matcher, SearchMatcher, SearchMatcherConfig,
-    chapter_information, without_aperture,
-};
+use crate::matching::{InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information};
 use crate::slam::Keyframe;
 
 /// Why a loop was turned away, with what was measured.
@@ -154,25 +151,6 @@ impl LoopWorkspace {
         }
     }
 
-    /// A workspace that searches the window of ± `half_width_m`, and for other places as far as
-    /// [`LoopConfig::max_margin`]; the search is told a pose that fits, where there is one.
-    #[must_use]
-    pub fn searching(
-        loops: &LoopConfig,
-        wide: &WideSearch,
-        half_width_m: f64,
-        known: Option<SE2>,
-    ) -> Self {
-        let config = SearchMatcherConfig {
-            half_width_m,
-            ..wide.matcher
-        };
-        let matcher = SearchMatcher::new(config, &loops.submap)
-            .with_max_margin(loops.max_margin())
-            .with_known(known);
-        Self::new(Box::new(matcher))
-    }
-
     /// The submap of the last attempt in the candidate's frame.
     #[must_use]
     pub fn submap(&self) -> &PointCloud {
@@ -233,10 +211,7 @@ pub fn verify_loop(
         InformationFrame::Chapter => {
             chapter_information(&workspace.pairs, center.theta(), &config.trust)
         }
-        InformationFrame::Exact => {
-            let known = workspace.matcher.information(&found.pose, &config.trust);
-            without_aperture(&known, config.aperture)
-        }
+        InformationFrame::Exact => workspace.matcher.information(&found.pose, &config.trust),
     };
     let innovation = belief.between(&found.pose).log();
     let assumed = gate_information.unwrap_or_default();

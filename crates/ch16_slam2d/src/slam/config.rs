@@ -2,9 +2,9 @@
 
 use pr_geom::SE2;
 
-use super::{MotionNoise, RefinementConfig};
+use super::{MotionNoise, RobotConfig};
 use crate::graph::JacobianModel;
-use crate::loops::{LoopConfig, Referee};
+use crate::loops::LoopConfig;
 use crate::matching::{InformationFrame, MapConfig, MatcherKind, TrustConfig};
 use crate::scan::ScanConfig;
 use crate::submaps::FrontEndKind;
@@ -26,51 +26,6 @@ pub enum LoopClosure {
     Off,
 }
 
-/// Whether a registration is weighed against the motion that was predicted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum PredictionUse {
-    /// The chapter's: the prediction is where registration starts, and forgotten after it.
-    #[default]
-    Start,
-    /// Both are measurements: along a corridor, where the scan says nothing, the prediction stays.
-    Measurement,
-}
-
-/// What is believed where a scan and the prediction contradict each other.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContradictionConfig {
-    /// Disagreement that both allow, a squared norm in three dimensions.
-    pub chi2: f64,
-    /// A scan of which less fits is not believed against the prediction, 0 to 1.
-    pub min_score: f64,
-    /// One that is believed fits better than at the prediction by so much.
-    pub lead: f64,
-    /// How far wheels jump that slip or are pushed, a standard deviation, m.
-    pub jump_m: f64,
-    /// The same for the heading, rad.
-    pub jump_rad: f64,
-    /// For each standard deviation of such a jump a scan has to fit better by so much.
-    pub jump_cost: f64,
-    /// At most by so much: what fits nearly whole is believed wherever it is.
-    pub max_cost: f64,
-}
-
-impl Default for ContradictionConfig {
-    /// 99 of 100 disagreements lie within; half of the scan has to fit, a tenth of it better, and a
-    /// tenth more for each half metre that the wheels would have jumped.
-    fn default() -> Self {
-        Self {
-            chi2: 11.345,
-            min_score: 0.5,
-            lead: 0.1,
-            jump_m: 0.5,
-            jump_rad: 0.4,
-            jump_cost: 0.1,
-            max_cost: 0.4,
-        }
-    }
-}
-
 /// The adaptive correspondence threshold (Vizzo et al., "KISS-ICP", 2023, §III-B).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThresholdConfig {
@@ -88,6 +43,9 @@ pub struct ThresholdConfig {
 /// wrong, for rooms of the chapter's size; [`SlamConfig::for_scan`] takes the lengths from a sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlamConfig {
+    /// The numbers of the estimator for robots: they register scans with a prior and look for loops on
+    /// submaps. None drives as the chapter does.
+    pub robot: Option<RobotConfig>,
     /// Pose of the first frame: it lays down the map's frame.
     pub start: SE2,
     /// How a scan becomes a cloud.
@@ -114,13 +72,6 @@ pub struct SlamConfig {
     /// Without odometry the last velocity is expected to stay for so many times the last interval at
     /// most: stamps that all but coincide make it huge.
     pub extrapolation: f64,
-    /// Whether a registration is weighed against the prediction.
-    pub prediction_use: PredictionUse,
-    /// What is believed where both contradict each other.
-    pub contradiction: ContradictionConfig,
-    /// Share of what a registration knows across a wall that it claims along it by noise alone; see
-    /// [`without_aperture`](crate::matching::without_aperture).
-    pub aperture: f64,
     /// The adaptive correspondence threshold.
     pub threshold: ThresholdConfig,
     /// Distance in metres after which a keyframe is taken.
@@ -129,10 +80,6 @@ pub struct SlamConfig {
     pub keyframe_turn_rad: f64,
     /// In which frame the information of edges is expressed.
     pub information_frame: InformationFrame,
-    /// Factor of the information of every edge, of the way and of loops.
-    ///
-    /// It moves no pose where the robust widths grow by its root; it makes covariances honest.
-    pub confidence: f64,
     /// Trust in the edge between two keyframes.
     pub odometry_trust: TrustConfig,
     /// Trust in measured odometry, where the registration was refused.
@@ -141,8 +88,6 @@ pub struct SlamConfig {
     pub prediction_noise: MotionNoise,
     /// Detection and verification of loops.
     pub loops: LoopConfig,
-    /// How keyframes are linked once more after the last frame.
-    pub refinement: RefinementConfig,
     /// Jacobians of the optimizer: with the chapter's the last steps shrink by a constant factor, with
     /// exact ones by their square.
     pub jacobians: JacobianModel,
@@ -183,6 +128,7 @@ impl SlamConfig {
     #[must_use]
     pub fn chapter() -> Self {
         Self {
+            robot: None,
             start: SE2::identity(),
             scan: ScanConfig::default(),
             loop_closure: LoopClosure::On,
@@ -198,9 +144,6 @@ impl SlamConfig {
             max_iterations: 15,
             min_inliers: 8,
             extrapolation: f64::INFINITY,
-            prediction_use: PredictionUse::Start,
-            contradiction: ContradictionConfig::default(),
-            aperture: 0.0,
             threshold: ThresholdConfig {
                 initial_m: 0.5,
                 min_motion_m: 0.03,
@@ -209,7 +152,6 @@ impl SlamConfig {
             keyframe_distance_m: 0.4,
             keyframe_turn_rad: 0.35,
             information_frame: InformationFrame::Chapter,
-            confidence: 1.0,
             odometry_trust: TrustConfig {
                 sigma_m: 0.05,
                 inflate: 12.0,
@@ -217,7 +159,6 @@ impl SlamConfig {
             odometry_noise: MotionNoise::default(),
             prediction_noise: MotionNoise::without_odometry(),
             loops: LoopConfig::default(),
-            refinement: RefinementConfig::default(),
             jacobians: JacobianModel::Chapter,
             least_correction: 0.0,
             optimizer_iterations: 15,
@@ -247,16 +188,6 @@ impl SlamConfig {
     pub fn with_matcher(mut self, matcher: MatcherKind) -> Self {
         self.matcher = matcher;
         self.loops.matcher = matcher;
-        self
-    }
-
-    /// The same estimator, whose loops are judged anew once they contradict each other: what recorded logs
-    /// are mapped with. Without a guard of loops nobody is asked.
-    #[must_use]
-    pub fn with_referee(mut self) -> Self {
-        if let Some(guard) = &mut self.loops.guard {
-            guard.referee = Referee::by_truncated_cost();
-        }
         self
     }
 }

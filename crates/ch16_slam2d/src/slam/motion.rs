@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::{SE2, math};
+use serde::{Deserialize, Serialize};
 
 /// Smallest variance of a motion, m² or rad²: the covariance always has an inverse.
 const MIN_VARIANCE: f64 = 1e-12;
@@ -11,7 +12,8 @@ const MIN_VARIANCE: f64 = 1e-12;
 /// `σ_xy = floor_m + per_metre · d + metre_per_rad · |θ|` along both axes and
 /// `σ_θ = floor_rad + per_rad · |θ| + rad_per_metre · d`, for a motion of distance d (m) and turn θ
 /// (rad).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct MotionNoise {
     /// Of the position of any motion, m.
     pub floor_m: f64,

@@ -2,7 +2,10 @@
 
 use pr_geom::SE2;
 
-use super::{LoopAttempt, Registration};
+use super::loop_closer::TriedLoops;
+use super::mapper::Trust;
+use super::{LoopAttempt, LoopEffect, Registration};
+use crate::loops::{LoopRejection, LoopVerification};
 
 /// A frame under way: registered, its loops not yet decided.
 #[derive(Clone, Debug)]
@@ -11,9 +14,24 @@ pub struct PendingFrame {
     pub(super) registration: Option<Registration>,
     pub(super) new_keyframe: Option<usize>,
     pub(super) loop_attempts: Vec<LoopAttempt>,
+    trust: Trust,
 }
 
 impl PendingFrame {
+    pub(super) fn new(
+        stamp_s: f64,
+        registration: Option<Registration>,
+        new_keyframe: Option<usize>,
+    ) -> Self {
+        Self {
+            stamp_s,
+            registration,
+            new_keyframe,
+            loop_attempts: Vec::new(),
+            trust: Trust::Expected,
+        }
+    }
+
     /// Node of the keyframe that was taken.
     #[must_use]
     pub fn new_keyframe(&self) -> Option<usize> {
@@ -23,8 +41,8 @@ impl PendingFrame {
     /// Whether a loop passed its tests and will be closed.
     #[must_use]
     pub fn has_loop(&self) -> bool {
-        let newest = self.loop_attempts.last();
-        newest.is_some_and(|attempt| attempt.verification.accepted())
+        let mut attempts = self.loop_attempts.iter();
+        attempts.any(|attempt| attempt.verification.accepted())
     }
 
     /// The same frame with its loops forgotten, as if none had been looked for.
@@ -37,7 +55,44 @@ impl PendingFrame {
     /// Poses of all nodes before a loop was closed in this frame.
     #[must_use]
     pub fn poses_before_loop(&self) -> Option<&[SE2]> {
-        let effect = self.loop_attempts.last()?.effect.as_ref()?;
+        let mut effects = self.loop_attempts.iter().rev();
+        let effect = effects.find_map(|attempt| attempt.effect.as_ref())?;
         Some(&effect.poses_before)
+    }
+
+    /// Adds the loops that were tried in frame number `frame`.
+    pub(super) fn add(&mut self, frame: usize, tried: TriedLoops) {
+        self.trust = tried.trust;
+        let attempts = tried.found.into_iter().map(|verification| LoopAttempt {
+            frame,
+            verification,
+            effect: None,
+        });
+        self.loop_attempts.extend(attempts);
+    }
+
+    /// The loops that passed their tests.
+    pub(super) fn accepted(&self) -> Vec<LoopVerification> {
+        let found = self
+            .loop_attempts
+            .iter()
+            .map(|attempt| attempt.verification);
+        found.filter(LoopVerification::accepted).collect()
+    }
+
+    /// How the graph takes them.
+    pub(super) fn trust(&self) -> Trust {
+        self.trust
+    }
+
+    /// Notes what closing the accepted loops did.
+    pub(super) fn closed(&mut self, outcome: Result<LoopEffect, LoopRejection>) {
+        let attempts = self.loop_attempts.iter_mut();
+        for attempt in attempts.filter(|attempt| attempt.verification.accepted()) {
+            match &outcome {
+                Ok(effect) => attempt.effect = Some(effect.clone()),
+                Err(rejection) => attempt.verification.rejection = Some(*rejection),
+            }
+        }
     }
 }

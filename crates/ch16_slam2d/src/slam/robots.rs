@@ -1,120 +1,266 @@
-//! The defaults for recorded logs of indoor robots.
+//! The estimator for recorded logs of robots: its numbers, and the system that they make.
 
-use super::config::{PredictionUse, SlamConfig, ThresholdConfig};
-use super::{MotionNoise, RefinementConfig};
+use serde::{Deserialize, Serialize};
+
+use super::config::{SlamConfig, ThresholdConfig};
+use super::motion::MotionNoise;
 use crate::graph::JacobianModel;
-use crate::icp::{IcpConfig, IcpVariant};
-use crate::loops::{Detection, LoopConfig, LoopGuard, WideSearch};
-use crate::matching::{
-    MapConfig, MatcherKind, SearchMatcherConfig, StagedMatcherConfig, TrustConfig,
-};
+use crate::local_map::MapRegistrationConfig;
+use crate::loops::{Detection, LoopConfig};
+use crate::matching::{MapConfig, MatcherKind, StagedMatcherConfig, TrustConfig};
 use crate::scan::{LaserScan, ScanConfig};
 
-/// Radius within which points give each other normals, m, for each degree from beam to beam.
-const NORMAL_RADIUS_M: f64 = 0.5;
-/// Most that a point is off: by the noise of the ranges, and by where the wall was sampled, m.
-const SIGMA_M: f64 = 0.025;
+/// Radius within which points of one scan give each other normals, m, for each degree from beam to beam.
+const SCAN_NORMAL_RADIUS_M: f64 = 0.5;
+
+/// Wheels of a common indoor robot; what slips is left to the tails of the prior.
+const WHEELS: MotionNoise = MotionNoise {
+    floor_m: 0.01,
+    per_metre: 0.05,
+    metre_per_rad: 0.03,
+    floor_rad: 0.005,
+    per_rad: 0.05,
+    rad_per_metre: 0.025,
+};
+
+/// A robot that goes on as before: where scans are a metre or half a radian apart, it may as well not.
+const CONSTANT_VELOCITY: MotionNoise = MotionNoise {
+    floor_m: 0.1,
+    per_metre: 0.3,
+    metre_per_rad: 0.1,
+    floor_rad: 0.1,
+    per_rad: 1.0,
+    rad_per_metre: 0.1,
+};
+
+/// Every number of the estimator for robots.
+///
+/// One set of values for planar lasers on wheels, in rooms, corridors and out of doors. Lengths are in
+/// metres. `docs/robots.md` says what it does on recorded logs, `docs/robots-parameters.md` what each
+/// number does.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct RobotConfig {
+    /// A scan is thinned to a point in each cell of this side, m.
+    pub scan_cell_m: f64,
+    /// Radius within which points of one scan give each other normals, m.
+    pub scan_normal_radius_m: f64,
+    /// Last scans in the local map.
+    pub window_sweeps: usize,
+    /// A scan joins the local map only so far from the newest one in it, m.
+    pub window_distance_m: f64,
+    /// Or where it is turned so far from the newest one, rad.
+    pub window_turn_rad: f64,
+    /// Radius within which points of the local map give each other normals, m.
+    pub normal_radius_m: f64,
+    /// Largest distance of a pair in the first stage of a registration, m.
+    pub reach_m: f64,
+    /// Largest distance of a pair in the last stage, and of a point that fits, m.
+    pub fit_m: f64,
+    /// Standard deviation of a point across its wall, m.
+    pub point_sigma_m: f64,
+    /// A scan counts as so many independent points.
+    pub independent_points: f64,
+    /// What a point in space that was never seen costs, as a share of a miss.
+    pub unseen_cost: f64,
+    /// With a lower score the window around the prediction is searched, 0 to 1.
+    pub good_score: f64,
+    /// Half the width of that window, m.
+    pub search_m: f64,
+    /// Half its range of headings, rad.
+    pub search_rad: f64,
+    /// How far the wheels are trusted.
+    pub odometry: MotionNoise,
+    /// How far a robot without odometry goes on as before.
+    pub constant_velocity: MotionNoise,
+    /// Distance after which a keyframe is taken, m.
+    pub keyframe_distance_m: f64,
+    /// Turn after which a keyframe is taken, rad.
+    pub keyframe_turn_rad: f64,
+    /// How loops are found.
+    pub loops: SubmapLoopConfig,
+}
+
+/// How loops are found: keyframes around the newest on a submap of older ones.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct SubmapLoopConfig {
+    /// A loop is looked for at every so many keyframes.
+    pub every_keyframes: usize,
+    /// The newest so many keyframes are looked for together.
+    pub bundle: usize,
+    /// On submaps of older keyframes, at least so much of the path ago, m.
+    pub min_path_m: f64,
+    /// At most so many submaps are tried at a keyframe, the nearest first.
+    pub submaps: usize,
+    /// The window is so many standard deviations of the relative pose wide.
+    pub window_sigmas: f64,
+    /// Half the window's width at most, m.
+    pub max_window_m: f64,
+    /// Half its range of headings at most, rad.
+    pub max_turn_rad: f64,
+    /// Score below which the keyframes do not fit, 0 to 1.
+    pub min_score: f64,
+    /// The best place has to be ahead of the best other one by so much, 0 to 1.
+    pub min_margin: f64,
+    /// A loop within a window of this half width needs no other one that agrees, m.
+    pub sure_m: f64,
+    /// Else it waits for one on so much of the path, m.
+    pub pending_distance_m: f64,
+    /// Loops that agree lie so far apart on the path, m: their keyframes are not the same.
+    pub apart_m: f64,
+}
+
+impl Default for SubmapLoopConfig {
+    fn default() -> Self {
+        Self {
+            every_keyframes: 3,
+            bundle: 8,
+            min_path_m: 12.0,
+            submaps: 2,
+            window_sigmas: 3.4,
+            max_window_m: 20.0,
+            max_turn_rad: 0.5,
+            min_score: 0.6,
+            min_margin: 0.03,
+            sure_m: 1.0,
+            pending_distance_m: 20.0,
+            apart_m: 5.0,
+        }
+    }
+}
+
+impl Default for RobotConfig {
+    fn default() -> Self {
+        Self {
+            scan_cell_m: 0.065,
+            scan_normal_radius_m: SCAN_NORMAL_RADIUS_M,
+            window_sweeps: 16,
+            window_distance_m: 0.16,
+            window_turn_rad: 0.1,
+            normal_radius_m: 0.3,
+            reach_m: 0.3,
+            fit_m: 0.15,
+            point_sigma_m: 0.025,
+            independent_points: 28.0,
+            unseen_cost: 0.4,
+            good_score: 0.8,
+            search_m: 1.1,
+            search_rad: 1.6,
+            odometry: WHEELS,
+            constant_velocity: CONSTANT_VELOCITY,
+            keyframe_distance_m: 0.65,
+            keyframe_turn_rad: 0.35,
+            loops: SubmapLoopConfig::default(),
+        }
+    }
+}
+
+impl RobotConfig {
+    /// The values for a scanner, of which only the angle from beam to beam is asked: normals need
+    /// neighbours.
+    #[must_use]
+    pub fn for_scan(scan: &LaserScan) -> Self {
+        let step_deg = scan.angle_step_rad.abs().to_degrees();
+        Self {
+            scan_normal_radius_m: SCAN_NORMAL_RADIUS_M * step_deg.clamp(1.0, 1.4),
+            ..Self::default()
+        }
+    }
+
+    /// How scans are registered and scored.
+    #[must_use]
+    pub fn registration(&self) -> MapRegistrationConfig {
+        MapRegistrationConfig {
+            normal_radius_m: self.normal_radius_m,
+            reach_m: self.reach_m,
+            fit_m: self.fit_m,
+            point_sigma_m: self.point_sigma_m,
+            independent_points: self.independent_points,
+            unseen_cost: self.unseen_cost,
+        }
+    }
+}
 
 impl SlamConfig {
-    /// One set of values for planar lasers on wheels, in rooms and corridors: scans up to half a
-    /// metre apart, odometry that slips and jumps, glass and people in view.
-    ///
-    /// Each scan is registered from coarse to fine and weighed against the wheels, each keyframe on
-    /// the visits around it, and after the last frame all of them once more. `docs/robots.md` says
-    /// what it does on recorded logs. Lengths are in metres; of the sensor it asks the step from beam
-    /// to beam of `scan`, since a normal needs neighbours.
+    /// The estimator for robots with the values for the scanner of `scan`.
     #[must_use]
     pub fn for_robot(scan: &LaserScan) -> Self {
-        let step_deg = scan.angle_step_rad.abs().to_degrees();
+        Self::from_robot(RobotConfig::for_scan(scan))
+    }
+
+    /// The estimator for robots with these values.
+    #[must_use]
+    pub fn from_robot(robot: RobotConfig) -> Self {
         let default = Self::default();
         let map = |max_per_cell| MapConfig {
             cell_m: 0.135,
             max_per_cell,
         };
-        let near = StagedMatcherConfig {
+        // What a loop that somebody asks for is registered with.
+        let matcher = MatcherKind::Staged(StagedMatcherConfig {
             good_score: 0.0,
             turns: 0,
             ..StagedMatcherConfig::default()
-        };
-        let far = StagedMatcherConfig {
-            good_score: 0.7,
-            turns: 4,
-            lead: 0.05,
-            near_score: 2.0,
-            ..StagedMatcherConfig::default()
-        };
+        });
         Self {
+            robot: Some(robot),
             scan: ScanConfig {
-                cell_m: 0.065,
-                normal_radius_m: NORMAL_RADIUS_M * step_deg.clamp(1.0, 1.4),
+                cell_m: robot.scan_cell_m,
+                normal_radius_m: robot.scan_normal_radius_m,
             },
-            matcher: MatcherKind::Staged(far),
-            window_distance_m: 0.16,
+            window_sweeps: robot.window_sweeps,
+            window_distance_m: robot.window_distance_m,
+            window_turn_rad: robot.window_turn_rad,
             local_map: map(4),
-            max_iterations: 10,
+            matcher,
             extrapolation: 1.0,
-            prediction_use: PredictionUse::Measurement,
-            aperture: 0.05,
             threshold: ThresholdConfig {
-                initial_m: 0.25,
+                initial_m: robot.reach_m,
                 min_motion_m: 0.016,
                 max_range_m: 20.0,
             },
-            confidence: 10.0,
-            keyframe_distance_m: 0.65,
-            keyframe_turn_rad: 0.35,
-            odometry_trust: TrustConfig {
-                sigma_m: SIGMA_M,
-                ..default.odometry_trust
-            },
-            odometry_noise: MotionNoise::default(),
+            keyframe_distance_m: robot.keyframe_distance_m,
+            keyframe_turn_rad: robot.keyframe_turn_rad,
             loops: LoopConfig {
                 detection: Detection::Visits,
                 radius_m: 4.0,
                 min_gap_nodes: 10,
                 submap: map(6),
-                matcher: MatcherKind::Staged(near),
+                matcher,
                 min_tau_m: 0.3,
                 max_rmse_m: 0.1,
                 min_score: 0.7,
                 max_iterations: 10,
-                aperture: 0.05,
-                drift_share: 0.1,
-                max_radius_m: 10.0,
-                search: Some(WideSearch {
-                    matcher: SearchMatcherConfig {
-                        half_turn_rad: 0.35,
-                        min_score: 0.5,
-                        refine: IcpConfig {
-                            variant: IcpVariant::PointToPlane,
-                            tau: 0.3,
-                            huber_width_m: 0.05,
-                            ..IcpConfig::default()
-                        },
-                        ..SearchMatcherConfig::default()
-                    },
-                    min_way_m: 20.0,
-                    every_m: 4.0,
-                    candidates: 1,
-                    min_margin: 0.05,
-                    min_score: 0.75,
-                }),
-                guard: Some(LoopGuard::default()),
-                drift_sigma_m: 0.07,
                 trust: TrustConfig {
-                    sigma_m: SIGMA_M,
+                    sigma_m: robot.point_sigma_m,
                     ..default.loops.trust
                 },
                 ..default.loops
-            },
-            refinement: RefinementConfig {
-                passes: 2,
-                radius_m: 4.0,
-                ..default.refinement
             },
             jacobians: JacobianModel::Exact,
             least_correction: 0.05,
             ..default
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_estimator_for_robots_has_the_numbers_that_it_was_given() {
+        let robot = RobotConfig {
+            keyframe_distance_m: 1.25,
+            window_sweeps: 9,
+            ..RobotConfig::default()
+        };
+        let config = SlamConfig::from_robot(robot);
+        assert_eq!(config.robot, Some(robot));
+        assert_eq!(config.keyframe_distance_m, 1.25);
+        assert_eq!(config.window_sweeps, 9);
     }
 }

@@ -12,7 +12,7 @@ use thiserror::Error;
 use super::{Keyframe, Slam, SlamConfig, SlamParts, WindowSweep};
 use crate::cloud::PointCloud;
 use crate::graph::{EdgeView, PoseGraph, PoseNode};
-use crate::loops::HeldLoop;
+use crate::loops::PendingLoop;
 use crate::scan::is_finite;
 use crate::submaps::FrontEndKind;
 
@@ -40,10 +40,8 @@ pub struct SlamSnapshot {
     pub last_attempt_node: Option<usize>,
     /// The newest node at which a loop was closed.
     pub last_loop_node: usize,
-    /// The newest node at which the window of the drift was searched.
-    pub last_search_node: Option<usize>,
     /// The loops that wait for others, in order.
-    pub held: Vec<HeldLoop>,
+    pub pending: Vec<PendingLoop>,
     /// Estimate, window and threshold.
     pub front_end: FrontEndSnapshot,
 }
@@ -160,19 +158,15 @@ impl SlamSnapshot {
             }
         }
         let is_node = |node: usize| node < nodes || (node == 0 && nodes == 0);
-        let newest = [
-            self.last_attempt_node,
-            Some(self.last_loop_node),
-            self.last_search_node,
-        ];
+        let newest = [self.last_attempt_node, Some(self.last_loop_node)];
         if !newest.into_iter().flatten().all(is_node) {
             return Err(SnapshotError::Counter("newest node with a loop"));
         }
         if self.settled_edges > self.edges.len() {
             return Err(SnapshotError::Counter("number of settled edges"));
         }
-        for (number, held) in self.held.iter().enumerate() {
-            let found = &held.verification;
+        for (number, waiting) in self.pending.iter().enumerate() {
+            let found = &waiting.verification;
             if found.from_node >= nodes || found.candidate.node >= found.from_node {
                 return Err(SnapshotError::Counter("node of a loop that waits"));
             }
@@ -182,7 +176,7 @@ impl SlamSnapshot {
                 && found.candidate.proposal.as_ref().is_none_or(is_finite)
                 && matrices.iter().all(|m| m.iter().all(|v| v.is_finite()))
                 && found.innovation.iter().all(|v| v.is_finite())
-                && held.way_m.is_finite();
+                && waiting.path_m.is_finite();
             if !known {
                 return Err(not_finite("waiting loop", number));
             }
@@ -245,14 +239,13 @@ impl Slam {
             config: self.config.clone(),
             frames: self.frames,
             last_stamp_s: self.last_stamp_s,
-            nodes: self.graph.nodes().map(|(_, node)| node).collect(),
-            edges: self.graph.edges().collect(),
-            settled_edges: self.graph.settled_edges(),
-            keyframes: self.keyframes.clone(),
-            last_attempt_node: self.last_attempt_node,
-            last_loop_node: self.last_loop_node,
-            last_search_node: self.last_search_node,
-            held: self.held.clone(),
+            nodes: self.mapper.graph.nodes().map(|(_, node)| node).collect(),
+            edges: self.mapper.graph.edges().collect(),
+            settled_edges: self.mapper.graph.settled_edges(),
+            keyframes: self.mapper.keyframes.clone(),
+            last_attempt_node: self.loop_closer.last_attempt_node,
+            last_loop_node: self.mapper.last_loop_node,
+            pending: self.loop_closer.pending().to_vec(),
             front_end: self.front_end.snapshot(),
         }
     }
@@ -296,15 +289,15 @@ impl Slam {
         let mut slam = Self::with_parts(snapshot.config.clone(), parts);
         slam.frames = snapshot.frames;
         slam.last_stamp_s = snapshot.last_stamp_s;
-        slam.graph =
+        let mapper = &mut slam.mapper;
+        mapper.graph =
             PoseGraph::of(&snapshot.nodes, &snapshot.edges).solved_with(snapshot.config.jacobians);
-        slam.graph.settle(snapshot.settled_edges);
-        slam.keyframes = snapshot.keyframes.clone();
-        slam.last_attempt_node = snapshot.last_attempt_node;
-        slam.last_loop_node = snapshot.last_loop_node;
-        slam.last_search_node = snapshot.last_search_node;
-        slam.held = snapshot.held.clone();
-        slam.chi2 = slam.graph.chi2();
+        mapper.graph.settle(snapshot.settled_edges);
+        mapper.keyframes = snapshot.keyframes.clone();
+        mapper.last_loop_node = snapshot.last_loop_node;
+        mapper.chi2 = mapper.graph.chi2();
+        slam.loop_closer
+            .restore(snapshot.last_attempt_node, &snapshot.pending);
         Ok(slam)
     }
 }
@@ -313,7 +306,7 @@ impl Slam {
 mod tests {
     use super::*;
     use crate::graph::EdgeKind;
-    use crate::loops::LoopGuard;
+    use crate::slam::RobotConfig;
     use crate::slam::test_room::frame;
 
     fn driven(slam: &mut Slam, steps: core::ops::Range<usize>) {
@@ -324,17 +317,13 @@ mod tests {
 
     fn configs() -> [SlamConfig; 4] {
         let scan = frame(0).scan;
-        // A guard that is never sure and never has enough: every loop waits.
-        let mut doubting = SlamConfig::for_robot(&scan);
-        doubting.loops.guard = Some(LoopGuard {
-            sure_m: 0.0,
-            min_margin: 0.0,
-            agreeing: 1000,
-            agreeing_outside: 1000,
-            ..LoopGuard::default()
-        });
-        // A lap has sixteen keyframes.
-        doubting.loops.min_gap_nodes = 10;
+        // Never sure: every loop waits for others.
+        let mut doubting = RobotConfig::for_scan(&scan);
+        doubting.loops.sure_m = 0.0;
+        doubting.loops.min_margin = 0.0;
+        doubting.loops.apart_m = 1e3;
+        doubting.loops.min_path_m = 4.0;
+        let doubting = SlamConfig::from_robot(doubting);
         [
             doubting,
             SlamConfig::for_robot(&scan),
@@ -348,19 +337,19 @@ mod tests {
         let (mut waited, mut unspread) = (0, 0);
         for config in configs() {
             let mut whole = Slam::new(config.clone());
-            driven(&mut whole, 0..140);
+            driven(&mut whole, 0..200);
             // Before the first loop, between loops, after the first frame, before it.
-            for stop in [0, 1, 60, 121] {
+            for stop in [0, 1, 60, 121, 150, 160, 170, 180] {
                 let mut first = Slam::new(config.clone());
                 driven(&mut first, 0..stop);
-                waited += first.snapshot().held.len();
+                waited += first.snapshot().pending.len();
                 let graph = first.graph();
                 let newer = graph.edges().skip(graph.settled_edges());
                 unspread += newer
                     .filter(|view| view.edge.kind == EdgeKind::Loop)
                     .count();
                 let mut second = Slam::restore(&first.snapshot()).unwrap();
-                driven(&mut second, stop..140);
+                driven(&mut second, stop..200);
                 assert_eq!(second.snapshot(), whole.snapshot(), "stopped after {stop}");
                 assert_eq!(second.chi2().to_bits(), whole.chi2().to_bits());
             }
@@ -389,7 +378,7 @@ mod tests {
         let good = slam.snapshot();
         assert_eq!(good.check(), Ok(()));
         type Spoil = fn(&mut SlamSnapshot);
-        let spoils: [(Spoil, &str); 9] = [
+        let spoils: [(Spoil, &str); 8] = [
             (|s| drop(s.keyframes.pop()), "nodes have"),
             (|s| s.nodes[0].fixed = false, "no node is fixed"),
             (|s| s.edges[0].to = 999.into(), "edge 0 ties node 0 to 999"),
@@ -398,10 +387,6 @@ mod tests {
                 "node 1 holds",
             ),
             (|s| s.last_loop_node = 999, "newest node with a loop"),
-            (
-                |s| s.last_search_node = Some(999),
-                "newest node with a loop",
-            ),
             (|s| s.settled_edges = 999, "number of settled edges"),
             (|s| drop(s.front_end.scans.pop()), "window of sweeps"),
             (

@@ -7,10 +7,6 @@
 //!
 //! Source: Förstner & Wrobel, "Photogrammetric computer vision", 2016, §4.2.3.
 
-use pr_geom::Matrix3;
-use pr_optim::OptimizeError;
-
-use super::Slam;
 use crate::graph::PoseGraph;
 
 /// The edges are taken at their word as if so many measurements said so: without a loop nothing else does.
@@ -20,28 +16,13 @@ const STATED: f64 = 1.0;
 /// buildings, checked on others; `docs/robots.md` has both.
 const CHAINED: f64 = 3.0;
 
-impl Slam {
-    /// Covariance of every keyframe against the first one, in the body's frame: x and y in m, θ in rad.
-    ///
-    /// That of the graph, times what its contradictions say of it.
-    ///
-    /// # Errors
-    /// Where the normal equations are not positive definite.
-    pub fn keyframe_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
-        let factor = CHAINED * self.variance_factor();
-        let stated = self.graph.pose_covariances()?;
-        Ok(stated.into_iter().map(|stated| stated * factor).collect())
-    }
-
-    /// By how much the variances of the graph's measurements are larger than stated.
-    #[must_use]
-    pub fn variance_factor(&self) -> f64 {
-        variance_factor(&self.graph)
-    }
+/// What every covariance of the graph is multiplied by.
+pub(super) fn keyframe_factor(graph: &PoseGraph) -> f64 {
+    CHAINED * variance_factor(graph)
 }
 
 /// `χ² / (3E − 3N)` of E edges and N nodes that are not fixed, drawn to 1 where little is measured twice.
-fn variance_factor(graph: &PoseGraph) -> f64 {
+pub(super) fn variance_factor(graph: &PoseGraph) -> f64 {
     let free = graph.nodes().filter(|(_, node)| !node.fixed).count();
     let redundant = 3.0 * graph.edge_count().saturating_sub(free) as f64;
     (graph.chi2() + STATED) / (redundant + STATED)
@@ -49,7 +30,7 @@ fn variance_factor(graph: &PoseGraph) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector3;
+    use nalgebra::{Matrix3, Vector3};
     use pr_geom::{Rng, SE2};
 
     use super::*;

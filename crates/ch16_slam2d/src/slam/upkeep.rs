@@ -11,7 +11,8 @@ use std::sync::Arc;
 
 use pr_geom::{Point2, SE2, math, sort_pairs};
 
-use super::Slam;
+use super::loop_closer::LoopCloser;
+use super::mapper::Mapper;
 use crate::cloud::PointCloud;
 use crate::metrics::position_error_m;
 
@@ -127,54 +128,67 @@ impl Sight {
     }
 }
 
-impl Slam {
-    /// Drops what is gone and takes out what was replaced around the newest keyframe; call it after a
-    /// frame that became one. A map on submaps stays as it is.
-    pub fn keep_up(&mut self, config: &UpkeepConfig) -> Upkeep {
-        let mut upkeep = Upkeep::default();
-        let Some(newest) = self.keyframes.len().checked_sub(1) else {
-            return upkeep;
-        };
-        let is_far = newest - self.last_loop_node > config.loop_ago_nodes;
-        if is_far || self.submap_loops.is_some() {
-            return upkeep;
-        }
-        let here = self.graph.pose(newest);
-        let near: Vec<usize> = (0..=newest)
-            .filter(|&node| position_error_m(&self.graph.pose(node), &here) <= config.reach_m)
-            .collect();
-        let sights: Vec<Sight> = near
-            .iter()
-            .map(|&node| Sight::of(&self.keyframes[node].scan, self.graph.pose(node)))
-            .collect();
-        for (k, &node) in near.iter().enumerate() {
-            upkeep.points_gone += self.drop_what_is_gone(node, &sights[k + 1..], config);
-        }
-        let replaced: Vec<usize> = near
-            .iter()
-            .enumerate()
-            .filter(|&(k, &node)| {
-                let (older, newer) = (&sights[..k], &sights[k + 1..]);
-                self.is_replaced(node, older, newer, config)
-            })
-            .map(|(_, &node)| node)
-            .collect();
-        for node in replaced.into_iter().rev() {
-            if let Ok(done) = self.graph.marginalize(node) {
-                upkeep.divergence += done.divergence;
-                upkeep.removed.push(node);
-                self.forget(node);
-            }
-        }
-        if !upkeep.removed.is_empty() {
-            self.chi2 = self.graph.chi2();
-        }
-        upkeep.removed.reverse();
-        upkeep
+/// Drops what is gone and takes out what was replaced around the newest keyframe.
+///
+/// `normal_radius_m` is that of the scans: a scan that loses points gets its normals again.
+pub(super) fn keep_up(
+    mapper: &mut Mapper,
+    loop_closer: &mut LoopCloser,
+    config: &UpkeepConfig,
+    normal_radius_m: f64,
+) -> Upkeep {
+    let mut upkeep = Upkeep::default();
+    let Some(newest) = mapper.keyframes.len().checked_sub(1) else {
+        return upkeep;
+    };
+    if newest - mapper.last_loop_node > config.loop_ago_nodes {
+        return upkeep;
     }
+    let here = mapper.graph.pose(newest);
+    let near: Vec<usize> = (0..=newest)
+        .filter(|&node| position_error_m(&mapper.graph.pose(node), &here) <= config.reach_m)
+        .collect();
+    let sights: Vec<Sight> = near
+        .iter()
+        .map(|&node| Sight::of(&mapper.keyframes[node].scan, mapper.graph.pose(node)))
+        .collect();
+    for (k, &node) in near.iter().enumerate() {
+        let newer = &sights[k + 1..];
+        upkeep.points_gone += mapper.drop_what_is_gone(node, newer, config, normal_radius_m);
+    }
+    let replaced: Vec<usize> = near
+        .iter()
+        .enumerate()
+        .filter(|&(k, &node)| {
+            let (older, newer) = (&sights[..k], &sights[k + 1..]);
+            mapper.is_replaced(node, older, newer, config)
+        })
+        .map(|(_, &node)| node)
+        .collect();
+    for node in replaced.into_iter().rev() {
+        if let Ok(done) = mapper.graph.marginalize(node) {
+            upkeep.divergence += done.divergence;
+            upkeep.removed.push(node);
+            mapper.forget(node);
+            loop_closer.forget(node, &mapper.path_lengths_m());
+        }
+    }
+    if !upkeep.removed.is_empty() {
+        mapper.chi2 = mapper.graph.chi2();
+    }
+    upkeep.removed.reverse();
+    upkeep
+}
 
+impl Mapper {
     /// Drops the points of a keyframe that newer scans have looked through; returns how many.
-    fn drop_what_is_gone(&mut self, node: usize, newer: &[Sight], config: &UpkeepConfig) -> usize {
+    fn drop_what_is_gone(
+        &mut self,
+        node: usize,
+        newer: &[Sight],
+        config: &UpkeepConfig,
+        normal_radius_m: f64,
+    ) -> usize {
         if newer.len() < config.looks_through {
             return 0;
         }
@@ -195,7 +209,7 @@ impl Slam {
         let gone = scan.len() - left.len();
         if gone > 0 {
             let mut scan = PointCloud::new(left, scan.stamp_s());
-            scan.estimate_normals(self.config.scan.normal_radius_m);
+            scan.estimate_normals(normal_radius_m);
             self.keyframes[node].scan = Arc::new(scan);
         }
         gone
@@ -234,31 +248,15 @@ impl Slam {
             keyframe.node -= 1;
         }
         let moved_up = |known: usize| known - usize::from(known > node);
-        self.last_attempt_node = self.last_attempt_node.map(moved_up);
         self.last_loop_node = moved_up(self.last_loop_node);
-        self.last_search_node = self.last_search_node.map(moved_up);
-        self.held.retain(|held| {
-            let found = &held.verification;
-            found.from_node != node && found.candidate.node != node
-        });
-        let mut held = core::mem::take(&mut self.held);
-        for waiting in &mut held {
-            let found = &mut waiting.verification;
-            found.from_node = moved_up(found.from_node);
-            found.candidate.node = moved_up(found.candidate.node);
-            waiting.way_m = self.way_between_m(0, found.from_node);
-        }
-        self.held = held;
-        self.detector.forget(node);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::loops::LoopGuard;
-    use crate::slam::SlamConfig;
     use crate::slam::test_room::{frame, truth};
+    use crate::slam::{RobotConfig, Slam, SlamConfig};
 
     /// Laps of a circle in a room; in the first two something stands in it.
     fn laps(laps: usize, is_kept_up: bool) -> (Slam, Vec<usize>) {
@@ -328,21 +326,19 @@ mod tests {
 
     #[test]
     fn loops_that_wait_follow_their_keyframes() {
-        let mut config = SlamConfig::for_robot(&frame(0).scan);
-        config.loops.guard = Some(LoopGuard {
-            sure_m: 0.0,
-            min_margin: 0.0,
-            agreeing: 1000,
-            agreeing_outside: 1000,
-            ..LoopGuard::default()
-        });
-        // A lap has sixteen keyframes.
-        config.loops.min_gap_nodes = 10;
+        // Never sure: every loop waits for others.
+        let mut robot = RobotConfig::for_scan(&frame(0).scan);
+        robot.loops.sure_m = 0.0;
+        robot.loops.min_margin = 0.0;
+        robot.loops.apart_m = 1e3;
+        robot.loops.min_path_m = 4.0;
+        let config = SlamConfig::from_robot(robot);
         let mut slam = Slam::new(config);
         (0..140).for_each(|step| drop(slam.step(&frame(step)).unwrap()));
         let ends = |slam: &Slam| -> Vec<(usize, usize)> {
-            let frame = |node: usize| slam.keyframes[node].frame;
-            let found = slam.held.iter().map(|held| &held.verification);
+            let frame = |node: usize| slam.keyframes()[node].frame;
+            let pending = slam.loop_closer().pending().iter();
+            let found = pending.map(|waiting| &waiting.verification);
             found
                 .map(|found| (frame(found.from_node), frame(found.candidate.node)))
                 .collect()
@@ -350,17 +346,17 @@ mod tests {
         let mut expected = ends(&slam);
         assert!(!expected.is_empty());
         // The first node is fixed: it cannot be taken out.
-        let olds = slam
-            .held
-            .iter()
-            .map(|held| held.verification.candidate.node);
+        let pending = slam.loop_closer().pending().iter();
+        let olds = pending.map(|waiting| waiting.verification.candidate.node);
         let old = olds.max().unwrap();
         assert!(old > 0);
         // A keyframe that others follow, and then the end of a loop.
         for node in [old + 2, old] {
-            let gone = slam.keyframes[node].frame;
-            slam.graph.marginalize(node).unwrap();
-            slam.forget(node);
+            let gone = slam.keyframes()[node].frame;
+            slam.mapper.graph.marginalize(node).unwrap();
+            slam.mapper.forget(node);
+            let lengths_m = slam.mapper.path_lengths_m();
+            slam.loop_closer.forget(node, &lengths_m);
             expected.retain(|&(new, old)| new != gone && old != gone);
             assert_eq!(ends(&slam), expected);
         }

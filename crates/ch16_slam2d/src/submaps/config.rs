@@ -94,9 +94,10 @@ impl SubmapConfig {
 }
 
 impl SlamConfig {
-    /// The same system with a front end of submaps, whose lengths are its own.
+    /// The chapter's system with a front end of submaps, whose lengths are its own.
     #[must_use]
     pub fn with_submaps(mut self) -> Self {
+        self.robot = None;
         self.front_end = FrontEndKind::Submaps(SubmapConfig::of(&self));
         self
     }

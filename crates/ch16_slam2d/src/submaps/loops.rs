@@ -12,9 +12,7 @@ use crate::cloud::PointCloud;
 use crate::field::ScanClimb;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
 use crate::loops::{LoopCandidate, LoopConfig, LoopVerification, chi_squared_gate, rejection};
-use crate::matching::{
-    MatchRequest, MatchSummary, Matcher, MatcherKind, match_information, without_aperture,
-};
+use crate::matching::{MatchRequest, MatchSummary, Matcher, MatcherKind, match_information};
 use crate::metrics::position_error_m;
 use crate::search::{
     LikelihoodConfig, ScanSearch, SearchMap, SearchNeighborhood, SearchResult, SearchWindow,
@@ -120,8 +118,7 @@ impl SubmapLoops {
             .window(&assumed, belief, loops)
             .and_then(|window| self.search(index, scan, &window));
         let summary = self.fit(index, scan, belief, found.as_ref(), loops);
-        let known = match_information(&self.pairs, &summary.pose, &loops.trust);
-        let information = without_aperture(&known, loops.aperture);
+        let information = match_information(&self.pairs, &summary.pose, &loops.trust);
         let innovation = belief.between(&summary.pose).log();
         let gate = chi_squared_gate(&innovation, &assumed, loops.gate_chi2);
         let limits = LoopConfig {
@@ -159,7 +156,7 @@ impl SubmapLoops {
         let covariance = information.try_inverse()?;
         let reach = |variance: f64| math::sqrt(loops.gate_chi2 * math::max(variance, 0.0));
         let half_m = reach(math::max(covariance.m11, covariance.m22));
-        let most_m = math::min(loops.max_radius_m, 2.0 * loops.radius_m);
+        let most_m = 2.0 * loops.radius_m;
         let half_rad = math::min(reach(covariance.m33), self.config.max_turn_rad);
         Some(SearchWindow::around(
             belief,

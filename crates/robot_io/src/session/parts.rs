@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use ch16_slam2d::graph::{EdgeKind, EdgeView, PoseEdge, PoseNode};
-use ch16_slam2d::loops::HeldLoop;
+use ch16_slam2d::loops::PendingLoop;
 use ch16_slam2d::scan::LaserScan;
-use ch16_slam2d::slam::{FrontEndSnapshot, Keyframe, SlamSnapshot, WindowSweep};
+use ch16_slam2d::slam::{
+    FrontEndSnapshot, Keyframe, RobotConfig, SlamConfig, SlamSnapshot, WindowSweep,
+};
 use pr_geom::{SE2, Vector3};
 
 use super::bytes::{Broken, Cursor, Writer};
-use super::config_text::{config_text, read_config};
-use super::{MappedGraph, ScanPlace, Session, held, scans};
+use super::{MappedGraph, ScanPlace, Session, pending, scans};
 
 /// Most bytes of a keyframe's scan, on the mean: with its node, its pose on the map, eight places
 /// of scans and five edges it stays below 3,000.
@@ -36,7 +37,9 @@ pub fn write(session: &Session, out: &mut Writer) {
     } = session;
     let radius_m = driven.config.scan.normal_radius_m;
     out.section(b"CONF", |out| {
-        out.bytes(config_text(&driven.config).as_bytes())
+        let robot = driven.config.robot.unwrap_or_default();
+        out.pose(&driven.config.start);
+        out.bytes(&serde_json::to_vec(&robot).expect("plain numbers"));
     });
     out.section(b"SENS", |out| {
         out.maybe(sensor.as_ref(), |out, sensor| {
@@ -63,7 +66,6 @@ pub fn write(session: &Session, out: &mut Writer) {
         out.maybe(driven.last_attempt_node, Writer::count);
         out.count(driven.last_loop_node);
         out.count(driven.settled_edges);
-        out.maybe(driven.last_search_node, Writer::count);
     });
     out.section(b"NODE", |out| {
         out.count(driven.nodes.len());
@@ -76,8 +78,9 @@ pub fn write(session: &Session, out: &mut Writer) {
     });
     out.section(b"EDGE", |out| write_edges(&driven.edges, out));
     out.section(b"HELD", |out| {
-        out.count(driven.held.len());
-        driven.held.iter().for_each(|held| held::write(held, out));
+        out.count(driven.pending.len());
+        let waiting = driven.pending.iter();
+        waiting.for_each(|waiting| pending::write(waiting, out));
     });
     out.section(b"SCAN", |out| {
         let keyframes = driven.keyframes.iter();
@@ -134,9 +137,15 @@ fn write_edges(edges: &[EdgeView], out: &mut Writer) {
 
 pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
     let config = from.section(b"CONF", |from| {
-        let text = from.take(from.left())?;
-        let text = core::str::from_utf8(text).map_err(|_| from.broken("text was expected"))?;
-        read_config(text).map_err(|problem| from.broken(problem))
+        let start = from.pose()?;
+        let json = from.take(from.left())?;
+        let robot: RobotConfig = serde_json::from_slice(json)
+            .map_err(|problem| from.broken(format!("parameters were expected: {problem}")))?;
+        let robot = crate::settings::checked(robot).map_err(|problem| from.broken(problem))?;
+        Ok(SlamConfig {
+            start,
+            ..SlamConfig::from_robot(robot)
+        })
     })?;
     let radius_m = config.scan.normal_radius_m;
     let (sensor, last_odometry) = from.section(b"SENS", |from| {
@@ -150,9 +159,10 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
             .collect::<Result<Vec<_>, _>>()
     })?;
     let edges = from.section(b"EDGE", read_edges)?;
-    let held = from.section(b"HELD", |from| {
-        let count = from.count(held::BYTES)?;
-        let loops: Result<Vec<HeldLoop>, Broken> = (0..count).map(|_| held::read(from)).collect();
+    let waiting = from.section(b"HELD", |from| {
+        let count = from.count(pending::BYTES)?;
+        let loops: Result<Vec<PendingLoop>, Broken> =
+            (0..count).map(|_| pending::read(from)).collect();
         loops
     })?;
     let keyframes = from.section(b"SCAN", |from| {
@@ -227,13 +237,12 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
             frames: counters.frames,
             last_stamp_s: counters.last_stamp_s,
             nodes: places.into_iter().map(|(node, ..)| node).collect(),
-            settled_edges: counters.settled_edges.unwrap_or(edges.len()),
+            settled_edges: counters.settled_edges,
             edges,
             keyframes,
             last_attempt_node: counters.last_attempt_node,
             last_loop_node: counters.last_loop_node,
-            last_search_node: counters.last_search_node,
-            held,
+            pending: waiting,
             front_end,
         },
         mapped,
@@ -249,27 +258,19 @@ struct Counters {
     last_stamp_s: f64,
     last_attempt_node: Option<usize>,
     last_loop_node: usize,
-    /// None where every loop corrected the graph at once and nothing was said of it.
-    settled_edges: Option<usize>,
-    last_search_node: Option<usize>,
+    settled_edges: usize,
 }
 
 impl Counters {
     fn read(from: &mut Cursor<'_>) -> Result<Self, Broken> {
         let node = |from: &mut Cursor<'_>| Ok(from.u32()? as usize);
-        let mut counters = Self {
+        Ok(Self {
             frames: read_number(from)?,
             last_stamp_s: from.f64()?,
             last_attempt_node: from.maybe(node)?,
             last_loop_node: node(from)?,
-            settled_edges: None,
-            last_search_node: None,
-        };
-        if from.left() > 0 {
-            counters.settled_edges = Some(node(from)?);
-            counters.last_search_node = from.maybe(node)?;
-        }
-        Ok(counters)
+            settled_edges: node(from)?,
+        })
     }
 }
 

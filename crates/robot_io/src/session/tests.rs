@@ -3,13 +3,13 @@ use std::io::Cursor as Bytes;
 
 use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::scan::LaserScan;
-use ch16_slam2d::slam::SlamConfig;
-use ch16_slam2d::slam::parameters::Parameter;
+use ch16_slam2d::slam::RobotConfig;
 use pr_geom::{Point2, SE2, Vector3, math};
 
 use super::*;
 use crate::log::LogFrame;
 use crate::run::{LogRun, OdometryUse};
+use crate::settings::{SETTINGS, Setting};
 
 /// A room of 8 m × 6 m seen from a circle in it; the wheels claim a little too much of each turn.
 fn frame(step: usize, beams: usize) -> LogFrame {
@@ -108,27 +108,26 @@ fn a_log_of_another_scanner_is_told() {
 
 #[test]
 fn loops_that_wait_are_saved_and_wait_on() {
-    // A guard that is never sure and never has enough.
+    // Never sure: every loop waits for others.
     let settings = [
-        // A lap has sixteen keyframes.
-        ("loops.min_gap_nodes", 10.0),
-        ("loops.guard.sure_m", 0.0),
-        ("loops.guard.min_margin", 0.0),
-        ("loops.guard.agreeing", 1000.0),
-        ("loops.guard.agreeing_outside", 1000.0),
+        ("loops.sure_m", 0.0),
+        ("loops.min_margin", 0.0),
+        ("loops.apart_m", 1000.0),
+        ("loops.min_path_m", 4.0),
     ];
-    let settings = settings.map(|(name, value)| (Parameter::named(name).unwrap(), value));
+    let settings = settings.map(|(name, value)| (Setting::named(name).unwrap(), value));
     let doubting = |steps: core::ops::Range<usize>| {
         let new = LogRun::new(OdometryUse::Log);
-        let mut run = settings.iter().fold(new, |run, (parameter, value)| {
-            run.with_parameter(parameter, *value)
+        let settings = settings.iter();
+        let mut run = settings.fold(new, |run, (setting, value)| {
+            run.with_setting(setting, *value)
         });
         go_on(&mut run, 120, steps);
         run
     };
     let (half, mut whole) = (doubting(0..125), doubting(0..140));
     let session = Session::of_bytes(&saved(&half), "x").unwrap();
-    assert!(!session.driven.held.is_empty());
+    assert!(!session.driven.pending.is_empty());
     assert_eq!(session, half.session().unwrap());
     let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
     go_on(&mut second, 120, 125..140);
@@ -150,9 +149,11 @@ fn a_keyframe_takes_three_kilobytes_at_most_whatever_the_sensor() {
         let scans_m = session.driven.keyframes.iter().map(|k| k.scan.len());
         let (points, keyframes) = (scans_m.max().unwrap(), session.driven.keyframes.len());
         let window = &session.driven.front_end.scans;
-        let fixed: usize = window.iter().map(|scan| 60 + 32 * scan.len()).sum();
+        // The window is kept exactly, whatever the map's size.
+        let fixed = with_section(&session.to_bytes(), b"FRNT", |_| Vec::new());
+        assert!(window.len() <= 16);
         assert!(session.places.len() <= 8 * keyframes + 40);
-        let each = (session.to_bytes().len() - fixed) / keyframes;
+        let each = fixed.len() / keyframes;
         assert!(each <= 3000, "{beams} beams, {points} points: {each} bytes");
         let loaded = Session::of_bytes(&session.to_bytes(), "x").unwrap();
         for (stored, seen) in loaded
@@ -229,33 +230,20 @@ fn with_section(bytes: &[u8], name: &[u8; 4], change: impl Fn(&[u8]) -> Vec<u8>)
 }
 
 #[test]
-fn a_session_of_an_older_program_goes_on_as_it_was() {
-    let bytes = saved(&run(120, 0..200));
-    // Loops corrected the map at once, and nothing was said of it, nor of searches: a count and a byte.
-    let older = with_section(&bytes, b"STAT", |stat| stat[..stat.len() - 5].to_vec());
-    let older = with_section(&older, b"CONF", |text| {
-        let text = core::str::from_utf8(text).unwrap();
-        let lines = text
-            .lines()
-            .filter(|line| !line.starts_with("least_correction"));
-        lines
-            .flat_map(|line| [line, "\n"])
-            .collect::<String>()
-            .into_bytes()
-    });
-    assert!(older.len() < bytes.len());
-    let session = Session::of_bytes(&older, "x").unwrap();
-    let newer = Session::of_bytes(&bytes, "x").unwrap();
-    assert_eq!(newer.driven.last_search_node, None);
-    assert_eq!(session.driven.config.least_correction, 0.0);
-    assert_eq!(session.driven.settled_edges, session.driven.edges.len());
-    let mut expected = newer.driven;
-    expected.config.least_correction = 0.0;
-    expected.settled_edges = expected.edges.len();
-    assert_eq!(session.driven, expected);
-    let mut going_on = LogRun::resume(&session, OdometryUse::Log).unwrap();
-    go_on(&mut going_on, 120, 200..230);
-    assert_eq!(going_on.scans(), 30);
+fn a_session_with_other_parameters_is_refused_by_their_name() {
+    let bytes = saved(&run(120, 0..20));
+    for (from, to, said) in [
+        ("\"reach_m\"", "\"reach_k\"", "unknown field `reach_k`"),
+        ("\"fit_m\":0.15", "\"fit_m\":-0.1", "fit_m cannot be -0.1"),
+    ] {
+        let other = with_section(&bytes, b"CONF", |content| {
+            let (start, json) = content.split_at(24);
+            let json = core::str::from_utf8(json).unwrap().replace(from, to);
+            [start, json.as_bytes()].concat()
+        });
+        let error = Session::of_bytes(&other, "x").unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
+    }
 }
 
 #[test]
@@ -357,6 +345,8 @@ fn what_is_no_session_is_told_from_what_was_one() {
     let bytes = saved(&run(40, 0..3));
     let mut newer = bytes.clone();
     newer[8] = 7;
+    let mut older = bytes.clone();
+    older[8] = 1;
     let mut longer = bytes.clone();
     longer.push(0);
     for (file, said) in [
@@ -365,7 +355,11 @@ fn what_is_no_session_is_told_from_what_was_one() {
         (b"SLAM2D\r\n", "x ends at byte 8 of 20"),
         (
             &newer,
-            "x is a session of version 7, and this program reads version 1",
+            "x is a session of version 7, and this program reads version 2",
+        ),
+        (
+            &older,
+            "x is a session of version 1, and this program reads version 2",
         ),
         (&longer, "x goes on after its end at byte"),
     ] {
@@ -376,42 +370,16 @@ fn what_is_no_session_is_told_from_what_was_one() {
 
 #[test]
 fn every_parameter_is_written_and_read() {
-    let scan = frame(0, 180).scan;
-    let robot = SlamConfig::for_robot(&scan);
-    let places = ch16_slam2d::places::PlaceDetectorConfig::histogram(7);
-    let mut other = SlamConfig::chapter();
-    other.loops.detector = ch16_slam2d::loops::DetectorKind::Place(places);
-    let on_submaps = robot.clone().with_submaps();
-    for config in [SlamConfig::default(), other, robot, on_submaps] {
-        let text = config_text(&config);
-        assert_eq!(config_text::read_config(&text), Ok(config));
-        let (name, _) = text.split_once(' ').unwrap();
-        let rest = text.split_once('\n').unwrap().1;
-        let missing = format!("the parameter {name} is missing");
-        assert_eq!(config_text::read_config(rest), Err(missing));
-        let more = format!("{text}warp 9\n");
-        let unknown = "the estimator has no parameter ‘warp’".to_owned();
-        assert_eq!(config_text::read_config(&more), Err(unknown));
+    for setting in SETTINGS {
+        let value = setting.value(&RobotConfig::default()) + 1.0;
+        let mut run = LogRun::new(OdometryUse::Log).with_setting(setting, value);
+        // Few enough points to be kept to the bit.
+        run.step(frame(0, 120)).unwrap();
+        let session = Session::of_bytes(&saved(&run), "x").unwrap();
+        let robot = session.driven.config.robot.unwrap();
+        assert_eq!(setting.value(&robot), value, "{}", setting.name);
+        assert!(session == run.session().unwrap(), "{}", setting.name);
     }
-}
-
-#[test]
-fn a_session_without_jacobians_was_solved_with_the_chapters() {
-    let robot = SlamConfig::for_robot(&frame(0, 180).scan);
-    let text = config_text(&robot);
-    let lines = text.lines().filter(|line| !line.starts_with("jacobians "));
-    let older: String = lines.map(|line| format!("{line}\n")).collect();
-    assert!(older.len() < text.len());
-    let read = config_text::read_config(&older).unwrap();
-    let chapter = SlamConfig::chapter().jacobians;
-    assert_ne!(robot.jacobians, chapter);
-    assert_eq!(
-        read,
-        SlamConfig {
-            jacobians: chapter,
-            ..robot
-        }
-    );
 }
 
 #[test]

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::metrics::position_error_m;
-use robot_io::session::{Session, VERSION, config_text};
+use robot_io::session::{Session, VERSION};
+use robot_io::settings::SETTINGS;
 use serde::Serialize;
 
 use crate::output::{print_json, say};
@@ -55,9 +56,12 @@ impl SessionJson {
                 .is_finite()
                 .then_some(driven.last_stamp_s),
             last_pose: driven.front_end.estimate.to_array(),
-            parameters: config_text(&driven.config)
-                .lines()
-                .map(str::to_owned)
+            parameters: SETTINGS
+                .iter()
+                .map(|setting| {
+                    let robot = driven.config.robot.unwrap_or_default();
+                    format!("{} {}", setting.name, setting.value(&robot))
+                })
                 .collect(),
         }
     }

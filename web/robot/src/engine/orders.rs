@@ -90,15 +90,11 @@ impl<'a> Engine<'a> {
             Work::Reading(reader) => {
                 self.end_of_log(reader.as_ref(), None);
                 match self.work {
-                    Work::Linking(..) => self.begin_editing(super::links_of(&self.run)),
+                    Work::Finishing => self.close_last_loops(),
                     // It says itself that nothing was read.
                     _ => return Ok(String::new()),
                 }
                 Ok(format!("Stopped after {} scans.", self.run.scans()))
-            }
-            Work::Linking(..) => {
-                self.begin_editing(super::links_of(&self.run));
-                Ok("Stopped before all keyframes were linked.".to_owned())
             }
             other => {
                 self.work = other;
@@ -144,7 +140,7 @@ impl<'a> Engine<'a> {
         self.may_edit()?;
         let (old, new) = (a.min(b), a.max(b));
         let found = self.register(old, new)?;
-        let mut link = Link::registered(&found, super::confidence_of(&self.run), found.accepted());
+        let mut link = Link::registered(&found, found.accepted());
         if found.accepted() {
             link.verdict = Verdict::Added;
         }
@@ -243,7 +239,7 @@ impl<'a> Engine<'a> {
         let how = self.run.slam().map_or(PLAIN, |slam| Solving {
             iterations: slam.config().optimizer_iterations,
             tolerance: slam.config().optimizer_tolerance,
-            huber: slam.config().refinement.huber,
+            huber: slam.config().huber,
         });
         if !solve(&mut graph, &how) {
             return Err("The graph cannot be solved so; it stays as it was.".to_owned());

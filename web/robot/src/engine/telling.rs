@@ -6,8 +6,8 @@ use super::{Engine, Work, links_of, poses_of};
 use crate::links::Link;
 use crate::update::{Stage, Update};
 
-/// Share of the work that reading is; linking is the rest.
-const READING_SHARE: f64 = 0.8;
+/// Share of the work that reading is; the last loops are the rest.
+const READING_SHARE: f64 = 0.99;
 
 impl Engine<'_> {
     /// What changed since the last call.
@@ -54,14 +54,7 @@ impl Engine<'_> {
                 let read = reader.notes().bytes as f64 / (self.size_bytes as f64).max(1.0);
                 share = READING_SHARE * read.min(1.0);
             }
-            Work::Linking(_, done) => {
-                let slam = self.run.slam();
-                let total = slam.map_or(1, |slam| {
-                    slam.config().refinement.passes * (slam.keyframes().len() + 1)
-                });
-                let done = *done as f64 / total.max(1) as f64;
-                share = READING_SHARE + (1.0 - READING_SHARE) * done.min(1.0);
-            }
+            Work::Finishing => share = READING_SHARE,
             Work::Failed(problem) => words.clone_from(problem),
             Work::Solving(_) | Work::Checking | Work::Idle => {}
         }
@@ -95,7 +88,7 @@ impl Engine<'_> {
     fn loops_update(&self) -> Update {
         let under_way;
         let links = match self.work {
-            Work::Reading(_) | Work::Linking(..) => {
+            Work::Reading(_) | Work::Finishing => {
                 under_way = links_of(&self.run);
                 &under_way
             }

@@ -19,7 +19,7 @@ pub enum Stage {
     /// Scans are read.
     Reading,
     /// Keyframes are registered once more on all that was seen around them.
-    Linking,
+    Finishing,
     /// A graph from a file is solved.
     Solving,
     /// The covariances are computed.
@@ -34,7 +34,7 @@ impl Stage {
     fn of(number: f64) -> Option<Self> {
         let stages = [
             Self::Reading,
-            Self::Linking,
+            Self::Finishing,
             Self::Solving,
             Self::Checking,
             Self::Done,
@@ -48,7 +48,7 @@ impl Stage {
     pub fn is_under_way(self) -> bool {
         matches!(
             self,
-            Self::Opening | Self::Reading | Self::Linking | Self::Solving
+            Self::Opening | Self::Reading | Self::Finishing | Self::Solving
         )
     }
 }

@@ -19,7 +19,7 @@ pub fn outcome(own: &OwnRobot) -> Outcome {
         _ if robot.paused => (Standing::Neutral, "held"),
         Stage::Opening => (Standing::Neutral, "opening"),
         Stage::Reading => (Standing::Neutral, "reading"),
-        Stage::Linking => (Standing::Neutral, "linking"),
+        Stage::Finishing => (Standing::Neutral, "closing the last loops"),
         Stage::Solving => (Standing::Neutral, "solving"),
         Stage::Checking => (Standing::Neutral, "checking"),
         _ if robot.is_under_way() => (Standing::Neutral, "looking for the robot"),
@@ -58,7 +58,7 @@ fn sentence(own: &OwnRobot) -> String {
             counted(robot.keyframes.len(), "keyframe"),
             counted(robot.tried[1] as usize, "loop")
         ),
-        Stage::Linking => format!("{name}: {done:.0} % done, every keyframe is linked once more."),
+        Stage::Finishing => format!("{name}: {done:.0} % done, the last loops are closed."),
         Stage::Solving => format!(
             "{name} is solved: {}.",
             counted(robot.keyframes.len(), "pose")

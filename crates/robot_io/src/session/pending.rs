@@ -1,6 +1,6 @@
 //! A loop that waits for others.
 
-use ch16_slam2d::loops::{GateTest, HeldLoop, LoopCandidate, LoopVerification};
+use ch16_slam2d::loops::{GateTest, LoopCandidate, LoopVerification, PendingLoop};
 use pr_geom::Vector3;
 
 use super::bytes::{Broken, Cursor, Writer};
@@ -8,12 +8,12 @@ use super::bytes::{Broken, Cursor, Writer};
 /// The least that one takes.
 pub const BYTES: usize = 300;
 
-pub fn write(held: &HeldLoop, out: &mut Writer) {
-    let HeldLoop {
+pub fn write(pending: &PendingLoop, out: &mut Writer) {
+    let PendingLoop {
         verification,
-        way_m,
+        path_m,
         is_expected,
-    } = held;
+    } = pending;
     let LoopVerification {
         from_node,
         candidate,
@@ -38,7 +38,7 @@ pub fn write(held: &HeldLoop, out: &mut Writer) {
         proposal,
     } = candidate;
     let GateTest { chi2, gate_chi2 } = gate;
-    out.f64(*way_m);
+    out.f64(*path_m);
     out.u8(u8::from(*is_expected));
     out.count(*from_node);
     out.count(*node);
@@ -59,8 +59,8 @@ pub fn write(held: &HeldLoop, out: &mut Writer) {
     out.matrix(information);
 }
 
-pub fn read(from: &mut Cursor<'_>) -> Result<HeldLoop, Broken> {
-    let way_m = from.number()?;
+pub fn read(from: &mut Cursor<'_>) -> Result<PendingLoop, Broken> {
+    let path_m = from.number()?;
     let is_expected = from.flag()?;
     let from_node = from.u32()? as usize;
     let candidate = LoopCandidate {
@@ -88,9 +88,9 @@ pub fn read(from: &mut Cursor<'_>) -> Result<HeldLoop, Broken> {
         information: from.matrix()?,
         rejection: None,
     };
-    Ok(HeldLoop {
+    Ok(PendingLoop {
         verification,
-        way_m,
+        path_m,
         is_expected,
     })
 }

@@ -1,0 +1,183 @@
+//! The surroundings of a robot: a few scans in one frame, to register a scan on and to score poses by.
+//!
+//! [`LocalMap::register`] minimizes one cost from a start, the chapter's `p(z|s) p(s|u, ŝ)`: the squared
+//! point-to-plane distances under Huber's kernel, and the motion prior of the odometry. Normals are
+//! estimated from the points of all scans, and only where a scan needs one: with those of single scans,
+//! beams a degree apart, the heading drifts twice as much.
+//!
+//! [`LocalMap::fit`] is the one score by which poses are compared. A point costs its squared distance to
+//! the map, cut off at a miss. Space counts as well: a point behind everything that was seen costs less
+//! than one in space that a scan has looked through.
+
+mod prior;
+mod range_profile;
+mod registration;
+
+use std::sync::Arc;
+
+use nalgebra::{Point2, Vector2};
+use pr_geom::{SE2, math};
+
+pub use prior::{MotionPrior, PriorTail};
+pub use range_profile::RangeProfile;
+pub use registration::{MapRegistration, MapRegistrationConfig, Registered};
+
+use crate::cloud::{DenseMap, NearestMap, PointCloud};
+
+/// Side of a cell, m, and points that it keeps: twice as many change no error.
+const CELLS: (f64, usize) = (0.135, 8);
+/// Neighbours that a normal needs, itself among them.
+const LEAST_NEIGHBORS: f64 = 4.0;
+/// Largest ratio of the scatter across a wall to that along it.
+const MOST_SCATTER: f64 = 0.35;
+
+/// A point's normal: unknown until a registration needs it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Normal {
+    Unknown,
+    Estimated(Option<Vector2<f64>>),
+}
+
+/// How well a scan fits at a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapFit {
+    /// 1 where every point lies on the map, 0 where every point is a miss in free space.
+    pub score: f64,
+    /// Points closer to the map than a miss.
+    pub inliers: usize,
+    /// Root mean square distance of those, m; infinite without any.
+    pub rmse_m: f64,
+}
+
+/// Points of a few scans with their normals, and what the scans have looked through.
+#[derive(Clone, Debug)]
+pub struct LocalMap {
+    cloud: PointCloud,
+    points: DenseMap,
+    normals: Vec<Normal>,
+    /// `body_from_map` of each scan, and how far it has seen.
+    views: Vec<(SE2, Arc<RangeProfile>)>,
+}
+
+impl Default for LocalMap {
+    fn default() -> Self {
+        Self {
+            cloud: PointCloud::default(),
+            points: DenseMap::new(CELLS.0, CELLS.1),
+            normals: Vec::new(),
+            views: Vec::new(),
+        }
+    }
+}
+
+impl LocalMap {
+    /// Replaces the contents by these scans, each with its `map_from_body`, and keeps the memory.
+    pub fn rebuild<'a>(
+        &mut self,
+        scans: impl IntoIterator<Item = (SE2, &'a PointCloud, &'a Arc<RangeProfile>)>,
+    ) {
+        self.cloud.clear();
+        self.views.clear();
+        for (map_from_body, scan, profile) in scans {
+            self.cloud.extend_transformed(scan, &map_from_body);
+            self.views
+                .push((map_from_body.inverse(), Arc::clone(profile)));
+        }
+        self.points.rebuild(&self.cloud);
+        self.normals.clear();
+        self.normals.resize(self.points.len(), Normal::Unknown);
+    }
+
+    /// All points of the scans, map frame.
+    #[must_use]
+    pub fn cloud(&self) -> &PointCloud {
+        &self.cloud
+    }
+
+    /// How well `scan` fits at `map_from_scan`.
+    #[must_use]
+    pub fn fit(
+        &self,
+        scan: &PointCloud,
+        map_from_scan: &SE2,
+        config: &MapRegistrationConfig,
+    ) -> MapFit {
+        let miss_m2 = config.fit_m * config.fit_m;
+        let (mut cost, mut squares_m2, mut inliers) = (0.0, 0.0, 0_usize);
+        let mut last_found = None;
+        for point in scan.iter() {
+            let at = map_from_scan.transform(point);
+            match self.points.neighbor_from(at, config.fit_m, last_found) {
+                Some(nearest) => {
+                    squares_m2 += nearest.distance_squared_m2;
+                    inliers += 1;
+                    last_found = Some(nearest.index);
+                }
+                None if self.is_free(at) => cost += 1.0,
+                None => cost += config.unseen_cost,
+            }
+        }
+        cost += squares_m2 / miss_m2;
+        let rmse_m = if inliers == 0 {
+            f64::INFINITY
+        } else {
+            math::sqrt(squares_m2 / inliers as f64)
+        };
+        MapFit {
+            score: 1.0 - cost / scan.len().max(1) as f64,
+            inliers,
+            rmse_m,
+        }
+    }
+
+    /// Whether any scan has looked through a point, newest scans first.
+    fn is_free(&self, at: Point2<f64>) -> bool {
+        let mut views = self.views.iter().rev();
+        views.any(|(body_from_map, profile)| profile.sees_through(body_from_map.transform(at)))
+    }
+
+    /// The normal of point `index`, estimated when it is first needed.
+    fn normal(&mut self, index: usize, radius_m: f64) -> Option<Vector2<f64>> {
+        match self.normals[index] {
+            Normal::Estimated(normal) => normal,
+            Normal::Unknown => {
+                let normal = self.estimate_normal(index, radius_m);
+                self.normals[index] = Normal::Estimated(normal);
+                normal
+            }
+        }
+    }
+
+    /// The direction of least scatter of the points around one; none where they are no wall.
+    fn estimate_normal(&self, index: usize, radius_m: f64) -> Option<Vector2<f64>> {
+        let center = self.points.point(index);
+        let (xs, ys) = (self.points.xs(), self.points.ys());
+        let (mut count, mut sum) = (0.0, Vector2::<f64>::zeros());
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        self.points.for_each_within(center, radius_m, |near| {
+            let (dx, dy) = (xs[near] - center.x, ys[near] - center.y);
+            count += 1.0;
+            sum += Vector2::new(dx, dy);
+            xx += dx * dx;
+            xy += dx * dy;
+            yy += dy * dy;
+        });
+        if count < LEAST_NEIGHBORS {
+            return None;
+        }
+        xx -= sum.x * sum.x / count;
+        xy -= sum.x * sum.y / count;
+        yy -= sum.y * sum.y / count;
+        let (middle, half_gap) = (0.5 * (xx + yy), math::norm2(0.5 * (xx - yy), xy));
+        let (across, along) = (middle - half_gap, middle + half_gap);
+        if along <= 0.0 || across > MOST_SCATTER * along {
+            return None;
+        }
+        // Twice the angle of the direction of most scatter is that of (xx − yy, 2 xy).
+        let (sin, cos) = math::sin_cos(0.5 * math::atan2(2.0 * xy, xx - yy));
+        Some(Vector2::new(-sin, cos))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,184 @@
+//! A scan on a local map: one cost of point-to-plane distances and a prior.
+
+use nalgebra::{Matrix3, Vector2, Vector3};
+use pr_geom::{SE2, math};
+
+use super::{LocalMap, MapFit, MotionPrior};
+use crate::cloud::{Memory, NearestMap, PointCloud};
+
+/// A step below this, m and rad added, is the last.
+const TOLERANCE: f64 = 1e-4;
+/// Most steps of a stage.
+const STEPS: usize = 10;
+/// Residual beyond which a pair weighs less, m.
+const HUBER_M: f64 = 0.05;
+/// Smallest information of any direction, 1/m² and 1/rad²: the normal equations have a solution.
+const RIDGE: f64 = 1e-6;
+
+/// How scans are registered and scored.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapRegistrationConfig {
+    /// Radius within which points of the map give each other normals, m.
+    pub normal_radius_m: f64,
+    /// Largest distance of a pair in the first stage, m.
+    pub reach_m: f64,
+    /// Largest distance of a pair in the last stage, and of a point that fits, m.
+    pub fit_m: f64,
+    /// Standard deviation of a point across its wall, m.
+    pub point_sigma_m: f64,
+    /// A scan counts as so many independent points at most: errors of neighbours are alike.
+    pub independent_points: f64,
+    /// What a point in space that was never seen costs, as a share of a miss.
+    pub unseen_cost: f64,
+}
+
+/// A pose by least squares, and what the pairs know of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Registered {
+    /// `map_from_scan`.
+    pub pose: SE2,
+    /// Information of the pairs alone, body frame, translation first: 1/m², 1/rad².
+    pub information: Matrix3<f64>,
+    /// Steps made.
+    pub iterations: usize,
+}
+
+/// A registration with the score by which it is compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapRegistration {
+    /// The pose and its information.
+    pub registered: Registered,
+    /// How well the scan fits there.
+    pub fit: MapFit,
+    /// Negative logarithm of the posterior density, but for a constant: misfit and prior.
+    pub cost: f64,
+}
+
+impl MapRegistration {
+    /// Information of the pairs, less where only part of the scan fits: that may fit elsewhere as well.
+    #[must_use]
+    pub fn information(&self) -> Matrix3<f64> {
+        let score = math::max(self.fit.score, 0.0);
+        self.registered.information * (score * score * score * score)
+    }
+}
+
+impl MapRegistrationConfig {
+    /// Information of one pair of a scan, 1/m².
+    fn pair_information(&self, scan: &PointCloud) -> f64 {
+        let share = self.independent_points / scan.len().max(1) as f64;
+        math::min(share, 1.0) / (self.point_sigma_m * self.point_sigma_m)
+    }
+
+    /// What the misfit of a scan costs, as a negative logarithm of its likelihood.
+    ///
+    /// A miss is as unlikely as a distance of `fit_m` with a standard deviation of a third of that.
+    #[must_use]
+    pub fn misfit_cost(&self, scan: &PointCloud, score: f64) -> f64 {
+        let points = math::min(self.independent_points, scan.len() as f64);
+        4.5 * points * (1.0 - score)
+    }
+}
+
+impl LocalMap {
+    /// Registers a scan from `start` in stages of these reaches, m, and scores where it ends.
+    #[must_use]
+    pub fn register(
+        &mut self,
+        scan: &PointCloud,
+        start: SE2,
+        reaches_m: &[f64],
+        prior: Option<&MotionPrior>,
+        config: &MapRegistrationConfig,
+    ) -> MapRegistration {
+        let mut registered = Registered {
+            pose: start,
+            information: Matrix3::zeros(),
+            iterations: 0,
+        };
+        for &reach_m in reaches_m {
+            let stage = self.minimize(scan, registered.pose, reach_m, prior, config);
+            registered = Registered {
+                iterations: registered.iterations + stage.iterations,
+                ..stage
+            };
+        }
+        let fit = self.fit(scan, &registered.pose, config);
+        let prior = prior.map_or(0.0, |prior| prior.cost(&registered.pose));
+        MapRegistration {
+            registered,
+            fit,
+            cost: config.misfit_cost(scan, fit.score) + prior,
+        }
+    }
+
+    /// Gauss–Newton on the pairs within `reach_m` and the prior, reweighted at every step.
+    ///
+    /// A pair's row is `J = (Rᵀn, p × Rᵀn)` with the point p in the body's frame: right perturbations.
+    fn minimize(
+        &mut self,
+        scan: &PointCloud,
+        start: SE2,
+        reach_m: f64,
+        prior: Option<&MotionPrior>,
+        config: &MapRegistrationConfig,
+    ) -> Registered {
+        let weight = config.pair_information(scan);
+        let mut memory = vec![Memory::default(); scan.len()];
+        let mut pose = start;
+        let mut iterations = 0;
+        loop {
+            let rotation = pose.rotation();
+            let (mut information, mut gradient) = (Matrix3::zeros(), Vector3::zeros());
+            for (point, memory) in scan.iter().zip(&mut memory) {
+                let at = pose.transform(point);
+                let Some(nearest) = self.points.neighbor_again(at, reach_m, memory) else {
+                    continue;
+                };
+                let Some(normal) = self.normal(nearest.index, config.normal_radius_m) else {
+                    continue;
+                };
+                let target = self.points.point(nearest.index);
+                let residual_m = normal.dot(&Vector2::new(at.x - target.x, at.y - target.y));
+                let (nx, ny) = rotation.unrotate(normal.x, normal.y);
+                let row = Vector3::new(nx, ny, point.x * ny - point.y * nx);
+                let size_m = residual_m.abs();
+                let robust = if size_m > HUBER_M {
+                    HUBER_M / size_m
+                } else {
+                    1.0
+                };
+                information += row * row.transpose() * (robust * weight);
+                gradient += row * (robust * weight * residual_m);
+            }
+            let found = Registered {
+                pose,
+                information,
+                iterations,
+            };
+            if iterations == STEPS {
+                return found;
+            }
+            let mut hessian = information + Matrix3::identity() * RIDGE;
+            if let Some(prior) = prior {
+                let deviation = prior.deviation(&pose);
+                let weights = prior.weights(&deviation);
+                hessian += Matrix3::from_diagonal(&weights);
+                gradient += weights.component_mul(&deviation);
+            }
+            let step = hessian.try_inverse().map(|inverse| -(inverse * gradient));
+            let Some(step) = step.filter(|step| step.iter().all(|value| value.is_finite())) else {
+                return found;
+            };
+            pose = pose.boxplus(&step);
+            iterations += 1;
+            if math::norm2(step.x, step.y) + step.z.abs() < TOLERANCE {
+                return Registered {
+                    pose,
+                    iterations,
+                    ..found
+                };
+            }
+        }
+    }
+}

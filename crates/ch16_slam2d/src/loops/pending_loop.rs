@@ -1,0 +1,14 @@
+//! A loop that waits for others.
+
+use super::LoopVerification;
+
+/// A loop that passed its own tests and waits until another one along the path agrees with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PendingLoop {
+    /// What is known of it.
+    pub verification: LoopVerification,
+    /// Path length over the keyframes from the first to its new node, m.
+    pub path_m: f64,
+    /// Whether it lies within the gate.
+    pub is_expected: bool,
+}

@@ -1,0 +1,411 @@
+//! Loops for robots: the newest keyframes together, on submaps of older ones.
+//!
+//! A submap is found by where the graph has the newest keyframe, as far off as the covariance of the
+//! relative pose allows. Where that is less than a metre, registration starts at the belief; else the
+//! whole window is searched by branch and bound, the best place has to be ahead of every other one, and
+//! the loop waits for another one along the path that agrees with it. Loops that contradict the graph need
+//! two others, and then all loops are judged together.
+//!
+//! Sources: Hess et al., "Real-time loop closure in 2D LIDAR SLAM", 2016, for keyframes on submaps; Olson,
+//! "Recognizing places using spectrally clustered local matches", 2009, for loops that agree.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use nalgebra::Matrix3;
+use pr_geom::{SE2, math};
+
+use super::mapper::{Mapper, Trust};
+use super::robots::{RobotConfig, SubmapLoopConfig};
+use crate::cloud::PointCloud;
+use crate::local_map::{LocalMap, MapRegistration, MapRegistrationConfig, RangeProfile};
+use crate::loops::{
+    Detection, LoopCandidate, LoopConfig, LoopRejection, LoopVerification, PendingLoop,
+    chi_squared_gate, detect_visits,
+};
+use crate::metrics::position_error_m;
+use crate::search::{LikelihoodConfig, ScanSearch, SearchMap, SearchNeighborhood, SearchWindow};
+
+/// Keyframes on either side of the nearest one in a submap, at least.
+const HALF_SUBMAP: usize = 8;
+/// Submaps hold keyframes so far beyond the window, m: about as far as a room is seen.
+const SUBMAP_MARGIN_M: f64 = 4.0;
+/// The bundle is thinned to a point in each cell of this side, m.
+const BUNDLE_CELL_M: f64 = 0.15;
+/// Cells and blur of a search, m: registration does the rest.
+const SEARCH_GRID: LikelihoodConfig = LikelihoodConfig {
+    cell_m: 0.1,
+    sigma_m: 0.1,
+};
+/// A search gives up on places that score less, 0 to 1: unseen space counts as a miss there.
+const LEAST_SEARCH_SCORE: f64 = 0.4;
+/// The window is so much wider than the covariance says, m and rad.
+const WINDOW_FLOOR: (f64, f64) = (0.3, 0.06);
+/// The largest squared innovation that is expected: 99 of 100 lie below, of three degrees of freedom.
+const GATE_CHI2: f64 = 11.345;
+/// Loops that agree where they are expected, and where they contradict the graph.
+const AGREEING: (usize, usize) = (2, 3);
+/// Smallest information of a loop in any direction, 1/m² and 1/rad²: a metre, a radian.
+const LOOP_FLOOR: f64 = 1.0;
+/// Profiles of scans that are kept between attempts.
+const PROFILES_KEPT: usize = 512;
+
+/// Finds loops, and keeps those that wait for others.
+#[derive(Clone)]
+pub(super) struct BundleLoops {
+    config: SubmapLoopConfig,
+    registration: MapRegistrationConfig,
+    pub pending: Vec<PendingLoop>,
+    map: LocalMap,
+    profiles: VecDeque<(usize, Arc<RangeProfile>)>,
+}
+
+/// A place that may show the same as the newest keyframes, and how far off it may be.
+struct Window {
+    candidate: LoopCandidate,
+    belief: SE2,
+    covariance: Matrix3<f64>,
+    half_m: f64,
+    half_rad: f64,
+}
+
+impl BundleLoops {
+    pub fn new(robot: &RobotConfig) -> Self {
+        Self {
+            config: robot.loops,
+            registration: robot.registration(),
+            pending: Vec::new(),
+            map: LocalMap::default(),
+            profiles: VecDeque::new(),
+        }
+    }
+
+    /// Looks for loops at the newest keyframe: what was tried, accepted or not, and whether the accepted
+    /// ones contradict the graph.
+    pub fn find(&mut self, mapper: &mut Mapper) -> (Vec<LoopVerification>, Trust) {
+        let mut trust = Trust::Expected;
+        let mut tried = Vec::new();
+        let lengths_m = mapper.path_lengths_m();
+        let windows = self.windows(mapper, &lengths_m);
+        if windows.is_empty() {
+            return (tried, trust);
+        }
+        let bundle = self.bundle(mapper);
+        for window in windows {
+            let found = self.verify(mapper, &window, &bundle, &lengths_m);
+            let is_expected = found.gate.passes();
+            if !found.accepted() || (is_expected && window.half_m <= self.config.sure_m) {
+                tried.push(found);
+                continue;
+            }
+            let agreeing = self.agreeing(mapper, &found, &lengths_m);
+            let needed = if is_expected { AGREEING.0 } else { AGREEING.1 };
+            let path_m = lengths_m[found.from_node];
+            if agreeing.len() + 1 < needed {
+                let reach_m = self.config.pending_distance_m;
+                self.pending
+                    .retain(|other| path_m - other.path_m <= reach_m);
+                self.pending.push(PendingLoop {
+                    verification: found,
+                    path_m,
+                    is_expected,
+                });
+                tried.push(LoopVerification {
+                    rejection: Some(LoopRejection::Waiting {
+                        agreeing: agreeing.len() + 1,
+                        needed,
+                    }),
+                    ..found
+                });
+                continue;
+            }
+            for index in agreeing.into_iter().rev() {
+                let waited = self.pending.remove(index);
+                if !waited.is_expected {
+                    trust = Trust::Disputed;
+                }
+                tried.push(waited.verification);
+            }
+            if !is_expected {
+                trust = Trust::Disputed;
+            }
+            tried.push(found);
+        }
+        (tried, trust)
+    }
+
+    /// Where older keyframes may show what the newest one does, the nearest first.
+    fn windows(&self, mapper: &mut Mapper, lengths_m: &[f64]) -> Vec<Window> {
+        let config = &self.config;
+        let node = lengths_m.len() - 1;
+        let old_enough = old_enough(lengths_m, config.min_path_m);
+        let Some(youngest) = old_enough.checked_sub(1) else {
+            return Vec::new();
+        };
+        let nearby = LoopConfig {
+            detection: Detection::Visits,
+            radius_m: config.max_window_m + SUBMAP_MARGIN_M,
+            min_gap_nodes: node - youngest,
+            ..LoopConfig::default()
+        };
+        let mut windows = Vec::new();
+        for candidate in detect_visits(mapper.graph.poses(), node, &nearby) {
+            if windows.len() == config.submaps {
+                break;
+            }
+            let Ok(covariance) = mapper.graph.relative_covariance(candidate.node, node) else {
+                continue;
+            };
+            let sigma = |variance: f64| config.window_sigmas * math::sqrt(math::max(variance, 0.0));
+            let half_m = sigma(math::max(covariance.m11, covariance.m22)) + WINDOW_FLOOR.0;
+            let half_rad = sigma(covariance.m33) + WINDOW_FLOOR.1;
+            let half_m = math::min(half_m, config.max_window_m);
+            if candidate.distance_m > half_m + SUBMAP_MARGIN_M {
+                continue;
+            }
+            let poses = mapper.graph.poses();
+            windows.push(Window {
+                candidate,
+                belief: poses[candidate.node].between(&poses[node]),
+                covariance,
+                half_m,
+                half_rad: math::min(half_rad, config.max_turn_rad),
+            });
+        }
+        windows
+    }
+
+    /// The newest keyframes in the frame of the last one, thinned.
+    fn bundle(&self, mapper: &Mapper) -> PointCloud {
+        let node = mapper.keyframes.len() - 1;
+        let here = mapper.graph.pose(node);
+        let mut points = PointCloud::default();
+        for near in (node + 1).saturating_sub(self.config.bundle)..=node {
+            let pose = here.between(&mapper.graph.pose(near));
+            points.extend_transformed(&mapper.keyframes[near].scan, &pose);
+        }
+        points.downsample(BUNDLE_CELL_M)
+    }
+
+    /// Builds the submap around a candidate in its frame: of the keyframes of one visit that the window
+    /// reaches.
+    fn build_submap(&mut self, mapper: &Mapper, window: &Window, lengths_m: &[f64]) {
+        let node = lengths_m.len() - 1;
+        let poses = mapper.graph.poses();
+        let here = poses[node];
+        let reach_m = window.half_m + SUBMAP_MARGIN_M;
+        let last = old_enough(lengths_m, self.config.min_path_m) - 1;
+        let center = window.candidate.node;
+        let is_near = |near: usize| {
+            center.abs_diff(near) <= HALF_SUBMAP || position_error_m(&poses[near], &here) < reach_m
+        };
+        let mut first = center;
+        while first > 0 && is_near(first - 1) {
+            first -= 1;
+        }
+        let mut end = center;
+        while end < last && is_near(end + 1) {
+            end += 1;
+        }
+        let profiles: Vec<Arc<RangeProfile>> = (first..=end)
+            .map(|near| self.profile(mapper, near))
+            .collect();
+        let scans = (first..=end).zip(&profiles).map(|(near, profile)| {
+            let pose = poses[center].between(&poses[near]);
+            (pose, &*mapper.keyframes[near].scan, profile)
+        });
+        self.map.rebuild(scans);
+    }
+
+    fn profile(&mut self, mapper: &Mapper, node: usize) -> Arc<RangeProfile> {
+        if let Some((_, known)) = self.profiles.iter().find(|(of, _)| *of == node) {
+            return Arc::clone(known);
+        }
+        if self.profiles.len() == PROFILES_KEPT {
+            self.profiles.pop_front();
+        }
+        let profile = Arc::new(RangeProfile::new(&mapper.keyframes[node].scan));
+        self.profiles.push_back((node, Arc::clone(&profile)));
+        profile
+    }
+
+    fn verify(
+        &mut self,
+        mapper: &Mapper,
+        window: &Window,
+        bundle: &PointCloud,
+        lengths_m: &[f64],
+    ) -> LoopVerification {
+        self.build_submap(mapper, window, lengths_m);
+        let Self { config, .. } = *self;
+        let is_sure = window.half_m <= config.sure_m;
+        let (start, margin) = if is_sure {
+            (Some(window.belief), None)
+        } else {
+            self.search(window, bundle)
+        };
+        let settings = self.registration;
+        let (reach_m, fit_m) = (settings.reach_m, settings.fit_m);
+        let stages = [2.0 * reach_m, reach_m, fit_m];
+        let stages = if is_sure { &stages[..] } else { &stages[1..] };
+        let from = start.unwrap_or(window.belief);
+        let stages = if start.is_some() { stages } else { &[] };
+        let found = self.map.register(bundle, from, stages, None, &settings);
+        let rejection = match start {
+            None => Some(LoopRejection::NoPlace {
+                half_width_m: window.half_m,
+                min_score: LEAST_SEARCH_SCORE,
+            }),
+            Some(_) => rejection(&found, margin, &config),
+        };
+        self.verification(window, lengths_m.len() - 1, from, &found, margin, rejection)
+    }
+
+    /// The best place of the window, and by how much it is ahead of the best other one.
+    fn search(&self, window: &Window, bundle: &PointCloud) -> (Option<SE2>, Option<f64>) {
+        let around = SearchWindow::around(window.belief, window.half_m, window.half_rad);
+        let found = SearchMap::build(self.map.cloud(), SEARCH_GRID)
+            .and_then(|map| {
+                let neighborhood = SearchNeighborhood::default();
+                ScanSearch::new(Arc::new(map), bundle, &around, &neighborhood)
+            })
+            .ok()
+            .and_then(|search| {
+                let search = search.with_min_score(LEAST_SEARCH_SCORE);
+                // Other places are looked for twice as far behind as they have to be.
+                search.with_margin(2.0 * self.config.min_margin).run()
+            });
+        match found {
+            Some(found) => {
+                let margin = found.margin().unwrap_or(2.0 * self.config.min_margin);
+                (Some(found.best.pose), Some(margin))
+            }
+            None => (None, None),
+        }
+    }
+
+    fn verification(
+        &self,
+        window: &Window,
+        node: usize,
+        initial: SE2,
+        found: &MapRegistration,
+        margin: Option<f64>,
+        rejection: Option<LoopRejection>,
+    ) -> LoopVerification {
+        let registered = found.registered.pose;
+        let information = found.information() + Matrix3::identity() * LOOP_FLOOR;
+        let innovation = window.belief.between(&registered).log();
+        let own = information.try_inverse().unwrap_or_default();
+        let gate_information = (window.covariance + own).try_inverse().unwrap_or_default();
+        LoopVerification {
+            from_node: node,
+            candidate: window.candidate,
+            belief: window.belief,
+            initial,
+            registered,
+            rmse_m: found.fit.rmse_m,
+            inliers: found.fit.inliers,
+            iterations: found.registered.iterations,
+            score: Some(found.fit.score),
+            margin,
+            innovation,
+            gate_information,
+            gate: chi_squared_gate(&innovation, &gate_information, GATE_CHI2),
+            information,
+            rejection,
+        }
+    }
+
+    /// A keyframe is no longer there; later ones have the number before theirs.
+    pub fn forget(&mut self, node: usize, path_m: &[f64]) {
+        let moved_up = |known: usize| known - usize::from(known > node);
+        self.profiles.clear();
+        self.pending.retain(|pending| {
+            let found = &pending.verification;
+            found.from_node != node && found.candidate.node != node
+        });
+        for pending in &mut self.pending {
+            let found = &mut pending.verification;
+            found.from_node = moved_up(found.from_node);
+            found.candidate.node = moved_up(found.candidate.node);
+            pending.path_m = path_m[found.from_node];
+        }
+    }
+
+    /// The pending loops that agree with this one, by their index.
+    fn agreeing(
+        &self,
+        mapper: &mut Mapper,
+        found: &LoopVerification,
+        lengths_m: &[f64],
+    ) -> Vec<usize> {
+        let path_m = lengths_m[found.from_node];
+        let mut agreeing = Vec::new();
+        for (index, other) in self.pending.iter().enumerate() {
+            let apart_m = path_m - other.path_m;
+            let is_beside = apart_m < self.config.apart_m;
+            if is_beside || apart_m > self.config.pending_distance_m {
+                continue;
+            }
+            if do_agree(mapper, &other.verification, found) {
+                agreeing.push(index);
+            }
+        }
+        agreeing
+    }
+}
+
+/// How many keyframes are at least so much of the path ago, m.
+fn old_enough(lengths_m: &[f64], min_path_m: f64) -> usize {
+    let here_m = lengths_m.last().copied().unwrap_or_default();
+    lengths_m.partition_point(|length_m| *length_m < here_m - min_path_m)
+}
+
+fn rejection(
+    found: &MapRegistration,
+    margin: Option<f64>,
+    config: &SubmapLoopConfig,
+) -> Option<LoopRejection> {
+    let (score, min_score) = (found.fit.score, config.min_score);
+    if score < min_score {
+        return Some(LoopRejection::LowScore { score, min_score });
+    }
+    let min_margin = config.min_margin;
+    let margin = margin.filter(|margin| *margin < min_margin)?;
+    Some(LoopRejection::Ambiguous { margin, min_margin })
+}
+
+/// Whether two loops correct the path alike: `e = log((Tᵢ Z)⁻¹ Tₖ Zₖ Tⱼ⁻¹ T)` within the gate of the
+/// covariances of both loops and of the paths between their ends.
+fn do_agree(mapper: &mut Mapper, first: &LoopVerification, second: &LoopVerification) -> bool {
+    let graph = &mut mapper.graph;
+    let (Ok(between_new), Ok(between_old)) = (
+        graph.relative_covariance(first.from_node, second.from_node),
+        graph.relative_covariance(first.candidate.node, second.candidate.node),
+    ) else {
+        return false;
+    };
+    let way = graph
+        .pose(first.from_node)
+        .between(&graph.pose(second.from_node));
+    let claim = |found: &LoopVerification| graph.pose(found.candidate.node) * found.registered;
+    let e = claim(second).between(&(claim(first) * way)).log();
+    // Each in the tangent space of the second one's new keyframe.
+    let moved = |covariance: &Matrix3<f64>, by: &SE2| {
+        let adjoint = by.inverse().adjoint();
+        adjoint * covariance * adjoint.transpose()
+    };
+    let (Some(first_own), Some(second_own)) = (
+        first.information.try_inverse(),
+        second.information.try_inverse(),
+    ) else {
+        return false;
+    };
+    let covariance = between_new
+        + second_own
+        + moved(&first_own, &way)
+        + moved(&between_old, &second.registered);
+    let information = covariance.try_inverse();
+    information.is_some_and(|information| e.dot(&(information * e)) <= GATE_CHI2)
+}

@@ -1,0 +1,165 @@
+//! The loop closer: proposes loops, verifies them, and hands those that it believes to the map.
+
+use super::bundle_loops::BundleLoops;
+use super::config::{LoopClosure, SlamConfig};
+use super::mapper::{Mapper, Trust};
+use super::nearby_loops::NearbyLoops;
+use super::parts::SlamParts;
+use crate::loops::{LoopVerification, LoopWorkspace, PendingLoop};
+use crate::submaps::{FinishedSubmap, SubmapLoops};
+
+/// How loops are found.
+#[derive(Clone)]
+enum Finder {
+    /// The chapter's way: what is near in the graph, one keyframe at a time.
+    Nearby(NearbyLoops),
+    /// For robots: keyframes together, on submaps.
+    Bundle(BundleLoops),
+}
+
+/// Loops that were tried at a keyframe.
+#[derive(Clone, Debug)]
+pub(super) struct TriedLoops {
+    /// In order, accepted or not.
+    pub found: Vec<LoopVerification>,
+    /// How the graph takes the accepted ones.
+    pub trust: Trust,
+}
+
+/// Finds loops at keyframes and keeps those that wait for others.
+#[derive(Clone)]
+pub struct LoopCloser {
+    finder: Finder,
+    /// The newest node at which loops were looked for.
+    pub(super) last_attempt_node: Option<usize>,
+}
+
+impl LoopCloser {
+    pub(super) fn new(config: &SlamConfig, parts: SlamParts) -> Self {
+        Self {
+            finder: match &config.robot {
+                Some(robot) => Finder::Bundle(BundleLoops::new(robot)),
+                None => Finder::Nearby(NearbyLoops::new(config, parts.detector, parts.loops)),
+            },
+            last_attempt_node: None,
+        }
+    }
+
+    /// Looks for loops at the newest keyframe, where it is time for that.
+    pub(super) fn find(&mut self, mapper: &mut Mapper, config: &SlamConfig) -> TriedLoops {
+        let mut tried = TriedLoops {
+            found: Vec::new(),
+            trust: Trust::Expected,
+        };
+        let node = mapper.keyframes.len() - 1;
+        // The first keyframe has none before it, and does not count as an attempt.
+        if config.loop_closure == LoopClosure::Off || node == 0 {
+            return tried;
+        }
+        let every = match &config.robot {
+            Some(robot) => robot.loops.every_keyframes,
+            None => config.loops.attempt_every_nodes,
+        };
+        if self
+            .last_attempt_node
+            .is_some_and(|last| node - last < every)
+        {
+            return tried;
+        }
+        self.find_now(mapper, config, &mut tried);
+        tried
+    }
+
+    fn find_now(&mut self, mapper: &mut Mapper, config: &SlamConfig, tried: &mut TriedLoops) {
+        self.last_attempt_node = Some(mapper.keyframes.len() - 1);
+        match &mut self.finder {
+            Finder::Nearby(finder) => tried.found = finder.find(mapper, config),
+            Finder::Bundle(finder) => (tried.found, tried.trust) = finder.find(mapper),
+        }
+    }
+
+    /// Once no frame follows: looks at the newest keyframe, if nobody has, and gives up waiting where
+    /// nothing contradicts: the loops that are expected.
+    pub(super) fn conclude(&mut self, mapper: &mut Mapper, config: &SlamConfig) -> TriedLoops {
+        let mut tried = TriedLoops {
+            found: Vec::new(),
+            trust: Trust::Expected,
+        };
+        let newest = mapper.keyframes.len().checked_sub(1);
+        if config.loop_closure == LoopClosure::Off || newest.is_none_or(|newest| newest == 0) {
+            return tried;
+        }
+        if config.robot.is_none() {
+            return tried;
+        }
+        if self.last_attempt_node != newest {
+            self.find_now(mapper, config, &mut tried);
+        }
+        if tried.found.iter().any(LoopVerification::accepted) {
+            return tried;
+        }
+        let Finder::Bundle(finder) = &mut self.finder else {
+            return tried;
+        };
+        let pending = core::mem::take(&mut finder.pending);
+        let last = pending.last().filter(|last| last.is_expected);
+        let is_alone = pending.iter().all(|other| other.is_expected);
+        if let Some(last) = last.filter(|_| is_alone) {
+            tried.found.push(last.verification);
+        }
+        tried
+    }
+
+    /// Keeps a submap that the front end has finished.
+    pub(super) fn keep(&mut self, finished: Option<FinishedSubmap>) {
+        if let Finder::Nearby(finder) = &mut self.finder {
+            finder.keep(finished);
+        }
+    }
+
+    /// The loops that wait for others, in order.
+    #[must_use]
+    pub fn pending(&self) -> &[PendingLoop] {
+        match &self.finder {
+            Finder::Nearby(_) => &[],
+            Finder::Bundle(finder) => &finder.pending,
+        }
+    }
+
+    /// Goes on with loops that waited before.
+    pub(super) fn restore(&mut self, last_attempt_node: Option<usize>, pending: &[PendingLoop]) {
+        self.last_attempt_node = last_attempt_node;
+        if let Finder::Bundle(finder) = &mut self.finder {
+            finder.pending = pending.to_vec();
+        }
+    }
+
+    /// Submap and pairs of the chapter's last attempt; none for robots.
+    #[must_use]
+    pub fn workspace(&self) -> Option<&LoopWorkspace> {
+        match &self.finder {
+            Finder::Nearby(finder) => Some(&finder.workspace),
+            Finder::Bundle(_) => None,
+        }
+    }
+
+    /// The finished submaps; none where the front end makes no submaps.
+    #[must_use]
+    pub fn submaps(&self) -> Option<&SubmapLoops> {
+        match &self.finder {
+            Finder::Nearby(finder) => finder.submaps.as_ref(),
+            Finder::Bundle(_) => None,
+        }
+    }
+
+    /// A keyframe is no longer there, and later ones have the number before theirs; `path_m` is the path
+    /// length up to each that is left.
+    pub(super) fn forget(&mut self, node: usize, path_m: &[f64]) {
+        let moved_up = |known: usize| known - usize::from(known > node);
+        self.last_attempt_node = self.last_attempt_node.map(moved_up);
+        match &mut self.finder {
+            Finder::Nearby(finder) => finder.detector.forget(node),
+            Finder::Bundle(finder) => finder.forget(node, path_m),
+        }
+    }
+}

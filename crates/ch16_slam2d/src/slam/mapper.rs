@@ -1,0 +1,203 @@
+//! The map: keyframes, and the pose graph that holds them together.
+
+use nalgebra::Matrix3;
+use pr_geom::SE2;
+use pr_optim::{OptimizeError, StopReason};
+
+use super::config::SlamConfig;
+use super::report::{Change, Keyframe, LoopEffect};
+use crate::graph::{EdgeKind, PoseGraph};
+use crate::loops::{LoopRejection, LoopVerification};
+use crate::metrics::position_error_m;
+
+/// How the graph takes new loops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Trust {
+    /// They fit what the graph knows.
+    Expected,
+    /// They contradict it: all loops are judged together.
+    Disputed,
+}
+
+/// Keyframes and pose graph; node k is keyframe k.
+#[derive(Clone)]
+pub struct Mapper {
+    pub(super) graph: PoseGraph,
+    pub(super) keyframes: Vec<Keyframe>,
+    /// The newest node at which a loop was closed; the first before any was.
+    pub(super) last_loop_node: usize,
+    pub(super) chi2: f64,
+}
+
+impl Mapper {
+    pub(super) fn new(config: &SlamConfig) -> Self {
+        Self {
+            graph: PoseGraph::with_jacobians(config.jacobians),
+            keyframes: Vec::new(),
+            last_loop_node: 0,
+            chi2: 0.0,
+        }
+    }
+
+    /// The pose graph. It is empty before the first frame.
+    #[must_use]
+    pub fn graph(&self) -> &PoseGraph {
+        &self.graph
+    }
+
+    /// The keyframes in order.
+    #[must_use]
+    pub fn keyframes(&self) -> &[Keyframe] {
+        &self.keyframes
+    }
+
+    /// Path length over the keyframes from the first to each, m.
+    pub(super) fn path_lengths_m(&self) -> Vec<f64> {
+        let mut length_m = 0.0;
+        let poses = self.graph.poses();
+        let mut lengths_m = vec![0.0; poses.len()];
+        for (node, pair) in poses.windows(2).enumerate() {
+            length_m += position_error_m(&pair[0], &pair[1]);
+            lengths_m[node + 1] = length_m;
+        }
+        lengths_m
+    }
+
+    /// Adds the edges of loops and spreads the correction: what it did, with `last ∘ last before⁻¹`.
+    ///
+    /// # Errors
+    /// Where the graph does not bear them: the edges are gone then, and the nodes are where they were.
+    pub(super) fn close(
+        &mut self,
+        loops: &[LoopVerification],
+        trust: Trust,
+        config: &SlamConfig,
+    ) -> Result<LoopEffect, LoopRejection> {
+        let poses_before = self.graph.poses().to_vec();
+        for found in loops {
+            self.graph.add_edge(
+                found.candidate.node,
+                found.from_node,
+                found.registered,
+                found.information,
+                EdgeKind::Loop,
+            );
+            self.last_loop_node = self.last_loop_node.max(found.from_node);
+        }
+        let chi2_before = self.graph.chi2();
+        let iterations = match trust {
+            Trust::Disputed if self.judge() => 1,
+            Trust::Expected if self.can_wait(config) => 0,
+            _ => self.optimize(loops.len(), &poses_before, config)?,
+        };
+        self.chi2 = self.graph.chi2();
+        let newest = poses_before.len() - 1;
+        let correction = if iterations == 0 {
+            SE2::identity()
+        } else {
+            self.graph.pose(newest) * poses_before[newest].inverse()
+        };
+        let shifts = poses_before.iter().zip(self.graph.poses());
+        Ok(LoopEffect {
+            correction,
+            max_shift_m: shifts
+                .map(|(old, new)| position_error_m(new, old))
+                .fold(0.0, f64::max),
+            iterations,
+            chi2: Change {
+                before: chi2_before,
+                after: self.chi2,
+            },
+            poses_before,
+        })
+    }
+
+    /// Whether the graph is nearly where its loops would have it, so that the next one may correct it.
+    fn can_wait(&mut self, config: &SlamConfig) -> bool {
+        let least = config.least_correction;
+        let mut largest_move = || self.graph.largest_move_since();
+        least > 0.0 && largest_move().is_ok_and(|largest| largest < least)
+    }
+
+    /// Optimizes the graph with its newest edges; the iterations.
+    fn optimize(
+        &mut self,
+        added: usize,
+        poses_before: &[SE2],
+        config: &SlamConfig,
+    ) -> Result<usize, LoopRejection> {
+        let settled = self.graph.settled_edges();
+        let report = self.graph.optimize_robust(
+            config.optimizer_iterations,
+            config.optimizer_tolerance,
+            config.huber,
+        );
+        let cost_before = report
+            .steps
+            .first()
+            .map_or(report.cost, |step| step.cost_before);
+        let rejection = match report.stop {
+            stop @ StopReason::Failed { .. } => Some(LoopRejection::OptimizationFailed(stop)),
+            _ if report.cost > cost_before || report.cost.is_nan() => {
+                Some(LoopRejection::CostRose {
+                    before: cost_before,
+                    after: report.cost,
+                })
+            }
+            _ => None,
+        };
+        let Some(rejection) = rejection else {
+            return Ok(report.iterations);
+        };
+        for _ in 0..added {
+            self.graph.pop_edge();
+        }
+        for (node, pose) in poses_before.iter().enumerate() {
+            self.graph.set_pose(node, *pose);
+        }
+        self.graph.settle(settled);
+        Err(rejection)
+    }
+
+    /// Keeps the loops that agree with each other best, by the truncated cost; whether that could be told.
+    fn judge(&mut self) -> bool {
+        let Ok(belief) = self.graph.believed() else {
+            return false;
+        };
+        let mut graph = self
+            .graph
+            .with_edges(|view| belief.believed[view.id.index()]);
+        for (node, pose) in belief.poses.iter().enumerate() {
+            graph.set_pose(node, *pose);
+        }
+        graph.settle(graph.edge_count());
+        self.graph = graph;
+        true
+    }
+
+    /// Corrects the graph by the loops that wait for a correction; the motion of the newest node.
+    pub(super) fn settle(&mut self, config: &SlamConfig) -> SE2 {
+        let Some(newest) = self.keyframes.len().checked_sub(1) else {
+            return SE2::identity();
+        };
+        let before = self.graph.poses().to_vec();
+        if self.graph.settled_edges() < self.graph.edge_count() {
+            // A graph that cannot be solved stays as it is.
+            let _ = self.optimize(0, &before, config);
+            self.chi2 = self.graph.chi2();
+        }
+        self.graph.pose(newest) * before[newest].inverse()
+    }
+
+    /// Covariance of every keyframe against the first one, in the body's frame: x and y in m, θ in rad.
+    ///
+    /// That of the graph, times what its contradictions say of it: see [`super::uncertainty`].
+    ///
+    /// # Errors
+    /// Where the normal equations are not positive definite.
+    pub fn keyframe_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
+        let factor = super::uncertainty::keyframe_factor(&self.graph);
+        let stated = self.graph.pose_covariances()?;
+        Ok(stated.into_iter().map(|stated| stated * factor).collect())
+    }
+}
