@@ -163,7 +163,8 @@ impl LocalMap {
             yy += dy * dy;
         });
         if count < LEAST_NEIGHBORS {
-            return None;
+            // A far wall of few beams: its own scan has looked farther around.
+            return self.points.normal(index);
         }
         xx -= sum.x * sum.x / count;
         xy -= sum.x * sum.y / count;

@@ -55,7 +55,7 @@ pub use mapper::Mapper;
 pub use motion::MotionNoise;
 pub use parts::SlamParts;
 pub use pending::PendingFrame;
-pub use report::{Change, Keyframe, LoopAttempt, LoopEffect, SlamReport};
+pub use report::{Change, Conclusion, Keyframe, LoopAttempt, LoopEffect, SlamReport};
 pub use robots::{RobotConfig, SubmapLoopConfig};
 pub use snapshot::{FrontEndSnapshot, SlamSnapshot, SnapshotError};
 pub use upkeep::{Upkeep, UpkeepConfig};
@@ -165,8 +165,8 @@ impl Slam {
         }
     }
 
-    /// Third part: adds the edges of the loops that passed and spreads the correction; takes them back where
-    /// the graph does not bear it.
+    /// Third part: adds the edges of the loops that passed and spreads the correction; reverts them if the
+    /// graph cannot be optimized with them.
     pub fn close_loop(&mut self, pending: &mut PendingFrame) {
         let accepted = pending.accepted();
         if accepted.is_empty() {
@@ -193,21 +193,21 @@ impl Slam {
         }
     }
 
-    /// Once no frame follows: closes the loops that wait or that nobody has looked for, and lets all loops
-    /// correct the map. The map is else what it was after the last frame. Returns the loops that were tried.
-    pub fn conclude(&mut self) -> Vec<LoopAttempt> {
+    /// Once no frame follows: closes what waits or was not looked for yet, and links all keyframes once more
+    /// with the visits around them. The map is else what it was after the last frame.
+    pub fn conclude(&mut self) -> Conclusion {
         let mut pending = PendingFrame::new(self.last_stamp_s, None, None);
         let tried = self.loop_closer.conclude(&mut self.mapper, &self.config);
         pending.add(self.frames.saturating_sub(1), tried);
         self.close_loop(&mut pending);
         let correction = self.mapper.settle(&self.config);
         self.front_end.correct(&correction);
-        if let Some(robot) = self.config.robot
-            && self.config.loop_closure == LoopClosure::On
-        {
-            self.mapper.refine(&robot, &self.config);
+        let is_on = self.config.loop_closure == LoopClosure::On;
+        let robot = self.config.robot.filter(|_| is_on);
+        Conclusion {
+            tried: pending.loop_attempts,
+            links: robot.map_or_else(Vec::new, |robot| self.mapper.refine(&robot, &self.config)),
         }
-        pending.loop_attempts
     }
 
     /// Drops what is gone and takes out what was replaced around the newest keyframe; call it after a

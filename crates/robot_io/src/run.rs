@@ -226,8 +226,9 @@ impl LogRun {
             return;
         };
         self.driven = Some(slam.snapshot());
-        let tried = slam.conclude();
-        self.note(&tried);
+        let concluded = slam.conclude();
+        self.links = concluded.links;
+        self.note(&concluded.tried);
     }
 
     /// Keeps what became of loops; one that waited is the same loop once it is closed.

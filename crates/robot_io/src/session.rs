@@ -87,7 +87,7 @@ pub(crate) fn places_kept(places: &[ScanPlace]) -> Vec<ScanPlace> {
     kept
 }
 
-/// Poses and loops after the last refinement; what is not a loop is as it was driven.
+/// Poses and loops after all keyframes were linked once more; what is not a loop is as it was driven.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MappedGraph {
     /// Poses of all keyframes, `world_from_body`.

@@ -36,7 +36,7 @@ pub struct BuildingsArgs {
     /// Leave the wheels out: scans alone.
     #[arg(long)]
     no_odometry: bool,
-    /// Another value of a parameter of the estimator, as docs/robots.md lists them.
+    /// Another value of a parameter of the estimator, as docs/robots-parameters.md lists them.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
     settings: Vec<(String, f64)>,
     /// Write the recording of the first seed as a log of CARMEN instead, and its truth beside it.

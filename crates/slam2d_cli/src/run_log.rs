@@ -39,7 +39,7 @@ pub struct RunArgs {
     /// Leave the wheels out: scans alone.
     #[arg(long)]
     no_odometry: bool,
-    /// Another value of a parameter of the estimator, as docs/robots.md lists them.
+    /// Another value of a parameter of the estimator, as docs/robots-parameters.md lists them.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
     settings: Vec<(String, f64)>,
     /// Go on from this session, or from the folder of a run: the log is the rest of its drive, and the

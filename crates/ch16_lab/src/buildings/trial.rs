@@ -65,7 +65,7 @@ impl Trial {
             tried += report.loop_attempts.len();
             closed.add_all(&slam, recording, &report.loop_attempts);
         }
-        let concluded = slam.conclude();
+        let concluded = slam.conclude().tried;
         tried += concluded.len();
         closed.add_all(&slam, recording, &concluded);
         let mut links = TrialLoops::default();

@@ -78,8 +78,8 @@ impl LoopCloser {
         }
     }
 
-    /// Once no frame follows: looks at the newest keyframe, if nobody has, and gives up waiting where
-    /// nothing contradicts: the loops that are expected.
+    /// Once no frame follows: looks for loops at the newest keyframe if that was not done, and accepts the
+    /// newest pending loop if no pending loop contradicts the graph.
     pub(super) fn conclude(&mut self, mapper: &mut Mapper, config: &SlamConfig) -> TriedLoops {
         let mut tried = TriedLoops {
             found: Vec::new(),

@@ -7,7 +7,6 @@
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
-use pr_geom::SE2;
 use pr_optim::StopReason;
 
 use super::config::SlamConfig;
@@ -15,7 +14,9 @@ use super::mapper::Mapper;
 use super::robots::RobotConfig;
 use crate::graph::{EdgeKind, EdgeView};
 use crate::local_map::{LocalMap, RangeProfile};
-use crate::loops::{Detection, LoopConfig, chi_squared_gate, detect_visits};
+use crate::loops::{
+    Detection, LoopConfig, LoopRejection, LoopVerification, chi_squared_gate, detect_visits,
+};
 
 /// Rounds of linking and optimizing.
 const PASSES: usize = 2;
@@ -36,57 +37,51 @@ const MIN_SCORE: f64 = 0.7;
 /// Width of the robust cost of a pass, in standard deviations of an edge.
 const HUBER: f64 = 3.0;
 
-/// A keyframe on an earlier visit.
-struct Link {
-    old: usize,
-    new: usize,
-    measurement: SE2,
-    information: Matrix3<f64>,
-}
-
 impl Mapper {
-    /// Links all keyframes with the visits around them, and optimizes; a graph that cannot be solved stays
-    /// as it was.
-    pub(super) fn refine(&mut self, robot: &RobotConfig, config: &SlamConfig) {
+    /// Links all keyframes with the visits around them, and optimizes: the links of the last pass, accepted
+    /// or not. A graph that cannot be solved stays as it was.
+    pub(super) fn refine(
+        &mut self,
+        robot: &RobotConfig,
+        config: &SlamConfig,
+    ) -> Vec<LoopVerification> {
         let scans = self.keyframes.iter().map(|keyframe| &keyframe.scan);
         let profiles: Vec<_> = scans
             .map(|scan| Arc::new(RangeProfile::new(scan)))
             .collect();
         let mut map = LocalMap::default();
+        let mut last = Vec::new();
         for _ in 0..PASSES {
             let nodes = 0..self.keyframes.len();
-            let links: Vec<Link> = nodes
+            let links: Vec<LoopVerification> = nodes
                 .flat_map(|node| self.links(node, &profiles, &mut map, robot))
                 .collect();
             let is_odometry = |view: &EdgeView| view.edge.kind == EdgeKind::Odometry;
             let mut graph = self.graph.with_edges(is_odometry);
-            for link in links {
-                let Link {
-                    old,
-                    new,
-                    measurement,
-                    information,
-                } = link;
-                graph.add_edge(old, new, measurement, information, EdgeKind::Loop);
+            for link in links.iter().filter(|link| link.accepted()) {
+                let (old, new) = (link.candidate.node, link.from_node);
+                graph.add_edge(old, new, link.registered, link.information, EdgeKind::Loop);
             }
             let (steps, tolerance) = (config.optimizer_iterations, config.optimizer_tolerance);
             let report = graph.optimize_robust(steps, tolerance, HUBER);
             if matches!(report.stop, StopReason::Failed { .. }) {
-                return;
+                return last;
             }
             self.graph = graph;
             self.chi2 = self.graph.chi2();
+            last = links;
         }
+        last
     }
 
-    /// The registrations of a keyframe on the visits around it that fit.
+    /// The registrations of a keyframe on the visits around it.
     fn links(
         &self,
         node: usize,
         profiles: &[Arc<RangeProfile>],
         map: &mut LocalMap,
         robot: &RobotConfig,
-    ) -> Vec<Link> {
+    ) -> Vec<LoopVerification> {
         let nearby = LoopConfig {
             detection: Detection::Visits,
             radius_m: RADIUS_M,
@@ -111,17 +106,33 @@ impl Mapper {
             let stages = [settings.reach_m, settings.fit_m];
             let scan = &self.keyframes[node].scan;
             let found = map.register(scan, belief, &stages, None, &settings);
-            let measurement = found.registered.pose;
-            let moved = belief.between(&measurement).log();
-            let gate = chi_squared_gate(&moved, &expected, GATE_CHI2);
-            if found.fit.score >= MIN_SCORE && gate.passes() {
-                links.push(Link {
-                    old: center,
-                    new: node,
-                    measurement,
-                    information: found.information(),
-                });
-            }
+            let registered = found.registered.pose;
+            let innovation = belief.between(&registered).log();
+            let gate = chi_squared_gate(&innovation, &expected, GATE_CHI2);
+            let score = found.fit.score;
+            let rejection = if score < MIN_SCORE {
+                let min_score = MIN_SCORE;
+                Some(LoopRejection::LowScore { score, min_score })
+            } else {
+                (!gate.passes()).then_some(LoopRejection::OutsideGate(gate))
+            };
+            links.push(LoopVerification {
+                from_node: node,
+                candidate: visit,
+                belief,
+                initial: belief,
+                registered,
+                rmse_m: found.fit.rmse_m,
+                inliers: found.fit.inliers,
+                iterations: found.registered.iterations,
+                score: Some(score),
+                margin: None,
+                innovation,
+                gate_information: expected,
+                gate,
+                information: found.information(),
+                rejection,
+            });
         }
         links
     }

@@ -65,6 +65,15 @@ impl LoopAttempt {
     }
 }
 
+/// What was done once no frame followed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Conclusion {
+    /// The last attempts to close a loop.
+    pub tried: Vec<LoopAttempt>,
+    /// The keyframes on earlier visits: those that were accepted are the loops of the graph now.
+    pub links: Vec<LoopVerification>,
+}
+
 /// Everything that one frame did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlamReport {
