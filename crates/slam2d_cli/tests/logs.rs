@@ -105,11 +105,10 @@ fn a_log_is_mapped_and_graded_against_relations() {
 }
 
 #[test]
-fn loops_that_were_taken_back_are_named_with_their_place() {
+fn windows_that_were_searched_in_vain_have_neither_a_fit_nor_a_gate() {
     let folder = TempDir::new().unwrap();
     let log = folder.path().join("alike.log");
     let log = text(&log);
-    // Of 24 such buildings this is one of those where a majority takes back what was closed a room aside.
     let drawn = slam2d(&[
         "buildings",
         "--kind",
@@ -121,45 +120,23 @@ fn loops_that_were_taken_back_are_named_with_their_place() {
     ]);
     assert!(drawn.status.success());
     let run = json(&["run", log, "--json"]);
-    let pairs = |list: &Value| -> Vec<(u64, u64)> {
-        let pair = |link: &Value| (link["from"].as_u64().unwrap(), link["to"].as_u64().unwrap());
-        let all = list.as_array().unwrap().iter();
-        all.filter(|link| link["accepted"] == true)
-            .map(pair)
-            .collect()
-    };
     let tried = run["quality"]["tried"].as_array().unwrap();
-    let in_vain = tried.iter().filter(|link| {
-        let reason = link["reason"].as_str().unwrap_or_default();
-        reason.starts_with("no place within ")
-    });
-    // Six windows were searched in vain: neither a fit nor a gate is told of them.
-    let told = in_vain.map(|link| (link["score"].is_null(), link["chi2"].is_null()));
-    assert_eq!(told.collect::<Vec<_>>(), [(true, true); 6]);
-    let closed = pairs(&run["quality"]["tried"]);
-    let held = pairs(&run["quality"]["links"]);
-    let doubts: Vec<&str> = run["doubts"]
-        .as_array()
-        .unwrap()
+    let in_vain: Vec<&Value> = tried
         .iter()
-        .map(|it| it.as_str().unwrap())
+        .filter(|link| {
+            let reason = link["reason"].as_str().unwrap_or_default();
+            reason.starts_with("no place within ")
+        })
         .collect();
-    let taken_back = closed.iter().copied().filter(|pair| !held.contains(pair));
-    let (named, others): (Vec<_>, Vec<_>) = taken_back.partition(|(from, to)| {
-        let named = format!(
-            "the loop from keyframe {from} to {to} was closed, and the map does not hold it"
-        );
-        doubts.iter().any(|doubt| doubt.starts_with(&named))
-    });
-    assert_eq!(named.len(), 1, "{doubts:?}");
-    // What it says is where the map has these keyframes all the same, to less than 0.3 m and 5°.
-    assert_eq!(others, [(127, 3)]);
-    for (from, to) in held {
-        let named = format!("the loop from keyframe {from} to {to} was closed");
-        assert!(
-            !doubts.iter().any(|doubt| doubt.starts_with(&named)),
-            "{named}"
-        );
+    assert!(!in_vain.is_empty());
+    for link in in_vain {
+        assert!(link["score"].is_null() && link["chi2"].is_null(), "{link}");
+    }
+    // Loops that fit have both, and the links of the final graph as well.
+    let links = run["quality"]["links"].as_array().unwrap();
+    assert!(links.len() > 100, "{}", links.len());
+    for link in links {
+        assert!(link["score"].as_f64().unwrap() >= 0.6 && link["chi2"].is_number());
     }
 }
 
@@ -369,12 +346,16 @@ fn a_parameter_is_run_at_half_and_at_twice_its_value_and_the_table_goes_into_a_p
                 "--relations",
                 text(&late),
                 "--only",
-                "aperture",
+                "unseen_cost",
             ],
             "within the times of the log",
         ),
         (
-            [&measure[..], &["--only", "aperture", "--write", text(&log)]].concat(),
+            [
+                &measure[..],
+                &["--only", "unseen_cost", "--write", text(&log)],
+            ]
+            .concat(),
             "corridor.clf",
         ),
     ];

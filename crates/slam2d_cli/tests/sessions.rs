@@ -87,7 +87,9 @@ fn a_session_is_told_mapped_and_converted() {
     assert_eq!(info["keyframes"], run["keyframes"]);
     assert_eq!(info["scans"], run["scans"]);
     assert_eq!(info["refined"], true);
-    assert!(info["bytes_per_keyframe"].as_f64().unwrap() < 3000.0);
+    // The window of the front end is kept exactly: sixteen scans of at most 120 points.
+    let (bytes, keyframes) = (info["bytes"].as_u64(), info["keyframes"].as_u64());
+    assert!(bytes.unwrap() < 3000 * keyframes.unwrap() + 16 * 120 * 32);
     let (map, of_folder) = (lap.file("map.yaml"), lap.file("folder.yaml"));
     assert!(slam2d(&["map", &session, "-o", &map]).status.success());
     assert!(

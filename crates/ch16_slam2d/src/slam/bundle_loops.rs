@@ -298,6 +298,7 @@ impl BundleLoops {
         let innovation = window.belief.between(&registered).log();
         let own = information.try_inverse().unwrap_or_default();
         let gate_information = (window.covariance + own).try_inverse().unwrap_or_default();
+        let is_nowhere = matches!(rejection, Some(LoopRejection::NoPlace { .. }));
         LoopVerification {
             from_node: node,
             candidate: window.candidate,
@@ -307,7 +308,8 @@ impl BundleLoops {
             rmse_m: found.fit.rmse_m,
             inliers: found.fit.inliers,
             iterations: found.registered.iterations,
-            score: Some(found.fit.score),
+            // Where no place was found, none has a score.
+            score: (!is_nowhere).then_some(found.fit.score),
             margin,
             innovation,
             gate_information,
