@@ -51,7 +51,7 @@ pub(crate) use fusion::fuse;
 pub use config::{LoopClosure, SlamConfig, ThresholdConfig};
 pub use front_end::{FrontEnd, Registration, WindowSweep};
 pub use loop_closer::LoopCloser;
-pub use mapper::Mapper;
+pub use mapper::{LoopOutlierTest, Mapper};
 pub use motion::MotionNoise;
 pub use parts::SlamParts;
 pub use pending::PendingFrame;
@@ -101,6 +101,14 @@ impl Slam {
             last_stamp_s: f64::NEG_INFINITY,
             config,
         }
+    }
+
+    /// The same estimator, which judges all loops together once some contradict the graph; without a test
+    /// they stay, and the optimizer's kernel bounds their weight.
+    #[must_use]
+    pub fn with_outlier_test(mut self, test: LoopOutlierTest) -> Self {
+        self.mapper.outlier_test = Some(test);
+        self
     }
 
     /// Takes one frame: cleans its scan, registers it, and closes what loop it finds.

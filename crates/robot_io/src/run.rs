@@ -1,5 +1,6 @@
 //! A log through the estimator, one scan at a time.
 
+use ch16_slam2d::graph::PoseGraph;
 use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::scan::{Frame, FrameError, LaserScan};
 use ch16_slam2d::slam::{
@@ -112,7 +113,7 @@ impl LogRun {
     /// # Errors
     /// Where the session contradicts itself.
     pub fn resume(session: &Session, odometry_use: OdometryUse) -> Result<Self, SnapshotError> {
-        let slam = Slam::restore(&session.driven)?;
+        let slam = Slam::restore(&session.driven)?.with_outlier_test(PoseGraph::believed);
         Ok(Self::holding(session, slam, odometry_use))
     }
 
@@ -176,7 +177,7 @@ impl LogRun {
             for (setting, value) in &self.settings {
                 robot = setting.set(&robot, *value).unwrap_or(robot);
             }
-            Slam::new(SlamConfig::from_robot(robot))
+            Slam::new(SlamConfig::from_robot(robot)).with_outlier_test(PoseGraph::believed)
         });
         let report = match slam.step(&frame) {
             Ok(report) => report,

@@ -1,7 +1,7 @@
 //! The estimator on a recording, and how far it is from the truth.
 
 use ch16_slam2d::chi_squared::CHAPTER_GATE;
-use ch16_slam2d::graph::EdgeKind;
+use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::slam::{LoopAttempt, RobotConfig, Slam, SlamConfig};
 use nalgebra::Matrix3;
@@ -56,7 +56,8 @@ impl Trial {
         let mut slam = Slam::new(SlamConfig {
             start: frames[0].truth,
             ..SlamConfig::from_robot(robot)
-        });
+        })
+        .with_outlier_test(PoseGraph::believed);
         let (mut tried, mut closed) = (0, TrialLoops::default());
         for number in 0..frames.len() {
             let Ok(report) = slam.step(&recording.frame(number, with_wheels)) else {

@@ -6,9 +6,14 @@ use pr_optim::{OptimizeError, StopReason};
 
 use super::config::SlamConfig;
 use super::report::{Change, Keyframe, LoopEffect};
-use crate::graph::{EdgeKind, PoseGraph};
+use crate::graph::{EdgeKind, LoopBeliefs, PoseGraph};
 use crate::loops::{LoopRejection, LoopVerification};
 use crate::metrics::position_error_m;
+
+/// Which edges of a graph are inliers where each loop may be false, such as [`PoseGraph::believed`].
+///
+/// A function that whoever maps a log hands over: a program that never does so does not carry it.
+pub type LoopOutlierTest = fn(&PoseGraph) -> LoopBeliefs;
 
 /// How the graph takes new loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +32,7 @@ pub struct Mapper {
     /// The newest node at which a loop was closed; the first before any was.
     pub(super) last_loop_node: usize,
     pub(super) chi2: f64,
+    pub(super) outlier_test: Option<LoopOutlierTest>,
 }
 
 impl Mapper {
@@ -36,6 +42,7 @@ impl Mapper {
             keyframes: Vec::new(),
             last_loop_node: 0,
             chi2: 0.0,
+            outlier_test: None,
         }
     }
 
@@ -161,7 +168,7 @@ impl Mapper {
 
     /// Keeps the loops that agree with each other best, by the truncated cost; whether that could be told.
     fn judge(&mut self) -> bool {
-        let Ok(belief) = self.graph.believed() else {
+        let Some(Ok(belief)) = self.outlier_test.map(|test| test(&self.graph)) else {
             return false;
         };
         let mut graph = self
