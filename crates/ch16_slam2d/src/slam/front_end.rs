@@ -53,9 +53,9 @@ pub struct Registration {
 #[derive(Clone)]
 enum Registrar {
     /// The chapter's matchers: the prediction is where they start.
-    Window(WindowMatching),
+    Window(Box<WindowMatching>),
     /// For robots: the prediction is part of the cost.
-    Map(MapMatching),
+    Map(Box<MapMatching>),
 }
 
 /// Local map, threshold and estimate, with the memory of a registration.
@@ -83,8 +83,8 @@ impl FrontEnd {
             window: Vec::new(),
             scans: Vec::new(),
             registrar: match config.robot {
-                Some(robot) => Registrar::Map(MapMatching::new(robot)),
-                None => Registrar::Window(WindowMatching::new(config, matcher)),
+                Some(robot) => Registrar::Map(Box::new(MapMatching::new(robot))),
+                None => Registrar::Window(Box::new(WindowMatching::new(config, matcher))),
             },
         }
     }

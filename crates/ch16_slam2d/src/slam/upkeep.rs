@@ -247,8 +247,7 @@ impl Mapper {
         for keyframe in &mut self.keyframes[node..] {
             keyframe.node -= 1;
         }
-        let moved_up = |known: usize| known - usize::from(known > node);
-        self.last_loop_node = moved_up(self.last_loop_node);
+        self.last_loop_node -= usize::from(self.last_loop_node > node);
     }
 }
 
