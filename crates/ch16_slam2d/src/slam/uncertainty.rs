@@ -7,18 +7,20 @@
 //!
 //! Source: Förstner & Wrobel, "Photogrammetric computer vision", 2016, §4.2.3.
 
+use pr_geom::math;
+
 use crate::graph::PoseGraph;
 
 /// The edges are taken at their word as if so many measurements said so: without a loop nothing else does.
 const STATED: f64 = 1.0;
-/// A chain strays by so many times the variance of its links: errors of scans that follow each other
-/// go the same way, and loops show less of it than the way between them. Found on simulated laps and
-/// buildings, checked on others; `docs/robots.md` has both.
-const CHAINED: f64 = 3.0;
+/// A chain strays farther than its links: errors of scans that follow each other go the same way, and loops
+/// show less of it than the way between them. So the variances are twice the geometric mean of what is
+/// stated and what is left over. Found on simulated laps and buildings; `docs/robots.md` has both.
+const CHAINED: f64 = 2.0;
 
 /// What every covariance of the graph is multiplied by.
 pub(super) fn keyframe_factor(graph: &PoseGraph) -> f64 {
-    CHAINED * variance_factor(graph)
+    CHAINED * math::sqrt(variance_factor(graph))
 }
 
 /// `χ² / (3E − 3N)` of E edges and N nodes that are not fixed, drawn to 1 where little is measured twice.
