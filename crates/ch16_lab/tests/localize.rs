@@ -106,16 +106,14 @@ fn switched_on(place: &Place) -> (usize, usize, f64) {
 
 #[test]
 fn a_robot_that_is_switched_on_anywhere_is_found_and_never_in_the_wrong_place() {
-    // The four corridors of the ring look alike: on a straight map another one often fits as well, and then
-    // nobody is sure within ten seconds.
-    for (course, least) in [(Course::apartment(), 18), (Course::ring(), 12)] {
+    for course in [Course::apartment(), Course::ring()] {
         let place = Place::new(&course);
         let (found, wrong, median_m) = switched_on(&place);
         println!(
             "{found} of 20 found, {wrong} frames wrong, median error {median_m:.3} m, map off by {:.3} m",
             place.map_rms_m
         );
-        assert!(found >= least, "{found} of 20");
+        assert!(found >= 18, "{found} of 20");
         assert_eq!(wrong, 0);
         // 0.1: two cells of the thinned scans, beside what the map itself is off.
         assert!(median_m < place.map_rms_m + 0.1, "{median_m} m");
