@@ -23,6 +23,9 @@ pub use range_profile::RangeProfile;
 pub use registration::{MapRegistration, MapRegistrationConfig, Registered};
 
 use crate::cloud::{DenseMap, NearestMap, PointCloud};
+use crate::search::{
+    LikelihoodConfig, ScanSearch, SearchMap, SearchNeighborhood, SearchResult, SearchWindow,
+};
 
 /// Side of a cell, m, and points that it keeps: twice as many change no error.
 const CELLS: (f64, usize) = (0.135, 8);
@@ -30,6 +33,14 @@ const CELLS: (f64, usize) = (0.135, 8);
 const LEAST_NEIGHBORS: f64 = 4.0;
 /// Largest ratio of the scatter across a wall to that along it.
 const MOST_SCATTER: f64 = 0.35;
+
+/// Cells and blur of a search, m: registration does the rest.
+const SEARCH_GRID: LikelihoodConfig = LikelihoodConfig {
+    cell_m: 0.1,
+    sigma_m: 0.1,
+};
+/// A search gives up on poses that score less, 0 to 1: unseen space counts as a miss there.
+pub(crate) const LEAST_SEARCH_SCORE: f64 = 0.4;
 
 /// A point's normal: unknown until a registration needs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,6 +139,21 @@ impl LocalMap {
             inliers,
             rmse_m,
         }
+    }
+
+    /// The best pose of `scan` in a window, by branch and bound, and the best other one if it is behind by no
+    /// more than `margin`, 0 to 1; none where no pose fits, or where the points need too large a grid.
+    #[must_use]
+    pub fn search(
+        &self,
+        scan: &PointCloud,
+        window: &SearchWindow,
+        margin: f64,
+    ) -> Option<SearchResult> {
+        let map = Arc::new(SearchMap::build(&self.cloud, SEARCH_GRID).ok()?);
+        let search = ScanSearch::new(map, scan, window, &SearchNeighborhood::default()).ok()?;
+        let search = search.with_min_score(LEAST_SEARCH_SCORE);
+        search.with_margin(margin).run()
     }
 
     /// Whether any scan has looked through a point, newest scans first.

@@ -54,7 +54,7 @@ macro_rules! count {
 /// Every number of the configuration but the seed, which is any, and these: the way points and the
 /// start lie in free space, the six α are at least 0, matchers keep their own settings, the noise of a
 /// guess without odometry and its extrapolation matter to no drive, which has odometry, and what serves
-/// recorded logs alone stays off: the apertures, the least score of a loop, the refinement.
+/// recorded logs alone stays off: the numbers for robots, the least score of a loop.
 pub const RANGES: [ConfigRange; 56] = [
     number!(0.0, 100.0, drive.noise_factor),
     number!(0.2, 0.5, drive.dt_s),

@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 use std::sync::Arc;
 
-use pr_geom::{SE2, math};
+use pr_geom::math;
 
 use super::{IcpMatcher, MapConfig, MatchRequest, MatchStop, MatchSummary, Matcher, RunnerUp};
 use crate::cloud::PointCloud;
@@ -57,7 +57,6 @@ pub struct SearchMatcher {
     config: SearchMatcherConfig,
     /// A runner-up that is farther behind is not looked for.
     max_margin: f64,
-    known: Option<SE2>,
     map: Option<Arc<SearchMap>>,
     icp: IcpMatcher,
 }
@@ -69,7 +68,6 @@ impl SearchMatcher {
         Self {
             config,
             max_margin: 1.0,
-            known: None,
             map: None,
             icp: IcpMatcher::new(config.refine, map),
         }
@@ -81,13 +79,6 @@ impl SearchMatcher {
     #[must_use]
     pub fn with_max_margin(mut self, max_margin: f64) -> Self {
         self.max_margin = max_margin;
-        self
-    }
-
-    /// The same matcher, told a pose that fits, where there is one: it finds the same, with less work.
-    #[must_use]
-    pub fn with_known(mut self, known: Option<SE2>) -> Self {
-        self.known = known;
         self
     }
 
@@ -113,11 +104,7 @@ impl SearchMatcher {
         );
         let min_score = math::max(self.config.min_score, request.min_score);
         let search = search.ok()?.with_min_score(min_score);
-        let search = search.with_margin(self.max_margin);
-        Some(match &self.known {
-            Some(known) => search.with_known(known),
-            None => search,
-        })
+        Some(search.with_margin(self.max_margin))
     }
 }
 
@@ -168,7 +155,7 @@ impl From<ScoredPose> for RunnerUp {
 
 #[cfg(test)]
 mod tests {
-    use pr_geom::Point2;
+    use pr_geom::{Point2, SE2};
 
     use super::*;
 

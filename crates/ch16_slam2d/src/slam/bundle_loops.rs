@@ -18,13 +18,15 @@ use pr_geom::{SE2, math};
 use super::mapper::{Mapper, Trust};
 use super::robots::{RobotConfig, SubmapLoopConfig};
 use crate::cloud::PointCloud;
-use crate::local_map::{LocalMap, MapRegistration, MapRegistrationConfig, RangeProfile};
+use crate::local_map::{
+    LEAST_SEARCH_SCORE, LocalMap, MapRegistration, MapRegistrationConfig, RangeProfile,
+};
 use crate::loops::{
     Detection, LoopCandidate, LoopConfig, LoopRejection, LoopVerification, PendingLoop,
     chi_squared_gate, detect_visits,
 };
 use crate::metrics::position_error_m;
-use crate::search::{LikelihoodConfig, ScanSearch, SearchMap, SearchNeighborhood, SearchWindow};
+use crate::search::SearchWindow;
 
 /// Keyframes on either side of the nearest one in a submap, at least.
 const HALF_SUBMAP: usize = 8;
@@ -32,13 +34,6 @@ const HALF_SUBMAP: usize = 8;
 const SUBMAP_MARGIN_M: f64 = 4.0;
 /// The bundle is thinned to a point in each cell of this side, m.
 const BUNDLE_CELL_M: f64 = 0.15;
-/// Cells and blur of a search, m: registration does the rest.
-const SEARCH_GRID: LikelihoodConfig = LikelihoodConfig {
-    cell_m: 0.1,
-    sigma_m: 0.1,
-};
-/// A search gives up on places that score less, 0 to 1: unseen space counts as a miss there.
-const LEAST_SEARCH_SCORE: f64 = 0.4;
 /// The window is so much wider than the covariance says, m and rad.
 const WINDOW_FLOOR: (f64, f64) = (0.3, 0.06);
 /// The largest squared innovation that is expected: 99 of 100 lie below, of three degrees of freedom.
@@ -264,22 +259,13 @@ impl BundleLoops {
     /// The best place of the window, and by how much it is ahead of the best other one.
     fn search(&self, window: &Window, bundle: &PointCloud) -> (Option<SE2>, Option<f64>) {
         let around = SearchWindow::around(window.belief, window.half_m, window.half_rad);
-        let found = SearchMap::build(self.map.cloud(), SEARCH_GRID)
-            .and_then(|map| {
-                let neighborhood = SearchNeighborhood::default();
-                ScanSearch::new(Arc::new(map), bundle, &around, &neighborhood)
-            })
-            .ok()
-            .and_then(|search| {
-                let search = search.with_min_score(LEAST_SEARCH_SCORE);
-                // Other places are looked for twice as far behind as they have to be.
-                search.with_margin(2.0 * self.config.min_margin).run()
-            });
-        match found {
-            Some(found) => {
-                let margin = found.margin().unwrap_or(2.0 * self.config.min_margin);
-                (Some(found.best.pose), Some(margin))
-            }
+        // Other places are looked for twice as far behind as they have to be.
+        let farthest = 2.0 * self.config.min_margin;
+        match self.map.search(bundle, &around, farthest) {
+            Some(found) => (
+                Some(found.best.pose),
+                Some(found.margin().unwrap_or(farthest)),
+            ),
             None => (None, None),
         }
     }

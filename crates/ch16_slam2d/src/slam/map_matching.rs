@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::Matrix3;
-use pr_geom::{SE2, math};
+use pr_geom::SE2;
 
 use super::RobotConfig;
 use super::front_end::WindowSweep;
@@ -13,15 +13,8 @@ use crate::local_map::{
 };
 use crate::matching::{MatchStop, MatchSummary};
 use crate::scan::PreparedFrame;
-use crate::search::{LikelihoodConfig, ScanSearch, SearchMap, SearchNeighborhood, SearchWindow};
+use crate::search::SearchWindow;
 
-/// Cells and blur of the search around the prediction, m: registration does the rest.
-const SEARCH_GRID: LikelihoodConfig = LikelihoodConfig {
-    cell_m: 0.1,
-    sigma_m: 0.1,
-};
-/// A search gives up on poses that fit worse, 0 to 1.
-const LEAST_SEARCH_SCORE: f64 = 0.4;
 /// A scan that fits so well needs no other start, 0 to 1.
 const GOOD_WITHOUT_WHEELS: f64 = 0.9;
 /// Other starts where the prediction is off by more than a registration reaches: along the heading (m) and
@@ -193,13 +186,9 @@ impl MapMatching {
 
     /// The best pose of the window around the prediction, by branch and bound.
     fn search(&self, scan: &PointCloud, prediction: &SE2) -> Option<SE2> {
-        let map = SearchMap::build(self.map.cloud(), SEARCH_GRID).ok()?;
         let (half_m, half_rad) = (self.config.search_m, self.config.search_rad);
         let window = SearchWindow::around(*prediction, half_m, half_rad);
-        let neighborhood = SearchNeighborhood::default();
-        let search = ScanSearch::new(Arc::new(map), scan, &window, &neighborhood).ok()?;
-        let search = search.with_min_score(LEAST_SEARCH_SCORE).with_margin(0.0);
-        Some(search.run()?.best.pose)
+        Some(self.map.search(scan, &window, 0.0)?.best.pose)
     }
 }
 
@@ -207,23 +196,10 @@ fn cheaper(one: MapRegistration, other: MapRegistration) -> MapRegistration {
     if other.cost < one.cost { other } else { one }
 }
 
-impl super::MotionNoise {
-    /// Standard deviations of position (m) and heading (rad) of a motion.
-    #[must_use]
-    pub fn deviations(&self, motion: &SE2) -> (f64, f64) {
-        let (distance, turn) = (math::norm2(motion.x(), motion.y()), motion.theta().abs());
-        (
-            self.floor_m + self.per_metre * distance + self.metre_per_rad * turn,
-            self.floor_rad + self.per_rad * turn + self.rad_per_metre * distance,
-        )
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use pr_geom::SE2;
+    use pr_geom::{SE2, math};
 
-    use super::math;
     use crate::slam::{Slam, SlamConfig, test_room};
 
     #[test]

@@ -57,12 +57,20 @@ impl MotionNoise {
         }
     }
 
+    /// Standard deviations of the position (m) along each axis and of the heading (rad) of a motion.
+    #[must_use]
+    pub fn deviations(&self, motion: &SE2) -> (f64, f64) {
+        let (distance, turn) = (math::norm2(motion.x(), motion.y()), motion.theta().abs());
+        (
+            self.floor_m + self.per_metre * distance + self.metre_per_rad * turn,
+            self.floor_rad + self.per_rad * turn + self.rad_per_metre * distance,
+        )
+    }
+
     /// Covariance of a motion in the frame at its end, 3×3, translation first: m², rad².
     #[must_use]
     pub fn covariance(&self, motion: &SE2) -> Matrix3<f64> {
-        let (distance, turn) = (math::norm2(motion.x(), motion.y()), motion.theta().abs());
-        let xy = self.floor_m + self.per_metre * distance + self.metre_per_rad * turn;
-        let theta = self.floor_rad + self.per_rad * turn + self.rad_per_metre * distance;
+        let (xy, theta) = self.deviations(motion);
         let square = |sigma: f64| (sigma * sigma).max(MIN_VARIANCE);
         Matrix3::from_diagonal(&Vector3::new(square(xy), square(xy), square(theta)))
     }
