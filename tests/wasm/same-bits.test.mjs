@@ -14,8 +14,8 @@ describe('a lap', () => {
     });
   }
 
-  it('on submaps has the same digest of all poses, and another one than on the window', () => {
-    const words = ['--seed', '12648430', '--noise', '2', '--front-end', 'submaps', '--json'];
+  it('by the estimator for logs has the same digest of all poses, and another one than by the chapter\'s', () => {
+    const words = ['--seed', '12648430', '--noise', '2', '--front-end', 'local-map', '--json'];
     const digest = wasm.lapDigest(12648430, 2, true);
     assert.equal(digest, JSON.parse(native('slam2d', 'lap', ...words)).digest);
     assert.notEqual(digest, wasm.lapDigest(12648430, 2));

@@ -1,7 +1,6 @@
 //! What the page asks of the module beside its widgets: schemas, texts that are parsed, laps, small figures.
 
-use ch16_lab::lap::{LapConfig, LapRunner};
-use ch16_slam2d::submaps::FrontEndChoice;
+use ch16_lab::lap::{LapConfig, LapFrontEnd, LapRunner};
 use kit::param::ParamKind;
 use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
@@ -29,12 +28,12 @@ pub fn after_each_preset(name: &str) -> Result<String, JsError> {
 }
 
 /// The digest of a lap's poses and metrics, 16 hexadecimal digits as `slam2d lap` prints it; with
-/// `on_submaps` the front end has them.
+/// `on_local_map` it is that of the estimator for recorded logs.
 #[wasm_bindgen(js_name = lapDigest)]
-pub fn lap_digest(seed: u32, noise_factor: f64, on_submaps: Option<bool>) -> String {
-    let digest = if on_submaps.unwrap_or_default() {
+pub fn lap_digest(seed: u32, noise_factor: f64, on_local_map: Option<bool>) -> String {
+    let digest = if on_local_map.unwrap_or_default() {
         let lap = LapConfig::with_seed_and_noise(seed, noise_factor);
-        let lap = lap.with_front_end(FrontEndChoice::Submaps);
+        let lap = lap.with_front_end(LapFrontEnd::LocalMap);
         LapRunner::new().run(&lap).digest()
     } else {
         ch16_lab::lap::lap_digest(seed, noise_factor)

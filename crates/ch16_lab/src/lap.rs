@@ -27,7 +27,9 @@ mod way;
 use std::sync::Arc;
 
 pub use ch16_slam2d::slam::{Change, LoopClosure, Registration, SlamConfig};
-pub use choices::{BuiltInWorld, Choice, LapDetector, LapEstimator, LapMatcher, LoopMatcher};
+pub use choices::{
+    BuiltInWorld, Choice, LapDetector, LapEstimator, LapFrontEnd, LapMatcher, LoopMatcher,
+};
 pub use config::{CANONICAL_SEED, DriveConfig, LAP_TICKS, LapConfig};
 pub use digest::lap_digest;
 pub use drive::{Drive, DriveSimulation, DriveTick, Sweep};

@@ -20,4 +20,3 @@ pub mod prelude;
 pub mod scan;
 pub mod search;
 pub mod slam;
-pub mod submaps;

@@ -22,5 +22,4 @@ pub use config::{Detection, DetectorKind, GateModel, LoopConfig};
 pub use detector::{CloneDetector, LoopDetector, LoopQuery, NearbyDetector};
 pub use gate::{GateTest, chi_squared_gate, marginal_information, path_information};
 pub use pending_loop::PendingLoop;
-pub(crate) use verify::rejection;
 pub use verify::{KeyframeView, LoopRejection, LoopVerification, LoopWorkspace, verify_loop};

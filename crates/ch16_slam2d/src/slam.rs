@@ -33,8 +33,6 @@ mod robots;
 mod scales;
 mod snapshot;
 #[cfg(test)]
-mod submap_tests;
-#[cfg(test)]
 pub(crate) mod test_room;
 mod uncertainty;
 mod upkeep;
@@ -64,7 +62,6 @@ use crate::graph::{EdgeKind, PoseGraph};
 use crate::loops::LoopWorkspace;
 use crate::metrics::position_error_m;
 use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer};
-use crate::submaps::SubmapLoops;
 
 /// The graph is off by so much more than its covariance says, where somebody asks for a loop: m and rad.
 const ASKED_FLOOR: (f64, f64) = (0.15, 0.05);
@@ -160,8 +157,6 @@ impl Slam {
                 .register(frame, dt_s, self.frames - 1, &self.config);
             (Some(registration), self.take_keyframe(frame))
         };
-        let finished = self.front_end.take_finished();
-        self.loop_closer.keep(finished);
         Ok(PendingFrame::new(frame.stamp_s, registration, new_keyframe))
     }
 
@@ -219,11 +214,8 @@ impl Slam {
     }
 
     /// Drops what is gone and takes out what was replaced around the newest keyframe; call it after a
-    /// frame that became one. A map on submaps stays as it is.
+    /// frame that became one.
     pub fn keep_up(&mut self, config: &UpkeepConfig) -> Upkeep {
-        if self.loop_closer.submaps().is_some() {
-            return Upkeep::default();
-        }
         let radius_m = self.config.scan.normal_radius_m;
         upkeep::keep_up(&mut self.mapper, &mut self.loop_closer, config, radius_m)
     }
@@ -278,12 +270,6 @@ impl Slam {
     #[must_use]
     pub fn loop_workspace(&self) -> Option<&LoopWorkspace> {
         self.loop_closer.workspace()
-    }
-
-    /// The finished submaps; none where the front end makes no submaps.
-    #[must_use]
-    pub fn submap_loops(&self) -> Option<&SubmapLoops> {
-        self.loop_closer.submaps()
     }
 
     /// χ² of the graph.
@@ -351,28 +337,9 @@ impl Slam {
         {
             return None;
         }
-        let is_registered = self.front_end.is_registered();
         let node = graph.add_node(estimate).index();
-        let ties = self.front_end.tie(node, &frame.cloud);
-        if ties.is_empty() || !is_registered {
-            let information = self.front_end.information(last_pose.theta(), &self.config);
-            graph.add_edge(last_node, node, relative, information, EdgeKind::Odometry);
-        }
-        if is_registered {
-            // One registration, shared by the submaps that the keyframe is tied to.
-            let share = 1.0 / ties.len().max(1) as f64;
-            for (anchor, anchor_from_node) in ties {
-                let theta = graph.pose(anchor).theta();
-                let information = self.front_end.information(theta, &self.config) * share;
-                graph.add_edge(
-                    anchor,
-                    node,
-                    anchor_from_node,
-                    information,
-                    EdgeKind::Odometry,
-                );
-            }
-        }
+        let information = self.front_end.information(last_pose.theta(), &self.config);
+        graph.add_edge(last_node, node, relative, information, EdgeKind::Odometry);
         self.mapper.keyframes.push(Keyframe {
             node,
             frame: self.frames - 1,

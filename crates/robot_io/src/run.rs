@@ -123,7 +123,7 @@ impl LogRun {
     /// # Errors
     /// Where the session contradicts itself.
     pub fn reopen(session: &Session) -> Result<Self, SnapshotError> {
-        let mut slam = Slam::restore_map(&session.driven)?;
+        let mut slam = Slam::restore(&session.driven)?;
         *slam.graph_mut() = session.graph();
         Ok(Self {
             driven: Some(session.driven.clone()),

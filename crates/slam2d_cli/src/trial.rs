@@ -1,10 +1,11 @@
 //! What `lap` and `sweep` drive, and with which estimator: `--world`, `--matcher`,
 //! `--loop-matcher`, `--detector`, `--gate`, `--information`.
 
-use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapDetector, LapMatcher, LoopMatcher};
+use ch16_lab::lap::{
+    BuiltInWorld, Choice, LapConfig, LapDetector, LapFrontEnd, LapMatcher, LoopMatcher,
+};
 use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::matching::InformationFrame;
-use ch16_slam2d::submaps::FrontEndChoice;
 use clap::Args;
 use clap::builder::PossibleValue;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -18,9 +19,9 @@ pub struct TrialArgs {
     /// What registers scans, for the front end and for loops; p2p without it.
     #[arg(long, value_parser = choice::<LapMatcher>())]
     matcher: Option<LapMatcher>,
-    /// What the front end registers scans on; submaps have their own way to do so, and to find loops.
-    #[arg(long, value_parser = choice::<FrontEndChoice>())]
-    front_end: Option<FrontEndChoice>,
+    /// What the front end registers scans on; that on a local map finds loops its own way as well.
+    #[arg(long, value_parser = choice::<LapFrontEnd>())]
+    front_end: Option<LapFrontEnd>,
     /// What registers scans for loops alone; that of the front end without it.
     #[arg(long, value_parser = choice::<LoopMatcher>())]
     loop_matcher: Option<LoopMatcher>,
@@ -44,7 +45,7 @@ pub struct TrialArgs {
 pub struct Trial {
     course: Option<Course>,
     matcher: LapMatcher,
-    front_end: FrontEndChoice,
+    front_end: LapFrontEnd,
     loop_matcher: Option<LoopMatcher>,
     detector: LapDetector,
     gate: Option<GateModel>,

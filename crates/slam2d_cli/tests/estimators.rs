@@ -79,16 +79,16 @@ fn what_says_nothing_to_an_estimator_is_refused() {
 }
 
 #[test]
-fn the_front_end_of_submaps_is_another_lap_and_no_matter_of_the_ancestor() {
+fn the_estimator_for_logs_drives_another_lap_and_is_no_matter_of_the_ancestor() {
     let window = json(&["lap", "--json"]);
     let said = json(&["lap", "--front-end", "window", "--json"]);
     assert_eq!(window["digest"], said["digest"]);
-    let submaps = json(&["lap", "--front-end", "submaps", "--json"]);
-    assert_ne!(window["digest"], submaps["digest"]);
+    let local_map = json(&["lap", "--front-end", "local-map", "--json"]);
+    assert_ne!(window["digest"], local_map["digest"]);
     let ends =
-        ["keyframe_end_error", "odometry_end_error"].map(|end| submaps[end].as_f64().unwrap());
+        ["keyframe_end_error", "odometry_end_error"].map(|end| local_map[end].as_f64().unwrap());
     assert!(ends[0] < 0.7 * ends[1], "{ends:?}");
-    let refused = ["lap", "--estimator", "ml", "--front-end", "submaps"];
+    let refused = ["lap", "--estimator", "ml", "--front-end", "local-map"];
     assert_refused(&refused, "--front-end says nothing to the estimator ml");
 }
 

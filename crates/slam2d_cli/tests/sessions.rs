@@ -270,7 +270,7 @@ fn lap_after_lap_is_told_in_lines_and_left_as_a_session() {
             "--laps 2 does not drive; take one up to 2",
         ),
         (
-            vec!["lap", "--laps", "2", "--front-end", "submaps"],
+            vec!["lap", "--laps", "2", "--front-end", "local-map"],
             "cannot be used with",
         ),
     ] {

@@ -5,8 +5,8 @@
 use ch16_slam2d::loops::{DetectorKind, GateModel};
 use ch16_slam2d::matching::{InformationFrame, MatcherKind, NdtMatcherConfig, SearchMatcherConfig};
 use ch16_slam2d::places::PlaceDetectorConfig;
+use ch16_slam2d::scan::LaserScan;
 use ch16_slam2d::slam::SlamConfig;
-use ch16_slam2d::submaps::FrontEndChoice;
 use pr_sim::Course;
 
 use super::config::LapConfig;
@@ -256,20 +256,30 @@ impl Choice for LapEstimator {
     }
 }
 
-impl Choice for FrontEndChoice {
-    const ALL: &'static [Self] = &[Self::Window, Self::Submaps];
+/// What registers the scans of a lap and finds its loops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LapFrontEnd {
+    /// A matcher on the last sweeps, and loops near in the graph, the chapter's.
+    #[default]
+    Window,
+    /// The estimator for recorded logs: one cost of scan and odometry, and loops on submaps.
+    LocalMap,
+}
+
+impl Choice for LapFrontEnd {
+    const ALL: &'static [Self] = &[Self::Window, Self::LocalMap];
 
     fn name(self) -> &'static str {
         match self {
             Self::Window => "window",
-            Self::Submaps => "submaps",
+            Self::LocalMap => "local-map",
         }
     }
 
     fn label(self) -> &'static str {
         match self {
             Self::Window => "the points of the last sweeps",
-            Self::Submaps => "two probability grids that overlap",
+            Self::LocalMap => "a local map and the odometry, the estimator for recorded logs",
         }
     }
 }
@@ -362,10 +372,20 @@ impl LapConfig {
         self
     }
 
-    /// The same lap with another front end, whose lengths follow from the rest: choose it last.
+    /// The same lap with another front end; that on a local map has its own matcher, detector and gate.
     #[must_use]
-    pub fn with_front_end(mut self, front_end: FrontEndChoice) -> Self {
-        self.slam = front_end.of(self.slam);
+    pub fn with_front_end(mut self, front_end: LapFrontEnd) -> Self {
+        if front_end == LapFrontEnd::LocalMap {
+            let sensor = LaserScan {
+                angle_step_rad: self.drive.lidar.angle_step_rad(),
+                ..LaserScan::default()
+            };
+            self.slam = SlamConfig {
+                start: self.slam.start,
+                loop_closure: self.slam.loop_closure,
+                ..SlamConfig::for_robot(&sensor)
+            };
+        }
         self
     }
 
@@ -408,7 +428,7 @@ mod tests {
         check::<LapDetector>();
         check::<LoopMatcher>();
         check::<LapEstimator>();
-        check::<FrontEndChoice>();
+        check::<LapFrontEnd>();
         check::<InformationFrame>();
         check::<GateModel>();
     }

@@ -9,7 +9,6 @@ use crate::cloud::PointCloud;
 use crate::metrics::position_error_m;
 use crate::scan::PreparedFrame;
 use crate::slam::{FrontEnd, SlamConfig, WindowSweep};
-use crate::submaps::FrontEndChoice;
 
 /// A sweep that fits worse on the ones before it was taken elsewhere, 0 to 1.
 const TORN_SCORE: f64 = 0.3;
@@ -34,8 +33,6 @@ pub struct Trail {
 
 impl Trail {
     pub fn new(config: SlamConfig) -> Self {
-        // A trail is a window: the map may have been made on submaps.
-        let config = FrontEndChoice::Window.of(config);
         Self {
             front_end: FrontEnd::new(&config, config.matcher.build(&config.local_map)),
             config,

@@ -236,7 +236,7 @@ pub fn verify_loop(
     }
 }
 
-pub(crate) fn rejection(
+fn rejection(
     found: &MatchSummary,
     gate: GateTest,
     config: &LoopConfig,

@@ -7,7 +7,6 @@ use crate::graph::JacobianModel;
 use crate::loops::LoopConfig;
 use crate::matching::{InformationFrame, MapConfig, MatcherKind, TrustConfig};
 use crate::scan::ScanConfig;
-use crate::submaps::FrontEndKind;
 
 /// A point's normal comes from its neighbours within so many cells.
 ///
@@ -52,8 +51,6 @@ pub struct SlamConfig {
     pub scan: ScanConfig,
     /// Whether loops are closed.
     pub loop_closure: LoopClosure,
-    /// What scans are registered on: the window below, or submaps.
-    pub front_end: FrontEndKind,
     /// What registers a scan on the local map.
     pub matcher: MatcherKind,
     /// Number of last sweeps in the local map.
@@ -132,7 +129,6 @@ impl SlamConfig {
             start: SE2::identity(),
             scan: ScanConfig::default(),
             loop_closure: LoopClosure::On,
-            front_end: FrontEndKind::Window,
             matcher: MatcherKind::PointToPoint,
             window_sweeps: 6,
             window_distance_m: 0.0,

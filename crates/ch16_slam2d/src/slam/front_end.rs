@@ -14,7 +14,6 @@ use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, regularize};
 use crate::matching::{InformationFrame, MatchSummary, Matcher};
 use crate::metrics::position_error_m;
 use crate::scan::{PreparedFrame, is_finite};
-use crate::submaps::{ActiveSubmaps, FinishedSubmap};
 
 /// Stamps that are closer all but coincide, s: a motion between them tells no velocity.
 const SHORTEST_S: f64 = 1e-6;
@@ -123,22 +122,9 @@ impl FrontEnd {
         }
     }
 
-    /// The submaps that scans are added to; none where there is a window.
-    #[must_use]
-    pub fn submaps(&self) -> Option<&ActiveSubmaps> {
-        self.window_matching()?.submaps.as_ref()
-    }
-
     fn window_matching(&self) -> Option<&WindowMatching> {
         match &self.registrar {
             Registrar::Window(matching) => Some(matching),
-            Registrar::Map(_) => None,
-        }
-    }
-
-    fn submaps_mut(&mut self) -> Option<&mut ActiveSubmaps> {
-        match &mut self.registrar {
-            Registrar::Window(matching) => matching.submaps.as_mut(),
             Registrar::Map(_) => None,
         }
     }
@@ -184,13 +170,8 @@ impl FrontEnd {
         }
     }
 
-    /// Takes the first scan into the window, or begins the first submap.
+    /// Takes the first scan into the window.
     pub(crate) fn start(&mut self, scan: Arc<PointCloud>) {
-        let estimate = self.estimate;
-        if let Some(submaps) = self.submaps_mut() {
-            submaps.tie(0, &scan, &estimate);
-            return;
-        }
         if let Registrar::Map(matching) = &mut self.registrar {
             matching.join(&scan, false);
         }
@@ -221,14 +202,12 @@ impl FrontEnd {
         let tau_m = self.tau_m();
         let matched = match &mut self.registrar {
             Registrar::Window(matching) => {
-                if matching.submaps.is_none() {
-                    matching.local_cloud.clear();
-                    for (sweep, scan) in self.window.iter().zip(&self.scans) {
-                        matching.local_cloud.extend_transformed(scan, &sweep.pose);
-                    }
-                    matching.matcher.set_target(&matching.local_cloud);
+                matching.local_cloud.clear();
+                for (sweep, scan) in self.window.iter().zip(&self.scans) {
+                    matching.local_cloud.extend_transformed(scan, &sweep.pose);
                 }
-                matching.register(frame, &prediction, &motion, config)
+                matching.matcher.set_target(&matching.local_cloud);
+                matching.register(&frame.cloud, &prediction, config)
             }
             Registrar::Map(matching) => {
                 let goes_on = before * goes_on;
@@ -277,33 +256,9 @@ impl FrontEnd {
         for sweep in &mut self.window {
             sweep.pose = *correction * sweep.pose;
         }
-        match &mut self.registrar {
-            Registrar::Map(matching) => matching.moved(),
-            Registrar::Window(matching) => {
-                if let Some(submaps) = &mut matching.submaps {
-                    submaps.correct(correction);
-                }
-            }
+        if let Registrar::Map(matching) = &mut self.registrar {
+            matching.moved();
         }
-    }
-
-    /// Whether the last registration was accepted.
-    pub(super) fn is_registered(&self) -> bool {
-        self.window_matching()
-            .is_none_or(|matching| matching.unregistered.is_none())
-    }
-
-    /// Ties keyframe `node` at the estimate to the submaps; the anchors with the node's pose in each
-    /// one's frame. Nothing where there is a window.
-    pub(super) fn tie(&mut self, node: usize, scan: &PointCloud) -> Vec<(usize, SE2)> {
-        let estimate = self.estimate;
-        let submaps = self.submaps_mut();
-        submaps.map_or_else(Vec::new, |submaps| submaps.tie(node, scan, &estimate))
-    }
-
-    /// The submap that was finished since this was asked last.
-    pub(super) fn take_finished(&mut self) -> Option<FinishedSubmap> {
-        self.submaps_mut()?.take_finished()
     }
 
     /// The motion with the last velocity, for as long as it is expected to stay.
@@ -319,11 +274,6 @@ impl FrontEnd {
     }
 
     fn join_window(&mut self, frame: &PreparedFrame, number: usize, config: &SlamConfig) -> bool {
-        let estimate = self.estimate;
-        if let Some(submaps) = self.submaps_mut() {
-            let (distance_m, turn_rad) = (config.window_distance_m, config.window_turn_rad);
-            return submaps.insert(&frame.cloud, &estimate, distance_m, turn_rad);
-        }
         let is_full = self.window.len() >= config.window_sweeps;
         if let Some(newest) = self.window.last()
             && is_full

@@ -6,7 +6,6 @@ use super::mapper::{Mapper, Trust};
 use super::nearby_loops::NearbyLoops;
 use super::parts::SlamParts;
 use crate::loops::{LoopVerification, LoopWorkspace, PendingLoop};
-use crate::submaps::{FinishedSubmap, SubmapLoops};
 
 /// How loops are found.
 #[derive(Clone)]
@@ -39,7 +38,7 @@ impl LoopCloser {
         Self {
             finder: match &config.robot {
                 Some(robot) => Finder::Bundle(BundleLoops::new(robot)),
-                None => Finder::Nearby(NearbyLoops::new(config, parts.detector, parts.loops)),
+                None => Finder::Nearby(NearbyLoops::new(parts.detector, parts.loops)),
             },
             last_attempt_node: None,
         }
@@ -110,13 +109,6 @@ impl LoopCloser {
         tried
     }
 
-    /// Keeps a submap that the front end has finished.
-    pub(super) fn keep(&mut self, finished: Option<FinishedSubmap>) {
-        if let Finder::Nearby(finder) = &mut self.finder {
-            finder.keep(finished);
-        }
-    }
-
     /// The loops that wait for others, in order.
     #[must_use]
     pub fn pending(&self) -> &[PendingLoop] {
@@ -139,15 +131,6 @@ impl LoopCloser {
     pub fn workspace(&self) -> Option<&LoopWorkspace> {
         match &self.finder {
             Finder::Nearby(finder) => Some(&finder.workspace),
-            Finder::Bundle(_) => None,
-        }
-    }
-
-    /// The finished submaps; none where the front end makes no submaps.
-    #[must_use]
-    pub fn submaps(&self) -> Option<&SubmapLoops> {
-        match &self.finder {
-            Finder::Nearby(finder) => finder.submaps.as_ref(),
             Finder::Bundle(_) => None,
         }
     }

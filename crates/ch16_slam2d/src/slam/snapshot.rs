@@ -14,7 +14,6 @@ use crate::cloud::PointCloud;
 use crate::graph::{EdgeView, PoseGraph, PoseNode};
 use crate::loops::PendingLoop;
 use crate::scan::is_finite;
-use crate::submaps::FrontEndKind;
 
 /// No robot takes so many frames.
 const MOST_FRAMES: usize = 1 << 30;
@@ -106,11 +105,6 @@ pub enum SnapshotError {
     /// A counter that does not fit to the rest.
     #[error("the {0} does not fit to the rest")]
     Counter(&'static str),
-    /// The front end registers on submaps, and a snapshot holds none of their grids.
-    #[error(
-        "it was mapped on submaps, whose grids are not kept, so nothing can go on from it; map with the window's front end to go on another day, or run the whole log again"
-    )]
-    Submaps,
 }
 
 impl SlamSnapshot {
@@ -185,8 +179,7 @@ impl SlamSnapshot {
         if !is_counted || self.last_stamp_s.is_nan() {
             return Err(SnapshotError::Counter("number of frames"));
         }
-        let has_window = nodes > 0 && self.config.front_end == FrontEndKind::Window;
-        self.front_end.check(has_window)
+        self.front_end.check(nodes > 0)
     }
 }
 
@@ -231,8 +224,7 @@ fn is_cloud(cloud: &PointCloud) -> bool {
 }
 
 impl Slam {
-    /// All that the estimator is, between two frames, but for the grids of submaps: a map of those can be
-    /// looked at and localized on, and not gone on with.
+    /// All that the estimator is, between two frames.
     #[must_use]
     pub fn snapshot(&self) -> SlamSnapshot {
         SlamSnapshot {
@@ -253,7 +245,7 @@ impl Slam {
     /// An estimator that goes on from a snapshot, with the parts that its parameters name.
     ///
     /// # Errors
-    /// Where the snapshot contradicts itself, or its front end registers on submaps.
+    /// Where the snapshot contradicts itself.
     pub fn restore(snapshot: &SlamSnapshot) -> Result<Self, SnapshotError> {
         let parts = SlamParts::of(&snapshot.config);
         Self::restore_with_parts(snapshot, parts)
@@ -262,29 +254,11 @@ impl Slam {
     /// [`Slam::restore`] with matchers and a loop detector of one's own.
     ///
     /// # Errors
-    /// Where the snapshot contradicts itself, or its front end registers on submaps.
+    /// Where the snapshot contradicts itself.
     pub fn restore_with_parts(
         snapshot: &SlamSnapshot,
         parts: SlamParts,
     ) -> Result<Self, SnapshotError> {
-        if snapshot.config.front_end != FrontEndKind::Window {
-            return Err(SnapshotError::Submaps);
-        }
-        let mut slam = Self::of_map(snapshot, parts)?;
-        slam.front_end.restore(&snapshot.front_end);
-        Ok(slam)
-    }
-
-    /// The graph and the keyframes of a snapshot, whatever its front end: to be looked at and changed, not
-    /// to be gone on with.
-    ///
-    /// # Errors
-    /// Where the snapshot contradicts itself.
-    pub fn restore_map(snapshot: &SlamSnapshot) -> Result<Self, SnapshotError> {
-        Self::of_map(snapshot, SlamParts::of(&snapshot.config))
-    }
-
-    fn of_map(snapshot: &SlamSnapshot, parts: SlamParts) -> Result<Self, SnapshotError> {
         snapshot.check()?;
         let mut slam = Self::with_parts(snapshot.config.clone(), parts);
         slam.frames = snapshot.frames;
@@ -298,6 +272,7 @@ impl Slam {
         mapper.chi2 = mapper.graph.chi2();
         slam.loop_closer
             .restore(snapshot.last_attempt_node, &snapshot.pending);
+        slam.front_end.restore(&snapshot.front_end);
         Ok(slam)
     }
 }
@@ -356,19 +331,6 @@ mod tests {
         }
         assert!(waited > 0, "no run was interrupted while a loop waited");
         assert!(unspread > 0, "none while one was yet to correct the map");
-    }
-
-    #[test]
-    fn a_run_on_submaps_is_kept_as_a_map_and_not_gone_on_with() {
-        let mut slam = Slam::new(SlamConfig::for_robot(&frame(0).scan).with_submaps());
-        for frames in [0, 1, 30] {
-            let first = slam.frames();
-            driven(&mut slam, first..frames);
-            let snapshot = slam.snapshot();
-            assert_eq!(snapshot.check(), Ok(()), "after {frames}");
-            assert_eq!(snapshot.keyframes, slam.keyframes());
-            assert_eq!(Slam::restore(&snapshot).err(), Some(SnapshotError::Submaps));
-        }
     }
 
     #[test]
