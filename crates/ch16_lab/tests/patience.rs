@@ -2,9 +2,8 @@
 
 use ch16_lab::lap::{Drive, DriveConfig};
 use ch16_slam2d::graph::EdgeKind;
-use ch16_slam2d::icp::Pair;
 use ch16_slam2d::loops::{LoopCandidate, LoopDetector, LoopQuery, LoopRejection};
-use ch16_slam2d::matching::{MatchRequest, MatchStop, MatchSummary, Matcher};
+use ch16_slam2d::matching::{Match, MatchRequest, MatchStop, MatchSummary, Matcher};
 use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::scan::FrameError;
 use ch16_slam2d::slam::{MotionNoise, Slam, SlamConfig, SlamParts};
@@ -130,24 +129,19 @@ struct Believer;
 impl Matcher for Believer {
     fn set_target(&mut self, _: &ch16_slam2d::cloud::PointCloud) {}
 
-    fn register(
-        &mut self,
-        _: &ch16_slam2d::cloud::PointCloud,
-        request: &MatchRequest,
-    ) -> MatchSummary {
-        MatchSummary {
-            pose: request.guess,
-            rmse_m: 0.0,
-            inliers: 1000,
-            iterations: 0,
-            score: None,
-            runner_up: None,
-            stop: MatchStop::Other("believed"),
+    fn register(&mut self, _: &ch16_slam2d::cloud::PointCloud, request: &MatchRequest) -> Match {
+        Match {
+            summary: MatchSummary {
+                pose: request.guess,
+                rmse_m: 0.0,
+                inliers: 1000,
+                iterations: 0,
+                score: None,
+                runner_up: None,
+                stop: MatchStop::Other("believed"),
+            },
+            pairs: Vec::new(),
         }
-    }
-
-    fn pairs(&self, pairs: &mut Vec<Pair>) {
-        pairs.clear();
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! `cargo run -p ch16_slam2d --example write_your_own_matcher`
 
-use ch16_slam2d::matching::{IcpMatcher, MatchRequest, MatchSummary, Matcher};
+use ch16_slam2d::matching::{IcpMatcher, Match, MatchRequest, Matcher};
 use ch16_slam2d::prelude::*;
 use ch16_slam2d::slam::{Slam, SlamConfig, SlamParts};
 
@@ -15,19 +15,13 @@ impl Matcher for ManyHeadings {
         self.0.set_target(target);
     }
 
-    fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
+    fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> Match {
         let mut from = |guess| self.0.register(source, &MatchRequest { guess, ..*request });
         let turns = [0.0, -0.8, -0.4, 0.4, 0.8].map(|turn_rad| SE2::new(0.0, 0.0, turn_rad));
         let found = turns.map(|turn| from(request.guess * turn));
-        let best = found
-            .into_iter()
-            .min_by(|a, b| a.rmse_m.total_cmp(&b.rmse_m));
-        // Pairs and information belong to the last registration: let that be the best one.
-        from(best.map_or(request.guess, |best| best.pose))
-    }
-
-    fn pairs(&self, pairs: &mut Vec<Pair>) {
-        self.0.pairs(pairs);
+        let by_fit = |a: &Match, b: &Match| a.summary.rmse_m.total_cmp(&b.summary.rmse_m);
+        let best = found.into_iter().min_by(by_fit);
+        best.unwrap_or_else(|| from(request.guess))
     }
 }
 
@@ -46,7 +40,7 @@ pub fn off_rad(matcher: &mut dyn Matcher) -> f64 {
     matcher.set_target(&room);
     let scan = room.transformed(&SE2::new(1.2, 0.9, 0.9).inverse());
     let request = MatchRequest::new(SE2::new(1.2, 0.9, 0.0), 1.0, 99);
-    matcher.register(&scan, &request).pose.theta() - 0.9
+    matcher.register(&scan, &request).summary.pose.theta() - 0.9
 }
 
 /// Prints by how much the matcher above misses a heading.

@@ -9,6 +9,7 @@
 //! the map, cut off at a miss. Space counts as well: a point behind everything that was seen costs less
 //! than one in space that a scan has looked through.
 
+mod locate;
 mod prior;
 mod range_profile;
 mod registration;

@@ -18,7 +18,6 @@
 mod bundle_loops;
 mod config;
 mod front_end;
-mod fusion;
 mod loop_closer;
 mod map_matching;
 mod mapper;
@@ -44,8 +43,6 @@ use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::OptimizeError;
 
-pub(crate) use fusion::fuse;
-
 pub use config::{LoopClosure, SlamConfig, ThresholdConfig};
 pub use front_end::{FrontEnd, Registration, WindowSweep};
 pub use loop_closer::LoopCloser;
@@ -59,12 +56,9 @@ pub use snapshot::{FrontEndSnapshot, SlamSnapshot, SnapshotError};
 pub use upkeep::{Upkeep, UpkeepConfig};
 
 use crate::graph::{EdgeKind, PoseGraph};
-use crate::loops::LoopWorkspace;
+use crate::loops::{LoopVerification, LoopWorkspace};
 use crate::metrics::position_error_m;
 use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer};
-
-/// The graph is off by so much more than its covariance says, where somebody asks for a loop: m and rad.
-const ASKED_FLOOR: (f64, f64) = (0.15, 0.05);
 
 /// The SLAM system, one frame at a time.
 #[derive(Clone)]
@@ -292,25 +286,21 @@ impl Slam {
         uncertainty::variance_factor(&self.mapper.graph)
     }
 
-    /// What a loop between two keyframes is tested against that somebody asks for: the information of their
-    /// relative pose that the graph holds, less a floor.
+    /// Registers keyframe `new` on what was seen around keyframe `old` and tests the result; the graph stays
+    /// as it is.
     ///
     /// # Errors
-    /// Where the graph has no covariance.
+    /// Where the graph has no covariance to test it against.
     ///
     /// # Panics
-    /// Where a node does not exist.
-    pub fn expected_information(
+    /// Where a keyframe does not exist, or `new` is not after `old`.
+    pub fn register_loop(
         &mut self,
         old: usize,
         new: usize,
-    ) -> Result<Matrix3<f64>, OptimizeError> {
-        let (floor_m, floor_rad) = ASKED_FLOOR;
-        let floor = nalgebra::Vector3::new(floor_m, floor_m, floor_rad).map(|s| s * s);
-        let covariance = self.mapper.graph.relative_covariance(old, new)?;
-        (covariance + Matrix3::from_diagonal(&floor))
-            .try_inverse()
-            .ok_or(OptimizeError::NotPositiveDefinite { node: new })
+    ) -> Result<LoopVerification, OptimizeError> {
+        let robot = self.config.robot.unwrap_or_default();
+        self.mapper.link_on_request(old, new, &robot)
     }
 
     fn start(&mut self, frame: &PreparedFrame) {

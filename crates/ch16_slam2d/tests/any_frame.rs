@@ -1,8 +1,6 @@
 //! Whatever a sensor says, the estimator answers with a report or with one sentence.
 
-use ch16_slam2d::matching::{
-    MatcherKind, NdtMatcherConfig, SearchMatcherConfig, StagedMatcherConfig,
-};
+use ch16_slam2d::matching::{MatcherKind, NdtMatcherConfig, SearchMatcherConfig};
 use ch16_slam2d::prelude::*;
 use ch16_slam2d::scan::{Frame, LaserScan};
 use ch16_slam2d::slam::{Slam, SlamConfig};
@@ -75,7 +73,6 @@ fn no_frame_makes_the_estimator_panic_or_leaves_it_without_a_pose() {
         MatcherKind::PointToPoint,
         MatcherKind::PointToPlane,
         MatcherKind::Ndt(NdtMatcherConfig::default()),
-        MatcherKind::Staged(StagedMatcherConfig::default()),
         MatcherKind::Search(SearchMatcherConfig {
             half_width_m: 0.5,
             half_turn_rad: 0.3,

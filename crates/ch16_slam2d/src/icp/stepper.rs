@@ -147,20 +147,6 @@ impl<'a, M: NearestMap> Icp<'a, M> {
         workspace: &'a mut IcpWorkspace,
     ) -> Self {
         workspace.forget();
-        Self::again(cloud, map, init, config, workspace)
-    }
-
-    /// As [`Icp::new`], for the cloud and the map of the workspace's last registration.
-    ///
-    /// What is known of a point's neighbour holds wherever the point is now, and for every τ. That changes the time,
-    /// never the answer.
-    pub(crate) fn again(
-        cloud: &'a PointCloud,
-        map: &'a M,
-        init: SE2,
-        config: &IcpConfig,
-        workspace: &'a mut IcpWorkspace,
-    ) -> Self {
         workspace.trace.clear();
         let current = IcpTrace {
             pose: init,

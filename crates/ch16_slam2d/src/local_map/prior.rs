@@ -72,7 +72,8 @@ impl MotionPrior {
     }
 
     /// Squared deviations of position and heading in standard deviations.
-    fn squared(&self, deviation: &Vector3<f64>) -> (f64, f64) {
+    #[must_use]
+    pub fn squared(&self, deviation: &Vector3<f64>) -> (f64, f64) {
         let position =
             (deviation.x * deviation.x + deviation.y * deviation.y) / (self.sigma_m * self.sigma_m);
         let heading = deviation.z * deviation.z / (self.sigma_rad * self.sigma_rad);

@@ -30,6 +30,12 @@ pub struct MapRegistrationConfig {
     pub independent_points: f64,
     /// What a point in space that was never seen costs, as a share of a miss.
     pub unseen_cost: f64,
+    /// With a lower score the window around the prediction is searched, 0 to 1.
+    pub good_score: f64,
+    /// Half the width of that window, m.
+    pub search_m: f64,
+    /// Half its range of headings, rad.
+    pub search_rad: f64,
 }
 
 /// A pose by least squares, and what the pairs know of it.

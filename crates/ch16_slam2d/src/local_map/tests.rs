@@ -36,6 +36,9 @@ const CONFIG: MapRegistrationConfig = MapRegistrationConfig {
     point_sigma_m: 0.025,
     independent_points: 28.0,
     unseen_cost: 0.4,
+    good_score: 0.8,
+    search_m: 1.1,
+    search_rad: 1.6,
 };
 
 fn wheels(pose: SE2) -> MotionPrior {

@@ -2,7 +2,6 @@
 
 use pr_geom::SE2;
 
-use crate::matching::{MapConfig, MatcherKind, StagedMatcherConfig};
 use crate::search::{LikelihoodConfig, SearchNeighborhood};
 
 /// What is known of the first pose.
@@ -22,12 +21,6 @@ pub struct LocalizeConfig {
     pub near_m: f64,
     /// At most so many of them, the nearest.
     pub near_keyframes: usize,
-    /// The points of those keyframes.
-    pub map: MapConfig,
-    /// What registers a scan on them; it has to have a score, the share of the scan that fits.
-    pub matcher: MatcherKind,
-    /// Most iterations of a stage of a registration.
-    pub max_iterations: usize,
     /// With this score a scan fits, 0 to 1.
     pub good_score: f64,
     /// With a lower one the registration is not listened to, 0 to 1.
@@ -83,20 +76,10 @@ impl Default for LocalizeConfig {
         Self {
             near_m: 4.0,
             near_keyframes: 12,
-            map: MapConfig {
-                cell_m: 0.135,
-                max_per_cell: 6,
-            },
-            matcher: MatcherKind::Staged(StagedMatcherConfig {
-                good_score: 0.6,
-                turns: 1,
-                ..StagedMatcherConfig::default()
-            }),
-            max_iterations: 10,
-            good_score: 0.5,
-            poor_score: 0.35,
+            good_score: 0.7,
+            poor_score: 0.6,
             lost_after: 5,
-            score_drop: 0.2,
+            score_drop: 0.1,
             doubt_m: 1.0,
             grid: LikelihoodConfig {
                 cell_m: 0.1,
@@ -108,7 +91,7 @@ impl Default for LocalizeConfig {
             neighborhood: SearchNeighborhood::default(),
             min_score: 0.55,
             found_score: 0.85,
-            usual_score: 0.72,
+            usual_score: 0.8,
             min_margin: 0.05,
             sure_margin: 0.15,
             trail_sweeps: 20,

@@ -6,6 +6,7 @@ use pr_geom::{SE2, math, sort_ranked};
 
 use super::LocalizeConfig;
 use crate::cloud::PointCloud;
+use crate::local_map::{LocalMap, RangeProfile};
 use crate::metrics::position_error_m;
 use crate::places::{ContextConfig, ScanContext};
 use crate::search::{
@@ -34,6 +35,7 @@ pub struct KnownMap {
     poses: Vec<SE2>,
     contexts: Vec<ScanContext>,
     looks: ContextConfig,
+    profiles: Vec<Arc<RangeProfile>>,
     points: PointCloud,
     search: Arc<SearchMap>,
 }
@@ -75,8 +77,12 @@ impl KnownMap {
             max_range_m: math::min(farthest_m, 20.0),
             ..ContextConfig::default()
         };
+        let scans = keyframes.iter().map(|keyframe| &*keyframe.scan);
+        let profiles = scans.map(|scan| Arc::new(RangeProfile::new(scan)));
+        let profiles = profiles.collect();
         let contexts = keyframes.iter();
         Ok(Self {
+            profiles,
             contexts: contexts
                 .map(|keyframe| ScanContext::new(&keyframe.scan, &looks))
                 .collect(),
@@ -175,12 +181,11 @@ impl KnownMap {
         near
     }
 
-    /// The points of some keyframes with their normals, map frame, into `cloud`.
-    pub fn points_of(&self, keyframes: &[usize], cloud: &mut PointCloud) {
-        cloud.clear();
-        for &keyframe in keyframes {
-            let scan = &self.keyframes[keyframe].scan;
-            cloud.extend_transformed(scan, &self.poses[keyframe]);
-        }
+    /// Makes `local` the map of some keyframes, map frame.
+    pub(super) fn build_local(&self, keyframes: &[usize], local: &mut LocalMap) {
+        local.rebuild(keyframes.iter().map(|&keyframe| {
+            let scan = &*self.keyframes[keyframe].scan;
+            (self.poses[keyframe], scan, &self.profiles[keyframe])
+        }));
     }
 }

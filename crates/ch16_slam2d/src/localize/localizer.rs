@@ -9,17 +9,15 @@ use super::trail::Trail;
 use super::{KnownMap, LocalizeConfig, LocalizeReport, MapSearch, StartPose, Verdict};
 use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, regularize};
+use crate::local_map::{LocalMap, MapRegistration, MapRegistrationConfig, MotionPrior, PriorTail};
 use crate::loops::chi_squared_gate;
-use crate::matching::{MatchRequest, MatchSummary, Matcher, without_aperture};
 use crate::metrics::position_error_m;
 use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer};
 use crate::search::{SearchResult, SearchWindow};
-use crate::slam::{SlamConfig, fuse};
+use crate::slam::{RobotConfig, SlamConfig};
 
 /// Disagreement of scan and prediction that both allow: 99 of 100 lie below.
 const BELIEVED_CHI2: f64 = 11.34;
-/// Share of what a registration knows across a wall that it claims along it by noise alone.
-const APERTURE: f64 = 0.05;
 /// A place that a search finds again is so near to the one before, m and rad.
 const AGAIN: f64 = 0.4;
 /// A search is made at least once in so many frames while the robot is lost.
@@ -77,10 +75,11 @@ pub struct Localizer {
     config: LocalizeConfig,
     slam: SlamConfig,
     preparer: ScanPreparer,
-    matcher: Box<dyn Matcher>,
-    /// The keyframes that the matcher's target is made of.
-    target: Vec<usize>,
-    cloud: PointCloud,
+    robot: RobotConfig,
+    registration: MapRegistrationConfig,
+    /// The keyframes around the robot, and which they are.
+    local: LocalMap,
+    near: Vec<usize>,
     trail: Trail,
     frames: usize,
     last_stamp_s: f64,
@@ -105,11 +104,13 @@ impl Localizer {
         config: LocalizeConfig,
         start: StartPose,
     ) -> Self {
+        let robot = slam.robot.unwrap_or_default();
         Self {
             map,
-            matcher: config.matcher.build(&config.map),
-            target: Vec::new(),
-            cloud: PointCloud::default(),
+            registration: robot.registration(),
+            robot,
+            local: LocalMap::default(),
+            near: Vec::new(),
             trail: Trail::new(slam.clone()),
             preparer: ScanPreparer::new(),
             frames: 0,
@@ -228,11 +229,20 @@ impl Localizer {
     /// Registers the scan around the prediction and weighs both.
     fn follow(&mut self, motion: &SE2, frame: &PreparedFrame, report: &mut LocalizeReport) {
         let Some(belief) = self.belief else { return };
-        let noise = self.slam.motion_noise(frame.odometry.is_some());
+        let noise = self.robot.motion_noise(frame.odometry.is_some());
         let prediction = belief.pose * *motion;
         let covariance = noise.then(&belief.covariance, motion);
-        let found = self.register(&frame.cloud, prediction);
-        let score = found.score.unwrap_or(0.0);
+        let prior = MotionPrior {
+            pose: prediction,
+            sigma_m: math::sqrt(math::max(covariance.m11, covariance.m22)),
+            sigma_rad: math::sqrt(covariance.m33),
+            tail: PriorTail::Student,
+        };
+        self.approach(&prediction);
+        let found = self
+            .local
+            .locate(&frame.cloud, &prior, &[], &self.registration);
+        let score = found.fit.score;
         let mut next = Belief {
             pose: prediction,
             covariance,
@@ -259,16 +269,15 @@ impl Localizer {
         }
         let mut is_sure = next.misses == 0 && next.drops == 0 && self.is_usual(&next);
         if score >= self.config.poor_score {
-            let known = self.known(&found, score);
-            if let Some(fusion) = fuse(&found.pose, &known, &prediction, &covariance) {
-                is_sure &= fusion.chi2 <= BELIEVED_CHI2;
-                // A scan that fits is believed where the wheels say something else.
-                let is_scan = fusion.chi2 > BELIEVED_CHI2 && next.misses == 0;
-                next.pose = if is_scan { found.pose } else { fusion.pose };
-                let before = covariance.try_inverse().unwrap_or_default();
-                let joint = regularize(known + before, INFORMATION_RIDGE, INFORMATION_CAP);
-                next.covariance = joint.try_inverse().unwrap_or(covariance);
-            }
+            let (position, heading) = prior.squared(&prior.deviation(&found.registered.pose));
+            is_sure &= position + heading <= BELIEVED_CHI2;
+            next.pose = found.registered.pose;
+            // Wide where the odometry predicted something else.
+            let before = covariance.try_inverse().unwrap_or_default()
+                * math::min(BELIEVED_CHI2 / (position + heading), 1.0);
+            let joint = found.information() + before;
+            let joint = regularize(joint, INFORMATION_RIDGE, INFORMATION_CAP);
+            next.covariance = joint.try_inverse().unwrap_or(covariance);
         }
         let sigma_m = math::sqrt(math::max(next.covariance[(0, 0)], next.covariance[(1, 1)]));
         is_sure &= sigma_m <= self.config.doubt_m;
@@ -301,7 +310,7 @@ impl Localizer {
         let theta = square(self.config.start_sigma_rad);
         let believed = Matrix3::from_diagonal(&Vector3::new(xy, xy, theta));
         let found = self.register(&pending.scan, result.best.pose);
-        let innovation = start.between(&found.pose).log();
+        let innovation = start.between(&found.registered.pose).log();
         let gate = chi_squared_gate(&innovation, &believed, self.config.gate_chi2);
         if gate.passes() {
             self.take(&found, Some(believed), &mut pending.report);
@@ -361,25 +370,25 @@ impl Localizer {
         }
         report.verdict = Verdict::Doubtful;
         report.pose = Some(best);
-        report.score = found.score;
+        report.score = Some(found.fit.score);
     }
 
     /// Believes a registration that fits; whether it did.
     fn take(
         &mut self,
-        found: &MatchSummary,
+        found: &MapRegistration,
         prior: Option<Matrix3<f64>>,
         report: &mut LocalizeReport,
     ) -> bool {
-        let score = found.score.unwrap_or(0.0);
+        let score = found.fit.score;
         if score < self.config.good_score {
             return false;
         }
-        let known = self.known(found, score) + prior.unwrap_or_default();
+        let known = found.information() + prior.unwrap_or_default();
         let known = regularize(known, INFORMATION_RIDGE, INFORMATION_CAP);
         let covariance = known.try_inverse().unwrap_or_else(Matrix3::identity);
         self.belief = Some(Belief {
-            pose: found.pose,
+            pose: found.registered.pose,
             covariance,
             misses: 0,
             usual_score: score,
@@ -391,34 +400,31 @@ impl Localizer {
         } else {
             Verdict::Doubtful
         };
-        report.pose = Some(found.pose);
+        report.pose = Some(found.registered.pose);
         report.covariance = Some(covariance);
         report.score = Some(score);
         true
     }
 
-    /// How much the last registration knows; what fits in part may fit elsewhere as well.
-    fn known(&self, found: &MatchSummary, score: f64) -> Matrix3<f64> {
-        let trust = &self.slam.loops.trust;
-        let known = self.matcher.information(&found.pose, trust);
-        let known = without_aperture(&known, APERTURE);
-        known * (score * score * score * score)
+    /// Registers a scan around a pose that a search has found.
+    fn register(&mut self, scan: &PointCloud, guess: SE2) -> MapRegistration {
+        self.approach(&guess);
+        let stages = [self.registration.reach_m, self.registration.fit_m];
+        self.local
+            .register(scan, guess, &stages, None, &self.registration)
     }
 
-    fn register(&mut self, scan: &PointCloud, guess: SE2) -> MatchSummary {
+    /// Makes the local map that of the keyframes around a pose.
+    fn approach(&mut self, pose: &SE2) {
         let LocalizeConfig {
             near_m,
             near_keyframes,
-            max_iterations,
             ..
         } = self.config;
-        let near = self.map.near(&guess, near_m, near_keyframes);
-        if near != self.target {
-            self.map.points_of(&near, &mut self.cloud);
-            self.matcher.set_target(&self.cloud);
-            self.target = near;
+        let near = self.map.near(pose, near_m, near_keyframes);
+        if near != self.near {
+            self.map.build_local(&near, &mut self.local);
+            self.near = near;
         }
-        self.matcher
-            .register(scan, &MatchRequest::new(guess, 0.6, max_iterations))
     }
 }

@@ -8,7 +8,9 @@ use super::gate::{GateTest, chi_squared_gate};
 use super::{LoopCandidate, LoopConfig};
 use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
-use crate::matching::{InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information};
+use crate::matching::{
+    InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information, match_information,
+};
 use crate::slam::Keyframe;
 
 /// Why a loop was turned away, with what was measured.
@@ -202,16 +204,17 @@ pub fn verify_loop(
     let belief = center.between(&view.poses[node]);
     let initial = candidate.proposal.unwrap_or(belief);
     let tau_m = (config.radius_m / 2.0).max(config.min_tau_m);
-    let found = workspace.matcher.register(
+    let answer = workspace.matcher.register(
         &view.keyframes[node].scan,
         &MatchRequest::new(initial, tau_m, config.max_iterations).with_min_score(config.min_score),
     );
-    workspace.matcher.pairs(&mut workspace.pairs);
+    let found = answer.summary;
+    workspace.pairs = answer.pairs;
     let information = match frame {
         InformationFrame::Chapter => {
             chapter_information(&workspace.pairs, center.theta(), &config.trust)
         }
-        InformationFrame::Exact => workspace.matcher.information(&found.pose, &config.trust),
+        InformationFrame::Exact => match_information(&workspace.pairs, &found.pose, &config.trust),
     };
     let innovation = belief.between(&found.pose).log();
     let assumed = gate_information.unwrap_or_default();
@@ -236,11 +239,7 @@ pub fn verify_loop(
     }
 }
 
-fn rejection(
-    found: &MatchSummary,
-    gate: GateTest,
-    config: &LoopConfig,
-) -> Option<LoopRejection> {
+fn rejection(found: &MatchSummary, gate: GateTest, config: &LoopConfig) -> Option<LoopRejection> {
     if found.rmse_m > config.max_rmse_m || found.rmse_m.is_nan() {
         Some(LoopRejection::PoorFit {
             rmse_m: found.rmse_m,

@@ -1,7 +1,7 @@
 //! How much a registration knows of the pose that it found, and in which frame that is said.
 
 use nalgebra::Matrix3;
-use pr_geom::{SE2, math};
+use pr_geom::SE2;
 
 use crate::icp::{Pair, centroid, icp_information, icp_information_along, move_information};
 
@@ -57,46 +57,6 @@ pub fn chapter_information(pairs: &[Pair], theta_rad: f64, trust: &TrustConfig) 
     icp_information_along(pairs, trust.sigma_m, trust.inflate, theta_rad)
 }
 
-/// The information without what noise alone claims along a wall.
-///
-/// Normals that are off by a few degrees let a bare corridor claim to know where along it the body
-/// is. Of the translation's 2×2 block, with the eigenvalues λ₁ ≥ λ₂, the smaller one becomes
-/// `max(λ₂ − share · λ₁, 0)`; along its direction the rows and columns shrink by the root of the
-/// quotient, so the matrix stays positive semidefinite. Directions of a registration that say nothing are
-/// left to others: Zhang, Kaess, Singh, "On degeneracy of optimization-based state estimation
-/// problems", 2016.
-#[must_use]
-pub fn without_aperture(information: &Matrix3<f64>, share: f64) -> Matrix3<f64> {
-    let (xx, xy, yy) = (
-        information[(0, 0)],
-        information[(0, 1)],
-        information[(1, 1)],
-    );
-    let center = 0.5 * (xx + yy);
-    let half_gap = math::norm2(0.5 * (xx - yy), xy);
-    let (small, large) = (center - half_gap, center + half_gap);
-    if share <= 0.0 || small <= 0.0 || !large.is_finite() {
-        return *information;
-    }
-    let left = math::max(small - share * large, 0.0);
-    let shrink = 1.0 - math::sqrt(left / small);
-    // The direction of the smaller eigenvalue: twice its angle is that of (yy − xx, −2 xy).
-    let angle = 0.5 * math::atan2(-2.0 * xy, yy - xx);
-    let (sin, cos) = math::sin_cos(angle);
-    let scale = Matrix3::new(
-        1.0 - shrink * cos * cos,
-        -shrink * cos * sin,
-        0.0,
-        -shrink * cos * sin,
-        1.0 - shrink * sin * sin,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    );
-    scale * information * scale
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::{Point2, Vector2, Vector3};
@@ -130,25 +90,6 @@ mod tests {
                 }
             })
             .collect()
-    }
-
-    #[test]
-    fn a_corridor_is_known_across_and_not_along() {
-        // Along (cos 30°, sin 30°) noise claims 4 of 100; a corner has 60 of 100.
-        for (small, left) in [(4.0, 0.0), (60.0, 55.0)] {
-            let (sin, cos) = math::sin_cos(core::f64::consts::FRAC_PI_6);
-            let along = Vector3::new(cos, sin, 0.0);
-            let across = Vector3::new(-sin, cos, 0.0);
-            let lever = across * 3.0 + Vector3::z();
-            let information = along * along.transpose() * small
-                + across * across.transpose() * 100.0
-                + Vector3::z() * Vector3::z().transpose() * 7.0;
-            let mended = without_aperture(&information, 0.05);
-            // 1e-12: a few roundings of numbers up to 100.
-            assert!((along.dot(&(mended * along)) - left).abs() < 1e-12);
-            assert!((across.dot(&(mended * across)) - 100.0).abs() < 1e-12);
-            assert!((lever.dot(&(mended * lever)) - 907.0).abs() < 1e-10);
-        }
     }
 
     /// The cost whose Hessian is asked for, at the pose `T exp(δ)`.

@@ -2,7 +2,7 @@
 
 use super::{
     IcpMatcher, MapConfig, Matcher, NdtMatcher, NdtMatcherConfig, SearchMatcher,
-    SearchMatcherConfig, StagedMatcher, StagedMatcherConfig,
+    SearchMatcherConfig,
 };
 use crate::icp::{IcpConfig, IcpVariant};
 
@@ -20,8 +20,6 @@ pub enum MatcherKind {
     Ndt(NdtMatcherConfig),
     /// Every pose of a window around the guess, then ICP.
     Search(SearchMatcherConfig),
-    /// NDT on wide cells, then on narrow ones, then point-to-plane ICP, from several starts.
-    Staged(StagedMatcherConfig),
 }
 
 impl MatcherKind {
@@ -36,7 +34,7 @@ impl MatcherKind {
             Self::PointToPoint => Some(of(IcpVariant::PointToPoint)),
             Self::PointToPlane => Some(of(IcpVariant::PointToPlane)),
             Self::Icp(config) => Some(config),
-            Self::Ndt(_) | Self::Search(_) | Self::Staged(_) => None,
+            Self::Ndt(_) | Self::Search(_) => None,
         }
     }
 
@@ -49,7 +47,6 @@ impl MatcherKind {
             Self::Icp(config) => Box::new(IcpMatcher::new(config, map)),
             Self::Ndt(config) => Box::new(NdtMatcher::new(config, map)),
             Self::Search(config) => Box::new(SearchMatcher::new(config, map)),
-            Self::Staged(config) => Box::new(StagedMatcher::new(config, map)),
         }
     }
 }

@@ -101,35 +101,33 @@ impl MatchSummary {
     }
 }
 
-/// Registers scans on a target.
+/// The answer of a matcher: what it found, and the pairs that say so.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Match {
+    /// Pose, fit and reason to stop.
+    pub summary: MatchSummary,
+    /// The pairs at that pose, in the target's frame.
+    pub pairs: Vec<Pair>,
+}
+
+impl Match {
+    /// How much the pairs know of the pose: 3×3, translation first, in its tangent space, about the body's
+    /// origin; neither ridge nor cap is applied. See [`match_information`].
+    #[must_use]
+    pub fn information(&self, trust: &TrustConfig) -> Matrix3<f64> {
+        match_information(&self.pairs, &self.summary.pose, trust)
+    }
+}
+
+/// Registers scans on a target, which stays until the next [`set_target`](Matcher::set_target).
 ///
-/// The target stays until the next [`set_target`](Matcher::set_target); the answers of `pairs` and
-/// `information` belong to the last [`register`](Matcher::register). A matcher gives the same bits
-/// for the same calls, on every machine.
+/// A matcher gives the same bits for the same calls, on every machine.
 pub trait Matcher: CloneMatcher + Send {
     /// Takes the points of `target`, with their normals, as the map.
     fn set_target(&mut self, target: &PointCloud);
 
     /// Finds the pose of `source` on the target.
-    fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary;
-
-    /// The same without other starts: the place next to the guess.
-    fn register_near(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
-        self.register(source, request)
-    }
-
-    /// The pairs at the last answer, in the target's frame, into `pairs`.
-    fn pairs(&self, pairs: &mut Vec<Pair>);
-
-    /// How much the last registration knows: 3×3, translation first, in the tangent space of
-    /// `registered`, about the body's origin; neither ridge nor cap is applied.
-    ///
-    /// Without an override it is that of the pairs; see [`match_information`].
-    fn information(&self, registered: &SE2, trust: &TrustConfig) -> Matrix3<f64> {
-        let mut pairs = Vec::new();
-        self.pairs(&mut pairs);
-        match_information(&pairs, registered, trust)
-    }
+    fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> Match;
 }
 
 /// A matcher that can be copied behind its trait; every `Clone` matcher is one.

@@ -1,8 +1,8 @@
 //! NDT as a matcher: Gaussians to register on, points to measure the fit by.
 
-use super::{IcpMatcher, MapConfig, MatchRequest, MatchStop, MatchSummary, Matcher};
+use super::{IcpMatcher, MapConfig, Match, MatchRequest, MatchStop, MatchSummary, Matcher};
 use crate::cloud::PointCloud;
-use crate::icp::{IcpVariant, Pair};
+use crate::icp::IcpVariant;
 use crate::ndt::{NdtAlign, NdtConfig, NdtMap};
 
 /// The cells and the solver of an [`NdtMatcher`].
@@ -59,7 +59,7 @@ impl Matcher for NdtMatcher {
         self.ruler.set_target(target);
     }
 
-    fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
+    fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> Match {
         let Some(gaussians) = &self.gaussians else {
             return self.ruler.fit(source, request.guess, request.tau_m);
         };
@@ -74,16 +74,13 @@ impl Matcher for NdtMatcher {
                 break (step, stop);
             }
         };
-        let iterations = registration.iterations();
-        MatchSummary {
-            iterations,
+        let mut answer = self.ruler.fit(source, found.pose, request.tau_m);
+        answer.summary = MatchSummary {
+            iterations: registration.iterations(),
             score: Some(found.score),
             stop: MatchStop::Ndt(stop),
-            ..self.ruler.fit(source, found.pose, request.tau_m)
-        }
-    }
-
-    fn pairs(&self, pairs: &mut Vec<Pair>) {
-        self.ruler.pairs(pairs);
+            ..answer.summary
+        };
+        answer
     }
 }

@@ -5,9 +5,11 @@ use std::sync::Arc;
 
 use pr_geom::math;
 
-use super::{IcpMatcher, MapConfig, MatchRequest, MatchStop, MatchSummary, Matcher, RunnerUp};
+use super::{
+    IcpMatcher, MapConfig, Match, MatchRequest, MatchStop, MatchSummary, Matcher, RunnerUp,
+};
 use crate::cloud::PointCloud;
-use crate::icp::{IcpConfig, Pair};
+use crate::icp::IcpConfig;
 use crate::search::{
     LikelihoodConfig, ScanSearch, ScoredPose, SearchMap, SearchNeighborhood, SearchWindow,
 };
@@ -116,34 +118,30 @@ impl Matcher for SearchMatcher {
         self.icp.set_target(target);
     }
 
-    fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> MatchSummary {
+    fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> Match {
         let Some(search) = self.search(source, request) else {
             return self.icp.fit(source, request.guess, request.tau_m);
         };
         let Some(found) = search.run() else {
             return self.icp.fit(source, request.guess, 0.0);
         };
-        let answer = |fit: MatchSummary, iterations: usize| MatchSummary {
-            iterations,
-            score: Some(found.best.score),
-            runner_up: found.runner_up.map(RunnerUp::from),
-            stop: MatchStop::Searched {
-                poses: found.counts.scored() as usize,
-            },
-            ..fit
-        };
         let near = MatchRequest {
             guess: found.best.pose,
             tau_m: self.config.refine.tau,
             ..*request
         };
-        let refined = self.icp.register(source, &near);
-        let fit = self.icp.fit(source, refined.pose, request.tau_m);
-        answer(fit, refined.iterations)
-    }
-
-    fn pairs(&self, pairs: &mut Vec<Pair>) {
-        self.icp.pairs(pairs);
+        let refined = self.icp.register(source, &near).summary;
+        let mut answer = self.icp.fit(source, refined.pose, request.tau_m);
+        answer.summary = MatchSummary {
+            iterations: refined.iterations,
+            score: Some(found.best.score),
+            runner_up: found.runner_up.map(RunnerUp::from),
+            stop: MatchStop::Searched {
+                poses: found.counts.scored() as usize,
+            },
+            ..answer.summary
+        };
+        answer
     }
 }
 
@@ -180,12 +178,14 @@ mod tests {
         let request = MatchRequest::new(SE2::identity(), 1.0, 30);
         let mut icp = IcpMatcher::new(IcpConfig::default(), &MAP);
         icp.set_target(&target);
-        let lost = truth.between(&icp.register(&source, &request).pose).log();
+        let lost = truth
+            .between(&icp.register(&source, &request).summary.pose)
+            .log();
         assert!(lost.norm() > 0.5, "ICP ends {lost} away");
 
         let mut search = SearchMatcher::new(SearchMatcherConfig::default(), &MAP);
         search.set_target(&target);
-        let found = search.register(&source, &request);
+        let found = search.register(&source, &request).summary;
         let error = truth.between(&found.pose).log();
         // 0.05: points lie 5 cm apart, and a point may settle between two others.
         assert!(error.norm() < 0.05, "{error}");
@@ -197,7 +197,7 @@ mod tests {
         let mut near =
             SearchMatcher::new(SearchMatcherConfig::default(), &MAP).with_max_margin(0.1);
         near.set_target(&target);
-        let alone = near.register(&source, &request);
+        let alone = near.register(&source, &request).summary;
         assert_eq!((alone.pose, alone.score), (found.pose, found.score));
         assert_eq!(alone.runner_up, None);
         let poses = |stop| match stop {
@@ -216,12 +216,12 @@ mod tests {
         let other = target.transformed(&SE2::new(8.0, 5.0, 1.0));
         let scan: PointCloud = target.iter().chain(other.iter().take(40)).collect();
         let request = MatchRequest::new(SE2::new(0.2, 0.1, 0.1), 1.0, 30);
-        let found = search.register(&scan, &request);
+        let found = search.register(&scan, &request).summary;
         let score = found.score.unwrap();
         assert!(score > 0.6 && score < 0.8, "{score}");
-        let none = search.register(&scan, &request.with_min_score(0.8));
+        let none = search.register(&scan, &request.with_min_score(0.8)).summary;
         assert_eq!((none.score, none.inliers), (None, 0));
-        let same = search.register(&scan, &request.with_min_score(0.6));
+        let same = search.register(&scan, &request.with_min_score(0.6)).summary;
         let answer = |found: &MatchSummary| (found.pose, found.score, found.runner_up);
         assert_eq!(answer(&same), answer(&found));
     }
@@ -230,13 +230,10 @@ mod tests {
     fn what_fits_nowhere_has_no_pairs_and_what_has_no_map_stays_at_the_guess() {
         let request = MatchRequest::new(SE2::new(0.1, 0.2, 0.3), 0.6, 30);
         let mut search = SearchMatcher::new(SearchMatcherConfig::default(), &MAP);
-        let alone = search.register(&corner(), &request);
+        let alone = search.register(&corner(), &request).summary;
         assert_eq!((alone.pose, alone.inliers), (request.guess, 0));
         search.set_target(&[Point2::new(0.0, 0.0)].into_iter().collect());
-        let poor = search.register(&corner(), &request);
+        let poor = search.register(&corner(), &request).summary;
         assert_eq!((poor.score, poor.inliers), (None, 0));
-        let mut pairs = Vec::new();
-        search.pairs(&mut pairs);
-        assert!(pairs.is_empty());
     }
 }

@@ -13,7 +13,7 @@ enum Finder {
     /// The chapter's way: what is near in the graph, one keyframe at a time.
     Nearby(NearbyLoops),
     /// For robots: keyframes together, on submaps.
-    Bundle(BundleLoops),
+    Bundle(Box<BundleLoops>),
 }
 
 /// Loops that were tried at a keyframe.
@@ -37,7 +37,7 @@ impl LoopCloser {
     pub(super) fn new(config: &SlamConfig, parts: SlamParts) -> Self {
         Self {
             finder: match &config.robot {
-                Some(robot) => Finder::Bundle(BundleLoops::new(robot)),
+                Some(robot) => Finder::Bundle(Box::new(BundleLoops::new(robot))),
                 None => Finder::Nearby(NearbyLoops::new(parts.detector, parts.loops)),
             },
             last_attempt_node: None,

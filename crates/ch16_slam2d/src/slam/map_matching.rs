@@ -1,4 +1,4 @@
-//! The front end for robots: one cost of scan and odometry, and other starts where a scan fits poorly.
+//! The front end for robots: one cost of scan and odometry on the last few scans.
 
 use std::sync::Arc;
 
@@ -8,21 +8,9 @@ use pr_geom::SE2;
 use super::RobotConfig;
 use super::front_end::WindowSweep;
 use crate::cloud::PointCloud;
-use crate::local_map::{
-    LocalMap, MapRegistration, MapRegistrationConfig, MotionPrior, PriorTail, RangeProfile,
-};
+use crate::local_map::{LocalMap, MapRegistrationConfig, MotionPrior, PriorTail, RangeProfile};
 use crate::matching::{MatchStop, MatchSummary};
 use crate::scan::PreparedFrame;
-use crate::search::SearchWindow;
-
-/// A scan that fits so well needs no other start, 0 to 1.
-const GOOD_WITHOUT_WHEELS: f64 = 0.9;
-/// Other starts where the prediction is off by more than a registration reaches: along the heading (m) and
-/// turned by (rad).
-const STARTS: ([f64; 5], [f64; 9]) = (
-    [0.0, -0.5, 0.5, -1.0, 1.0],
-    [0.0, -0.3, 0.3, -0.6, 0.6, -0.9, 0.9, -1.2, 1.2],
-);
 
 /// What registers scans on the last few with the odometry as a prior.
 #[derive(Clone)]
@@ -108,7 +96,10 @@ impl MapMatching {
             self.is_outdated = false;
         }
         let prior = self.prior(before, motion, frame.odometry.is_some());
-        let found = self.best(&frame.cloud, &prior, goes_on);
+        let starts = [*goes_on];
+        let found = self
+            .map
+            .locate(&frame.cloud, &prior, &starts, &self.registration);
         let pose = found.registered.pose;
         self.known = found.information();
         let adjoint = motion.inverse().adjoint();
@@ -125,11 +116,12 @@ impl MapMatching {
     }
 
     fn prior(&self, before: &SE2, motion: &SE2, is_measured: bool) -> MotionPrior {
-        let (noise, tail) = if is_measured {
-            (&self.config.odometry, PriorTail::Student)
+        let tail = if is_measured {
+            PriorTail::Student
         } else {
-            (&self.config.constant_velocity, PriorTail::Normal)
+            PriorTail::Normal
         };
+        let noise = self.config.motion_noise(is_measured);
         let (sigma_m, sigma_rad) = noise.deviations(motion);
         MotionPrior {
             pose: *before * *motion,
@@ -138,62 +130,6 @@ impl MapMatching {
             tail,
         }
     }
-
-    /// The pose of lowest cost among those that registrations from several starts end at.
-    fn best(&mut self, scan: &PointCloud, prior: &MotionPrior, goes_on: &SE2) -> MapRegistration {
-        let stages = [self.config.reach_m, self.config.fit_m];
-        let near = &stages[1..];
-        let mut best = self.from(scan, prior, prior.pose, &stages);
-        // A registration from afar slides along a wall where the scan fits better at the prediction.
-        let predicted = self.map.fit(scan, &prior.pose, &self.registration);
-        if predicted.score > best.fit.score {
-            best = cheaper(best, self.from(scan, prior, prior.pose, near));
-        }
-        let is_vague = 2.0 * prior.sigma_m > self.config.reach_m;
-        if is_vague && best.fit.score < GOOD_WITHOUT_WHEELS {
-            for turn_rad in STARTS.1 {
-                for ahead_m in STARTS.0 {
-                    let start = prior.pose * SE2::new(ahead_m, 0.0, turn_rad);
-                    if prior.cost(&start) < best.cost {
-                        best = cheaper(best, self.from(scan, prior, start, &stages));
-                    }
-                }
-            }
-        }
-        if best.fit.score < self.config.good_score {
-            // Wheels may jump farther than the search looks.
-            best = cheaper(best, self.from(scan, prior, *goes_on, &stages));
-        }
-        if best.fit.score < self.config.good_score
-            && let Some(start) = self.search(scan, &prior.pose)
-        {
-            best = cheaper(best, self.from(scan, prior, start, near));
-        }
-        best
-    }
-
-    fn from(
-        &mut self,
-        scan: &PointCloud,
-        prior: &MotionPrior,
-        start: SE2,
-        reaches_m: &[f64],
-    ) -> MapRegistration {
-        let config = &self.registration;
-        self.map
-            .register(scan, start, reaches_m, Some(prior), config)
-    }
-
-    /// The best pose of the window around the prediction, by branch and bound.
-    fn search(&self, scan: &PointCloud, prediction: &SE2) -> Option<SE2> {
-        let (half_m, half_rad) = (self.config.search_m, self.config.search_rad);
-        let window = SearchWindow::around(*prediction, half_m, half_rad);
-        Some(self.map.search(scan, &window, 0.0)?.best.pose)
-    }
-}
-
-fn cheaper(one: MapRegistration, other: MapRegistration) -> MapRegistration {
-    if other.cost < one.cost { other } else { one }
 }
 
 #[cfg(test)]

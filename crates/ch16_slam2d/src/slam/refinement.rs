@@ -7,7 +7,8 @@
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
-use pr_optim::StopReason;
+use pr_geom::math;
+use pr_optim::{OptimizeError, StopReason};
 
 use super::config::SlamConfig;
 use super::mapper::Mapper;
@@ -15,8 +16,11 @@ use super::robots::RobotConfig;
 use crate::graph::{EdgeKind, EdgeView};
 use crate::local_map::{LocalMap, RangeProfile};
 use crate::loops::{
-    Detection, LoopConfig, LoopRejection, LoopVerification, chi_squared_gate, detect_visits,
+    Detection, LoopCandidate, LoopConfig, LoopRejection, LoopVerification, chi_squared_gate,
+    detect_visits,
 };
+use crate::metrics::position_error_m;
+use crate::search::SearchWindow;
 
 /// Rounds of linking and optimizing.
 const PASSES: usize = 2;
@@ -34,8 +38,20 @@ const SHIFT: (f64, f64) = (0.15, 0.05);
 const GATE_CHI2: f64 = 7.815;
 /// Score below which a keyframe does not fit, 0 to 1.
 const MIN_SCORE: f64 = 0.7;
+/// A loop that is asked for is searched in a window of so many standard deviations, m and rad at most.
+const ASKED_WINDOW: (f64, f64, f64) = (3.0, 6.0, 0.5);
 /// Width of the robust cost of a pass, in standard deviations of an edge.
 const HUBER: f64 = 3.0;
+
+/// How far a link may lie from where the graph has it.
+#[derive(Clone, Copy)]
+struct LinkGate {
+    /// S⁻¹ of the innovation.
+    information: Matrix3<f64>,
+    chi2: f64,
+    /// Half the width of what is searched if the keyframe does not fit, m, and its range of headings, rad.
+    window: Option<(f64, f64)>,
+}
 
 impl Mapper {
     /// Links all keyframes with the visits around them, and optimizes: the links of the last pass, accepted
@@ -88,52 +104,127 @@ impl Mapper {
             min_gap_nodes: MIN_GAP_NODES,
             ..LoopConfig::default()
         };
+        let visits = detect_visits(self.graph.poses(), node, &nearby);
+        let gate = LinkGate {
+            information: Matrix3::from_diagonal(&Vector3::new(
+                1.0 / (SHIFT.0 * SHIFT.0),
+                1.0 / (SHIFT.0 * SHIFT.0),
+                1.0 / (SHIFT.1 * SHIFT.1),
+            )),
+            chi2: GATE_CHI2,
+            window: None,
+        };
+        let visits = visits.into_iter().take(VISITS);
+        visits
+            .map(|visit| {
+                let profile = |near: usize| Arc::clone(&profiles[near]);
+                self.link(node, visit, gate, profile, map, robot)
+            })
+            .collect()
+    }
+
+    /// Registers keyframe `new` on what was seen around keyframe `old`, which somebody asks for.
+    ///
+    /// # Errors
+    /// Where the graph has no covariance to test it against.
+    pub(super) fn link_on_request(
+        &mut self,
+        old: usize,
+        new: usize,
+        robot: &RobotConfig,
+    ) -> Result<LoopVerification, OptimizeError> {
+        let information = self.expected_information(old, new)?;
+        let covariance = information.try_inverse().unwrap_or_default();
+        let sigma = |variance: f64| math::sqrt(math::max(variance, 0.0));
+        let (sigmas, most_m, most_rad) = ASKED_WINDOW;
+        let half_m = sigmas * sigma(math::max(covariance.m11, covariance.m22));
+        let half_rad = sigmas * sigma(covariance.m33);
+        let poses = self.graph.poses();
+        let candidate = LoopCandidate {
+            node: old,
+            distance_m: position_error_m(&poses[old], &poses[new]),
+            proposal: None,
+        };
+        let gate = LinkGate {
+            information,
+            chi2: GATE_CHI2,
+            window: Some((math::min(half_m, most_m), math::min(half_rad, most_rad))),
+        };
+        let profile = |near: usize| Arc::new(RangeProfile::new(&self.keyframes[near].scan));
+        let mut map = LocalMap::default();
+        Ok(self.link(new, candidate, gate, profile, &mut map, robot))
+    }
+
+    /// Information of the relative pose that the graph holds, less a floor.
+    fn expected_information(
+        &mut self,
+        old: usize,
+        new: usize,
+    ) -> Result<Matrix3<f64>, OptimizeError> {
+        let floor = Vector3::new(SHIFT.0, SHIFT.0, SHIFT.1).map(|sigma| sigma * sigma);
+        let covariance = self.graph.relative_covariance(old, new)?;
+        (covariance + Matrix3::from_diagonal(&floor))
+            .try_inverse()
+            .ok_or(OptimizeError::NotPositiveDefinite { node: new })
+    }
+
+    /// Registers keyframe `node` on the visit around an older one, from where the graph has it.
+    fn link(
+        &self,
+        node: usize,
+        visit: LoopCandidate,
+        allowed: LinkGate,
+        profile: impl Fn(usize) -> Arc<RangeProfile>,
+        map: &mut LocalMap,
+        robot: &RobotConfig,
+    ) -> LoopVerification {
         let settings = robot.registration();
         let poses = self.graph.poses();
-        let square = |sigma: f64| 1.0 / (sigma * sigma);
-        let (shift, turn) = (square(SHIFT.0), square(SHIFT.1));
-        let expected = Matrix3::from_diagonal(&Vector3::new(shift, shift, turn));
-        let mut links = Vec::new();
-        for visit in detect_visits(poses, node, &nearby).into_iter().take(VISITS) {
-            let center = visit.node;
-            let last = (center + HALF_SUBMAP).min(node - 1);
-            let around = center.saturating_sub(HALF_SUBMAP)..=last;
-            map.rebuild(around.map(|near| {
-                let pose = poses[center].between(&poses[near]);
-                (pose, &*self.keyframes[near].scan, &profiles[near])
-            }));
-            let belief = poses[center].between(&poses[node]);
-            let stages = [settings.reach_m, settings.fit_m];
-            let scan = &self.keyframes[node].scan;
-            let found = map.register(scan, belief, &stages, None, &settings);
-            let registered = found.registered.pose;
-            let innovation = belief.between(&registered).log();
-            let gate = chi_squared_gate(&innovation, &expected, GATE_CHI2);
-            let score = found.fit.score;
-            let rejection = if score < MIN_SCORE {
-                let min_score = MIN_SCORE;
-                Some(LoopRejection::LowScore { score, min_score })
-            } else {
-                (!gate.passes()).then_some(LoopRejection::OutsideGate(gate))
-            };
-            links.push(LoopVerification {
-                from_node: node,
-                candidate: visit,
-                belief,
-                initial: belief,
-                registered,
-                rmse_m: found.fit.rmse_m,
-                inliers: found.fit.inliers,
-                iterations: found.registered.iterations,
-                score: Some(score),
-                margin: None,
-                innovation,
-                gate_information: expected,
-                gate,
-                information: found.information(),
-                rejection,
-            });
+        let center = visit.node;
+        let last = (center + HALF_SUBMAP).min(node - 1);
+        let first = center.saturating_sub(HALF_SUBMAP);
+        let profiles: Vec<_> = (first..=last).map(profile).collect();
+        map.rebuild((first..=last).zip(&profiles).map(|(near, profile)| {
+            let pose = poses[center].between(&poses[near]);
+            (pose, &*self.keyframes[near].scan, profile)
+        }));
+        let belief = poses[center].between(&poses[node]);
+        let stages = [settings.reach_m, settings.fit_m];
+        let scan = &self.keyframes[node].scan;
+        let mut found = map.register(scan, belief, &stages, None, &settings);
+        if let Some((half_m, half_rad)) = allowed.window
+            && found.fit.score < MIN_SCORE
+            && let window = SearchWindow::around(belief, half_m, half_rad)
+            && let Some(better) = map.search(scan, &window, 0.0)
+        {
+            found = map.register(scan, better.best.pose, &stages, None, &settings);
         }
-        links
+        let registered = found.registered.pose;
+        let innovation = belief.between(&registered).log();
+        let gate = chi_squared_gate(&innovation, &allowed.information, allowed.chi2);
+        let score = found.fit.score;
+        let rejection = if score < MIN_SCORE {
+            let min_score = MIN_SCORE;
+            Some(LoopRejection::LowScore { score, min_score })
+        } else {
+            (!gate.passes()).then_some(LoopRejection::OutsideGate(gate))
+        };
+        LoopVerification {
+            from_node: node,
+            candidate: visit,
+            belief,
+            initial: belief,
+            registered,
+            rmse_m: found.fit.rmse_m,
+            inliers: found.fit.inliers,
+            iterations: found.registered.iterations,
+            score: Some(score),
+            margin: None,
+            innovation,
+            gate_information: allowed.information,
+            gate,
+            information: found.information(),
+            rejection,
+        }
     }
 }

@@ -2,12 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::config::{SlamConfig, ThresholdConfig};
+use super::config::SlamConfig;
 use super::motion::MotionNoise;
 use crate::graph::JacobianModel;
 use crate::local_map::MapRegistrationConfig;
-use crate::loops::{Detection, LoopConfig};
-use crate::matching::{MapConfig, MatcherKind, StagedMatcherConfig, TrustConfig};
 use crate::scan::{LaserScan, ScanConfig};
 
 /// Radius within which points of one scan give each other normals, m, for each degree from beam to beam.
@@ -170,6 +168,15 @@ impl RobotConfig {
         }
     }
 
+    /// How far a motion is trusted that the odometry measured, or that none did.
+    pub(crate) fn motion_noise(&self, is_measured: bool) -> &MotionNoise {
+        if is_measured {
+            &self.odometry
+        } else {
+            &self.constant_velocity
+        }
+    }
+
     /// How scans are registered and scored.
     #[must_use]
     pub fn registration(&self) -> MapRegistrationConfig {
@@ -180,6 +187,9 @@ impl RobotConfig {
             point_sigma_m: self.point_sigma_m,
             independent_points: self.independent_points,
             unseen_cost: self.unseen_cost,
+            good_score: self.good_score,
+            search_m: self.search_m,
+            search_rad: self.search_rad,
         }
     }
 }
@@ -195,16 +205,6 @@ impl SlamConfig {
     #[must_use]
     pub fn from_robot(robot: RobotConfig) -> Self {
         let default = Self::default();
-        let map = |max_per_cell| MapConfig {
-            cell_m: 0.135,
-            max_per_cell,
-        };
-        // What a loop that somebody asks for is registered with.
-        let matcher = MatcherKind::Staged(StagedMatcherConfig {
-            good_score: 0.0,
-            turns: 0,
-            ..StagedMatcherConfig::default()
-        });
         Self {
             robot: Some(robot),
             scan: ScanConfig {
@@ -214,32 +214,9 @@ impl SlamConfig {
             window_sweeps: robot.window_sweeps,
             window_distance_m: robot.window_distance_m,
             window_turn_rad: robot.window_turn_rad,
-            local_map: map(4),
-            matcher,
             extrapolation: 1.0,
-            threshold: ThresholdConfig {
-                initial_m: robot.reach_m,
-                min_motion_m: 0.016,
-                max_range_m: 20.0,
-            },
             keyframe_distance_m: robot.keyframe_distance_m,
             keyframe_turn_rad: robot.keyframe_turn_rad,
-            loops: LoopConfig {
-                detection: Detection::Visits,
-                radius_m: 4.0,
-                min_gap_nodes: 10,
-                submap: map(6),
-                matcher,
-                min_tau_m: 0.3,
-                max_rmse_m: 0.1,
-                min_score: 0.7,
-                max_iterations: 10,
-                trust: TrustConfig {
-                    sigma_m: robot.point_sigma_m,
-                    ..default.loops.trust
-                },
-                ..default.loops
-            },
             jacobians: JacobianModel::Exact,
             least_correction: 0.05,
             ..default

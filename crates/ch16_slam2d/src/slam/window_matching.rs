@@ -6,7 +6,9 @@ use pr_geom::SE2;
 use super::config::SlamConfig;
 use crate::cloud::PointCloud;
 use crate::icp::{AdaptiveThreshold, Pair};
-use crate::matching::{InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information};
+use crate::matching::{
+    InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information, match_information,
+};
 
 /// A matcher with its target, and the threshold that follows its corrections.
 #[derive(Clone)]
@@ -14,6 +16,7 @@ pub(super) struct WindowMatching {
     pub threshold: AdaptiveThreshold,
     pub local_cloud: PointCloud,
     pub matcher: Box<dyn Matcher>,
+    /// The pairs of the last registration.
     pairs: Vec<Pair>,
     /// Covariance of the motions since the last registration that was accepted, none after one.
     pub unregistered: Option<Matrix3<f64>>,
@@ -42,7 +45,9 @@ impl WindowMatching {
         config: &SlamConfig,
     ) -> MatchSummary {
         let request = MatchRequest::new(*prediction, self.threshold.tau(), config.max_iterations);
-        self.matcher.register(scan, &request)
+        let found = self.matcher.register(scan, &request);
+        self.pairs = found.pairs;
+        found.summary
     }
 
     /// Keeps the covariance of what was driven without a registration.
@@ -64,18 +69,15 @@ impl WindowMatching {
 
     /// Information of `estimate` about the last keyframe's edge, whose heading is `source_theta`.
     pub fn information(
-        &mut self,
+        &self,
         estimate: &SE2,
         source_theta: f64,
         config: &SlamConfig,
     ) -> Matrix3<f64> {
         let trust = &config.odometry_trust;
         match config.information_frame {
-            InformationFrame::Exact => self.matcher.information(estimate, trust),
-            InformationFrame::Chapter => {
-                self.matcher.pairs(&mut self.pairs);
-                chapter_information(&self.pairs, source_theta, trust)
-            }
+            InformationFrame::Exact => match_information(&self.pairs, estimate, trust),
+            InformationFrame::Chapter => chapter_information(&self.pairs, source_theta, trust),
         }
     }
 }

@@ -2,11 +2,8 @@
 //! `look 12`, `cancel`; and where the robot of another log was.
 
 use ch16_slam2d::localize::StartPose;
-use ch16_slam2d::loops::{
-    KeyframeView, LoopCandidate, LoopVerification, LoopWorkspace, verify_loop,
-};
+use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::metrics::position_error_m;
-use ch16_slam2d::slam::SlamParts;
 use pr_geom::SE2;
 use robot_io::log::LogOptions;
 use robot_io::log_bytes::LogBytes;
@@ -170,29 +167,8 @@ impl<'a> Engine<'a> {
         if new >= slam.keyframes().len() || old == new {
             return Err("A loop needs two keyframes: mark one, then go to the other.".to_owned());
         }
-        let gate = slam.expected_information(old, new);
-        let config = slam.config().clone();
-        let mut workspace = LoopWorkspace::new(SlamParts::of(&config).loops);
-        let poses = slam.graph().poses();
-        let candidate = LoopCandidate {
-            node: old,
-            distance_m: position_error_m(&poses[old], &poses[new]),
-            proposal: None,
-        };
-        let view = KeyframeView {
-            poses,
-            keyframes: slam.keyframes(),
-        };
-        let frame = config.information_frame;
-        Ok(verify_loop(
-            view,
-            new,
-            candidate,
-            gate,
-            frame,
-            &config.loops,
-            &mut workspace,
-        ))
+        let found = slam.register_loop(old, new);
+        found.map_err(|problem| format!("Nothing can be tested against this graph: {problem}."))
     }
 
     /// Holds a keyframe where the reader put it.
