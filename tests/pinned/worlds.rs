@@ -4,7 +4,7 @@
 //! down. Some of the laps are driven again, and their bits compared.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner, WAY_SHARES};
-use ch16_slam2d::matching::InformationFrame;
+use ch16_slam2d::chapter::InformationFrame;
 
 use serde_json::Value;
 

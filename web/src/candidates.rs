@@ -59,7 +59,7 @@ impl Candidate {
         let loop_ = &attempt.verification;
         let lap = &record.lap;
         let poses = lap.poses(attempt.tick - 1);
-        let half_width = record.config.slam.loops.submap_half_width;
+        let half_width = record.config.slam.chapter.loops.submap_half_width;
         let old = loop_.candidate.node;
         let cloud = |node: usize| record.drive.prepared(lap.keyframes[node].tick).cloud;
         let around = old.saturating_sub(half_width)..=old + half_width;
@@ -157,7 +157,7 @@ pub fn shown(width_px: f32, theme: Theme) -> Value {
 /// What became of the reader's answers, one for each candidate: whether it was taken.
 #[must_use]
 pub fn judged(answers: &[bool], width_px: f32, theme: Theme) -> Value {
-    let gate_chi2 = LapConfig::default().slam.loops.gate_chi2;
+    let gate_chi2 = LapConfig::default().slam.chapter.loops.gate_chi2;
     let [right, wrong] = taken(|k, _| answers.get(k) == Some(&true));
     let [gate_right, gate_wrong] = taken_by_gate(gate_chi2);
     let scene = Scene {

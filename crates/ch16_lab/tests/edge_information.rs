@@ -1,9 +1,10 @@
 //! The information of an edge is the Hessian of what its registration minimized.
 
 use ch16_lab::lap::{Lap, LapConfig, LapRunner};
+use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
-use ch16_slam2d::matching::{InformationFrame, TrustConfig};
+use ch16_slam2d::matching::TrustConfig;
 use pr_geom::{Matrix3, SE2, Vector3};
 
 /// `½ Σ r² / (σ² · inflate)` after the edge's target is moved to `T exp(δ)` with the pairs kept: along the
@@ -50,7 +51,7 @@ fn of_odometry(frame: InformationFrame) -> Vec<f64> {
             let view = record
                 .registration(edge.tick)
                 .expect("a tick after the start");
-            let trust = config.slam.odometry_trust;
+            let trust = config.slam.chapter.odometry_trust;
             let hessian = numerical_hessian(&view.icp.pairs, &view.icp.pose, &trust);
             let hessian = regularize(hessian, INFORMATION_RIDGE, INFORMATION_CAP);
             off(&hessian, &edge.information)
@@ -71,7 +72,7 @@ fn of_loops(frame: InformationFrame) -> Vec<f64> {
             lap.slam().loop_workspace().unwrap().pairs(),
             attempt.verification.registered,
         );
-        let hessian = numerical_hessian(pairs, &pose, &config.slam.loops.trust);
+        let hessian = numerical_hessian(pairs, &pose, &config.slam.chapter.loops.trust);
         let hessian = regularize(hessian, INFORMATION_RIDGE, INFORMATION_CAP);
         found.push(off(&hessian, &attempt.verification.information));
     }

@@ -9,7 +9,7 @@ use pr_geom::SE2;
 /// The canonical lap with a gate, and its first attempt to close a loop.
 fn lap(gate_model: GateModel) -> (Lap, LoopVerification) {
     let mut config = LapConfig::default();
-    config.slam.loops.gate_model = gate_model;
+    config.slam.chapter.loops.gate_model = gate_model;
     let mut lap = Lap::new(config);
     let attempt = lap
         .run()

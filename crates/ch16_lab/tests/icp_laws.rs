@@ -2,11 +2,12 @@
 
 use ch16_lab::basin::{BasinScene, BasinStart, Minimum};
 use ch16_lab::terrain::{SceneKind, TerrainScene};
+use ch16_slam2d::chapter::AdaptiveThreshold;
 use ch16_slam2d::cloud::{DenseMap, NearestMap, PointCloud, VoxelMap};
 use ch16_slam2d::icp::{
-    AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, Icp, IcpConfig, IcpVariant,
-    IcpWorkspace, Pair, StopReason, centroid, correspondences, icp, icp_information,
-    icp_information_along, move_information, regularize,
+    INFORMATION_CAP, INFORMATION_RIDGE, Icp, IcpConfig, IcpVariant, IcpWorkspace, Pair, StopReason,
+    centroid, correspondences, icp, icp_information, icp_information_along, move_information,
+    regularize,
 };
 use pr_geom::{Matrix3, Point2, SE2, Vector2, Vector3};
 use pr_sim::Rng;

@@ -1,12 +1,13 @@
 //! What goes on for long or goes wrong: standing still, no odometry, bad frames, bad loops.
 
 use ch16_lab::lap::{Drive, DriveConfig};
+use ch16_slam2d::chapter::SlamParts;
 use ch16_slam2d::graph::EdgeKind;
 use ch16_slam2d::loops::{LoopCandidate, LoopDetector, LoopQuery, LoopRejection};
 use ch16_slam2d::matching::{Match, MatchRequest, MatchStop, MatchSummary, Matcher};
 use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::scan::FrameError;
-use ch16_slam2d::slam::{MotionNoise, Slam, SlamConfig, SlamParts};
+use ch16_slam2d::slam::{MotionNoise, Slam, SlamConfig};
 use pr_geom::SE2;
 
 fn drive() -> Drive {
@@ -84,7 +85,7 @@ fn a_frame_that_cannot_be_used_leaves_the_estimator_as_it_was() {
 fn a_refused_registration_gives_the_edge_the_trust_of_the_wheels() {
     let drive = drive();
     let config = SlamConfig::default();
-    let noise = config.odometry_noise;
+    let noise = config.chapter.odometry_noise;
     let mut slam = Slam::new(config);
     slam.step(&drive.frame(0)).unwrap();
     let mut frame = drive.frame(1);
@@ -162,7 +163,7 @@ fn candidates_are_tried_in_order_up_to_the_limit_from_their_proposals() {
     let far = SE2::translation(50.0, 0.0);
     for (limit, tried) in [(1, 1), (2, 2), (9, 3)] {
         let mut config = SlamConfig::default();
-        config.loops.candidates_tried = limit;
+        config.chapter.loops.candidates_tried = limit;
         let mut slam = with_a_liar(config, &[far, far.inverse(), far]);
         let attempts = (0..60)
             .map(|tick| slam.step_prepared(&drive.prepared(tick)).unwrap())
@@ -189,8 +190,8 @@ fn a_loop_that_the_graph_does_not_bear_is_taken_out_again() {
     let drive = drive();
     let mut config = SlamConfig::default();
     // A gate that lets all pass, and a measurement that overflows the cost.
-    config.loops.gate_chi2 = f64::INFINITY;
-    config.loops.max_rmse_m = f64::INFINITY;
+    config.chapter.loops.gate_chi2 = f64::INFINITY;
+    config.chapter.loops.max_rmse_m = f64::INFINITY;
     let mut slam = with_a_liar(config, &[SE2::translation(1e200, 0.0)]);
     let mut taken_back = 0;
     for tick in 0..80 {

@@ -1,8 +1,8 @@
 //! The map's frame is a choice: a turn of it must change no edge of the graph.
 
 use ch16_lab::lap::{Drive, DriveConfig};
+use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::graph::{EdgeKind, PoseEdge};
-use ch16_slam2d::matching::InformationFrame;
 use ch16_slam2d::slam::{Slam, SlamConfig};
 use pr_geom::{Matrix3, SE2};
 
@@ -12,11 +12,11 @@ use pr_geom::{Matrix3, SE2};
 fn edges(drive: &Drive, start: SE2, information_frame: InformationFrame) -> Vec<PoseEdge> {
     let mut config = SlamConfig {
         start,
-        information_frame,
         ..SlamConfig::chapter()
     };
-    config.local_map.max_per_cell = usize::MAX;
-    config.loops.submap.max_per_cell = usize::MAX;
+    config.chapter.information_frame = information_frame;
+    config.chapter.local_map.max_per_cell = usize::MAX;
+    config.chapter.loops.submap.max_per_cell = usize::MAX;
     let mut slam = Slam::new(config);
     for tick in 0..=drive.ticks().len() {
         slam.step_prepared(&drive.prepared(tick)).unwrap();

@@ -2,9 +2,10 @@
 //!
 //! `cargo run -p ch16_slam2d --example write_your_own_matcher`
 
+use ch16_slam2d::chapter::SlamParts;
 use ch16_slam2d::matching::{IcpMatcher, Match, MatchRequest, Matcher};
 use ch16_slam2d::prelude::*;
-use ch16_slam2d::slam::{Slam, SlamConfig, SlamParts};
+use ch16_slam2d::slam::{Slam, SlamConfig};
 
 /// ICP that looks around before it looks closely.
 #[derive(Clone)]
@@ -46,7 +47,10 @@ pub fn off_rad(matcher: &mut dyn Matcher) -> f64 {
 /// Prints by how much the matcher above misses a heading.
 pub fn main() {
     let config = SlamConfig::default();
-    let mut many = ManyHeadings(IcpMatcher::of(IcpVariant::PointToPoint, &config.local_map));
+    let mut many = ManyHeadings(IcpMatcher::of(
+        IcpVariant::PointToPoint,
+        &config.chapter.local_map,
+    ));
     println!("many headings are off by {:.3} rad", off_rad(&mut many));
     println!("frames so far: {}", slam(config, many).frames());
 }

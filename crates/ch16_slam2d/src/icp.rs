@@ -11,14 +11,12 @@
 //! [`icp`] runs to the end. [`Icp`] goes one iteration at a time, and with an [`IcpWorkspace`]
 //! that is kept between registrations it does not allocate.
 
-mod adaptive;
 mod align;
 mod config;
 mod information;
 mod pairing;
 mod stepper;
 
-pub use adaptive::AdaptiveThreshold;
 pub use align::{Alignment, closed_form, point_to_plane_step, svd_align};
 pub use config::{IcpConfig, IcpVariant};
 pub use information::{

@@ -1,6 +1,7 @@
 //! Scan matching and pose-graph SLAM: the system of the chapter.
 
 pub mod ancestor;
+pub mod chapter;
 pub mod chi_squared;
 pub mod cloud;
 pub mod digest;

@@ -20,6 +20,6 @@ mod verify;
 pub use candidates::{LoopCandidate, detect_loop_candidates, detect_visits};
 pub use config::{Detection, DetectorKind, GateModel, LoopConfig};
 pub use detector::{CloneDetector, LoopDetector, LoopQuery, NearbyDetector};
-pub use gate::{GateTest, chi_squared_gate, marginal_information, path_information};
+pub use gate::{GateTest, chi_squared_gate};
 pub use pending_loop::PendingLoop;
 pub use verify::{KeyframeView, LoopRejection, LoopVerification, LoopWorkspace, verify_loop};

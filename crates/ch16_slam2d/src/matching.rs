@@ -13,7 +13,7 @@ mod ndt_matcher;
 mod search_matcher;
 
 pub use icp_matcher::IcpMatcher;
-pub use information::{InformationFrame, TrustConfig, chapter_information, match_information};
+pub use information::{TrustConfig, match_information};
 pub use kind::MatcherKind;
 pub use matcher::{
     CloneMatcher, MapConfig, Match, MatchRequest, MatchStop, MatchSummary, Matcher, RunnerUp,

@@ -21,21 +21,17 @@ mod front_end;
 mod loop_closer;
 mod map_matching;
 mod mapper;
-mod motion;
-mod nearby_loops;
+mod motion_noise;
 
-mod parts;
 mod pending;
 mod refinement;
 mod report;
 mod robots;
-mod scales;
 mod snapshot;
 #[cfg(test)]
 pub(crate) mod test_room;
 mod uncertainty;
 mod upkeep;
-mod window_matching;
 
 use std::sync::Arc;
 
@@ -43,18 +39,19 @@ use nalgebra::Matrix3;
 use pr_geom::SE2;
 use pr_optim::OptimizeError;
 
-pub use config::{LoopClosure, SlamConfig, ThresholdConfig};
+pub use config::{LoopClosure, SlamConfig};
 pub use front_end::{FrontEnd, Registration, WindowSweep};
 pub use loop_closer::LoopCloser;
 pub use mapper::{LoopOutlierTest, Mapper};
-pub use motion::MotionNoise;
-pub use parts::SlamParts;
+pub use motion_noise::MotionNoise;
+
 pub use pending::PendingFrame;
 pub use report::{Change, Conclusion, Keyframe, LoopAttempt, LoopEffect, SlamReport};
 pub use robots::{RobotConfig, SubmapLoopConfig};
 pub use snapshot::{FrontEndSnapshot, SlamSnapshot, SnapshotError};
 pub use upkeep::{Upkeep, UpkeepConfig};
 
+use crate::chapter::SlamParts;
 use crate::graph::{EdgeKind, PoseGraph};
 use crate::loops::{LoopVerification, LoopWorkspace};
 use crate::metrics::position_error_m;

@@ -4,8 +4,8 @@
 use ch16_lab::lap::{
     BuiltInWorld, Choice, LapConfig, LapDetector, LapFrontEnd, LapMatcher, LoopMatcher,
 };
+use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::loops::GateModel;
-use ch16_slam2d::matching::InformationFrame;
 use clap::Args;
 use clap::builder::PossibleValue;
 use clap::builder::{PossibleValuesParser, TypedValueParser};

@@ -69,7 +69,7 @@ fn known(world_from_body: &SE2) -> Known {
     let mut pairs = correspondences(&now, &map, SE2::identity(), &config);
     // Point to plane leaves out what has no normal.
     pairs.retain(|pair| pair.normal.is_some());
-    let trust = SlamConfig::chapter().odometry_trust;
+    let trust = SlamConfig::chapter().chapter.odometry_trust;
     let information = match_information(&pairs, &SE2::identity(), &trust);
     let information = regularize(information, INFORMATION_RIDGE, INFORMATION_CAP);
     let covariance = information

@@ -3,7 +3,8 @@
 use std::sync::OnceLock;
 
 use ch16_lab::lap::{LapConfig, LapRunner};
-use ch16_slam2d::loops::{LoopConfig, chi_squared_gate, path_information};
+use ch16_slam2d::chapter::path_information;
+use ch16_slam2d::loops::{LoopConfig, chi_squared_gate};
 use ch16_slam2d::prelude::Vector3;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::{Rng, math};
@@ -44,7 +45,7 @@ fn innovation() -> &'static Vector3<f64> {
 }
 
 fn at(nodes: f64) -> Shown {
-    let config = LapConfig::default().slam.loops;
+    let config = LapConfig::default().slam.chapter.loops;
     let gap = nodes as usize;
     let information = path_information(gap, &config);
     let gate =
@@ -154,7 +155,7 @@ mod tests {
     /// One in twenty, on purpose: of 200 throws 10, and 3 standard deviations of a count of 200 are 9.2.
     #[test]
     fn about_one_true_drift_in_twenty_stays_outside() {
-        let config = LapConfig::default().slam.loops;
+        let config = LapConfig::default().slam.chapter.loops;
         let information = path_information(30, &config);
         let outside = drifts(30, &config)
             .iter()

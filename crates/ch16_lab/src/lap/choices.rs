@@ -2,8 +2,9 @@
 //!
 //! The command line and the widgets choose from these lists, so that a name means the same everywhere.
 
+use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::loops::{DetectorKind, GateModel};
-use ch16_slam2d::matching::{InformationFrame, MatcherKind, NdtMatcherConfig, SearchMatcherConfig};
+use ch16_slam2d::matching::{MatcherKind, NdtMatcherConfig, SearchMatcherConfig};
 use ch16_slam2d::places::PlaceDetectorConfig;
 use ch16_slam2d::scan::LaserScan;
 use ch16_slam2d::slam::SlamConfig;
@@ -348,7 +349,7 @@ impl LapConfig {
     /// The same lap with another matcher for its loops.
     #[must_use]
     pub fn with_loop_matcher(mut self, matcher: LoopMatcher) -> Self {
-        self.slam.loops.matcher = matcher.kind();
+        self.slam.chapter.loops.matcher = matcher.kind();
         self
     }
 
@@ -356,7 +357,7 @@ impl LapConfig {
     #[must_use]
     pub fn with_detector(mut self, detector: LapDetector) -> Self {
         let max_range_m = self.drive.lidar.max_range_m;
-        let loops = &mut self.slam.loops;
+        let loops = &mut self.slam.chapter.loops;
         let gap = loops.min_gap_nodes;
         let for_sensor = |places: PlaceDetectorConfig| {
             DetectorKind::Place(PlaceDetectorConfig {
@@ -392,14 +393,14 @@ impl LapConfig {
     /// The same lap with another drift in the gate of its loops.
     #[must_use]
     pub fn with_gate(mut self, gate: GateModel) -> Self {
-        self.slam.loops.gate_model = gate;
+        self.slam.chapter.loops.gate_model = gate;
         self
     }
 
     /// The same lap with the information of its edges in another frame.
     #[must_use]
     pub fn with_information(mut self, frame: InformationFrame) -> Self {
-        self.slam.information_frame = frame;
+        self.slam.chapter.information_frame = frame;
         self
     }
 }

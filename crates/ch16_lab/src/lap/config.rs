@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::map::GridExtent;
 use ch16_slam2d::scan::ScanConfig;
-use ch16_slam2d::slam::{SlamConfig, ThresholdConfig};
+use ch16_slam2d::slam::SlamConfig;
 use pr_geom::SE2;
 use pr_sim::{Course, DriverConfig, LidarConfig, OdometryNoise, World};
 
@@ -97,15 +97,10 @@ pub struct LapConfig {
 impl Default for LapConfig {
     fn default() -> Self {
         let drive = DriveConfig::default();
-        let chapter = SlamConfig::chapter();
+        let mut slam = SlamConfig::chapter();
+        slam.chapter.threshold.max_range_m = drive.lidar.max_range_m;
         Self {
-            slam: SlamConfig {
-                threshold: ThresholdConfig {
-                    max_range_m: drive.lidar.max_range_m,
-                    ..chapter.threshold
-                },
-                ..chapter
-            },
+            slam,
             drive,
             grid: GridExtent::Plan,
         }
@@ -126,10 +121,8 @@ impl LapConfig {
     /// would be nobody's figures there.
     #[must_use]
     pub fn elsewhere(self, course: &Course) -> Self {
-        let slam = SlamConfig {
-            threshold: self.slam.threshold,
-            ..SlamConfig::default()
-        };
+        let mut slam = SlamConfig::default();
+        slam.chapter.threshold = self.slam.chapter.threshold;
         Self {
             drive: self.drive.on_course(course),
             slam: slam.clone(),
@@ -163,7 +156,7 @@ mod tests {
     #[test]
     fn what_packages_that_do_not_know_each_other_say_of_the_apartment_is_one() {
         let (world, range_m) = (World::apartment(), LidarConfig::default().max_range_m);
-        assert_eq!(SlamConfig::chapter().threshold.max_range_m, range_m);
+        assert_eq!(SlamConfig::chapter().chapter.threshold.max_range_m, range_m);
         assert_eq!(InverseSensorModel::default().max_range_m, range_m);
         let grid = GridConfig::default();
         let bounds = world.bounds();

@@ -12,10 +12,11 @@ use pr_geom::{SE2, math};
 use super::record::{LapRecord, LapTrace, RecordedEdge};
 use super::report::{LoopAttempt, LoopEffect};
 use super::{Change, Drive, LapConfig};
+use ch16_slam2d::chapter::{marginal_information, path_information};
 use ch16_slam2d::graph::{EdgeKind, PoseGraph, StopReason};
 use ch16_slam2d::loops::{
     GateModel, KeyframeView, LoopCandidate, LoopRejection, LoopVerification, LoopWorkspace,
-    chi_squared_gate, marginal_information, path_information, verify_loop,
+    chi_squared_gate, verify_loop,
 };
 use ch16_slam2d::metrics::{position_error_m, rms};
 use ch16_slam2d::slam;
@@ -176,7 +177,7 @@ impl Site<'_> {
         new: usize,
         request: &OwnLoopRequest,
     ) -> LoopVerification {
-        let config = &self.config.slam.loops;
+        let config = &self.config.slam.chapter.loops;
         let gate_information = match config.gate_model {
             GateModel::PathApproximation => Ok(path_information(new - old, config)),
             GateModel::ExactMarginal => marginal_information(graph, old, new),
@@ -197,7 +198,7 @@ impl Site<'_> {
                     keyframes: &keyframes,
                 };
                 let mut workspace = LoopWorkspace::new(config.matcher.build(&config.submap));
-                let frame = self.config.slam.information_frame;
+                let frame = self.config.slam.chapter.information_frame;
                 return verify_loop(
                     view,
                     new,

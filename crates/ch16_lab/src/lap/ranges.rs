@@ -5,8 +5,9 @@
 
 use core::f64::consts::{PI, TAU};
 
+use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::loops::GateModel;
-use ch16_slam2d::matching::{InformationFrame, MatcherKind, NdtMatcherConfig};
+use ch16_slam2d::matching::{MatcherKind, NdtMatcherConfig};
 use pr_geom::SE2;
 use pr_sim::Rng;
 
@@ -74,39 +75,39 @@ pub const RANGES: [ConfigRange; 56] = [
     count!(1.0, 20.0, slam.window_sweeps),
     number!(0.0, 1.0, slam.window_distance_m),
     number!(0.0, 1.0, slam.window_turn_rad),
-    number!(0.05, 1.0, slam.local_map.cell_m),
-    count!(1.0, 20.0, slam.local_map.max_per_cell),
-    count!(0.0, 50.0, slam.max_iterations),
+    number!(0.05, 1.0, slam.chapter.local_map.cell_m),
+    count!(1.0, 20.0, slam.chapter.local_map.max_per_cell),
+    count!(0.0, 50.0, slam.chapter.max_iterations),
     count!(0.0, 100.0, slam.min_inliers),
-    number!(0.01, 3.0, slam.threshold.initial_m),
-    number!(0.0, 0.5, slam.threshold.min_motion_m),
-    number!(0.1, 20.0, slam.threshold.max_range_m),
+    number!(0.01, 3.0, slam.chapter.threshold.initial_m),
+    number!(0.0, 0.5, slam.chapter.threshold.min_motion_m),
+    number!(0.1, 20.0, slam.chapter.threshold.max_range_m),
     number!(0.05, 3.0, slam.keyframe_distance_m),
     number!(0.05, 3.0, slam.keyframe_turn_rad),
-    number!(0.001, 1.0, slam.odometry_trust.sigma_m),
-    number!(0.1, 1000.0, slam.odometry_trust.inflate),
-    number!(0.0, 1.0, slam.odometry_noise.floor_m),
-    number!(0.0, 2.0, slam.odometry_noise.per_metre),
-    number!(0.0, 1.0, slam.odometry_noise.metre_per_rad),
-    number!(0.0, 1.0, slam.odometry_noise.floor_rad),
-    number!(0.0, 2.0, slam.odometry_noise.per_rad),
-    number!(0.0, 1.0, slam.odometry_noise.rad_per_metre),
-    number!(0.1, 6.0, slam.loops.radius_m),
-    count!(1.0, 100.0, slam.loops.min_gap_nodes),
-    count!(1.0, 20.0, slam.loops.attempt_every_nodes),
-    count!(1.0, 10.0, slam.loops.candidates_tried),
-    count!(0.0, 10.0, slam.loops.submap_half_width),
-    number!(0.05, 1.0, slam.loops.submap.cell_m),
-    count!(1.0, 20.0, slam.loops.submap.max_per_cell),
-    count!(0.0, 60.0, slam.loops.max_iterations),
-    number!(0.01, 3.0, slam.loops.min_tau_m),
-    number!(0.01, 2.0, slam.loops.max_rmse_m),
-    count!(1.0, 200.0, slam.loops.min_inliers),
-    number!(0.001, 1.0, slam.loops.trust.sigma_m),
-    number!(0.1, 1000.0, slam.loops.trust.inflate),
-    number!(0.001, 1.0, slam.loops.drift_sigma_m),
-    number!(0.0001, 1.0, slam.loops.drift_sigma_rad),
-    number!(0.01, 1e6, slam.loops.gate_chi2),
+    number!(0.001, 1.0, slam.chapter.odometry_trust.sigma_m),
+    number!(0.1, 1000.0, slam.chapter.odometry_trust.inflate),
+    number!(0.0, 1.0, slam.chapter.odometry_noise.floor_m),
+    number!(0.0, 2.0, slam.chapter.odometry_noise.per_metre),
+    number!(0.0, 1.0, slam.chapter.odometry_noise.metre_per_rad),
+    number!(0.0, 1.0, slam.chapter.odometry_noise.floor_rad),
+    number!(0.0, 2.0, slam.chapter.odometry_noise.per_rad),
+    number!(0.0, 1.0, slam.chapter.odometry_noise.rad_per_metre),
+    number!(0.1, 6.0, slam.chapter.loops.radius_m),
+    count!(1.0, 100.0, slam.chapter.loops.min_gap_nodes),
+    count!(1.0, 20.0, slam.chapter.loops.attempt_every_nodes),
+    count!(1.0, 10.0, slam.chapter.loops.candidates_tried),
+    count!(0.0, 10.0, slam.chapter.loops.submap_half_width),
+    number!(0.05, 1.0, slam.chapter.loops.submap.cell_m),
+    count!(1.0, 20.0, slam.chapter.loops.submap.max_per_cell),
+    count!(0.0, 60.0, slam.chapter.loops.max_iterations),
+    number!(0.01, 3.0, slam.chapter.loops.min_tau_m),
+    number!(0.01, 2.0, slam.chapter.loops.max_rmse_m),
+    count!(1.0, 200.0, slam.chapter.loops.min_inliers),
+    number!(0.001, 1.0, slam.chapter.loops.trust.sigma_m),
+    number!(0.1, 1000.0, slam.chapter.loops.trust.inflate),
+    number!(0.001, 1.0, slam.chapter.loops.drift_sigma_m),
+    number!(0.0001, 1.0, slam.chapter.loops.drift_sigma_rad),
+    number!(0.01, 1e6, slam.chapter.loops.gate_chi2),
     count!(0.0, 100.0, slam.optimizer_iterations),
     number!(0.0, 0.1, slam.optimizer_tolerance),
     number!(0.1, 1e6, slam.huber),
@@ -182,13 +183,13 @@ pub fn random_config(seed: u32) -> LapConfig {
         config.slam.loop_closure = LoopClosure::Off;
     }
     if rng.unit() < 0.3 {
-        config.slam.loops.gate_model = GateModel::ExactMarginal;
+        config.slam.chapter.loops.gate_model = GateModel::ExactMarginal;
     }
     if rng.unit() < 0.5 {
-        config.slam.information_frame = InformationFrame::Exact;
+        config.slam.chapter.information_frame = InformationFrame::Exact;
     }
-    config.slam.matcher = random_matcher(&mut rng);
-    config.slam.loops.matcher = random_matcher(&mut rng);
+    config.slam.chapter.matcher = random_matcher(&mut rng);
+    config.slam.chapter.loops.matcher = random_matcher(&mut rng);
     config
 }
 

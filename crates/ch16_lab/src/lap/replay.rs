@@ -52,17 +52,17 @@ impl LapTrace {
         }
         let map = DenseMap::from_cloud(
             &local_cloud,
-            slam.local_map.cell_m,
-            slam.local_map.max_per_cell,
+            slam.chapter.local_map.cell_m,
+            slam.chapter.local_map.max_per_cell,
         );
-        let (init, max_iters) = match slam.matcher.icp() {
-            Some(_) => (recorded.prediction, slam.max_iterations),
+        let (init, max_iters) = match slam.chapter.matcher.icp() {
+            Some(_) => (recorded.prediction, slam.chapter.max_iterations),
             None => (recorded.matched.pose, 0),
         };
         let settings = IcpConfig {
             max_iters,
             tau: recorded.tau_m,
-            ..slam.matcher.icp().unwrap_or_default()
+            ..slam.chapter.matcher.icp().unwrap_or_default()
         };
         Some(RegistrationView {
             icp: icp(&drive.sweep(tick).cloud, &map, init, &settings),
@@ -123,7 +123,8 @@ pub(super) fn graph_of<'a>(
 mod tests {
     use super::*;
     use crate::lap::LapRunner;
-    use ch16_slam2d::loops::{GateModel, marginal_information};
+    use ch16_slam2d::chapter::marginal_information;
+    use ch16_slam2d::loops::GateModel;
 
     #[test]
     fn a_replayed_registration_has_the_bits_of_the_recorded_one() {
@@ -140,7 +141,7 @@ mod tests {
     #[test]
     fn the_graph_before_a_loop_gives_the_exact_gate_its_covariance() {
         let mut config = LapConfig::default();
-        config.slam.loops.gate_model = GateModel::ExactMarginal;
+        config.slam.chapter.loops.gate_model = GateModel::ExactMarginal;
         let lap = LapRunner::new().run(&config).lap;
         let attempts: Vec<_> = lap.loop_attempts().collect();
         assert!(attempts.iter().filter(|a| a.accepted()).count() > 1);

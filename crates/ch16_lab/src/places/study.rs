@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use ch16_slam2d::chapter::path_information;
 use ch16_slam2d::cloud::PointCloud;
-use ch16_slam2d::loops::{LoopConfig, path_information};
+use ch16_slam2d::loops::LoopConfig;
 use ch16_slam2d::places::{
     ContextConfig, ContextMatch, HistogramConfig, RangeHistogram, ScanContext,
 };
@@ -67,7 +68,7 @@ impl PlaceStudy {
         };
         Self {
             seed: config.drive.seed,
-            loops: config.slam.loops,
+            loops: config.slam.chapter.loops,
             max_range_m,
             places: lap.keyframes().zip(poses).map(place).collect(),
             pairs: Vec::new(),
@@ -198,7 +199,7 @@ mod tests {
             assert_eq!(study.pair(nodes[0], nodes[1]).unwrap().nodes, nodes);
         }
         assert_eq!(study.pair(4, 4), None);
-        let gap = lap.config().slam.loops.min_gap_nodes;
+        let gap = lap.config().slam.chapter.loops.min_gap_nodes;
         assert!(
             study
                 .graded()

@@ -34,7 +34,10 @@ pub struct Trail {
 impl Trail {
     pub fn new(config: SlamConfig) -> Self {
         Self {
-            front_end: FrontEnd::new(&config, config.matcher.build(&config.local_map)),
+            front_end: FrontEnd::new(
+                &config,
+                config.chapter.matcher.build(&config.chapter.local_map),
+            ),
             config,
             frames: 0,
             sweeps: Vec::new(),

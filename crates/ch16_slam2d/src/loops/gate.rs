@@ -2,11 +2,6 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use pr_optim::OptimizeError;
-
-use super::LoopConfig;
-use crate::graph::PoseGraph;
-
 /// Whether an innovation is believable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GateTest {
@@ -34,60 +29,5 @@ pub fn chi_squared_gate(
     GateTest {
         chi2: innovation.dot(&(information * innovation)),
         gate_chi2,
-    }
-}
-
-/// Information of the drift over a path of `gap` nodes: diagonal, standard deviations that grow
-/// with √gap.
-#[must_use]
-pub fn path_information(gap: usize, config: &LoopConfig) -> Matrix3<f64> {
-    let steps = gap as f64;
-    let xy = 1.0 / (config.drift_sigma_m * config.drift_sigma_m * steps);
-    let theta = 1.0 / (config.drift_sigma_rad * config.drift_sigma_rad * steps);
-    Matrix3::from_diagonal(&Vector3::new(xy, xy, theta))
-}
-
-/// Information of the drift as the graph knows it: the exact covariance of the pose of `new` in
-/// the frame of `old`, inverted; see [`PoseGraph::relative_covariance`].
-///
-/// # Errors
-/// Where the graph has no covariance: its normal equations are not positive definite, or hold
-/// numbers that are not finite.
-///
-/// # Panics
-/// Where a node does not exist.
-pub fn marginal_information(
-    graph: &mut PoseGraph,
-    old: usize,
-    new: usize,
-) -> Result<Matrix3<f64>, OptimizeError> {
-    let covariance = graph.relative_covariance(old, new)?;
-    covariance
-        .try_inverse()
-        .ok_or(OptimizeError::NotPositiveDefinite { node: new })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::chi_squared::CHAPTER_GATE;
-
-    #[test]
-    fn drift_of_the_path_grows_with_the_square_root_of_its_length() {
-        let config = LoopConfig::default();
-        let (one, nine) = (path_information(1, &config), path_information(9, &config));
-        assert!((one[(0, 0)].sqrt() - 1.0 / 0.045).abs() < 1e-9);
-        assert!((one[(2, 2)] / nine[(2, 2)] - 9.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn an_innovation_of_three_sigma_in_x_has_chi2_nine() {
-        let config = LoopConfig::default();
-        let innovation = Vector3::new(-3.0 * 0.045 * 5.0, 0.0, 0.0);
-        let test = chi_squared_gate(&innovation, &path_information(25, &config), CHAPTER_GATE);
-        assert!((test.chi2 - 9.0).abs() < 1e-12);
-        assert!(!test.passes());
-        let nan = chi_squared_gate(&innovation, &Matrix3::repeat(f64::NAN), CHAPTER_GATE);
-        assert!(!nan.passes());
     }
 }

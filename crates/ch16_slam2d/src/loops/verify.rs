@@ -6,11 +6,10 @@ use pr_optim::{OptimizeError, StopReason};
 
 use super::gate::{GateTest, chi_squared_gate};
 use super::{LoopCandidate, LoopConfig};
+use crate::chapter::{InformationFrame, chapter_information};
 use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
-use crate::matching::{
-    InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information, match_information,
-};
+use crate::matching::{MatchRequest, MatchSummary, Matcher, match_information};
 use crate::slam::Keyframe;
 
 /// Why a loop was turned away, with what was measured.
@@ -187,7 +186,7 @@ impl LoopWorkspace {
 ///
 /// The submap is built in the candidate's frame from the keyframes around it; registration starts
 /// at the candidate's proposal, or at the graph's relative pose. `gate_information` is the S⁻¹ of the
-/// gate: that of [`path_information`](super::path_information), or the graph's own; an error turns
+/// gate: that of [`path_information`](crate::chapter::path_information), or the graph's own; an error turns
 /// the loop away.
 #[must_use]
 pub fn verify_loop(

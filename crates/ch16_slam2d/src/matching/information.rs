@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
-use crate::icp::{Pair, centroid, icp_information, icp_information_along, move_information};
+use crate::icp::{Pair, centroid, icp_information, move_information};
 
 /// How far matched points are trusted: `1/(σ² · inflate)` a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,23 +12,6 @@ pub struct TrustConfig {
     pub sigma_m: f64,
     /// Pairs are not independent: the variance is multiplied by this.
     pub inflate: f64,
-}
-
-/// In which frame the information of an edge is expressed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum InformationFrame {
-    /// As the chapter's figures were computed: about the centroid of the pairs, an odometry edge
-    /// turned by the heading of its source, a loop by the heading that its candidate has in the world.
-    ///
-    /// The residual lives at the edge's target, so this is right only where all of these headings
-    /// are alike: a corridor whose candidate faces 90° gets its certainty the wrong way round. Edges
-    /// of refused registrations get the information of what pairs there were.
-    Chapter,
-    /// That of `e = log(Z⁻¹ Tᵢ⁻¹ Tⱼ)`: in the tangent space at the edge's target j, about j's origin.
-    ///
-    /// Edges of refused registrations get that of the odometry.
-    #[default]
-    Exact,
 }
 
 /// The information of `pairs` about the pose `target_from_body`, 3×3, translation first.
@@ -51,17 +34,12 @@ pub fn match_information(
     )
 }
 
-/// The information of `pairs` as [`InformationFrame::Chapter`] turns it, by the heading `theta_rad`.
-#[must_use]
-pub fn chapter_information(pairs: &[Pair], theta_rad: f64, trust: &TrustConfig) -> Matrix3<f64> {
-    icp_information_along(pairs, trust.sigma_m, trust.inflate, theta_rad)
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::{Point2, Vector2, Vector3};
 
     use super::*;
+    use crate::chapter::chapter_information;
 
     const TRUST: TrustConfig = TrustConfig {
         sigma_m: 0.05,

@@ -8,10 +8,9 @@ use pr_geom::SE2;
 use super::config::SlamConfig;
 use super::map_matching::MapMatching;
 use super::snapshot::FrontEndSnapshot;
-use super::window_matching::WindowMatching;
+use crate::chapter::WindowMatching;
 use crate::cloud::PointCloud;
-use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, regularize};
-use crate::matching::{InformationFrame, MatchSummary, Matcher};
+use crate::matching::{MatchSummary, Matcher};
 use crate::metrics::position_error_m;
 use crate::scan::{PreparedFrame, is_finite};
 
@@ -83,7 +82,7 @@ impl FrontEnd {
             scans: Vec::new(),
             registrar: match config.robot {
                 Some(robot) => Registrar::Map(Box::new(MapMatching::new(robot))),
-                None => Registrar::Window(Box::new(WindowMatching::new(config, matcher))),
+                None => Registrar::Window(Box::new(WindowMatching::new(&config.chapter, matcher))),
             },
         }
     }
@@ -207,7 +206,7 @@ impl FrontEnd {
                     matching.local_cloud.extend_transformed(scan, &sweep.pose);
                 }
                 matching.matcher.set_target(&matching.local_cloud);
-                matching.register(&frame.cloud, &prediction, config)
+                matching.register(&frame.cloud, &prediction, &config.chapter)
             }
             Registrar::Map(matching) => {
                 let goes_on = before * goes_on;
@@ -219,7 +218,8 @@ impl FrontEnd {
         self.last_dt_s = dt_s;
         self.velocity = before.between(&self.estimate).log() / dt_s.max(SHORTEST_S);
         if let Registrar::Window(matching) = &mut self.registrar {
-            matching.remember(accepted, &motion, frame.odometry.is_some(), config);
+            let is_measured = frame.odometry.is_some();
+            matching.remember(accepted, &motion, is_measured, &config.chapter);
             matching.threshold.update(&prediction, &self.estimate);
         }
         Registration {
@@ -238,14 +238,7 @@ impl FrontEnd {
         match &mut self.registrar {
             Registrar::Map(matching) => matching.take_information(),
             Registrar::Window(matching) => {
-                if let (InformationFrame::Exact, Some(covariance)) =
-                    (config.information_frame, matching.unregistered)
-                {
-                    // Every motion noise has a floor, so only an overflow has no inverse.
-                    return covariance.try_inverse().unwrap_or_else(Matrix3::identity);
-                }
-                let information = matching.information(&self.estimate, source_theta, config);
-                regularize(information, INFORMATION_RIDGE, INFORMATION_CAP)
+                matching.information(&self.estimate, source_theta, &config.chapter)
             }
         }
     }

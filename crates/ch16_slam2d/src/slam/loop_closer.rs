@@ -3,8 +3,7 @@
 use super::bundle_loops::BundleLoops;
 use super::config::{LoopClosure, SlamConfig};
 use super::mapper::{Mapper, Trust};
-use super::nearby_loops::NearbyLoops;
-use super::parts::SlamParts;
+use crate::chapter::{NearbyLoops, SlamParts};
 use crate::loops::{LoopVerification, LoopWorkspace, PendingLoop};
 
 /// How loops are found.
@@ -57,7 +56,7 @@ impl LoopCloser {
         }
         let every = match &config.robot {
             Some(robot) => robot.loops.every_keyframes,
-            None => config.loops.attempt_every_nodes,
+            None => config.chapter.loops.attempt_every_nodes,
         };
         if self
             .last_attempt_node

@@ -27,8 +27,8 @@ pub(super) enum Trust {
 /// Keyframes and pose graph; node k is keyframe k.
 #[derive(Clone)]
 pub struct Mapper {
-    pub(super) graph: PoseGraph,
-    pub(super) keyframes: Vec<Keyframe>,
+    pub(crate) graph: PoseGraph,
+    pub(crate) keyframes: Vec<Keyframe>,
     /// The newest node at which a loop was closed; the first before any was.
     pub(super) last_loop_node: usize,
     pub(super) chi2: f64,

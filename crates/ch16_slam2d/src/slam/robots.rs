@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::config::SlamConfig;
-use super::motion::MotionNoise;
+use super::motion_noise::MotionNoise;
 use crate::graph::JacobianModel;
 use crate::local_map::MapRegistrationConfig;
 use crate::scan::{LaserScan, ScanConfig};

@@ -20,7 +20,7 @@ pub fn config(name: &str) -> Option<LapConfig> {
         "noisy" => noisy(),
         "tight" => {
             let mut config = noisy();
-            config.slam.loops.gate_chi2 = gate_threshold(0.9);
+            config.slam.chapter.loops.gate_chi2 = gate_threshold(0.9);
             config
         }
         "twins" => LapConfig::in_world(BuiltInWorld::TwinRooms, CANONICAL_SEED, 1.0),

@@ -2,11 +2,10 @@
 
 use ch16_lab::basin::BasinScene;
 use ch16_lab::lap::{LAST_KEYFRAMES, LapConfig};
+use ch16_slam2d::chapter::AdaptiveThreshold;
 use ch16_slam2d::chi_squared::{cdf3, gate_threshold};
 use ch16_slam2d::cloud::PointCloud;
-use ch16_slam2d::icp::{
-    AdaptiveThreshold, INFORMATION_CAP, INFORMATION_RIDGE, IcpVariant, point_to_plane_step,
-};
+use ch16_slam2d::icp::{INFORMATION_CAP, INFORMATION_RIDGE, IcpVariant, point_to_plane_step};
 use ch16_slam2d::metrics::DisagreementConfig;
 use ch16_slam2d::ndt::NdtMap;
 use pr_geom::{Point2, SE2, Vector2};
@@ -32,7 +31,7 @@ pub fn world(what: &str) -> Option<f64> {
 /// `lap.beams`, `loop.radius_m`, `basin.tau`: constants by the part that they belong to.
 pub fn value(path: &[&str]) -> Option<f64> {
     let config = LapConfig::default();
-    let loops = &config.slam.loops;
+    let loops = &config.slam.chapter.loops;
     let basin = BasinScene::config(IcpVariant::PointToPoint, TAU_M);
     Some(match *path {
         ["lap", "beams"] => config.drive.lidar.beams as f64,
@@ -53,7 +52,7 @@ pub fn value(path: &[&str]) -> Option<f64> {
         ["loop", "drift_m"] => loops.drift_sigma_m,
         ["loop", "drift_rad"] => loops.drift_sigma_rad,
         ["loop", "inflate"] => loops.trust.inflate,
-        ["odometry", "inflate"] => config.slam.odometry_trust.inflate,
+        ["odometry", "inflate"] => config.slam.chapter.odometry_trust.inflate,
         ["lap", "tau_deviations"] => tau_deviations(),
         ["information", "ridge"] => INFORMATION_RIDGE,
         ["information", "cap"] => INFORMATION_CAP,
@@ -113,12 +112,12 @@ fn tau_deviations() -> f64 {
 /// The test of an innovation: its threshold, and what that lets through.
 pub fn gate(what: &str) -> Option<f64> {
     match what {
-        "chi2" => Some(LapConfig::default().slam.loops.gate_chi2),
+        "chi2" => Some(LapConfig::default().slam.chapter.loops.gate_chi2),
         "quantile_percent" => {
-            let gate = LapConfig::default().slam.loops.gate_chi2;
+            let gate = LapConfig::default().slam.chapter.loops.gate_chi2;
             Some(100.0 * cdf3(gate))
         }
-        "refused_share" => Some(1.0 - cdf3(LapConfig::default().slam.loops.gate_chi2)),
+        "refused_share" => Some(1.0 - cdf3(LapConfig::default().slam.chapter.loops.gate_chi2)),
         "tight_chi2" => Some(gate_threshold(0.9)),
         _ => None,
     }

@@ -2,11 +2,9 @@
 //! measured position.
 
 use ch16_lab::lap::{LapTrace, LoopAttempt};
+use ch16_slam2d::chapter::{marginal_information, path_information};
 use ch16_slam2d::graph::PoseGraph;
-use ch16_slam2d::loops::{
-    GateModel, GateTest, LoopConfig, LoopVerification, chi_squared_gate, marginal_information,
-    path_information,
-};
+use ch16_slam2d::loops::{GateModel, GateTest, LoopConfig, LoopVerification, chi_squared_gate};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use pr_geom::{SE2, math};
 

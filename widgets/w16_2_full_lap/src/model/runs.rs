@@ -53,7 +53,7 @@ impl Runs {
         let start = config.drive.start;
         let gates = lap
             .loop_attempts()
-            .map(|attempt| Gates::of(&lap, attempt, &config.slam.loops))
+            .map(|attempt| Gates::of(&lap, attempt, &config.slam.chapter.loops))
             .collect();
         Self {
             odometry_errors_m: core::iter::once(0.0).chain(errors).collect(),
@@ -88,12 +88,12 @@ impl Runs {
 
     /// The settings of loop detection.
     pub fn loop_config(&self) -> &LoopConfig {
-        &self.config.slam.loops
+        &self.config.slam.chapter.loops
     }
 
     /// Largest squared innovation that is believed.
     pub fn gate_chi2(&self) -> f64 {
-        self.config.slam.loops.gate_chi2
+        self.config.slam.chapter.loops.gate_chi2
     }
 
     /// Both gates over an attempt of the pose graph.

@@ -1,9 +1,9 @@
 //! What the values of the parameter list mean to the core.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LoopClosure};
+use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
-use ch16_slam2d::matching::InformationFrame;
 use kit::values::Values;
 use pr_sim::Course;
 
@@ -63,8 +63,8 @@ impl LapSettings {
             None => LapConfig::with_seed_and_noise(self.seed, self.noise_factor).elsewhere(own?),
         };
         config.slam.loop_closure = self.loop_closure;
-        config.slam.loops.gate_chi2 = self.gate_chi2;
-        config.slam.loops.gate_model = self.gate_model;
+        config.slam.chapter.loops.gate_chi2 = self.gate_chi2;
+        config.slam.chapter.loops.gate_model = self.gate_model;
         let config = config.with_matcher(self.matcher);
         Some(config.with_information(self.information_frame))
     }

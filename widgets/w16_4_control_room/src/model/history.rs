@@ -24,7 +24,7 @@ impl History {
                 .collect()
         };
         Self {
-            tau_m: samples(record.config.slam.threshold.initial_m, &|r| {
+            tau_m: samples(record.config.slam.chapter.threshold.initial_m, &|r| {
                 r.registration.tau_m
             }),
             odometry_error_m: samples(0.0, &|r| r.metrics.odometry_error_m),

@@ -56,7 +56,7 @@ fn a_wall_that_is_drawn_is_there_at_once_and_the_lap_follows() {
     // The lap is that of the command line in the file of this flat.
     let course = Course::from_json(flat(&model).to_json().as_bytes()).unwrap();
     let config = LapConfig::default().elsewhere(&course);
-    let config = config.with_information(LapConfig::default().slam.information_frame);
+    let config = config.with_information(LapConfig::default().slam.chapter.information_frame);
     let record = LapRunner::new().run(&config);
     assert_eq!(results(&model).graph, record.lap.summary);
     assert_eq!(model.tick(), record.ticks(), "shown to its end");

@@ -1,8 +1,8 @@
 //! What settings and presets do to the lap.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner};
+use ch16_slam2d::chapter::InformationFrame;
 use ch16_slam2d::loops::LoopRejection;
-use ch16_slam2d::matching::InformationFrame;
 use kit::param::ParamKind;
 
 use super::*;

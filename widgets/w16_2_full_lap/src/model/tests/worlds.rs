@@ -1,7 +1,7 @@
 //! Other worlds than the Apartment, and what goes wrong in those that break a map.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner, LoopJudgement};
-use ch16_slam2d::matching::InformationFrame;
+use ch16_slam2d::chapter::InformationFrame;
 
 use super::*;
 use crate::spec::MOST_TICKS;

@@ -1,9 +1,9 @@
 //! What of the estimator can be exchanged.
 
-use super::SlamConfig;
 use crate::loops::{DetectorKind, LoopDetector, NearbyDetector};
 use crate::matching::Matcher;
 use crate::places::PlaceDetector;
+use crate::slam::SlamConfig;
 
 /// The parts of the estimator that can be exchanged.
 #[derive(Clone)]
@@ -20,11 +20,12 @@ impl SlamParts {
     /// The parts that `config` names.
     #[must_use]
     pub fn of(config: &SlamConfig) -> Self {
+        let chapter = &config.chapter;
         Self {
-            front_end: config.matcher.build(&config.local_map),
-            loops: config.loops.matcher.build(&config.loops.submap),
-            detector: match config.loops.detector {
-                DetectorKind::Nearby => Box::new(NearbyDetector::new(config.loops)),
+            front_end: chapter.matcher.build(&chapter.local_map),
+            loops: chapter.loops.matcher.build(&chapter.loops.submap),
+            detector: match chapter.loops.detector {
+                DetectorKind::Nearby => Box::new(NearbyDetector::new(chapter.loops)),
                 DetectorKind::Place(places) => Box::new(PlaceDetector::new(places)),
             },
         }

@@ -1,10 +1,11 @@
 //! Lengths from the sensor: the same system for a room and for a hall.
 
-use super::config::{NORMAL_RADIUS_CELLS, SlamConfig, ThresholdConfig};
+use super::config::{ChapterConfig, NORMAL_RADIUS_CELLS, ThresholdConfig};
 use crate::loops::LoopConfig;
 use crate::matching::{MapConfig, TrustConfig};
 use crate::metrics::rms;
 use crate::scan::{LaserScan, ScanConfig};
+use crate::slam::SlamConfig;
 
 /// Cells of thinned sweeps across one cell of a map; the chapter's ratio of 0.25 to 0.12 m.
 const CELLS_PER_MAP_CELL: f64 = 2.1;
@@ -30,6 +31,7 @@ impl SlamConfig {
         let Some(typical_m) = typical_range_m(scan) else {
             return default;
         };
+        let chapter = default.chapter.clone();
         let spacing_m = typical_m * scan.angle_step_rad.abs();
         let cell_m = spacing_m
             .max(CELL_SHARE * typical_m)
@@ -47,28 +49,31 @@ impl SlamConfig {
                 normal_radius_m: NORMAL_RADIUS_CELLS * cell_m,
             },
             window_distance_m: 0.25 * keyframe_distance_m,
-            local_map: map(default.local_map.max_per_cell),
-            threshold: ThresholdConfig {
-                initial_m: 4.0 * cell_m,
-                min_motion_m: 0.25 * cell_m,
-                max_range_m: farthest_m(scan).max(typical_m),
-            },
             keyframe_distance_m,
-            odometry_trust: TrustConfig {
-                sigma_m,
-                ..default.odometry_trust
-            },
-            loops: LoopConfig {
-                radius_m: typical_m,
-                submap: map(default.loops.submap.max_per_cell),
-                min_tau_m: 5.0 * cell_m,
-                max_rmse_m: 1.3 * cell_m,
-                trust: TrustConfig {
-                    sigma_m,
-                    ..default.loops.trust
+            chapter: ChapterConfig {
+                local_map: map(chapter.local_map.max_per_cell),
+                threshold: ThresholdConfig {
+                    initial_m: 4.0 * cell_m,
+                    min_motion_m: 0.25 * cell_m,
+                    max_range_m: farthest_m(scan).max(typical_m),
                 },
-                drift_sigma_m: 0.11 * keyframe_distance_m,
-                ..default.loops
+                odometry_trust: TrustConfig {
+                    sigma_m,
+                    ..chapter.odometry_trust
+                },
+                loops: LoopConfig {
+                    radius_m: typical_m,
+                    submap: map(chapter.loops.submap.max_per_cell),
+                    min_tau_m: 5.0 * cell_m,
+                    max_rmse_m: 1.3 * cell_m,
+                    trust: TrustConfig {
+                        sigma_m,
+                        ..chapter.loops.trust
+                    },
+                    drift_sigma_m: 0.11 * keyframe_distance_m,
+                    ..chapter.loops
+                },
+                ..chapter
             },
             ..default
         }
@@ -114,8 +119,8 @@ mod tests {
         );
         for (a, b) in [
             (a.scan.cell_m, b.scan.cell_m),
-            (a.threshold.initial_m, b.threshold.initial_m),
-            (a.loops.max_rmse_m, b.loops.max_rmse_m),
+            (a.chapter.threshold.initial_m, b.chapter.threshold.initial_m),
+            (a.chapter.loops.max_rmse_m, b.chapter.loops.max_rmse_m),
             (a.keyframe_distance_m, b.keyframe_distance_m),
         ] {
             assert!((10.0 * a - b).abs() < 1e-12);
@@ -128,19 +133,31 @@ mod tests {
         let chapter = SlamConfig::chapter();
         for (of_sensor, of_chapter) in [
             (config.scan.cell_m, chapter.scan.cell_m),
-            (config.local_map.cell_m, chapter.local_map.cell_m),
-            (config.threshold.initial_m, chapter.threshold.initial_m),
             (
-                config.threshold.min_motion_m,
-                chapter.threshold.min_motion_m,
+                config.chapter.local_map.cell_m,
+                chapter.chapter.local_map.cell_m,
+            ),
+            (
+                config.chapter.threshold.initial_m,
+                chapter.chapter.threshold.initial_m,
+            ),
+            (
+                config.chapter.threshold.min_motion_m,
+                chapter.chapter.threshold.min_motion_m,
             ),
             (config.keyframe_distance_m, chapter.keyframe_distance_m),
             (
-                config.odometry_trust.sigma_m,
-                chapter.odometry_trust.sigma_m,
+                config.chapter.odometry_trust.sigma_m,
+                chapter.chapter.odometry_trust.sigma_m,
             ),
-            (config.loops.max_rmse_m, chapter.loops.max_rmse_m),
-            (config.loops.drift_sigma_m, chapter.loops.drift_sigma_m),
+            (
+                config.chapter.loops.max_rmse_m,
+                chapter.chapter.loops.max_rmse_m,
+            ),
+            (
+                config.chapter.loops.drift_sigma_m,
+                chapter.chapter.loops.drift_sigma_m,
+            ),
         ] {
             assert!(
                 (of_sensor / of_chapter - 1.0).abs() < 0.15,

@@ -1,20 +1,16 @@
 //! The chapter's loops: a detector proposes, a matcher registers on the keyframes around, the drift decides.
 
-use nalgebra::Matrix3;
-use pr_optim::OptimizeError;
-
-use super::config::SlamConfig;
-use super::mapper::Mapper;
-use crate::graph::PoseGraph;
+use super::drift_gate::gate_information;
 use crate::loops::{
-    GateModel, KeyframeView, LoopCandidate, LoopConfig, LoopDetector, LoopQuery, LoopVerification,
-    LoopWorkspace, marginal_information, path_information, verify_loop,
+    KeyframeView, LoopCandidate, LoopDetector, LoopQuery, LoopVerification, LoopWorkspace,
+    verify_loop,
 };
 use crate::matching::Matcher;
+use crate::slam::{Mapper, SlamConfig};
 
 /// Candidates are verified in order, and the first that passes is closed.
 #[derive(Clone)]
-pub(super) struct NearbyLoops {
+pub(crate) struct NearbyLoops {
     pub detector: Box<dyn LoopDetector>,
     pub workspace: LoopWorkspace,
 }
@@ -34,7 +30,10 @@ impl NearbyLoops {
         let mut candidates = self.detector.detect(&mut query);
         candidates.retain(|candidate| candidate.node < node);
         let mut tried = Vec::new();
-        for candidate in candidates.into_iter().take(config.loops.candidates_tried) {
+        for candidate in candidates
+            .into_iter()
+            .take(config.chapter.loops.candidates_tried)
+        {
             let found = self.verify(mapper, node, candidate, config);
             tried.push(found);
             if found.accepted() {
@@ -51,26 +50,14 @@ impl NearbyLoops {
         candidate: LoopCandidate,
         config: &SlamConfig,
     ) -> LoopVerification {
-        let gate = gate_information(&mut mapper.graph, node, candidate.node, &config.loops);
+        let loops = &config.chapter.loops;
+        let gate = gate_information(&mut mapper.graph, node, candidate.node, loops);
         let view = KeyframeView {
             poses: mapper.graph.poses(),
             keyframes: &mapper.keyframes,
         };
-        let frame = config.information_frame;
+        let frame = config.chapter.information_frame;
         let workspace = &mut self.workspace;
-        verify_loop(view, node, candidate, gate, frame, &config.loops, workspace)
-    }
-}
-
-/// The S⁻¹ of the gate between two nodes.
-fn gate_information(
-    graph: &mut PoseGraph,
-    node: usize,
-    candidate: usize,
-    loops: &LoopConfig,
-) -> Result<Matrix3<f64>, OptimizeError> {
-    match loops.gate_model {
-        GateModel::PathApproximation => Ok(path_information(node - candidate, loops)),
-        GateModel::ExactMarginal => marginal_information(graph, candidate, node),
+        verify_loop(view, node, candidate, gate, frame, loops, workspace)
     }
 }

@@ -3,16 +3,14 @@
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
-use super::config::SlamConfig;
+use super::{AdaptiveThreshold, ChapterConfig, InformationFrame, chapter_information};
 use crate::cloud::PointCloud;
-use crate::icp::{AdaptiveThreshold, Pair};
-use crate::matching::{
-    InformationFrame, MatchRequest, MatchSummary, Matcher, chapter_information, match_information,
-};
+use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
+use crate::matching::{MatchRequest, MatchSummary, Matcher, match_information};
 
 /// A matcher with its target, and the threshold that follows its corrections.
 #[derive(Clone)]
-pub(super) struct WindowMatching {
+pub(crate) struct WindowMatching {
     pub threshold: AdaptiveThreshold,
     pub local_cloud: PointCloud,
     pub matcher: Box<dyn Matcher>,
@@ -23,7 +21,7 @@ pub(super) struct WindowMatching {
 }
 
 impl WindowMatching {
-    pub fn new(config: &SlamConfig, matcher: Box<dyn Matcher>) -> Self {
+    pub fn new(config: &ChapterConfig, matcher: Box<dyn Matcher>) -> Self {
         Self {
             threshold: AdaptiveThreshold::new(
                 config.threshold.initial_m,
@@ -42,7 +40,7 @@ impl WindowMatching {
         &mut self,
         scan: &PointCloud,
         prediction: &SE2,
-        config: &SlamConfig,
+        config: &ChapterConfig,
     ) -> MatchSummary {
         let request = MatchRequest::new(*prediction, self.threshold.tau(), config.max_iterations);
         let found = self.matcher.register(scan, &request);
@@ -56,7 +54,7 @@ impl WindowMatching {
         accepted: bool,
         motion: &SE2,
         is_measured: bool,
-        config: &SlamConfig,
+        config: &ChapterConfig,
     ) {
         if accepted {
             self.unregistered = None;
@@ -72,12 +70,17 @@ impl WindowMatching {
         &self,
         estimate: &SE2,
         source_theta: f64,
-        config: &SlamConfig,
+        config: &ChapterConfig,
     ) -> Matrix3<f64> {
         let trust = &config.odometry_trust;
-        match config.information_frame {
-            InformationFrame::Exact => match_information(&self.pairs, estimate, trust),
-            InformationFrame::Chapter => chapter_information(&self.pairs, source_theta, trust),
-        }
+        let information = match (config.information_frame, self.unregistered) {
+            // Every motion noise has a floor, so only an overflow has no inverse.
+            (InformationFrame::Exact, Some(covariance)) => {
+                return covariance.try_inverse().unwrap_or_else(Matrix3::identity);
+            }
+            (InformationFrame::Exact, None) => match_information(&self.pairs, estimate, trust),
+            (InformationFrame::Chapter, _) => chapter_information(&self.pairs, source_theta, trust),
+        };
+        regularize(information, INFORMATION_RIDGE, INFORMATION_CAP)
     }
 }

@@ -1,0 +1,146 @@
+//! The constants of the chapter's rules, and the systems that drive by them.
+
+use pr_geom::SE2;
+
+use super::InformationFrame;
+use crate::graph::JacobianModel;
+use crate::loops::LoopConfig;
+use crate::matching::{MapConfig, MatcherKind, TrustConfig};
+use crate::scan::ScanConfig;
+use crate::slam::{LoopClosure, MotionNoise, SlamConfig};
+
+/// A point's normal comes from its neighbours within so many cells.
+///
+/// A cell is 2.4 σ wide at least, so a wall through n cells has a normal that is off by
+/// `σ √12 / (n cell √n)` = `1.44 / n^1.5` rad at most: 7.4° with the chapter's ratio, n = 5, and 3.4° here.
+/// Normals that are off hold a sweep back along the wall, as pairs of points do.
+pub(super) const NORMAL_RADIUS_CELLS: f64 = 4.2;
+
+/// The adaptive correspondence threshold (Vizzo et al., "KISS-ICP", 2023, §III-B).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThresholdConfig {
+    /// Threshold in metres until three corrections were seen.
+    pub initial_m: f64,
+    /// Corrections smaller than this (m) do not count.
+    pub min_motion_m: f64,
+    /// Range at which a rotation is turned into a displacement, in metres.
+    pub max_range_m: f64,
+}
+
+/// How the chapter registers scans, weighs edges and finds loops; the default is its own lap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChapterConfig {
+    /// What registers a scan on the local map.
+    pub matcher: MatcherKind,
+    /// The local map.
+    pub local_map: MapConfig,
+    /// Most iterations of a registration against the local map.
+    pub max_iterations: usize,
+    /// The adaptive correspondence threshold.
+    pub threshold: ThresholdConfig,
+    /// In which frame the information of edges is expressed.
+    pub information_frame: InformationFrame,
+    /// Trust in the edge between two keyframes.
+    pub odometry_trust: TrustConfig,
+    /// Trust in measured odometry, where the registration was refused.
+    pub odometry_noise: MotionNoise,
+    /// Trust in the guess of constant velocity, where there is no odometry either.
+    pub prediction_noise: MotionNoise,
+    /// Detection and verification of loops.
+    pub loops: LoopConfig,
+}
+
+impl Default for ChapterConfig {
+    fn default() -> Self {
+        Self {
+            matcher: MatcherKind::PointToPoint,
+            local_map: MapConfig {
+                cell_m: 0.25,
+                max_per_cell: 4,
+            },
+            max_iterations: 15,
+            threshold: ThresholdConfig {
+                initial_m: 0.5,
+                min_motion_m: 0.03,
+                max_range_m: 6.0,
+            },
+            information_frame: InformationFrame::Chapter,
+            odometry_trust: TrustConfig {
+                sigma_m: 0.05,
+                inflate: 12.0,
+            },
+            odometry_noise: MotionNoise::default(),
+            prediction_noise: MotionNoise::without_odometry(),
+            loops: LoopConfig::default(),
+        }
+    }
+}
+
+impl ChapterConfig {
+    /// How far a motion is trusted that the wheels measured, or that nobody did.
+    pub(super) fn motion_noise(&self, is_measured: bool) -> &MotionNoise {
+        if is_measured {
+            &self.odometry_noise
+        } else {
+            &self.prediction_noise
+        }
+    }
+}
+
+impl Default for SlamConfig {
+    fn default() -> Self {
+        let chapter = Self::chapter();
+        Self {
+            scan: ScanConfig {
+                normal_radius_m: NORMAL_RADIUS_CELLS * chapter.scan.cell_m,
+                ..chapter.scan
+            },
+            window_distance_m: 0.1,
+            window_turn_rad: 0.1,
+            chapter: ChapterConfig {
+                information_frame: InformationFrame::Exact,
+                loops: LoopConfig {
+                    candidates_tried: 3,
+                    ..chapter.chapter.loops
+                },
+                ..chapter.chapter
+            },
+            ..chapter
+        }
+    }
+}
+
+impl SlamConfig {
+    /// The chapter's system: every sweep joins the window, one candidate is tried, and information is
+    /// turned as in its figures.
+    #[must_use]
+    pub fn chapter() -> Self {
+        Self {
+            robot: None,
+            chapter: ChapterConfig::default(),
+            start: SE2::identity(),
+            scan: ScanConfig::default(),
+            loop_closure: LoopClosure::On,
+            window_sweeps: 6,
+            window_distance_m: 0.0,
+            window_turn_rad: 0.0,
+            min_inliers: 8,
+            extrapolation: f64::INFINITY,
+            keyframe_distance_m: 0.4,
+            keyframe_turn_rad: 0.35,
+            jacobians: JacobianModel::Chapter,
+            least_correction: 0.0,
+            optimizer_iterations: 15,
+            optimizer_tolerance: 1e-7,
+            huber: 12.0,
+        }
+    }
+
+    /// The chapter's system with `matcher` for the front end and for loops.
+    #[must_use]
+    pub fn with_matcher(mut self, matcher: MatcherKind) -> Self {
+        self.chapter.matcher = matcher;
+        self.chapter.loops.matcher = matcher;
+        self
+    }
+}
