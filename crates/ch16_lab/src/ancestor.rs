@@ -2,9 +2,9 @@
 //!
 //! Its map, keyframes and noise follow from the lap's estimator, so that what differs is the method.
 
-use ch16_slam2d::ancestor::{AncestorConfig, CycleTest, CycleVerdict, IncrementalMapper};
 use ch16_slam2d::metrics::{DisagreementConfig, MapDisagreement, position_error_m, rms};
 use ch16_slam2d::slam::SlamConfig;
+use incremental_mapping::{AncestorConfig, CycleTest, CycleVerdict, IncrementalMapper};
 use pr_geom::{SE2, math};
 use serde::{Deserialize, Serialize};
 

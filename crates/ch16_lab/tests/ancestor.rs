@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use ch16_lab::ancestor::{Ancestor, AncestorTrace};
 use ch16_lab::lap::{BuiltInWorld, Drive, LapConfig, LapMatcher};
-use ch16_slam2d::ancestor::{CycleVerdict, IncrementalMapper};
 use ch16_slam2d::scan::FrameError;
+use incremental_mapping::{CycleVerdict, IncrementalMapper};
 use pr_geom::SE2;
 
 /// Noise of the wheels at which climbing alone loses the end of the ring; `docs/worlds.md` has a

@@ -2,9 +2,9 @@
 //!
 //! `cargo run -p ch16_slam2d --example run_slam_on_your_frames`
 
+use ch16_slam2d::pipeline::{LogFrame, Pipeline};
 use ch16_slam2d::prelude::*;
 use ch16_slam2d::scan::{Frame, FrameError, LaserScan};
-use ch16_slam2d::slam::{Slam, SlamConfig};
 
 /// The walk: around a circle in an empty room of 8 m × 6 m.
 pub fn truth(step: usize) -> SE2 {
@@ -34,23 +34,33 @@ fn range_m(pose: &SE2, bearing_rad: f64) -> f64 {
     to_wall(pose.x(), cos, 8.0).min(to_wall(pose.y(), sin, 6.0))
 }
 
-/// Runs all frames and returns the estimator with its map.
-pub fn run() -> Result<Slam, FrameError> {
-    // Lengths that fit the sensor, and where the map's frame is laid.
-    let mut config = SlamConfig::for_scan(&frame(0).scan, 0.01);
-    config.start = truth(0);
-    let mut slam = Slam::new(config);
+/// Where the wheels say that the robot is after `step` steps, in the frame of its start.
+pub fn wheels(step: usize) -> SE2 {
+    let motions = (1..=step).filter_map(|k| frame(k).odometry);
+    motions.fold(SE2::identity(), |pose, motion| pose * motion)
+}
+
+/// Runs all frames and returns the pipeline with its map, whose frame lies where the robot started.
+pub fn run() -> Result<Pipeline, FrameError> {
+    let mut pipeline = Pipeline::default();
     for step in 0..=120 {
-        let report = slam.step(&frame(step))?;
+        let report = pipeline.step(&LogFrame {
+            stamp_s: frame(step).stamp_s,
+            odometry: Some(wheels(step)),
+            scan: frame(step).scan,
+        })?;
         if let Some(node) = report.new_keyframe {
             println!("keyframe {node} at {:.3?}", report.estimate.to_array());
         }
     }
-    Ok(slam)
+    pipeline.finish();
+    Ok(pipeline)
 }
 
-/// Prints the keyframes.
+/// Prints the keyframes, and where the last scan was taken.
 pub fn main() {
-    let slam = run().expect("frames in the order of time, with finite numbers");
-    println!("{} edges", slam.graph().edge_count());
+    let pipeline = run().expect("frames in the order of time, with finite numbers");
+    if let Some((stamp_s, pose)) = pipeline.trajectory().last() {
+        println!("at {stamp_s} s: {:.3?}", pose.to_array());
+    }
 }

@@ -13,6 +13,8 @@
 //!
 //! Source: Grisetti, Kümmerle, Stachniss, Burgard, "A tutorial on graph-based SLAM", 2010.
 
+mod covariances;
+mod ids;
 mod marginalize;
 
 use nalgebra::Matrix3;
@@ -20,44 +22,9 @@ use pr_geom::SE2;
 use pr_optim::robust::{Belief, GncSettings, believe};
 use pr_optim::{Between, FactorUse, Method, OptimizeError, Optimizer, Problem, Report, Settings};
 
+pub use ids::{EdgeId, NodeId};
 pub use marginalize::{MarginalizeError, Marginalized};
 pub use pr_optim::{JacobianModel, RobustKernel, StopReason};
-
-/// Handle of a node. Nodes are numbered from 0 in the order in which they were added.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct NodeId(usize);
-
-/// Handle of an edge. Edges are numbered from 0 in the order in which they were added.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct EdgeId(usize);
-
-impl NodeId {
-    /// The node's number.
-    #[must_use]
-    pub fn index(self) -> usize {
-        self.0
-    }
-}
-
-impl From<usize> for EdgeId {
-    fn from(number: usize) -> Self {
-        Self(number)
-    }
-}
-
-impl From<usize> for NodeId {
-    fn from(number: usize) -> Self {
-        Self(number)
-    }
-}
-
-impl EdgeId {
-    /// The edge's number.
-    #[must_use]
-    pub fn index(self) -> usize {
-        self.0
-    }
-}
 
 /// Where a measurement comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -206,12 +173,12 @@ impl PoseGraph {
 
     /// Adds a node that the solver may move.
     pub fn add_node(&mut self, pose: SE2) -> NodeId {
-        NodeId(self.problem.add_pose(pose))
+        NodeId::from(self.problem.add_pose(pose))
     }
 
     /// Adds a node that stays where it is: it holds the gauge.
     pub fn add_fixed_node(&mut self, pose: SE2) -> NodeId {
-        NodeId(self.problem.add_fixed_pose(pose))
+        NodeId::from(self.problem.add_fixed_pose(pose))
     }
 
     /// Adds the measurement that `to` is at `measurement` in the frame of `from`.
@@ -233,7 +200,7 @@ impl PoseGraph {
             information,
         });
         self.kinds.push(kind);
-        let edge = EdgeId(self.kinds.len() - 1);
+        let edge = EdgeId::from(self.kinds.len() - 1);
         self.chi2 = self.chi2.map(|chi2| chi2 + self.edge_chi2(edge));
         edge
     }
@@ -291,7 +258,7 @@ impl PoseGraph {
         let nodes = self.problem.poses().iter().zip(self.problem.fixed());
         nodes
             .enumerate()
-            .map(|(number, (&pose, &fixed))| (NodeId(number), PoseNode { pose, fixed }))
+            .map(|(number, (&pose, &fixed))| (NodeId::from(number), PoseNode { pose, fixed }))
     }
 
     /// The poses of all nodes, by number.
@@ -304,9 +271,9 @@ impl PoseGraph {
     pub fn edges(&self) -> impl ExactSizeIterator<Item = EdgeView> + '_ {
         let edges = self.problem.factors().iter().zip(&self.kinds);
         edges.enumerate().map(|(number, (factor, &kind))| EdgeView {
-            id: EdgeId(number),
-            from: NodeId(factor.from),
-            to: NodeId(factor.to),
+            id: EdgeId::from(number),
+            from: NodeId::from(factor.from),
+            to: NodeId::from(factor.to),
             edge: PoseEdge::new(factor, kind),
         })
     }
@@ -389,66 +356,6 @@ impl PoseGraph {
         let nodes: Vec<PoseNode> = self.nodes().map(|(_, node)| node).collect();
         let edges: Vec<EdgeView> = self.edges().filter(keep).collect();
         Self::of(&nodes, &edges).solved_with(self.jacobians())
-    }
-
-    /// Exact covariance of the relative pose `T_i⁻¹ T_j`, as all edges together know it.
-    ///
-    /// Taken from the factor of the whole graph, at the present poses: 3×3, in the tangent space of
-    /// right perturbations of the relative pose, order x, y, θ, m² and rad². Other ways around,
-    /// closed loops among them, make it smaller than the sum along the path.
-    /// Kaess & Dellaert, "Covariance recovery from a square root information matrix for data
-    /// association", 2009.
-    ///
-    /// # Errors
-    /// Where the normal equations are not positive definite.
-    ///
-    /// # Panics
-    /// Where a node does not exist.
-    pub fn relative_covariance(
-        &mut self,
-        i: impl Into<NodeId>,
-        j: impl Into<NodeId>,
-    ) -> Result<Matrix3<f64>, OptimizeError> {
-        let (i, j) = (i.into(), j.into());
-        let joint = self
-            .optimizer
-            .joint_covariance(&self.problem, i.index(), j.index())?;
-        Ok(joint.relative(&self.pose(i), &self.pose(j)))
-    }
-
-    /// How far the farthest node would move, m and rad added, if the graph was optimized: to first order, by the
-    /// edges since it was optimized last. Infinite where those are too many.
-    ///
-    /// # Errors
-    /// Where the normal equations are not positive definite.
-    pub fn largest_move_since(&mut self) -> Result<f64, OptimizeError> {
-        self.optimizer.largest_move_since(&self.problem)
-    }
-
-    /// Exact covariance of every pose against the fixed ones, by node; zero for those.
-    ///
-    /// # Errors
-    /// Where the normal equations are not positive definite.
-    pub fn pose_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
-        self.optimizer.marginals(&self.problem)
-    }
-
-    /// Exact covariance of the relative pose at every edge, in the order in which they were added.
-    ///
-    /// The same as [`relative_covariance`](Self::relative_covariance) of its two nodes, but all from
-    /// one selected inverse of the factor.
-    ///
-    /// # Errors
-    /// Where the normal equations are not positive definite.
-    pub fn edge_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
-        let measured = self.optimizer.measured_covariances(&self.problem)?;
-        let poses = self.problem.poses();
-        let ends = self.problem.factors().iter();
-        Ok(measured
-            .iter()
-            .zip(ends)
-            .map(|(joint, factor)| joint.relative(&poses[factor.from], &poses[factor.to]))
-            .collect())
     }
 }
 

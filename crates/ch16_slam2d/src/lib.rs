@@ -1,11 +1,9 @@
 //! Scan matching and pose-graph SLAM: the system of the chapter.
 
-pub mod ancestor;
 pub mod chapter;
 pub mod chi_squared;
 pub mod cloud;
 pub mod digest;
-pub mod field;
 pub mod graph;
 pub mod icp;
 #[cfg(feature = "listings")]
@@ -16,6 +14,7 @@ pub mod loops;
 pub mod matching;
 pub mod metrics;
 pub mod ndt;
+pub mod pipeline;
 pub mod places;
 pub mod prelude;
 pub mod scan;

@@ -12,10 +12,12 @@
 //! What it cannot do: two places that look the same for as long as the trail is remain two places,
 //! and it says so.
 
+mod belief;
 mod config;
 mod known_map;
 mod localizer;
 mod map_search;
+mod pending_fix;
 mod report;
 mod trail;
 
@@ -24,6 +26,7 @@ mod tests;
 
 pub use config::{LocalizeConfig, StartPose};
 pub use known_map::{KnownMap, PlaceGuess};
-pub use localizer::{Localizer, PendingFix};
+pub use localizer::Localizer;
 pub use map_search::MapSearch;
+pub use pending_fix::PendingFix;
 pub use report::{LocalizeReport, Verdict};

@@ -28,16 +28,6 @@ pub fn rms(errors: impl IntoIterator<Item = f64>) -> f64 {
     }
 }
 
-/// Root mean square position error of a trajectory in metres, pose by pose, without alignment.
-#[must_use]
-pub fn trajectory_rms_m<'a>(
-    estimates: impl IntoIterator<Item = &'a SE2>,
-    truths: impl IntoIterator<Item = &'a SE2>,
-) -> f64 {
-    let pairs = estimates.into_iter().zip(truths);
-    rms(pairs.map(|(estimate, truth)| position_error_m(estimate, truth)))
-}
-
 /// How the two passes of a lap are compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisagreementConfig {

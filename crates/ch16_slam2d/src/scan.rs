@@ -11,7 +11,7 @@ mod laser_scan;
 mod prepare;
 
 pub use error::FrameError;
-pub(crate) use frame::is_finite;
+pub use frame::is_finite;
 pub use frame::{Frame, PreparedFrame};
 pub use laser_scan::LaserScan;
 pub use prepare::{ScanConfig, ScanPreparer};

@@ -15,6 +15,7 @@
 //! What it cannot fix: drift that no loop sees, such as the bend of a way out before the first
 //! loop, and a place that looks like another one within the gate.
 
+mod agreement;
 mod bundle_loops;
 mod config;
 mod front_end;

@@ -1,26 +1,14 @@
 //! What every log yields, whatever its format.
 
+pub use ch16_slam2d::pipeline::LogFrame;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::io;
 
-use ch16_slam2d::scan::LaserScan;
-use pr_geom::SE2;
 use thiserror::Error;
 
 use crate::laser_mount::LaserMount;
 use crate::remark::Remark;
-
-/// A scan of a log, with the odometry at its time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LogFrame {
-    /// Time of the scan, s; the number of the frame where the log has no times.
-    pub stamp_s: f64,
-    /// Pose of the body in the odometry's frame, where the log has one.
-    pub odometry: Option<SE2>,
-    /// The scan with its geometry.
-    pub scan: LaserScan,
-}
 
 /// A place in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,32 +1,21 @@
-//! A log through the estimator, one scan at a time.
+//! A log through the pipeline, with what its owner should know of it.
 
-use ch16_slam2d::graph::PoseGraph;
 use ch16_slam2d::loops::LoopVerification;
-use ch16_slam2d::scan::{Frame, FrameError, LaserScan};
-use ch16_slam2d::slam::{
-    LoopAttempt, RobotConfig, Slam, SlamConfig, SlamReport, SlamSnapshot, SnapshotError,
-};
+pub use ch16_slam2d::pipeline::OdometryUse;
+use ch16_slam2d::pipeline::{Pipeline, ScanPose};
+use ch16_slam2d::scan::{FrameError, LaserScan};
+use ch16_slam2d::slam::{LoopAttempt, RobotConfig, Slam, SlamReport, SlamSnapshot, SnapshotError};
 use pr_geom::SE2;
 
 use crate::evidence::{PoorFit, TriedLoop};
 use crate::log::LogFrame;
 use crate::quality::Quality;
-use crate::session::{MappedGraph, ScanPlace, Session, places_kept};
+use crate::session::{MappedGraph, Session, places_kept};
 use crate::settings::Setting;
 use crate::trajectory::{StampedPose, Trajectory};
 
 /// What is said of a log in which no beam tells anything.
 pub const NOTHING_SEEN: &str = "no beam of any keyframe has a range between the shortest and the longest that the sensor tells";
-
-/// Whether the wheels are listened to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum OdometryUse {
-    /// The odometry of the log predicts each scan.
-    #[default]
-    Log,
-    /// Scans alone: the velocity is expected to stay.
-    None,
-}
 
 /// Wheels that stand still in a log of so many scans are told: they may not have been recorded.
 const STILL_SCANS: usize = 20;
@@ -34,23 +23,14 @@ const STILL_SCANS: usize = 20;
 /// Scans of which less than this fits are told.
 const POOR_SCORE: f64 = 0.5;
 
-/// A log under way: the estimator, and where each scan was taken from.
-///
-/// The pose of a scan is kept in the frame of the keyframe before it, so that every loop moves the
-/// scans in between as well.
+/// A log under way: the pipeline of the core, and the evidence for whoever judges its map.
 pub struct LogRun {
-    odometry_use: OdometryUse,
     settings: Vec<(&'static Setting, f64)>,
-    slam: Option<Slam>,
-    last_odometry: Option<SE2>,
-    last_stamp_s: f64,
-    scans: Vec<ScanPlace>,
-    /// How many of them are those of a session.
+    pipeline: Pipeline,
+    /// How many of its scans are those of a session.
     resumed: usize,
     /// Where the beams point, without ranges.
     sensor: Option<LaserScan>,
-    /// The estimator after the last scan, once its map was linked anew.
-    driven: Option<SlamSnapshot>,
     loops: Vec<TriedLoop>,
     links: Vec<LoopVerification>,
     poor: Vec<PoorFit>,
@@ -60,6 +40,8 @@ pub struct LogRun {
     refused: Option<FrameError>,
     /// Where the beams of the log point that a session goes on with, where it is not as in the session.
     other_sensor: Option<LaserScan>,
+    /// The estimator of a session that was opened to be changed by hand, as it was driven.
+    reopened: Option<SlamSnapshot>,
 }
 
 /// What is said of a log with scans that are not after the one before them; nothing where it has none.
@@ -80,16 +62,15 @@ impl LogRun {
     /// A run that has seen nothing.
     #[must_use]
     pub fn new(odometry_use: OdometryUse) -> Self {
+        Self::with_pipeline(Pipeline::new(odometry_use))
+    }
+
+    fn with_pipeline(pipeline: Pipeline) -> Self {
         Self {
-            odometry_use,
             settings: Vec::new(),
-            slam: None,
-            last_odometry: None,
-            last_stamp_s: f64::NEG_INFINITY,
-            scans: Vec::new(),
-            resumed: 0,
+            resumed: pipeline.scans().len(),
+            pipeline,
             sensor: None,
-            driven: None,
             loops: Vec::new(),
             links: Vec::new(),
             poor: Vec::new(),
@@ -97,6 +78,7 @@ impl LogRun {
             still: Some(0),
             refused: None,
             other_sensor: None,
+            reopened: None,
         }
     }
 
@@ -113,7 +95,7 @@ impl LogRun {
     /// # Errors
     /// Where the session contradicts itself.
     pub fn resume(session: &Session, odometry_use: OdometryUse) -> Result<Self, SnapshotError> {
-        let slam = Slam::restore(&session.driven)?.with_outlier_test(PoseGraph::believed);
+        let slam = Slam::restore(&session.driven)?;
         Ok(Self::holding(session, slam, odometry_use))
     }
 
@@ -126,16 +108,15 @@ impl LogRun {
         let mut slam = Slam::restore(&session.driven)?;
         *slam.graph_mut() = session.graph();
         Ok(Self {
-            driven: Some(session.driven.clone()),
+            reopened: Some(session.driven.clone()),
             ..Self::holding(session, slam, OdometryUse::Log)
         })
     }
 
     /// A run with what a session has seen.
     fn holding(session: &Session, slam: Slam, odometry_use: OdometryUse) -> Self {
-        let driven = &session.driven;
-        let keyframes = driven.keyframes.iter().enumerate();
-        let of_keyframes = keyframes.map(|(number, keyframe)| ScanPlace {
+        let keyframes = session.driven.keyframes.iter().enumerate();
+        let of_keyframes = keyframes.map(|(number, keyframe)| ScanPose {
             stamp_s: keyframe.stamp_s,
             keyframe: number,
             keyframe_from_body: SE2::identity(),
@@ -145,75 +126,54 @@ impl LogRun {
         } else {
             session.places.clone()
         };
+        let pipeline = Pipeline::resume(slam, scans, session.last_odometry, odometry_use);
         Self {
-            slam: Some(slam),
-            last_odometry: session.last_odometry,
-            last_stamp_s: driven.last_stamp_s,
-            resumed: scans.len(),
-            scans,
             sensor: session.sensor.clone(),
-            ..Self::new(odometry_use)
+            ..Self::with_pipeline(pipeline)
         }
     }
 
     /// Takes the next scan; none where it is left out, because it is not after the one before it or
     /// because its numbers are no scan.
     pub fn step(&mut self, log: LogFrame) -> Option<SlamReport> {
-        if log.stamp_s <= self.last_stamp_s {
-            self.late += 1;
-            return None;
-        }
-        let motion = match (self.odometry_use, self.last_odometry, log.odometry) {
-            (OdometryUse::Log, Some(last), Some(now)) => Some(last.between(&now)),
-            _ => None,
-        };
-        let frame = Frame {
-            stamp_s: log.stamp_s,
-            odometry: motion,
-            scan: log.scan,
-        };
-        let slam = self.slam.get_or_insert_with(|| {
-            let mut robot = RobotConfig::for_scan(&frame.scan);
+        if self.pipeline.slam().is_none() && !self.settings.is_empty() {
+            let mut robot = RobotConfig::for_scan(&log.scan);
             for (setting, value) in &self.settings {
                 robot = setting.set(&robot, *value).unwrap_or(robot);
             }
-            Slam::new(SlamConfig::from_robot(robot)).with_outlier_test(PoseGraph::believed)
-        });
-        let report = match slam.step(&frame) {
+            self.pipeline = self.pipeline.clone().with_config(robot);
+        }
+        let motion = self.pipeline.motion(&log);
+        let report = match self.pipeline.step(&log) {
             Ok(report) => report,
+            Err(FrameError::Stamp { stamp_s, .. }) if stamp_s.is_finite() => {
+                self.late += 1;
+                return None;
+            }
             Err(problem) => {
                 self.refused.get_or_insert(problem);
                 return None;
             }
         };
-        self.last_stamp_s = frame.stamp_s;
-        self.last_odometry = log.odometry;
         if let Some(motion) = motion {
             let stands = motion == SE2::identity();
             self.still = self.still.filter(|_| stands).map(|scans| scans + 1);
         }
-        self.driven = None;
         let sensor = LaserScan {
             ranges_m: Vec::new(),
-            ..frame.scan
+            ..log.scan
         };
         match &self.sensor {
-            Some(known) if self.scans.len() == self.resumed && !has_same_beams(known, &sensor) => {
+            Some(known) if self.scans() == 1 && !has_same_beams(known, &sensor) => {
                 self.other_sensor = Some(sensor);
             }
             Some(_) => {}
             None => self.sensor = Some(sensor),
         }
-        let keyframe = slam.keyframes().len() - 1;
-        self.scans.push(ScanPlace {
-            stamp_s: frame.stamp_s,
-            keyframe,
-            keyframe_from_body: slam.graph().pose(keyframe).between(&report.estimate),
-        });
         let score = report.registration.and_then(|found| found.matched.score);
         if let Some(score) = score.filter(|score| *score < POOR_SCORE) {
             self.poor.push(PoorFit {
-                stamp_s: frame.stamp_s,
+                stamp_s: log.stamp_s,
                 score,
             });
         }
@@ -223,13 +183,10 @@ impl LogRun {
 
     /// Says that no scan follows: loops that wait are closed where nothing contradicts them.
     pub fn finish(&mut self) {
-        let Some(slam) = self.slam.as_mut().filter(|_| self.driven.is_none()) else {
-            return;
-        };
-        self.driven = Some(slam.snapshot());
-        let concluded = slam.conclude();
-        self.links = concluded.links;
-        self.note(&concluded.tried);
+        if let Some(concluded) = self.pipeline.finish() {
+            self.links = concluded.links;
+            self.note(&concluded.tried);
+        }
     }
 
     /// Keeps what became of loops; one that waited is the same loop once it is closed.
@@ -251,7 +208,7 @@ impl LogRun {
     #[must_use]
     pub fn holds(&self, tried: &TriedLoop) -> bool {
         let measured = tried.verification.registered;
-        let graph = self.slam.as_ref().map(Slam::graph);
+        let graph = self.slam().map(Slam::graph);
         let mut edges = graph.into_iter().flat_map(|graph| graph.edges());
         tried.accepted && edges.any(|view| view.edge.measurement == measured)
     }
@@ -259,12 +216,12 @@ impl LogRun {
     /// The estimator; none before the first scan.
     #[must_use]
     pub fn slam(&self) -> Option<&Slam> {
-        self.slam.as_ref()
+        self.pipeline.slam()
     }
 
     /// The estimator, for who changes its graph by hand; none before the first scan.
     pub fn slam_mut(&mut self) -> Option<&mut Slam> {
-        self.slam.as_mut()
+        self.pipeline.slam_mut()
     }
 
     /// Says which links are in the graph, after it was changed by hand.
@@ -275,7 +232,7 @@ impl LogRun {
     /// Scans taken, without those of a session that it goes on from.
     #[must_use]
     pub fn scans(&self) -> usize {
-        self.scans.len() - self.resumed
+        self.pipeline.scans().len() - self.resumed
     }
 
     /// The loops that were looked at, in order.
@@ -302,26 +259,32 @@ impl LogRun {
     /// kept beside it.
     #[must_use]
     pub fn session(&self) -> Option<Session> {
-        let slam = self.slam.as_ref()?;
-        let is_finished = self.driven.is_some();
+        let driven = self.reopened.clone().or_else(|| self.pipeline.driven())?;
+        let is_linked = self.reopened.is_some() || self.pipeline.is_finished();
+        let graph = self.slam().filter(|_| is_linked).map(Slam::graph);
         Some(Session {
-            driven: self.driven.clone().unwrap_or_else(|| slam.snapshot()),
-            mapped: is_finished.then(|| MappedGraph::of(slam.graph())),
-            places: places_kept(&self.scans),
+            driven,
+            mapped: graph.map(MappedGraph::of),
+            places: places_kept(self.pipeline.scans()),
             sensor: self.sensor.clone(),
-            last_odometry: self.last_odometry,
+            last_odometry: self.pipeline.last_odometry(),
         })
     }
 
     /// What is known of the map's quality.
     pub fn quality(&mut self) -> Quality {
-        Quality::of(self.slam.as_mut(), &self.loops, &self.links, &self.poor)
+        Quality::of(
+            self.pipeline.slam_mut(),
+            &self.loops,
+            &self.links,
+            &self.poor,
+        )
     }
 
     /// Whether any keyframe's scan has a point.
     #[must_use]
     pub fn has_seen(&self) -> bool {
-        let keyframes = self.slam.as_ref().map_or(&[][..], |slam| slam.keyframes());
+        let keyframes = self.slam().map_or(&[][..], Slam::keyframes);
         keyframes.iter().any(|keyframe| !keyframe.scan.is_empty())
     }
 
@@ -378,15 +341,9 @@ impl LogRun {
     /// Where every scan was taken, by the graph as it is now; those of a session come first.
     #[must_use]
     pub fn trajectory(&self) -> Trajectory {
-        let Some(slam) = &self.slam else {
-            return Trajectory::default();
-        };
-        let poses = slam.graph().poses();
-        let places = self.scans.iter().map(|scan| StampedPose {
-            stamp_s: scan.stamp_s,
-            pose: poses[scan.keyframe] * scan.keyframe_from_body,
-        });
-        Trajectory::new(places.collect())
+        let poses = self.pipeline.trajectory();
+        let poses = poses.map(|(stamp_s, pose)| StampedPose { stamp_s, pose });
+        Trajectory::new(poses.collect())
     }
 }
 

@@ -18,6 +18,7 @@ use std::io::Read;
 
 use ch16_slam2d::digest::Digest;
 use ch16_slam2d::graph::{EdgeKind, EdgeView, PoseGraph, PoseNode};
+use ch16_slam2d::pipeline::ScanPose;
 use ch16_slam2d::scan::LaserScan;
 use ch16_slam2d::slam::SlamSnapshot;
 use pr_geom::SE2;
@@ -50,22 +51,11 @@ pub struct Session {
     pub mapped: Option<MappedGraph>,
     /// Where the scans were taken, at most eight for each keyframe but the last; none where nobody kept
     /// them.
-    pub places: Vec<ScanPlace>,
+    pub places: Vec<ScanPose>,
     /// Where the beams of the laser point, without ranges.
     pub sensor: Option<LaserScan>,
     /// Pose by the wheels at the last frame, in the odometry's frame.
     pub last_odometry: Option<SE2>,
-}
-
-/// Where a scan was taken: in the frame of the keyframe before it, so that every loop moves it too.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScanPlace {
-    /// Its time, s.
-    pub stamp_s: f64,
-    /// The keyframe.
-    pub keyframe: usize,
-    /// Its place in the keyframe's frame.
-    pub keyframe_from_body: SE2,
 }
 
 /// Scans that are kept for a keyframe that has been left.
@@ -73,7 +63,7 @@ const PLACES_KEPT: usize = 8;
 
 /// At most eight places for each keyframe but the last, evenly chosen: a robot that waits for an hour
 /// does not fill the file.
-pub(crate) fn places_kept(places: &[ScanPlace]) -> Vec<ScanPlace> {
+pub(crate) fn places_kept(places: &[ScanPose]) -> Vec<ScanPose> {
     let mut kept = Vec::new();
     let last = places.last().map(|place| place.keyframe);
     for of_one in places.chunk_by(|a, b| a.keyframe == b.keyframe) {

@@ -55,7 +55,6 @@ pub const SETTINGS: &[Setting] = &[
         "m",
         "distance after which a scan joins it",
     ),
-    setting("window_turn_rad", "rad", "or turn"),
     setting(
         "normal_radius_m",
         "m",
@@ -108,38 +107,11 @@ pub const SETTINGS: &[Setting] = &[
     setting("odometry.per_rad", "", "the same for each radian"),
     setting("odometry.rad_per_metre", "rad", "the same for each metre"),
     setting(
-        "constant_velocity.floor_m",
-        "m",
-        "deviation of any motion without odometry",
-    ),
-    setting("constant_velocity.per_metre", "", "the same for each metre"),
-    setting(
-        "constant_velocity.metre_per_rad",
-        "m",
-        "the same for each radian",
-    ),
-    setting(
-        "constant_velocity.floor_rad",
-        "rad",
-        "deviation of the heading without odometry",
-    ),
-    setting("constant_velocity.per_rad", "", "the same for each radian"),
-    setting(
-        "constant_velocity.rad_per_metre",
-        "rad",
-        "the same for each metre",
-    ),
-    setting(
         "keyframe_distance_m",
         "m",
         "distance after which a keyframe is taken",
     ),
     setting("keyframe_turn_rad", "rad", "or turn"),
-    setting(
-        "loops.every_keyframes",
-        "",
-        "keyframes from one search for loops to the next",
-    ),
     setting(
         "loops.bundle",
         "",
@@ -150,7 +122,6 @@ pub const SETTINGS: &[Setting] = &[
         "m",
         "path length to the submaps they are looked for on",
     ),
-    setting("loops.submaps", "", "submaps tried at a keyframe"),
     setting(
         "loops.window_sigmas",
         "",
@@ -182,7 +153,6 @@ pub const SETTINGS: &[Setting] = &[
         "m",
         "path length on which it waits for another one",
     ),
-    setting("loops.apart_m", "m", "path length between two that agree"),
 ];
 
 impl Setting {

@@ -2,12 +2,12 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use ch16_slam2d::ancestor::{LikelihoodMap, LikelihoodMapConfig, push_backwards};
 use ch16_slam2d::cloud::PointCloud;
-use ch16_slam2d::field::{ClimbConfig, PosePrior, ScanClimb};
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::prelude::{Matrix3, Point2, Vector3};
+use incremental_mapping::field::{ClimbConfig, PosePrior, ScanClimb};
+use incremental_mapping::{LikelihoodMap, LikelihoodMapConfig, push_backwards};
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
 use pr_geom::SE2;
 

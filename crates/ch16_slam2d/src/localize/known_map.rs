@@ -112,12 +112,6 @@ impl KnownMap {
         &self.points
     }
 
-    /// The grid of the whole map, for searches.
-    #[must_use]
-    pub fn search_map(&self) -> &Arc<SearchMap> {
-        &self.search
-    }
-
     /// A search for a scan, or for a trail of scans, that has not begun.
     ///
     /// # Errors

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::{SE2, math};
 
+use super::belief::Belief;
+use super::pending_fix::PendingFix;
 use super::trail::Trail;
 use super::{KnownMap, LocalizeConfig, LocalizeReport, MapSearch, StartPose, Verdict};
 use crate::cloud::PointCloud;
@@ -28,45 +30,6 @@ const MOST_AWAITED: usize = 4;
 const USUAL_RATE: f64 = 0.1;
 /// Standard deviations of a given start within which it is looked for.
 const START_SIGMAS: f64 = 3.0;
-
-/// What is believed of the pose.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Belief {
-    pose: SE2,
-    covariance: Matrix3<f64>,
-    /// Scans in a row that do not fit.
-    misses: usize,
-    /// Share of a scan that fits, where nothing is doubted.
-    usual_score: f64,
-    /// Scans in a row that fit clearly worse than usual; it stays once there are too many.
-    drops: usize,
-}
-
-/// A frame between its parts; see [`Localizer::begin`].
-#[derive(Clone, Debug)]
-pub struct PendingFix {
-    scan: Arc<PointCloud>,
-    /// Whether the sweep joined the trail.
-    joined: bool,
-    /// The given start around which is looked; none where it is everywhere.
-    start: Option<SE2>,
-    search: Option<MapSearch>,
-    report: LocalizeReport,
-}
-
-impl PendingFix {
-    /// The search under way; none where none is needed, or where it has ended.
-    #[must_use]
-    pub fn search(&self) -> Option<&MapSearch> {
-        self.search.as_ref()
-    }
-
-    /// What the frame says so far, or in the end.
-    #[must_use]
-    pub fn report(&self) -> &LocalizeReport {
-        &self.report
-    }
-}
 
 /// Follows a robot on a map that stays as it is, and finds it where it is lost.
 #[derive(Clone)]

@@ -57,8 +57,6 @@ impl Default for SearchMatcherConfig {
 #[derive(Clone)]
 pub struct SearchMatcher {
     config: SearchMatcherConfig,
-    /// A runner-up that is farther behind is not looked for.
-    max_margin: f64,
     map: Option<Arc<SearchMap>>,
     icp: IcpMatcher,
 }
@@ -69,19 +67,9 @@ impl SearchMatcher {
     pub fn new(config: SearchMatcherConfig, map: &MapConfig) -> Self {
         Self {
             config,
-            max_margin: 1.0,
             map: None,
             icp: IcpMatcher::new(config.refine, map),
         }
-    }
-
-    /// The same matcher without runners-up that are behind by more than `max_margin`, 0 to 1.
-    ///
-    /// Where the scan fits well, most of a search is to find out how badly it fits elsewhere.
-    #[must_use]
-    pub fn with_max_margin(mut self, max_margin: f64) -> Self {
-        self.max_margin = max_margin;
-        self
     }
 
     /// The target as the search sees it.
@@ -105,8 +93,7 @@ impl SearchMatcher {
             &neighborhood,
         );
         let min_score = math::max(self.config.min_score, request.min_score);
-        let search = search.ok()?.with_min_score(min_score);
-        Some(search.with_margin(self.max_margin))
+        Some(search.ok()?.with_min_score(min_score))
     }
 }
 
@@ -192,19 +179,6 @@ mod tests {
         assert_eq!(found.inliers, target.len());
         assert!(found.margin().unwrap() > 0.1);
         assert!(matches!(found.stop, MatchStop::Searched { poses } if poses > 0));
-
-        // The runner-up is more than 0.1 behind: with a smaller margin it is left out, and work with it.
-        let mut near =
-            SearchMatcher::new(SearchMatcherConfig::default(), &MAP).with_max_margin(0.1);
-        near.set_target(&target);
-        let alone = near.register(&source, &request).summary;
-        assert_eq!((alone.pose, alone.score), (found.pose, found.score));
-        assert_eq!(alone.runner_up, None);
-        let poses = |stop| match stop {
-            MatchStop::Searched { poses } => poses,
-            other => panic!("{other:?}"),
-        };
-        assert!(poses(alone.stop) < poses(found.stop));
     }
 
     #[test]

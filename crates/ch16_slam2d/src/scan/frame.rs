@@ -55,7 +55,7 @@ impl PreparedFrame {
     ///
     /// # Errors
     /// [`FrameError::Stamp`] where it is not later, [`FrameError::Odometry`] where its motion leads nowhere.
-    pub(crate) fn seconds_after(
+    pub fn seconds_after(
         &self,
         last_stamp_s: f64,
         world_from_body: &SE2,
@@ -78,7 +78,8 @@ impl PreparedFrame {
 }
 
 /// Whether all numbers of a pose are.
-pub(crate) fn is_finite(pose: &SE2) -> bool {
+#[must_use]
+pub fn is_finite(pose: &SE2) -> bool {
     pose.to_array().iter().all(|value| value.is_finite())
 }
 

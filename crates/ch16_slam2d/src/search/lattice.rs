@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use pr_geom::{SE2, math, sort_numbers, wrap_angle};
+use pr_geom::{SE2, math, sort_numbers};
 
 use super::{LikelihoodGrid, SearchError, SearchNeighborhood, SearchWindow};
 use crate::cloud::PointCloud;
@@ -155,30 +155,6 @@ impl Lattice {
             self.y_m(f64::from(at.row)),
             self.heading_rad(at.heading),
         )
-    }
-
-    /// The poses next to another one, a step to each side in each direction; those of them that there are.
-    pub fn around(&self, pose: &SE2) -> impl Iterator<Item = LatticePose> + use<> {
-        let near = |way: f64, step: f64, half: i32, count: i32| {
-            // The limits keep what is far beyond the window there.
-            let nearest = ((way / step + 0.5).floor()).clamp(-1e8, 1e8) as i32 + half;
-            (nearest - 1).max(0)..=(nearest + 1).min(count - 1)
-        };
-        let turn_rad = wrap_angle(pose.theta() - self.center.theta());
-        let (x_m, y_m) = (pose.x() - self.center.x(), pose.y() - self.center.y());
-        let columns = near(x_m, self.cell_m, self.half_columns, self.columns);
-        let rows = near(y_m, self.cell_m, self.half_rows, self.rows);
-        let headings = near(turn_rad, self.step_rad, self.half_headings, self.headings);
-        headings.flat_map(move |heading| {
-            let columns = columns.clone();
-            rows.clone().flat_map(move |row| {
-                columns.clone().map(move |column| LatticePose {
-                    heading,
-                    row,
-                    column,
-                })
-            })
-        })
     }
 
     /// The neighbourhood in steps.

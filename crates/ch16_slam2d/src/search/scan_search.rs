@@ -1,9 +1,9 @@
 //! Branch and bound over the poses of a window, a box at a time.
 
+mod exhaustive;
+
 use core::cmp::Ordering;
 use std::sync::Arc;
-
-use pr_geom::SE2;
 
 use super::lattice::{Lattice, LatticePose, Nearness};
 use super::turned_scan::{BoxShape, TurnedScan};
@@ -111,18 +111,6 @@ impl ScanSearch {
     #[must_use]
     pub fn with_min_score(mut self, min_score: f64) -> Self {
         self.floor = (min_score * f64::from(self.scan.full_score())).ceil() as u32;
-        self
-    }
-
-    /// The same search, told a pose that fits: what scores less than the poses next to it need not be split.
-    ///
-    /// The answer stays the same. A pose beyond the window tells nothing.
-    #[must_use]
-    pub fn with_known(mut self, pose: &SE2) -> Self {
-        let finest = self.shapes.len() - 1;
-        let known = self.lattice.around(pose);
-        let scores = known.map(|at| self.bounded(at, finest, 0).bound);
-        self.floor = scores.fold(self.floor, u32::max);
         self
     }
 
@@ -240,49 +228,6 @@ impl ScanSearch {
         (0..self.lattice.columns).map(move |column| {
             let pose = self.bounded(LatticePose { column, ..at }, finest, 0);
             self.share(pose.bound)
-        })
-    }
-
-    /// The same answer by scoring every pose of the window, for whoever does not believe it.
-    #[must_use]
-    pub fn exhaustive(&self) -> SearchResult {
-        let better = |champion: Option<OpenBox>, pose: OpenBox| match champion {
-            Some(champion) if pose.promise(&champion) != Ordering::Greater => champion,
-            _ => pose,
-        };
-        let best = self
-            .all_poses()
-            .fold(None, |best, pose| Some(better(best, pose)));
-        let best = best.expect("a window has a pose");
-        let elsewhere = self
-            .all_poses()
-            .filter(|pose| !self.is_same_place(&best, pose));
-        let runner_up = elsewhere.fold(None, |best, pose| Some(better(best, pose)));
-        SearchResult {
-            best: self.scored(&best),
-            runner_up: runner_up.map(|pose| self.scored(&pose)),
-            counts: SearchCounts {
-                bounds: 0,
-                poses: self.lattice.len(),
-                window: self.lattice.len(),
-            },
-        }
-    }
-
-    /// Every pose of the window with its score, in the order that decides among equals.
-    fn all_poses(&self) -> impl Iterator<Item = OpenBox> + '_ {
-        (0..self.lattice.headings).flat_map(|heading| self.poses_at(heading))
-    }
-
-    fn poses_at(&self, heading: i32) -> impl Iterator<Item = OpenBox> + '_ {
-        let at = move |row: i32, column: i32| LatticePose {
-            heading,
-            row,
-            column,
-        };
-        let (rows, columns) = (self.lattice.rows, self.lattice.columns);
-        (0..rows).flat_map(move |row| {
-            (0..columns).map(move |column| self.bounded(at(row, column), self.shapes.len() - 1, 0))
         })
     }
 

@@ -15,6 +15,7 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 use pr_geom::{SE2, math};
 
+use super::agreement::do_agree;
 use super::mapper::{Mapper, Trust};
 use super::robots::{RobotConfig, SubmapLoopConfig};
 use crate::cloud::PointCloud;
@@ -28,6 +29,10 @@ use crate::loops::{
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
 
+/// Submaps that are tried at a keyframe, the nearest first.
+const SUBMAPS: usize = 2;
+/// Loops that agree lie so far apart on the path, m: their keyframes are not the same.
+const APART_M: f64 = 5.0;
 /// Keyframes on either side of the nearest one in a submap, at least.
 const HALF_SUBMAP: usize = 8;
 /// Submaps hold keyframes so far beyond the window, m: about as far as a room is seen.
@@ -37,7 +42,7 @@ const BUNDLE_CELL_M: f64 = 0.15;
 /// The window is so much wider than the covariance says, m and rad.
 const WINDOW_FLOOR: (f64, f64) = (0.3, 0.06);
 /// The largest squared innovation that is expected: 99 of 100 lie below, of three degrees of freedom.
-const GATE_CHI2: f64 = 11.345;
+pub(super) const GATE_CHI2: f64 = 11.345;
 /// Loops that agree where they are expected, and where they contradict the graph.
 const AGREEING: (usize, usize) = (2, 3);
 /// Smallest information of a loop in any direction, 1/m² and 1/rad²: a metre, a radian.
@@ -145,7 +150,7 @@ impl BundleLoops {
         };
         let mut windows = Vec::new();
         for candidate in detect_visits(mapper.graph.poses(), node, &nearby) {
-            if windows.len() == config.submaps {
+            if windows.len() == SUBMAPS {
                 break;
             }
             let Ok(covariance) = mapper.graph.relative_covariance(candidate.node, node) else {
@@ -332,7 +337,7 @@ impl BundleLoops {
         let mut agreeing = Vec::new();
         for (index, other) in self.pending.iter().enumerate() {
             let apart_m = path_m - other.path_m;
-            let is_beside = apart_m < self.config.apart_m;
+            let is_beside = apart_m < APART_M;
             if is_beside || apart_m > self.config.pending_distance_m {
                 continue;
             }
@@ -362,38 +367,4 @@ fn rejection(
     let min_margin = config.min_margin;
     let margin = margin.filter(|margin| *margin < min_margin)?;
     Some(LoopRejection::Ambiguous { margin, min_margin })
-}
-
-/// Whether two loops correct the path alike: `e = log((Tᵢ Z)⁻¹ Tₖ Zₖ Tⱼ⁻¹ T)` within the gate of the
-/// covariances of both loops and of the paths between their ends.
-fn do_agree(mapper: &mut Mapper, first: &LoopVerification, second: &LoopVerification) -> bool {
-    let graph = &mut mapper.graph;
-    let (Ok(between_new), Ok(between_old)) = (
-        graph.relative_covariance(first.from_node, second.from_node),
-        graph.relative_covariance(first.candidate.node, second.candidate.node),
-    ) else {
-        return false;
-    };
-    let way = graph
-        .pose(first.from_node)
-        .between(&graph.pose(second.from_node));
-    let claim = |found: &LoopVerification| graph.pose(found.candidate.node) * found.registered;
-    let e = claim(second).between(&(claim(first) * way)).log();
-    // Each in the tangent space of the second one's new keyframe.
-    let moved = |covariance: &Matrix3<f64>, by: &SE2| {
-        let adjoint = by.inverse().adjoint();
-        adjoint * covariance * adjoint.transpose()
-    };
-    let (Some(first_own), Some(second_own)) = (
-        first.information.try_inverse(),
-        second.information.try_inverse(),
-    ) else {
-        return false;
-    };
-    let covariance = between_new
-        + second_own
-        + moved(&first_own, &way)
-        + moved(&between_old, &second.registered);
-    let information = covariance.try_inverse();
-    information.is_some_and(|information| e.dot(&(information * e)) <= GATE_CHI2)
 }

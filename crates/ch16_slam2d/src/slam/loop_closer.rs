@@ -6,6 +6,9 @@ use super::mapper::{Mapper, Trust};
 use crate::chapter::{NearbyLoops, SlamParts};
 use crate::loops::{LoopVerification, LoopWorkspace, PendingLoop};
 
+/// Robots look for loops at every so many keyframes: more often costs time and closes no more.
+const EVERY_KEYFRAMES: usize = 3;
+
 /// How loops are found.
 #[derive(Clone)]
 enum Finder {
@@ -55,7 +58,7 @@ impl LoopCloser {
             return tried;
         }
         let every = match &config.robot {
-            Some(robot) => robot.loops.every_keyframes,
+            Some(_) => EVERY_KEYFRAMES,
             None => config.chapter.loops.attempt_every_nodes,
         };
         if self

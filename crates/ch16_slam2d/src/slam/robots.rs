@@ -11,6 +11,9 @@ use crate::scan::{LaserScan, ScanConfig};
 /// Radius within which points of one scan give each other normals, m, for each degree from beam to beam.
 const SCAN_NORMAL_RADIUS_M: f64 = 0.5;
 
+/// A scan joins the local map where it is turned so far from the newest one, rad: a tenth or a half, the
+/// errors are the same.
+const WINDOW_TURN_RAD: f64 = 0.1;
 /// Wheels of a common indoor robot; what slips is left to the tails of the prior.
 const WHEELS: MotionNoise = MotionNoise {
     floor_m: 0.01,
@@ -37,7 +40,6 @@ const CONSTANT_VELOCITY: MotionNoise = MotionNoise {
 /// metres. `docs/robots.md` says what it does on recorded logs, `docs/robots-parameters.md` what each
 /// number does.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct RobotConfig {
     /// A scan is thinned to a point in each cell of this side, m.
@@ -48,8 +50,6 @@ pub struct RobotConfig {
     pub window_sweeps: usize,
     /// A scan joins the local map only so far from the newest one in it, m.
     pub window_distance_m: f64,
-    /// Or where it is turned so far from the newest one, rad.
-    pub window_turn_rad: f64,
     /// Radius within which points of the local map give each other normals, m.
     pub normal_radius_m: f64,
     /// Largest distance of a pair in the first stage of a registration, m.
@@ -70,8 +70,6 @@ pub struct RobotConfig {
     pub search_rad: f64,
     /// How far the wheels are trusted.
     pub odometry: MotionNoise,
-    /// How far a robot without odometry goes on as before.
-    pub constant_velocity: MotionNoise,
     /// Distance after which a keyframe is taken, m.
     pub keyframe_distance_m: f64,
     /// Turn after which a keyframe is taken, rad.
@@ -80,19 +78,16 @@ pub struct RobotConfig {
     pub loops: SubmapLoopConfig,
 }
 
-/// How loops are found: keyframes around the newest on a submap of older ones.
+/// How loops are found: the newest keyframes on a submap of older ones.
+///
+/// What a session's file has beyond these numbers was one once and is a constant now.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct SubmapLoopConfig {
-    /// A loop is looked for at every so many keyframes.
-    pub every_keyframes: usize,
     /// The newest so many keyframes are looked for together.
     pub bundle: usize,
     /// On submaps of older keyframes, at least so much of the path ago, m.
     pub min_path_m: f64,
-    /// At most so many submaps are tried at a keyframe, the nearest first.
-    pub submaps: usize,
     /// The window is so many standard deviations of the relative pose wide.
     pub window_sigmas: f64,
     /// Half the window's width at most, m.
@@ -107,17 +102,13 @@ pub struct SubmapLoopConfig {
     pub sure_m: f64,
     /// Else it waits for one on so much of the path, m.
     pub pending_distance_m: f64,
-    /// Loops that agree lie so far apart on the path, m: their keyframes are not the same.
-    pub apart_m: f64,
 }
 
 impl Default for SubmapLoopConfig {
     fn default() -> Self {
         Self {
-            every_keyframes: 3,
             bundle: 8,
             min_path_m: 12.0,
-            submaps: 2,
             window_sigmas: 3.4,
             max_window_m: 20.0,
             max_turn_rad: 0.5,
@@ -125,7 +116,6 @@ impl Default for SubmapLoopConfig {
             min_margin: 0.03,
             sure_m: 1.0,
             pending_distance_m: 20.0,
-            apart_m: 5.0,
         }
     }
 }
@@ -137,7 +127,6 @@ impl Default for RobotConfig {
             scan_normal_radius_m: SCAN_NORMAL_RADIUS_M,
             window_sweeps: 16,
             window_distance_m: 0.16,
-            window_turn_rad: 0.1,
             normal_radius_m: 0.3,
             reach_m: 0.3,
             fit_m: 0.15,
@@ -148,7 +137,6 @@ impl Default for RobotConfig {
             search_m: 1.1,
             search_rad: 1.6,
             odometry: WHEELS,
-            constant_velocity: CONSTANT_VELOCITY,
             keyframe_distance_m: 0.65,
             keyframe_turn_rad: 0.35,
             loops: SubmapLoopConfig::default(),
@@ -173,7 +161,7 @@ impl RobotConfig {
         if is_measured {
             &self.odometry
         } else {
-            &self.constant_velocity
+            &CONSTANT_VELOCITY
         }
     }
 
@@ -213,7 +201,7 @@ impl SlamConfig {
             },
             window_sweeps: robot.window_sweeps,
             window_distance_m: robot.window_distance_m,
-            window_turn_rad: robot.window_turn_rad,
+            window_turn_rad: WINDOW_TURN_RAD,
             extrapolation: 1.0,
             keyframe_distance_m: robot.keyframe_distance_m,
             keyframe_turn_rad: robot.keyframe_turn_rad,

@@ -296,7 +296,7 @@ mod tests {
         let mut doubting = RobotConfig::for_scan(&scan);
         doubting.loops.sure_m = 0.0;
         doubting.loops.min_margin = 0.0;
-        doubting.loops.apart_m = 1e3;
+        doubting.loops.pending_distance_m = 0.0;
         doubting.loops.min_path_m = 4.0;
         let doubting = SlamConfig::from_robot(doubting);
         [

@@ -329,7 +329,7 @@ mod tests {
         let mut robot = RobotConfig::for_scan(&frame(0).scan);
         robot.loops.sure_m = 0.0;
         robot.loops.min_margin = 0.0;
-        robot.loops.apart_m = 1e3;
+        robot.loops.pending_distance_m = 0.0;
         robot.loops.min_path_m = 4.0;
         let config = SlamConfig::from_robot(robot);
         let mut slam = Slam::new(config);

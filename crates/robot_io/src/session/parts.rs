@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use ch16_slam2d::graph::{EdgeKind, EdgeView, PoseEdge, PoseNode};
 use ch16_slam2d::loops::PendingLoop;
+use ch16_slam2d::pipeline::ScanPose;
 use ch16_slam2d::scan::LaserScan;
 use ch16_slam2d::slam::{
     FrontEndSnapshot, Keyframe, RobotConfig, SlamConfig, SlamSnapshot, WindowSweep,
@@ -11,7 +12,7 @@ use ch16_slam2d::slam::{
 use pr_geom::{SE2, Vector3};
 
 use super::bytes::{Broken, Cursor, Writer};
-use super::{MappedGraph, ScanPlace, Session, pending, scans};
+use super::{MappedGraph, Session, pending, scans};
 
 /// Most bytes of a keyframe's scan, on the mean: with its node, its pose on the map, eight places
 /// of scans and five edges it stays below 3,000.
@@ -190,7 +191,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
     let scan_places = from.section(b"WAYS", |from| {
         let count = from.count(PLACE_BYTES)?;
         let place = |_| {
-            Ok(ScanPlace {
+            Ok(ScanPose {
                 stamp_s: from.f64()?,
                 keyframe: from.u32()? as usize,
                 keyframe_from_body: from.pose()?,

@@ -2,6 +2,7 @@ use std::f64::consts::TAU;
 use std::io::Cursor as Bytes;
 
 use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::pipeline::ScanPose;
 use ch16_slam2d::scan::LaserScan;
 use ch16_slam2d::slam::RobotConfig;
 use pr_geom::{Point2, SE2, Vector3, math};
@@ -112,7 +113,7 @@ fn loops_that_wait_are_saved_and_wait_on() {
     let settings = [
         ("loops.sure_m", 0.0),
         ("loops.min_margin", 0.0),
-        ("loops.apart_m", 1000.0),
+        ("loops.pending_distance_m", 0.0),
         ("loops.min_path_m", 4.0),
     ];
     let settings = settings.map(|(name, value)| (Setting::named(name).unwrap(), value));
@@ -408,7 +409,7 @@ fn rays_to_a_thinned_wall_end_on_it_and_leave_gaps_open() {
 
 #[test]
 fn a_robot_that_waits_does_not_fill_the_file_with_places() {
-    let place = |number: usize, keyframe: usize| ScanPlace {
+    let place = |number: usize, keyframe: usize| ScanPose {
         stamp_s: number as f64,
         keyframe,
         keyframe_from_body: SE2::identity(),
@@ -418,7 +419,7 @@ fn a_robot_that_waits_does_not_fill_the_file_with_places() {
         100..105 => 1,
         _ => 2,
     };
-    let places: Vec<ScanPlace> = (0..150).map(|k| place(k, keyframe(k))).collect();
+    let places: Vec<ScanPose> = (0..150).map(|k| place(k, keyframe(k))).collect();
     let kept = places_kept(&places);
     // Eight of the first keyframe, all of the second, and all of the last, which may get more.
     assert_eq!(kept.len(), 8 + 5 + 45);

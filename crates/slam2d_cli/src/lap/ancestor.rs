@@ -2,9 +2,9 @@
 
 use ch16_lab::ancestor::{Ancestor, AncestorTrace};
 use ch16_lab::lap::{Choice, Drive, LapConfig};
-use ch16_slam2d::ancestor::{CycleClosure, CycleTest, CycleVerdict};
 use ch16_slam2d::digest::Digest;
 use ch16_slam2d::metrics::position_error_m;
+use incremental_mapping::{CycleClosure, CycleTest, CycleVerdict};
 use serde::Serialize;
 
 use super::LapArgs;

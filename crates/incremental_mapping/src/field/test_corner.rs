@@ -2,7 +2,7 @@
 
 use nalgebra::{Point2, Vector2};
 
-use crate::cloud::PointCloud;
+use ch16_slam2d::cloud::PointCloud;
 
 /// Two walls of a room and a post, seen from its middle, with normals.
 pub fn corner() -> PointCloud {

@@ -4,8 +4,8 @@ use pr_geom::SE2;
 
 use super::LikelihoodMapConfig;
 use crate::field::ClimbConfig;
-use crate::scan::ScanConfig;
-use crate::slam::{MotionNoise, SlamConfig};
+use ch16_slam2d::scan::ScanConfig;
+use ch16_slam2d::slam::{MotionNoise, SlamConfig};
 
 /// When particles are believed, and how far they spread.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -32,7 +32,7 @@ pub fn push_backwards(poses: &mut [SE2], end: &SE2) -> f64 {
     poses[steps] = *end;
     let moved = before.iter().zip(&*poses);
     moved
-        .map(|(old, new)| crate::metrics::position_error_m(new, old))
+        .map(|(old, new)| ch16_slam2d::metrics::position_error_m(new, old))
         .fold(0.0, f64::max)
 }
 
@@ -41,7 +41,7 @@ mod tests {
     use nalgebra::Matrix3;
 
     use super::*;
-    use crate::graph::{EdgeKind, PoseGraph};
+    use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 
     /// Around a square of 4 m, a metre a step, with headings that creep: the end misses the start.
     fn path() -> Vec<SE2> {
@@ -89,8 +89,8 @@ mod tests {
         graph.optimize(30, 1e-12);
         assert!(graph.chi2() < 1e-3 * before);
         for (node, pose) in pushed.iter().enumerate() {
-            let apart = crate::metrics::position_error_m(pose, &graph.pose(node));
-            let moved = crate::metrics::position_error_m(pose, &path[node]);
+            let apart = ch16_slam2d::metrics::position_error_m(pose, &graph.pose(node));
+            let moved = ch16_slam2d::metrics::position_error_m(pose, &path[node]);
             // 2 cm beside up to 15 cm that poses moved: headings and positions are shared out one
             // after the other, not together.
             assert!(apart < 0.02, "{node}: {apart} of {moved}");

@@ -6,7 +6,7 @@ use nalgebra::{Point2, Vector3};
 use pr_geom::{Rng, SE2, math, wrap_angle};
 
 use super::LikelihoodMap;
-use crate::cloud::PointCloud;
+use ch16_slam2d::cloud::PointCloud;
 
 /// One point in so many is looked at, so that a particle costs little.
 const POINTS_SKIPPED: usize = 2;

@@ -6,10 +6,10 @@ use super::{
     AncestorConfig, CycleClosure, CycleConfig, CycleTest, CycleVerdict, LikelihoodMap, PoseBelief,
     push_backwards,
 };
-use crate::cloud::PointCloud;
 use crate::field::ScanClimb;
-use crate::metrics::position_error_m;
-use crate::slam::Keyframe;
+use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::metrics::position_error_m;
+use ch16_slam2d::slam::Keyframe;
 
 /// A posterior over the pose beside the incremental mapper, weighed on what is old.
 ///

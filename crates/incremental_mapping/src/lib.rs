@@ -22,6 +22,7 @@
 mod belief;
 mod config;
 mod cycles;
+pub mod field;
 mod likelihood_map;
 mod mapper;
 mod push;

@@ -4,8 +4,8 @@ use nalgebra::{Matrix2, Point2, Vector2};
 use pr_geom::{SE2, math};
 use pr_grid::{Cell, bresenham};
 
-use crate::cloud::PointCloud;
 use crate::field::{PointScore, PointScores, TiledGrid};
+use ch16_slam2d::cloud::PointCloud;
 
 /// Most cells of a map: 64 MB, 120 m × 120 m at 0.06 m where all of it is walls.
 pub const MAX_MAP_CELLS: usize = 1 << 22;
@@ -133,8 +133,8 @@ impl LikelihoodMap {
             // Also false where it is no number.
             if reach_m < MAX_RAY_CELLS * self.config.cell_m {
                 self.see(origin, self.cells.cell_of(at));
-                let (normal_x, normal_y) = scan.raw_normal(index);
-                let (x, y) = rotation.rotate(normal_x, normal_y);
+                let normal = scan.normal(index).unwrap_or_default();
+                let (x, y) = rotation.rotate(normal.x, normal.y);
                 self.draw_wall(at, Vector2::new(x, y));
             }
         }

@@ -4,7 +4,7 @@
 //! between the cells by bicubic interpolation and says of each point how well it lies there
 //! ([`PointScores`]): its score with slope and curvature. [`ScanClimb`] moves a scan uphill on the sum
 //! over its points, with a belief about its pose as one more term: the registration of the
-//! [`ancestor`](crate::ancestor) on its likelihood field.
+//! [`IncrementalMapper`](crate::IncrementalMapper) on its likelihood field.
 
 mod bicubic;
 mod climb;

@@ -3,8 +3,8 @@
 use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
 use pr_geom::{SE2, math, twist_size, wrap_angle};
 
-use crate::cloud::PointCloud;
-use crate::scan::is_finite;
+use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::scan::is_finite;
 
 /// Damping of the first step, as a share of the curvature.
 const FIRST_DAMPING: f64 = 1e-3;

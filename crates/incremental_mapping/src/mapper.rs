@@ -7,11 +7,11 @@ use pr_geom::SE2;
 
 use super::{AncestorConfig, AncestorReport, CycleTest, CycleVerdict, CycleWatch, LikelihoodMap};
 use crate::field::{Climb, PosePrior, ScanClimb};
-use crate::metrics::position_error_m;
-use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer, is_finite};
-use crate::slam::Keyframe;
+use ch16_slam2d::metrics::position_error_m;
+use ch16_slam2d::scan::{Frame, FrameError, PreparedFrame, ScanPreparer, is_finite};
+use ch16_slam2d::slam::Keyframe;
 
-/// Incremental maximum likelihood mapping over the frames of [`Slam`](crate::slam::Slam).
+/// Incremental maximum likelihood mapping over the frames of [`Slam`](ch16_slam2d::slam::Slam).
 #[derive(Clone)]
 pub struct IncrementalMapper {
     config: AncestorConfig,

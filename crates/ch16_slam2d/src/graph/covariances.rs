@@ -1,0 +1,68 @@
+//! What the graph knows of its poses: exact covariances.
+
+use nalgebra::Matrix3;
+use pr_optim::OptimizeError;
+
+use super::{NodeId, PoseGraph};
+
+impl PoseGraph {
+    /// Exact covariance of the relative pose `T_i⁻¹ T_j`, as all edges together know it.
+    ///
+    /// Taken from the factor of the whole graph, at the present poses: 3×3, in the tangent space of
+    /// right perturbations of the relative pose, order x, y, θ, m² and rad². Other ways around,
+    /// closed loops among them, make it smaller than the sum along the path.
+    /// Kaess & Dellaert, "Covariance recovery from a square root information matrix for data
+    /// association", 2009.
+    ///
+    /// # Errors
+    /// Where the normal equations are not positive definite.
+    ///
+    /// # Panics
+    /// Where a node does not exist.
+    pub fn relative_covariance(
+        &mut self,
+        i: impl Into<NodeId>,
+        j: impl Into<NodeId>,
+    ) -> Result<Matrix3<f64>, OptimizeError> {
+        let (i, j) = (i.into(), j.into());
+        let joint = self
+            .optimizer
+            .joint_covariance(&self.problem, i.index(), j.index())?;
+        Ok(joint.relative(&self.pose(i), &self.pose(j)))
+    }
+
+    /// How far the farthest node would move, m and rad added, if the graph was optimized: to first order, by the
+    /// edges since it was optimized last. Infinite where those are too many.
+    ///
+    /// # Errors
+    /// Where the normal equations are not positive definite.
+    pub fn largest_move_since(&mut self) -> Result<f64, OptimizeError> {
+        self.optimizer.largest_move_since(&self.problem)
+    }
+
+    /// Exact covariance of every pose against the fixed ones, by node; zero for those.
+    ///
+    /// # Errors
+    /// Where the normal equations are not positive definite.
+    pub fn pose_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
+        self.optimizer.marginals(&self.problem)
+    }
+
+    /// Exact covariance of the relative pose at every edge, in the order in which they were added.
+    ///
+    /// The same as [`relative_covariance`](Self::relative_covariance) of its two nodes, but all from
+    /// one selected inverse of the factor.
+    ///
+    /// # Errors
+    /// Where the normal equations are not positive definite.
+    pub fn edge_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
+        let measured = self.optimizer.measured_covariances(&self.problem)?;
+        let poses = self.problem.poses();
+        let ends = self.problem.factors().iter();
+        Ok(measured
+            .iter()
+            .zip(ends)
+            .map(|(joint, factor)| joint.relative(&poses[factor.from], &poses[factor.to]))
+            .collect())
+    }
+}
