@@ -57,6 +57,8 @@ pub struct MapFit {
     pub score: f64,
     /// Points closer to the map than a miss.
     pub inliers: usize,
+    /// Points in space that a scan has looked through.
+    pub contradicting: usize,
     /// Root mean square distance of those, m; infinite without any.
     pub rmse_m: f64,
 }
@@ -115,7 +117,8 @@ impl LocalMap {
         config: &MapRegistrationConfig,
     ) -> MapFit {
         let miss_m2 = config.fit_m * config.fit_m;
-        let (mut cost, mut squares_m2, mut inliers) = (0.0, 0.0, 0_usize);
+        let (mut cost, mut squares_m2) = (0.0, 0.0);
+        let (mut inliers, mut contradicting) = (0_usize, 0_usize);
         let mut last_found = None;
         for point in scan.iter() {
             let at = map_from_scan.transform(point);
@@ -125,11 +128,11 @@ impl LocalMap {
                     inliers += 1;
                     last_found = Some(nearest.index);
                 }
-                None if self.is_free(at) => cost += 1.0,
+                None if self.is_free(at) => contradicting += 1,
                 None => cost += config.unseen_cost,
             }
         }
-        cost += squares_m2 / miss_m2;
+        cost += contradicting as f64 + squares_m2 / miss_m2;
         let rmse_m = if inliers == 0 {
             f64::INFINITY
         } else {
@@ -138,6 +141,7 @@ impl LocalMap {
         MapFit {
             score: 1.0 - cost / scan.len().max(1) as f64,
             inliers,
+            contradicting,
             rmse_m,
         }
     }

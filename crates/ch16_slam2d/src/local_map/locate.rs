@@ -15,6 +15,11 @@ const STARTS: ([f64; 5], [f64; 9]) = (
     [0.0, -0.3, 0.3, -0.6, 0.6, -0.9, 0.9, -1.2, 1.2],
 );
 
+/// A prior that costs more is off by more than three standard deviations.
+const UNLIKELY: f64 = 6.0;
+/// Share of a scan in space that was looked through, above which it was taken elsewhere.
+const REFUTED: f64 = 0.1;
+
 impl LocalMap {
     /// The pose of lowest cost among those that registrations end at: from the prediction, from `others`, and
     /// from the best pose of the window around the prediction.
@@ -36,6 +41,13 @@ impl LocalMap {
                 self.register(scan, prior.pose, near, Some(prior), config),
             );
         }
+        // Where few points have pairs, these pull the scan farther than they know.
+        if prior.cost(&best.registered.pose) > UNLIKELY {
+            best = cheaper(
+                best,
+                self.register(scan, prior.pose, &[], Some(prior), config),
+            );
+        }
         let is_vague = 2.0 * prior.sigma_m > config.reach_m;
         if is_vague && best.fit.score < GOOD_WITHOUT_WHEELS {
             for turn_rad in STARTS.1 {
@@ -50,15 +62,20 @@ impl LocalMap {
                 }
             }
         }
+        // A scan of what was never seen fits anywhere: only one that contradicts the map was taken elsewhere.
+        let is_refuted = |best: &MapRegistration| {
+            best.fit.score < config.good_score
+                && best.fit.contradicting as f64 >= REFUTED * scan.len() as f64
+        };
         for start in others {
-            if best.fit.score < config.good_score {
+            if is_refuted(&best) {
                 best = cheaper(
                     best,
                     self.register(scan, *start, &stages, Some(prior), config),
                 );
             }
         }
-        if best.fit.score < config.good_score {
+        if is_refuted(&best) {
             let window = SearchWindow::around(prior.pose, config.search_m, config.search_rad);
             if let Some(found) = self.search(scan, &window, 0.0) {
                 best = cheaper(
@@ -73,4 +90,45 @@ impl LocalMap {
 
 fn cheaper(one: MapRegistration, other: MapRegistration) -> MapRegistration {
     if other.cost < one.cost { other } else { one }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use pr_geom::Point2;
+
+    use super::*;
+    use crate::local_map::{PriorTail, RangeProfile};
+    use crate::slam::RobotConfig;
+
+    fn wall(points: i32, at: impl Fn(f64) -> Point2<f64>) -> PointCloud {
+        (0..points).map(|k| at(0.05 * f64::from(k))).collect()
+    }
+
+    #[test]
+    fn a_wall_that_nobody_has_seen_is_not_laid_on_a_known_one() {
+        // A corridor along x; through its door, three metres behind its wall, the robot sees another wall.
+        let south = wall(200, |x| Point2::new(x, -1.0));
+        let north = wall(200, |x| Point2::new(x, 1.0));
+        let corridor: PointCloud = south.iter().chain(north.iter()).collect();
+        let profile = Arc::new(RangeProfile::new(&corridor));
+        let mut map = LocalMap::default();
+        map.rebuild([(SE2::identity(), &corridor, &profile)]);
+        let pose = SE2::new(5.0, 1.6, core::f64::consts::FRAC_PI_2);
+        let seen = wall(40, |y| Point2::new(2.0, y - 1.0));
+        let prior = MotionPrior {
+            pose,
+            sigma_m: 0.04,
+            sigma_rad: 0.02,
+            tail: PriorTail::Student,
+        };
+        let config = RobotConfig::default().registration();
+        let others = [pose * SE2::new(-0.5, 0.0, 0.0)];
+        let found = map.locate(&seen, &prior, &others, &config);
+        assert!(pose.between(&found.registered.pose).step_size() < 0.05);
+        // The wall would fit on the corridor's, half a turn away.
+        let laid = SE2::new(5.0, 3.0, -core::f64::consts::FRAC_PI_2);
+        assert!(map.fit(&seen, &laid, &config).score > found.fit.score + 0.2);
+    }
 }
