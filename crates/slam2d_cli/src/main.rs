@@ -13,6 +13,7 @@ mod info;
 mod lap;
 mod localize;
 mod log_file;
+mod logs;
 mod map;
 mod numbers;
 mod optimize;
@@ -60,6 +61,7 @@ enum Command {
     Doctor(doctor::DoctorArgs),
     Run(run_log::RunArgs),
     Localize(localize::LocalizeArgs),
+    Logs(logs::LogsArgs),
     Parameters(parameters::ParametersArgs),
     Evaluate(evaluate::EvaluateArgs),
     Convert(convert::ConvertArgs),
@@ -94,6 +96,7 @@ fn main() -> ExitCode {
         Command::Info(args) => info::run(args).map_err(|e| e.to_string()),
         Command::Run(args) => run_log::run(args).map_err(|e| e.to_string()),
         Command::Localize(args) => localize::run(args).map_err(|e| e.to_string()),
+        Command::Logs(args) => logs::run(args).map_err(|e| e.to_string()),
         Command::Parameters(args) => parameters::run(args).map_err(|e| e.to_string()),
         Command::Evaluate(args) => evaluate::run(args).map_err(|e| e.to_string()),
         Command::Convert(args) => convert::run(args).map_err(|e| e.to_string()),
