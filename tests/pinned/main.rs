@@ -8,7 +8,6 @@ mod ndt;
 mod normals;
 mod optimum;
 mod page;
-mod reached;
 mod rng;
 mod scan;
 mod terrain;
