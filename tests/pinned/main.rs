@@ -8,6 +8,7 @@ mod ndt;
 mod normals;
 mod optimum;
 mod page;
+mod palette;
 mod rng;
 mod scan;
 mod terrain;
