@@ -18,6 +18,9 @@ struct Args {
     out_name: String,
     #[arg(long)]
     target: Target,
+    /// Without the path of a module beside the glue: the caller names it.
+    #[arg(long)]
+    omit_default_module_path: bool,
     /// Declarations are always written.
     #[arg(long)]
     typescript: bool,
@@ -40,6 +43,6 @@ fn main() -> anyhow::Result<()> {
         .input_path(&args.input)
         .out_name(&args.out_name)
         .typescript(true)
-        .omit_default_module_path(false)
+        .omit_default_module_path(args.omit_default_module_path)
         .generate(&args.out_dir)
 }
