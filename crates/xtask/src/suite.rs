@@ -7,7 +7,7 @@ use std::{env, fs, hint, thread};
 use anyhow::{Context as _, bail};
 use clap::ValueEnum;
 
-use crate::run::{cargo, output, program, root, run};
+use crate::run::{cargo, program, root, run};
 use crate::site::{self, Speed};
 use crate::tools::{self, TARGET, linting};
 
@@ -258,6 +258,7 @@ fn summary(skipped: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::output;
 
     #[test]
     fn pieces_run_in_the_order_of_the_suite() {
