@@ -76,8 +76,6 @@ async function wrapGlue() {
   // A browser whose pixel ratio is emulated reports device pixels that disagree with it.
   text = replaceOnce(text, /arg0\.devicePixelContentBoxSize/, 'frames.deviceSize(arg0)');
   text = replaceOnce(text, /arg0\.devicePixelRatio/, 'frames.pixelRatio()');
-  // Where the file lies is for the host to say; a bundled glue would guess wrong.
-  text = replaceOnce(text, /module_or_path = script_src\.replace\([^;]*;/, '');
   const wrapped = `export function createGlue(frames) {\n${text}\nreturn wasm_bindgen;\n}\n`;
   await writeFile(join(PKG, 'glue.js'), wrapped);
   await cp(join(WEB, 'glue.template.d.ts'), join(PKG, 'glue.d.ts'));

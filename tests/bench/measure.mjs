@@ -27,17 +27,15 @@ try {
 
 async function measure() {
   const all = JSON.parse(execFileSync(program, ['names'], { encoding: 'utf8' }));
-  // The first is the calibration loop, which tells how busy the machine is.
-  const names = all.filter((id, index) => index === 0 || !only || only.split(',').includes(id));
-  const nothing = () => ({ ms: [], mean_ms: [], digest: '' });
+  const names = all.filter((id) => !only || only.split(',').includes(id));
+  const nothing = () => ({ ms: [], digest: '' });
   const entries = names.map((id) => ({ id, native: nothing(), node: nothing(), chromium: nothing() }));
   for (let round = -WARM_UP; round < Number(rounds); round += 1) {
     for (const entry of entries) {
       for (const [name, engine] of Object.entries(engines)) {
-        const { ms, mean_ms, digest } = await engine.turn(entry.id, Number(budgetMs));
+        const { ms, digest } = await engine.turn(entry.id, Number(budgetMs));
         if (round < 0) continue;
         entry[name].ms.push(ms);
-        entry[name].mean_ms.push(mean_ms);
         entry[name].digest = digest;
       }
     }

@@ -1,221 +1,190 @@
-//! The invariants of ARCHITECTURE.md, as far as sources can show them.
+//! The invariants of ARCHITECTURE.md that neither the compiler nor `clippy.toml` can check.
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde::Deserialize;
 
 use super::page::document::source;
 
-/// Every package with its layer; a package may use only packages of lower layers.
-const LAYERS: [(&str, u8); 28] = [
-    ("crates/pr_geom", 0),
-    ("crates/pr_sim", 1),
-    ("crates/pr_grid", 1),
-    ("crates/pr_optim", 1),
-    ("crates/ch16_slam2d", 2),
-    ("crates/incremental_mapping", 3),
-    ("crates/ch16_lab", 4),
-    ("crates/robot_io", 3),
-    ("crates/slam2d_cli", 5),
-    ("crates/solver_peers", 3),
-    ("crates/measuring", 0),
-    ("crates/xtask", 0),
-    ("widgets/kit", 1),
-    ("widgets/w16_1_basin_explorer", 5),
-    ("widgets/w16_2_full_lap", 5),
-    ("widgets/w16_3_cost_terraces", 5),
-    ("widgets/w16_4_control_room", 5),
-    ("widgets/w16_5_pose_graph_toy", 5),
-    ("widgets/w16_6_whole_window", 5),
-    ("widgets/w16_7_been_here", 5),
-    ("widgets/w16_8_moving_box", 5),
-    ("widgets/w16_9_come_back", 5),
-    ("widgets/w16_10_own_robot", 5),
-    ("widgets/w16_11_procrustes", 5),
-    ("widgets/w16_12_jacobians", 5),
-    ("web", 6),
-    ("web/desktop", 7),
-    ("web/robot", 5),
-];
+/// What `cargo metadata` prints of a package.
+#[derive(Deserialize)]
+struct Package {
+    name: String,
+    manifest_path: PathBuf,
+    dependencies: Vec<Dependency>,
+    targets: Vec<Target>,
+}
 
-const CORE: [&str; 8] = [
-    "crates/pr_geom",
-    "crates/pr_sim",
-    "crates/pr_grid",
-    "crates/pr_optim",
-    "crates/ch16_slam2d",
-    "crates/incremental_mapping",
-    "crates/ch16_lab",
-    "crates/robot_io",
-];
+#[derive(Deserialize)]
+struct Dependency {
+    name: String,
+    /// `dev` or `build`; absent for what the package itself uses.
+    kind: Option<String>,
+}
 
-/// The half of the kit that a model may use.
-const KIT_WITHOUT_EGUI: [&str; 10] = [
-    "chart", "model", "outside", "palette", "param", "playback", "run", "scene", "spec", "ticks",
-];
-
-/// Functions of `f64` whose last bit depends on the platform.
-const PLATFORM_FUNCTIONS: [&str; 20] = [
-    ".sin()",
-    ".cos()",
-    ".tan()",
-    ".sin_cos()",
-    ".asin()",
-    ".acos()",
-    ".atan()",
-    ".atan2(",
-    ".exp()",
-    ".exp2()",
-    ".exp_m1()",
-    ".ln()",
-    ".ln_1p()",
-    ".log2()",
-    ".log10()",
-    ".powf(",
-    ".powi(",
-    ".hypot(",
-    ".cbrt()",
-    "f64::sin",
-];
+#[derive(Deserialize)]
+struct Target {
+    kind: Vec<String>,
+    src_path: PathBuf,
+    test: bool,
+    doctest: bool,
+}
 
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
+    tests.parent().unwrap_or(tests).to_owned()
 }
 
-/// All Rust files under a folder of the project, by their paths from the top level.
-fn rust_files(folder: &str) -> Vec<String> {
-    let mut found = Vec::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(folder) = folders.pop() {
-        let entries =
-            fs::read_dir(root().join(&folder)).unwrap_or_else(|e| panic!("{folder}: {e}"));
-        for entry in entries {
-            let entry = entry.expect("a folder can be listed");
-            let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
-            if entry.path().is_dir() {
-                folders.push(path);
-            } else if path.ends_with(".rs") {
-                found.push(path);
-            }
-        }
+/// All packages of the workspace.
+fn packages() -> Vec<Package> {
+    #[derive(Deserialize)]
+    struct Metadata {
+        packages: Vec<Package>,
     }
-    found.sort();
-    found
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--no-deps", "--format-version=1", "--offline"])
+        .current_dir(root())
+        .output()
+        .expect("cargo runs");
+    let metadata: Metadata = serde_json::from_slice(&output.stdout).expect("cargo prints JSON");
+    metadata.packages
 }
 
-/// The lines of code of a file without comments and without its tests, which stand last.
-fn code_of(path: &str) -> Vec<(usize, String)> {
-    let text = source(path);
-    let numbered = text.lines().enumerate();
-    numbered
-        .take_while(|(_, line)| line.trim() != "#[cfg(test)]" || path.ends_with("/lib.rs"))
-        .map(|(index, line)| (index + 1, line.split("//").next().unwrap_or("").to_owned()))
+impl Package {
+    fn folder(&self) -> &Path {
+        self.manifest_path
+            .parent()
+            .expect("a manifest has a folder")
+    }
+
+    /// The folder as seen from the top level.
+    fn path(&self) -> String {
+        let path = self.folder().strip_prefix(root()).expect("it lies inside");
+        path.to_string_lossy().replace('\\', "/")
+    }
+
+    /// The packages that it uses, without those of its tests.
+    fn uses(&self) -> impl Iterator<Item = &str> {
+        let used = self.dependencies.iter().filter(|used| used.kind.is_none());
+        used.map(|used| used.name.as_str())
+    }
+}
+
+/// Rust files below a folder; none if it is absent.
+fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries
+        .map(|entry| entry.path())
+        .flat_map(|path| match path.extension() {
+            _ if path.is_dir() => rust_files(&path),
+            Some(extension) if extension == "rs" => vec![path],
+            _ => Vec::new(),
+        })
         .collect()
 }
 
-/// Where any of `words` stands in the code of `files`.
-fn occurrences(files: &[String], words: &[&str]) -> Vec<String> {
-    let mut found = Vec::new();
-    for path in files {
-        for (number, line) in code_of(path) {
-            for word in words.iter().filter(|word| line.contains(**word)) {
-                found.push(format!("{path}:{number}: {word}"));
-            }
-        }
-    }
-    found
+fn text(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-fn core_files() -> Vec<String> {
-    CORE.iter()
-        .flat_map(|package| rust_files(&format!("{package}/src")))
-        .collect()
-}
-
-fn widgets() -> impl Iterator<Item = &'static str> {
-    let packages = LAYERS.iter().map(|(package, _)| *package);
-    packages.filter(|package| package.starts_with("widgets/w16"))
-}
-
-/// Files with the rules of the widgets: a widget's model, its parameters, and the kit's first half.
-fn model_files() -> Vec<String> {
-    let mut files: Vec<String> = widgets()
-        .flat_map(|path| rust_files(&format!("{path}/src")))
-        .filter(|path| path.contains("/model") || path.ends_with("/spec.rs"))
-        .collect();
-    files.extend(KIT_WITHOUT_EGUI.map(|name| format!("widgets/kit/src/{name}.rs")));
-    files
-}
-
-/// Names of the packages that a manifest needs at run time, with the line.
-fn dependencies(package: &str) -> Vec<String> {
-    let manifest = source(&format!("{package}/Cargo.toml"));
-    let mut names = Vec::new();
-    let mut is_dependency = false;
-    for line in manifest.lines() {
-        if line.starts_with('[') {
-            is_dependency = line.ends_with("dependencies]") && !line.contains("dev-dependencies");
-        } else if is_dependency && let Some((name, _)) = line.split_once(['.', ' ', '=']) {
-            names.push(name.to_owned());
-        }
-    }
-    names
-}
+/// The packages of `crates/` in the order in which data flows, each with those that it may use.
+const CORE: [(&str, &[&str]); 11] = [
+    ("pr_geom", &[]),
+    ("pr_sim", &["pr_geom"]),
+    ("pr_grid", &["pr_geom"]),
+    ("pr_optim", &["pr_geom"]),
+    // Neither the simulator nor the lab: the estimator does not know the truth.
+    ("ch16_slam2d", &["pr_geom", "pr_optim"]),
+    ("incremental_mapping", &["pr_geom", "pr_grid", "ch16_slam2d"]),
+    (
+        "ch16_lab",
+        &[
+            "pr_geom",
+            "pr_grid",
+            "pr_optim",
+            "pr_sim",
+            "ch16_slam2d",
+            "incremental_mapping",
+        ],
+    ),
+    (
+        "robot_io",
+        &["pr_geom", "pr_grid", "pr_optim", "ch16_slam2d"],
+    ),
+    ("measuring", &[]),
+    (
+        "solver_peers",
+        &[
+            "measuring",
+            "pr_geom",
+            "pr_optim",
+            "ch16_slam2d",
+            "robot_io",
+        ],
+    ),
+    ("xtask", &[]),
+];
 
 #[test]
 fn data_flows_one_way() {
-    for (package, layer) in LAYERS {
-        for name in dependencies(package) {
-            let below = LAYERS
-                .iter()
-                .find(|(path, _)| path.ends_with(&format!("/{name}")));
-            if let Some((path, below)) = below {
-                assert!(
-                    *below < layer,
-                    "{package} (layer {layer}) uses {path} (layer {below})"
-                );
-            }
+    let packages = packages();
+    let ours: Vec<&str> = packages
+        .iter()
+        .map(|package| package.name.as_str())
+        .collect();
+    for (name, may_use) in CORE {
+        let package = packages.iter().find(|package| package.name == name);
+        let package = package.unwrap_or_else(|| panic!("{name} is gone"));
+        let own = package.uses().filter(|used| ours.contains(used));
+        let more: Vec<&str> = own.filter(|used| !may_use.contains(used)).collect();
+        assert!(more.is_empty(), "{name} uses {more:?}");
+    }
+    for package in &packages {
+        let path = package.path();
+        let is_known = CORE.iter().any(|(name, _)| *name == package.name);
+        assert!(
+            is_known || !path.starts_with("crates/") || package.name == "slam2d_cli",
+            "{path} has no row in CORE"
+        );
+        for used in package.uses() {
+            assert_ne!(
+                used, "slam2d_tests",
+                "{path} needs the tests outside of its own"
+            );
+            let is_picture = used.starts_with("egui") || used == "eframe";
+            assert!(
+                !is_picture || !path.starts_with("crates/"),
+                "{path} paints with {used}"
+            );
+            let is_browser =
+                used.starts_with("wasm-bindgen") || ["js-sys", "web-sys"].contains(&used);
+            let may_browse = path.starts_with("web") || path.starts_with("tests/");
+            assert!(
+                !is_browser || may_browse,
+                "{path} knows the browser by {used}"
+            );
+            assert!(
+                used != "libm" || package.name == "pr_geom",
+                "{path} uses libm, not pr_geom::math"
+            );
         }
     }
 }
 
 #[test]
-fn the_estimator_does_not_know_the_simulator() {
-    let manifest = source("crates/ch16_slam2d/Cargo.toml");
-    assert!(manifest.contains("pr_optim"));
-    for name in ["pr_sim", "ch16_lab"] {
-        assert!(!manifest.contains(name), "the estimator uses {name}");
+fn the_guide_names_every_package() {
+    let guide = source("ARCHITECTURE.md");
+    for package in packages() {
+        let path = package.path();
+        assert!(guide.contains(&format!("`{path}`")), "{path} is missing");
     }
 }
 
-#[test]
-fn only_tests_use_the_package_of_the_tests() {
-    let packages = LAYERS.iter().map(|(package, _)| *package);
-    for package in packages.chain(["tests/bench"]) {
-        let uses = dependencies(package).contains(&"slam2d_tests".to_owned());
-        assert!(!uses, "{package} needs it outside of its tests");
-    }
-}
-
-#[test]
-fn only_widgets_know_egui_and_only_web_knows_the_browser() {
-    for (package, _) in LAYERS {
-        for name in dependencies(package) {
-            let is_picture = name.starts_with("egui") || name == "eframe";
-            let is_browser = ["wasm-bindgen", "wasm-bindgen-futures", "js-sys", "web-sys"]
-                .contains(&name.as_str());
-            let may_paint =
-                package.starts_with("widgets/") || ["web", "web/desktop"].contains(&package);
-            let may_browse = package == "web" || package == "web/robot";
-            assert!(!is_picture || may_paint, "{package} uses {name}");
-            assert!(!is_browser || may_browse, "{package} uses {name}");
-        }
-    }
-}
-
+/// A package compiles egui for its view, so the compiler cannot keep its model from it.
 #[test]
 fn models_know_neither_egui_nor_the_browser_nor_a_clock() {
-    let files = model_files();
-    assert!(files.len() >= 20, "the models have moved: {files:?}");
     let words = [
         "egui",
         "eframe",
@@ -224,121 +193,89 @@ fn models_know_neither_egui_nor_the_browser_nor_a_clock() {
         "Instant",
         "SystemTime",
     ];
-    assert_eq!(occurrences(&files, &words), Vec::<String>::new());
-}
-
-#[test]
-fn every_widget_has_the_same_files_for_the_same_things() {
-    let files = [
-        "lib.rs",
-        "spec.rs",
-        "model.rs",
-        "model/settings.rs",
-        "model/picture.rs",
-        "model/words.rs",
-        "model/tables.rs",
-        "view.rs",
-    ];
-    let guide = source("ARCHITECTURE.md");
-    for file in files {
-        assert!(guide.contains(&format!("`{file}`")), "{file} is missing");
-        for widget in widgets() {
-            let path = format!("{widget}/src/{file}");
-            assert!(root().join(&path).exists(), "{path} is missing");
-        }
-    }
-}
-
-#[test]
-fn every_transcendental_function_of_the_core_goes_through_one_door() {
-    let found = occurrences(&core_files(), &PLATFORM_FUNCTIONS);
-    assert_eq!(found, Vec::<String>::new());
-    let libm = occurrences(&core_files(), &["libm::"]);
-    // fmod is exact: the same bits everywhere.
-    let outside = libm.iter().filter(|place| {
-        !place.starts_with("crates/pr_geom/src/math.rs")
-            && !place.starts_with("crates/pr_geom/src/angle.rs")
+    let mut files = rust_files(&root().join("widgets"));
+    files.retain(|file| {
+        let inside = file.to_string_lossy().replace('\\', "/");
+        inside.contains("/src/") && (inside.contains("/model") || inside.ends_with("/spec.rs"))
     });
-    assert_eq!(outside.collect::<Vec<_>>(), Vec::<&String>::new());
-}
-
-#[test]
-fn the_core_asks_no_clock_and_no_random_hash() {
-    let words = [
-        "Instant",
-        "SystemTime",
-        "RandomState",
-        "std::collections::HashMap",
-        // Only the standard library's map, with its random hash, is made by `new`.
-        "HashMap::new()",
-        "HashSet",
-    ];
-    assert_eq!(occurrences(&core_files(), &words), Vec::<String>::new());
-}
-
-#[test]
-fn the_guide_names_every_package() {
-    let guide = source("ARCHITECTURE.md");
-    for (package, _) in LAYERS {
-        assert!(
-            guide.contains(&format!("`{package}`")),
-            "{package} is missing"
-        );
-    }
-    for folder in ["crates", "widgets"] {
-        for entry in fs::read_dir(root().join(folder)).expect("the folder is there") {
-            let entry = entry.expect("a folder can be listed");
-            let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
-            let is_package = entry.path().join("Cargo.toml").exists();
-            assert!(
-                !is_package || LAYERS.iter().any(|(known, _)| *known == path),
-                "{path} has no layer"
-            );
+    assert!(files.len() >= 20, "the models have moved: {files:?}");
+    for file in files {
+        let text = text(&file);
+        let code = text
+            .lines()
+            .map(|line| line.split("//").next().unwrap_or_default());
+        for line in code {
+            let word = words.iter().find(|word| line.contains(**word));
+            assert_eq!(word, None, "{}: {line}", file.display());
         }
     }
 }
 
+/// Some manifests keep cargo from looking for tests, which saves it programs to link: then the tests must be
+/// elsewhere, or absent.
 #[test]
-fn the_page_has_the_colours_of_the_widgets() {
-    let style = source("web/page/page.css");
-    let palette = source("widgets/kit/src/palette.rs");
-    let names = [
-        "prior",
-        "prediction",
-        "measurement",
-        "posterior",
-        "truth",
-        "ink",
-        "faint",
-        "paper",
-    ];
-    for name in names {
-        let shades: Vec<&str> = style
-            .split(&format!("  --{name}: #"))
-            .skip(1)
-            .map(|tail| &tail[..6])
-            .collect();
-        // Light, dark by the system's choice, dark by the reader's.
-        assert_eq!(shades.len(), 3, "{name}");
-        assert_eq!(shades[1], shades[2], "{name}");
-        let tone = format!("Tone::{}{}", name[..1].to_uppercase(), &name[1..]);
-        for (theme, shade) in [("Light", shades[0]), ("Dark", shades[1])] {
-            let either = [
-                format!("(Theme::{theme}, {tone}) => hex(0x{shade})"),
-                format!("(_, {tone}) => hex(0x{shade})"),
-            ];
-            assert!(
-                either.iter().any(|arm| palette.contains(arm)),
-                "{name} in {theme} is #{shade} on the page only"
-            );
+fn no_test_is_left_out() {
+    for package in packages() {
+        let is_program = |path: &Path| package.targets.iter().any(|target| target.src_path == path);
+        let main = package.folder().join("tests/main.rs");
+        let named = fs::read_to_string(&main).unwrap_or_default();
+        let entries = fs::read_dir(package.folder().join("tests"));
+        for file in entries
+            .into_iter()
+            .flatten()
+            .flatten()
+            .map(|file| file.path())
+        {
+            let is_rust = file.extension().is_some_and(|extension| extension == "rs");
+            if is_rust && !is_program(&file) {
+                let name = file.file_stem().unwrap_or_default().to_string_lossy();
+                let is_named = named.lines().any(|line| line == format!("mod {name};"));
+                assert!(is_named, "{} does not name {name}", main.display());
+            }
+        }
+        let library = |target: &&Target| target.kind.iter().any(|kind| kind.ends_with("lib"));
+        for library in package.targets.iter().filter(library) {
+            for file in rust_files(library.src_path.parent().expect("a folder")) {
+                let text = text(&file);
+                let has_test = text.contains("#[test]") || text.contains("proptest!");
+                assert!(
+                    library.test || !has_test,
+                    "{}: `test = false`",
+                    file.display()
+                );
+                assert!(
+                    library.doctest || !has_example(&text),
+                    "{}: `doctest = false`",
+                    file.display()
+                );
+            }
         }
     }
 }
 
+/// Whether a comment of the documentation opens a block of Rust that would be tested.
+fn has_example(text: &str) -> bool {
+    let comments = text.lines().filter_map(|line| {
+        let line = line.trim_start();
+        line.strip_prefix("///")
+            .or_else(|| line.strip_prefix("//!"))
+    });
+    let mut fences = comments.filter_map(|comment| comment.trim().strip_prefix("```"));
+    // Every second fence closes a block.
+    while let Some(opening) = fences.next() {
+        if opening != "text" {
+            return true;
+        }
+        fences.next();
+    }
+    false
+}
+
 #[test]
-fn the_checks_see_code_and_neither_comments_nor_tests() {
-    let code = code_of("crates/pr_grid/src/sensor_model.rs");
-    assert!(code.iter().all(|(_, line)| !line.contains("3_f64.ln()")));
-    let door = ["crates/pr_geom/src/math.rs".to_owned()];
-    assert!(!occurrences(&door, &["libm::sin("]).is_empty());
+fn an_example_is_told_from_a_figure() {
+    assert!(has_example("//! ```\n//! assert!(true);\n//! ```\n"));
+    assert!(has_example(
+        "/// ```text\n/// x\n/// ```\n/// ```\n/// x();\n/// ```\n"
+    ));
+    assert!(!has_example("/// ```text\n/// x\n/// ```\n"));
 }

@@ -8,7 +8,7 @@ mod ndt;
 mod normals;
 mod optimum;
 mod page;
-mod reached;
+mod palette;
 mod rng;
 mod scan;
 mod terrain;

@@ -14,6 +14,7 @@ import katex from 'katex';
 
 import { endWithOneSentence } from '../licences/allowed.mjs';
 import { partsOfPage, writeNoticesPage } from '../licences/notices.mjs';
+import { colorStyle } from '../palette.mjs';
 import { addListings } from './listings.mjs';
 import { drawStills } from './stills.mjs';
 
@@ -113,9 +114,10 @@ function unescapeHtml(text) {
   return text.replaceAll('&lt;', '<').replaceAll('&gt;', '>').replaceAll('&amp;', '&');
 }
 
-/** And the table that the page links to. */
+/** With the colours before it; and the table that the page links to. */
 async function copyStyle() {
-  await cp(path.join(here, 'page.css'), path.join(outDir, 'page.css'));
+  const style = await readFile(path.join(here, 'page.css'), 'utf8');
+  await writeFile(path.join(outDir, 'page.css'), colorStyle() + style);
   await cp(path.join(here, 'thousand-laps.csv'), path.join(outDir, 'thousand-laps.csv'));
 }
 

@@ -6,6 +6,8 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 
 import { build } from 'esbuild';
 
+import { shades } from '../palette.mjs';
+
 const here = path.dirname(fileURLToPath(import.meta.url));
 const PKG = path.join(here, '..', 'pkg');
 /** The run that the page calls canonical. */
@@ -21,9 +23,8 @@ export async function drawStills(outDir) {
 async function drawLap(core, outDir) {
   const { still } = await load('lap/still.ts');
   const story = JSON.parse(core.lapStory(CANONICAL_SEED, 1));
-  const style = await readFile(path.join(here, 'page.css'), 'utf8');
   for (const theme of ['light', 'dark']) {
-    await writeFile(path.join(outDir, 'pictures', `lap-${theme}.svg`), still(story, inksOf(style, theme)));
+    await writeFile(path.join(outDir, 'pictures', `lap-${theme}.svg`), still(story, shades(theme)));
   }
 }
 
@@ -76,11 +77,4 @@ async function instantiate() {
   const core = createGlue({ request: () => 0, cancel: () => {}, deviceSize: () => [], pixelRatio: () => 1 });
   core.initSync({ module: await readFile(path.join(PKG, 'slam_web_bg.wasm')) });
   return core;
-}
-
-/** The colours of a theme, by the names that the style gives them. */
-function inksOf(style, theme) {
-  const start = theme === 'light' ? style.indexOf(':root {') : style.indexOf(':root[data-theme="dark"] {');
-  const block = style.slice(start, style.indexOf('}', start));
-  return Object.fromEntries([...block.matchAll(/--([a-z-]+): (#[0-9a-f]{6});/g)].map(([, name, color]) => [name, color]));
 }

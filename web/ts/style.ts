@@ -1,12 +1,14 @@
 // The element's own look. Everything inside is laid out here; the page sets width and margins.
 
+import { accent, faint, ink, paper, soft } from '../../widgets/palette.json';
+
 export const STYLE = `
 :host { display: block; position: relative; color-scheme: light; }
 :host([hidden]) { display: none; }
-.frame { --paper: #fff; --ink: #1f2937; --soft: #4b5563; --line: #d7dbe1; --accent: #1d4ed8;
+.frame { --paper: ${paper[0]}; --ink: ${ink[0]}; --soft: ${soft[0]}; --line: ${faint[0]}; --accent: ${accent[0]};
   background: var(--paper); color: var(--ink); font: 0.875rem/1.4 system-ui, sans-serif;
   border: 1px solid var(--line); border-radius: 6px; outline: none; }
-.frame.dark { --paper: #14181f; --ink: #e5e7eb; --soft: #b6bdc9; --line: #374151; --accent: #93c5fd;
+.frame.dark { --paper: ${paper[1]}; --ink: ${ink[1]}; --soft: ${soft[1]}; --line: ${faint[1]}; --accent: ${accent[1]};
   color-scheme: dark; }
 .stage { position: relative; overflow: hidden; border-radius: 6px 6px 0 0; min-height: 12rem; height: var(--place); }
 .stage.live { min-height: 0; height: auto; }
@@ -49,6 +51,6 @@ input[type='checkbox'] { width: 1.5rem; height: 1.5rem; accent-color: var(--acce
   .stage .picture { max-height: 15cm; object-fit: contain; object-position: top left; }
   .stage canvas { display: none; }
   .stage .picture, .stage.live .picture { display: block; }
-  .frame { --paper: #fff; --ink: #1f2937; border-color: #999; break-inside: avoid; }
+  .frame { --paper: ${paper[0]}; --ink: ${ink[0]}; border-color: #999; break-inside: avoid; }
 }
 `;

@@ -1,12 +1,13 @@
 // What leads to a widget that stands elsewhere on the page offers the way back to its sentence.
 
+import { accent } from '../../widgets/palette.json';
 import { create } from './dom';
 
 const STYLE = `
 button { position: fixed; inset: auto auto 1rem 50%; translate: -50% 0; z-index: 5; max-width: calc(100vw - 2rem);
-  font: 600 0.95rem/1.3 system-ui, sans-serif; color: #fff; background: #1d4ed8; border: 2px solid #fff;
+  font: 600 0.95rem/1.3 system-ui, sans-serif; color: #fff; background: ${accent[0]}; border: 2px solid #fff;
   border-radius: 999px; padding: 0.6rem 1.2rem; min-height: 2.75rem; cursor: pointer; box-shadow: 0 2px 8px #0006; }
-button:focus-visible { outline: 3px solid #1d4ed8; outline-offset: 2px; }
+button:focus-visible { outline: 3px solid ${accent[0]}; outline-offset: 2px; }
 @media print { button { display: none; } }
 `;
 

@@ -1,6 +1,8 @@
 //! The chapter's experiments, on the simulator and the estimator: whole laps of the Apartment with
 //! their judge, basins of attraction, cost landscapes, and samples to time and to try things on.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
+
 pub mod ancestor;
 pub mod basin;
 pub mod buildings;

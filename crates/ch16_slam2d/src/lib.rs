@@ -1,5 +1,7 @@
 //! Scan matching and pose-graph SLAM: the system of the chapter.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
+
 pub mod chapter;
 pub mod chi_squared;
 pub mod cloud;

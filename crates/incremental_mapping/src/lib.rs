@@ -19,6 +19,8 @@
 //! (likelihood fields), §4.3 (particles). Theirs optimizes all poses of a cycle once more after the
 //! push; here they stay where it leaves them.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
+
 mod belief;
 mod config;
 mod cycles;

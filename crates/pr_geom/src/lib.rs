@@ -7,6 +7,8 @@
 //!
 //! Source: Solà, Deray, Atchuthan, "A micro Lie theory for state estimation in robotics", 2018.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
+
 pub mod angle;
 pub mod math;
 mod order;

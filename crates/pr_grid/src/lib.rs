@@ -4,6 +4,8 @@
 //! The grid assumes known poses and independent cells. It does not correct poses: after a loop
 //! closure moves them, rebuild it from scratch.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
+
 pub mod beams;
 pub mod bresenham;
 pub mod grid;

@@ -12,6 +12,8 @@
 //! Nothing here reads a clock, depends on hash order or calls the platform's mathematics: the same
 //! input gives the same bits natively and in WebAssembly.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
+
 mod best;
 pub mod block_cholesky;
 mod custom;

@@ -4,6 +4,8 @@
 //! Everything here is a function of its arguments and of one seeded [`Rng`]: the same seed gives
 //! the same bits natively and in WebAssembly. Units are metres, radians and seconds.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
+
 pub mod course;
 pub mod driver;
 pub mod lidar;

@@ -24,6 +24,8 @@
 //! works in the browser as well. A file that cannot be used ends in one sentence with its name, the
 //! line and what was expected.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
+
 pub mod carmen;
 pub mod doctor;
 pub mod evaluate;

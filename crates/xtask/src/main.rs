@@ -1,66 +1,163 @@
-//! The project's commands: `cargo xtask serve`, `build`, `package`, `test`, `peers`, `desktop`, `soak`,
-//! `fuzz`, `bench`, `sizes`.
+//! The project's commands: `cargo xtask serve`, `build`, `test` and what belongs to them.
 //!
-//! Everything that a step needs is checked first and installed where cargo, npm or apt can do it;
-//! what cannot be installed is named in one line, with the way to get it. Tools of cargo go to
-//! `target/tools`; the wasm target goes into rustup's toolchain and Chromium where apt puts it.
+//! Each command first installs what it needs, as far as cargo, npm or apt can, and otherwise names it with the way to
+//! get it. Tools go to `target/tools`; only the wasm target and Chromium go elsewhere, through rustup and apt.
 
-mod args;
 mod bench;
-mod chromium;
-mod committed;
 mod fuzz;
-mod http;
-mod ledger;
-mod linted;
-mod load;
-mod package;
 mod run;
 mod serve;
 mod site;
-mod sizes;
 mod suite;
 mod tools;
-mod unwaited;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use args::Command;
-use suite::Beside;
+use clap::Parser;
+use site::Speed;
+use suite::Piece;
+
+#[derive(Debug, Parser)]
+#[command(
+    name = "cargo xtask",
+    bin_name = "cargo xtask",
+    arg_required_else_help = true
+)]
+enum Command {
+    /// Build the page and serve it on this machine.
+    Serve {
+        /// The TCP port.
+        #[arg(long, default_value_t = 8016, value_parser = clap::value_parser!(u16).range(1..))]
+        port: u16,
+        /// As published: smaller and faster, and minutes to compile.
+        #[arg(long)]
+        release: bool,
+    },
+    /// Build the finished static site into dist/.
+    Build,
+    /// Build the npm archive and the Python wheel into target/packages/.
+    Package,
+    /// Run every check, or the named pieces of the suite.
+    Test {
+        /// What to run, whatever the order here; all of them if none is named.
+        pieces: Vec<Piece>,
+        /// Only what needs no site: format, licences, native, lints.
+        #[arg(long, conflicts_with = "pieces")]
+        quick: bool,
+    },
+    /// Lint and test the crate that times other people's solvers.
+    Peers,
+    /// Lint and test the program that opens a widget in a window of the desktop.
+    Desktop,
+    /// Run the browser tests again and again while other work keeps every core busy.
+    Soak {
+        /// The number of rounds.
+        #[arg(value_parser = clap::value_parser!(u32).range(1..))]
+        rounds: u32,
+        /// Go on after a round that failed.
+        #[arg(long)]
+        go_on: bool,
+        /// The test files, without `.test.mjs`.
+        #[arg(long, value_delimiter = ',')]
+        only: Vec<String>,
+    },
+    /// Accept the instruction counts of the workloads as they are.
+    RecordCounts,
+    /// Feed made-up inputs to every door from outside, under libFuzzer.
+    Fuzz(fuzz::Fuzz),
+    /// Time and count the workloads, and write docs/performance.md.
+    Bench {
+        /// A file for the figures of the workloads as JSON.
+        #[arg(long)]
+        json: Option<PathBuf>,
+    },
+    /// Measure how much smaller each step of the build makes the module.
+    Sizes,
+}
 
 fn main() -> ExitCode {
-    if let Some(ended) = linted::before_rustc() {
-        return ended;
-    }
-    let command = match args::parse(std::env::args().skip(1)) {
-        Ok(command) => command,
-        Err(message) => {
-            eprintln!("{message}\n\n{}", args::USAGE);
-            return ExitCode::from(2);
-        }
-    };
-    let result = match command {
-        Command::Help => {
-            println!("{}", args::USAGE);
-            Ok(())
-        }
-        Command::Build => site::build(site::Speed::SmallAndFast),
-        Command::Package => package::package(),
-        Command::Serve { port, speed } => serve::serve(port, speed),
-        Command::Test(pieces) => suite::test(&pieces),
-        Command::Peers => suite::beside(Beside::Peers),
-        Command::Desktop => suite::beside(Beside::Desktop),
-        Command::Soak(soak) => suite::soak(&soak),
+    let done = match Command::parse() {
+        Command::Serve { port, release } => serve::serve(
+            port,
+            if release {
+                Speed::SmallAndFast
+            } else {
+                Speed::QuickToCompile
+            },
+        ),
+        Command::Build => site::build(Speed::SmallAndFast),
+        Command::Package => site::package(),
+        Command::Test { pieces, quick } => suite::test(&suite::chosen(pieces, quick)),
+        Command::Peers => suite::test_apart("solver_peers"),
+        Command::Desktop => suite::test_apart("slam_desktop"),
+        Command::Soak {
+            rounds,
+            go_on,
+            only,
+        } => suite::soak(rounds, go_on, &only),
         Command::RecordCounts => suite::record_counts(),
         Command::Fuzz(fuzz) => fuzz::fuzz(&fuzz),
         Command::Bench { json } => bench::bench(json.as_deref()),
-        Command::Sizes => sizes::sizes(),
+        Command::Sizes => site::sizes(),
     };
-    match result {
+    match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            eprintln!("\nxtask: {failure}");
+        Err(error) => {
+            eprintln!("\nxtask: {error:#}");
             ExitCode::FAILURE
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(line: &str) -> Result<Command, String> {
+        let words = ["xtask"].into_iter().chain(line.split_whitespace());
+        Command::try_parse_from(words).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn serve_has_the_documented_defaults() {
+        let served = parse("serve").unwrap();
+        let expected = Command::Serve {
+            port: 8016,
+            release: false,
+        };
+        assert_eq!(format!("{served:?}"), format!("{expected:?}"));
+    }
+
+    #[test]
+    fn the_documented_lines_are_understood() {
+        for line in [
+            "serve --release --port 9000",
+            "test node counts",
+            "test --quick",
+            "soak 20 --only drag,embed --go-on",
+            "fuzz --target graphs --minutes 30",
+            "fuzz --keep",
+            "bench --json figures.json",
+            "record-counts",
+        ] {
+            assert!(parse(line).is_ok(), "{line}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_word_is_named() {
+        for (line, word) in [
+            ("sevre", "sevre"),
+            ("serve --prot 1", "--prot"),
+            ("serve --port 0", "0"),
+            ("build now", "now"),
+            ("test everything", "everything"),
+            ("soak 0", "0"),
+            ("fuzz --minutes 0", "0"),
+        ] {
+            let message = parse(line).unwrap_err();
+            assert!(message.contains(&format!("'{word}'")), "{line}: {message}");
         }
     }
 }

@@ -1,26 +1,29 @@
-//! The finished site: wasm, element, page, pictures, all in `dist/`.
+//! The finished site: wasm, element, page, pictures, all in `dist/`; and what people install of it.
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::process::Command;
+use std::{env, thread};
 
-use crate::linted::linted;
-use crate::run::{Failure, program, root, step};
-use crate::tools;
+use anyhow::{Context as _, anyhow};
+
+use crate::bench::PAGE;
+use crate::run::{cargo, output, program, root, run};
+use crate::tools::{self, TARGET};
 
 /// What the compiler aims at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Speed {
     /// Profile `web-dev`: compiles in a fraction of the time, for trying things out.
     QuickToCompile,
-    /// Profile `web`: what is published, and linted as it is compiled.
+    /// Profile `web`: what is published.
     SmallAndFast,
 }
 
 impl Speed {
     fn profile(self) -> &'static str {
         match self {
-            Self::QuickToCompile => "web-dev",
-            Self::SmallAndFast => "web",
+            Self::QuickToCompile => "--profile=web-dev",
+            Self::SmallAndFast => "--profile=web",
         }
     }
 }
@@ -28,75 +31,146 @@ impl Speed {
 /// Builds `dist/`.
 ///
 /// # Errors
-/// The first step that fails, in one line.
-pub fn build(speed: Speed) -> Result<(), Failure> {
-    tools::ensure_build_tools()?;
-    compile_wasm(speed)?;
-    let dist = root().join("dist");
-    step(
+/// The first step that fails.
+pub fn build(speed: Speed) -> anyhow::Result<()> {
+    tools::ensure_web_tools()?;
+    compile(speed)?;
+    let profile = speed.profile().trim_start_matches("--profile=");
+    run(
         "Bundling the element and drawing the static pictures",
-        program("node")
-            .arg("web/build.mjs")
-            .arg(&dist)
-            .arg(speed.profile()),
+        program("node").args(["web/build.mjs", "dist", profile]),
     )?;
-    step(
+    run(
         "Rendering the page",
-        program("node").arg("web/page/build.mjs").arg(&dist),
+        program("node").args(["web/page/build.mjs", "dist"]),
     )?;
-    report(&dist);
+    println!("The site is in dist/");
     Ok(())
 }
 
-fn compile_wasm(speed: Speed) -> Result<(), Failure> {
-    let mut modules = [
-        (
-            "Compiling the widgets to WebAssembly (the first time takes minutes)",
-            wasm_build("../pkg", speed),
-        ),
-        ("Compiling the worker that maps logs", robot_build(speed)),
+/// Compiles both modules of the site, and the tools that make packages of them beside.
+///
+/// wasm-pack then finds what it would compile up to date.
+fn compile(speed: Speed) -> anyhow::Result<()> {
+    let mut modules = cargo();
+    modules
+        .args(["build", "--lib", "--target", TARGET, speed.profile()])
+        .args(["--package=slam_web_module", "--package=slam_robot_module"])
+        .args(remapping());
+    thread::scope(|scope| {
+        let tools = scope.spawn(tools::ensure_wasm_pack);
+        run("Compiling the widgets to WebAssembly", &mut modules)?;
+        tools.join().map_err(|_| anyhow!("a thread panicked"))?
+    })?;
+    run("Packing the widgets", &mut wasm_build("../pkg", speed))?;
+    // One instance in a worker of its own: the glue is a module that the worker's script takes in.
+    let worker = [
+        "--target=web",
+        "--out-dir=../../pkg-robot",
+        "--out-name=slam_robot",
     ];
-    for (what, module) in &mut modules {
-        match speed {
-            Speed::QuickToCompile => step(what, module)?,
-            Speed::SmallAndFast => step(what, linted(module)?)?,
-        }
-    }
-    Ok(())
+    let mut robot = wasm_pack_build("web/robot/module", &worker, speed);
+    run("Packing the worker that maps logs", &mut robot)
 }
 
-/// The build of the second module, which a reader's log is mapped in, into `web/pkg-robot`.
-fn robot_build(speed: Speed) -> Command {
-    tools::wasm_pack_build(
-        "web/robot/module",
-        &[
-            // One instance in a worker of its own: the glue is a module that the worker's script takes in.
-            "--target=web",
-            "--out-dir=../../pkg-robot",
-            "--out-name=slam_robot",
-            &format!("--profile={}", speed.profile()),
-        ],
-    )
-}
-
-/// The build of the module into a folder, named as seen from `web/module/`; takes more options of cargo.
-pub fn wasm_build(folder: &str, speed: Speed) -> Command {
-    // `no-modules`: one function that holds the whole glue, so that the element can make as many
+/// The build of the widgets into a folder, named as seen from `web/module/`; takes more options of cargo.
+fn wasm_build(folder: &str, speed: Speed) -> Command {
+    // `no-modules`: one function that holds the whole glue, and the element makes as many
     // instances as there are widgets. No wasm-opt: see web/module/Cargo.toml.
-    tools::wasm_pack_build(
-        "web/module",
-        &[
-            "--target=no-modules",
-            &format!("--out-dir={folder}"),
-            "--out-name=slam_web",
-            &format!("--profile={}", speed.profile()),
-        ],
+    let folder = format!("--out-dir={folder}");
+    let options = ["--target=no-modules", &folder, "--out-name=slam_web"];
+    wasm_pack_build("web/module", &options, speed)
+}
+
+/// `wasm-pack build PACKAGE`; takes more options of cargo.
+pub fn wasm_pack_build(package: &str, options: &[&str], speed: Speed) -> Command {
+    let mut command = program("wasm-pack");
+    command
+        .args(["build", package, "--no-opt", "--no-pack"])
+        .args(["--mode", "no-install", speed.profile()])
+        .args(options)
+        .arg("--")
+        .args(remapping())
+        .env("PATH", tools::path_with_tools());
+    command
+}
+
+/// Panic messages name sources, and so the module would hold where this machine keeps cargo's registry: the compiler
+/// writes `cargo/registry/…` instead. The setting is added to the flags of `.cargo/config.toml`.
+fn remapping() -> Vec<String> {
+    let home = env::var_os("CARGO_HOME").map(PathBuf::from);
+    let home = home.or_else(|| Some(env::home_dir()?.join(".cargo")));
+    let setting = |home: PathBuf| {
+        let home = home.display();
+        format!("target.{TARGET}.rustflags=['--remap-path-prefix={home}=cargo']")
+    };
+    home.map_or_else(Vec::new, |home| vec!["--config".to_owned(), setting(home)])
+}
+
+/// `cargo xtask package`: the npm archive and the Python wheel, in `target/packages`. The command line needs no
+/// package: `cargo install --path crates/slam2d_cli`.
+///
+/// # Errors
+/// The first step that fails.
+pub fn package() -> anyhow::Result<()> {
+    let python = env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    output(program(&python).args(["-m", "pip", "--version"])).with_context(|| {
+        format!(
+            "{python} has no pip, which makes the wheel: install Python 3.10 or later with pip, or name one by PYTHON"
+        )
+    })?;
+    build(Speed::SmallAndFast)?;
+    run(
+        "Packing the npm archive and the Python wheel",
+        program("node").args(["web/package.mjs", "dist", "target/packages"]),
     )
 }
 
-fn report(dist: &Path) {
-    let shown = dist.strip_prefix(root()).unwrap_or(dist);
-    println!("The site is in {}/", shown.display());
+/// Builds of the module: a folder, how it differs from the published one, more options of cargo.
+const VARIANTS: [(&str, &str, &[&str]); 5] = [
+    ("published", "as published", &[]),
+    (
+        "fonts",
+        "with egui's own fonts besides the subset",
+        &["--features", "eframe/default_fonts"],
+    ),
+    (
+        "features",
+        "with all default features of eframe besides `glow`",
+        &["--features", "eframe/default"],
+    ),
+    (
+        "crates",
+        "without optimization across crates",
+        &["--config", "profile.web.lto=\"off\""],
+    ),
+    (
+        "speed",
+        "with `opt-level` 3 everywhere",
+        &["--config", "profile.web.opt-level=3"],
+    ),
+];
+
+/// `cargo xtask sizes`: builds all variants, prints their sizes and writes them into `docs/performance.md`.
+///
+/// # Errors
+/// The first step that fails.
+pub fn sizes() -> anyhow::Result<()> {
+    tools::ensure_web_tools()?;
+    tools::ensure_wasm_pack()?;
+    let folder = root().join("target/sizes");
+    let mut table = program("node");
+    table.args(["web/size-table.mjs", PAGE]);
+    for (id, what, options) in VARIANTS {
+        // A target folder of its own: the published build stays compiled.
+        let mut build = wasm_build(&format!("../../target/sizes/{id}"), Speed::SmallAndFast);
+        build.args(options);
+        build.env("CARGO_TARGET_DIR", folder.join("cargo"));
+        run(&format!("Compiling the widgets {what}"), &mut build)?;
+        let module = folder.join(id).join("slam_web_bg.wasm");
+        table.arg(format!("{what}={}", module.display()));
+    }
+    run("Sizes", &mut table)
 }
 
 #[cfg(test)]
@@ -104,14 +178,12 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::run::cargo;
-    use crate::tools::output;
 
     /// What a module of the site is made of: crates with versions and features.
     fn crates_of(package: &str) -> BTreeSet<String> {
         let tree = output(
             cargo()
-                .args(["tree", "--package", package, "--target", tools::TARGET])
+                .args(["tree", "--package", package, "--target", TARGET])
                 .args(["--edges", "normal", "--prefix", "none"])
                 .args(["--no-dedupe", "--format", "{p} with {f}"]),
         );

@@ -1,124 +1,292 @@
 //! `cargo xtask test`: every check there is, cheapest first. `docs/testing.md` says what is where.
 
-mod browser;
-pub mod native;
-mod piece;
-mod skipped;
-mod soak;
-mod wasm;
-
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::{fs, io};
+use std::{env, fs, hint, thread};
 
-pub use native::{Beside, beside, record_counts};
-pub use piece::Piece;
-pub use soak::{AfterFailure, Soak, soak};
+use anyhow::{Context as _, bail};
+use clap::ValueEnum;
 
-use crate::chromium;
-use crate::ledger::Ledger;
-use crate::run::{Failure, cargo, program, root, show};
-use crate::tools;
-use skipped::SkipList;
+use crate::run::{cargo, program, root, run};
+use crate::site::{self, Speed};
+use crate::tools::{self, TARGET, linting};
 
-/// Runs the pieces in the order of the suite and stops at the first check that fails. Says at the end
-/// what took how long and what was skipped, after a failure as well.
+/// A part of the suite, in the order in which they run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Piece {
+    /// `cargo fmt --check`
+    Format,
+    /// The licences of all crates and npm packages
+    Licences,
+    /// Everything native: compiled and linted in one pass, then tested
+    Native,
+    /// Lints of what only WebAssembly compiles
+    Lints,
+    /// Counted instructions against the recorded ones
+    Counts,
+    /// The site as it is published, and the types of its element
+    Site,
+    /// The module in Node
+    Node,
+    /// The site in Chromium
+    Browser,
+}
+
+/// The named pieces in the order of the suite.
+pub fn chosen(named: Vec<Piece>, quick: bool) -> Vec<Piece> {
+    use Piece::{Format, Licences, Lints, Native};
+    let named = if quick {
+        vec![Format, Licences, Native, Lints]
+    } else {
+        named
+    };
+    let all = Piece::value_variants().iter().copied();
+    all.filter(|piece| named.is_empty() || named.contains(piece))
+        .collect()
+}
+
+/// Runs the pieces, stops at the first check that fails, and lists what was skipped.
 ///
 /// # Errors
 /// The check that failed.
-pub fn test(pieces: &[Piece]) -> Result<(), Failure> {
-    let skipped = SkipList::begin()?;
-    let mut ledger = Ledger::default();
-    let done = ledger
-        .time("tools", || ensure_tools(pieces))
-        .and_then(|chromium| {
-            in_order(pieces)
-                .try_for_each(|piece| run(piece, chromium.as_ref(), &skipped, &mut ledger))
-        });
-    println!("\n── What took how long\n{ledger}");
-    println!("── {skipped}");
+pub fn test(pieces: &[Piece]) -> anyhow::Result<()> {
+    // What is missing is better known before many minutes of compiling and testing.
+    let is_native = |piece| matches!(piece, &Piece::Format | &Piece::Native | &Piece::Counts);
+    if !pieces.iter().all(is_native) {
+        tools::ensure_web_tools()?;
+    }
+    let chromium = if pieces.contains(&Piece::Browser) {
+        tools::ensure_node_modules("tests/browser")?;
+        Some(tools::ensure_chromium_for_tests()?)
+    } else {
+        None
+    };
+    let skipped = root().join("target/xtask/skipped.txt");
+    fs::create_dir_all(root().join("target/xtask"))?;
+    fs::write(&skipped, "")?;
+    let mut pieces = pieces.iter();
+    let done = pieces.try_for_each(|piece| test_piece(*piece, chromium.as_deref(), &skipped));
+    println!("\n── {}", summary(&fs::read_to_string(&skipped)?));
     done
 }
 
-/// The pieces in the order of the suite. What builds the site lints what only WebAssembly compiles.
-fn in_order(pieces: &[Piece]) -> impl Iterator<Item = Piece> {
-    let is_told_twice = |piece| piece == Piece::Lints && pieces.contains(&Piece::Site);
-    Piece::ALL
-        .into_iter()
-        .filter(move |piece| pieces.contains(piece) && !is_told_twice(*piece))
-}
-
-/// What is missing is better known before many minutes of compiling and testing.
-fn ensure_tools(pieces: &[Piece]) -> Result<Option<PathBuf>, Failure> {
-    if pieces.iter().any(|piece| piece.needs_the_site()) {
-        tools::ensure_build_tools()?;
-    }
-    if !pieces.contains(&Piece::Browser) {
-        return Ok(None);
-    }
-    tools::ensure_node_modules(&root().join("tests/browser"))?;
-    chromium::ensure_chromium(chromium::Wanted::ForTests).map(Some)
-}
-
-fn run(
-    piece: Piece,
-    chromium: Option<&PathBuf>,
-    skipped: &SkipList,
-    ledger: &mut Ledger,
-) -> Result<(), Failure> {
+fn test_piece(piece: Piece, chromium: Option<&Path>, skipped: &Path) -> anyhow::Result<()> {
+    let tell = |command: &mut Command| {
+        // Tests append a line for each thing that they skip.
+        command.env("SLAM_SKIPPED", skipped);
+    };
     match piece {
-        Piece::Format => timed(ledger, "format", cargo().args(["fmt", "--check"])),
-        Piece::Licences => timed(
-            ledger,
-            "licences",
-            program("node").arg("web/licences/check.mjs"),
-        ),
-        Piece::Native => native::test(skipped, ledger),
-        Piece::Lints => wasm::lints(ledger),
-        Piece::Counts => native::counts(skipped, ledger),
-        Piece::Site => wasm::site(ledger),
-        Piece::Node => wasm::node(skipped, ledger),
+        Piece::Format => run("Format", cargo().args(["fmt", "--check"])),
+        Piece::Licences => run("Licences", program("node").arg("web/licences/check.mjs")),
+        Piece::Native => {
+            let mut compile = cargo();
+            // Benches are compiled, to be linted; only `cargo bench` runs them. `--all-targets` would
+            // also link test programs for what has no tests.
+            linting(&mut compile)?
+                .args(["test", "--quiet", "--no-run"])
+                .args(["--tests", "--benches", "--examples"]);
+            run("Compiling and linting natively", &mut compile)?;
+            let mut test = cargo();
+            tell(linting(&mut test)?.args(["test", "--quiet"]));
+            run("Native tests", &mut test)
+        }
+        Piece::Lints => {
+            let mut lint = cargo();
+            lint.args(["clippy", "--quiet", "--target", TARGET])
+                .args(["--package=slam_web", "--package=slam_robot"])
+                .args(["--", "-D", "warnings"])
+                .env("CARGO_INCREMENTAL", "0");
+            run("Linting what only WebAssembly compiles", &mut lint)
+        }
+        Piece::Counts => {
+            compile_programs()?;
+            let mut count = program(programs().join("slam2d_bench"));
+            tell(count.args(["--counts", "check"]));
+            run("Counting instructions", &mut count)
+        }
+        Piece::Site => {
+            site::build(Speed::SmallAndFast)?;
+            check_generated()?;
+            let mut check = program(tools::npm());
+            check.args(["run", "--silent", "check"]);
+            run("Types", check.current_dir(root().join("web")))
+        }
+        Piece::Node => {
+            compile_programs()?;
+            let mut node = program("node");
+            node.arg("--test").args(test_files("tests/wasm")?);
+            tell(node.env("SLAM_NATIVE", programs()));
+            run("Node tests", &mut node)
+        }
         Piece::Browser => {
-            let chromium = chromium.ok_or_else(|| Failure::new("no Chromium was looked for"))?;
-            ledger.time_with_chromium("browser tests", || {
-                browser::run(chromium, &[], Some(skipped))
-            })
+            let mut node = browser_tests(chromium.context("no Chromium was looked for")?, &[]);
+            tell(&mut node);
+            run("Browser tests", &mut node)
         }
     }
 }
 
-/// A program that shows its output, as a step of the ledger.
-fn timed(ledger: &mut Ledger, what: &str, command: &mut Command) -> Result<(), Failure> {
-    ledger.time(what, || show(what, command))
+/// What the build writes and the repository holds. The README's table of sizes is no part of it: compressed sizes
+/// change with the version of Node, as its zlib and brotli do.
+const GENERATED: [&str; 2] = ["web/slam-widget.d.ts", "docs/parameters.md"];
+
+/// On a build machine, fails if the build has changed a generated file.
+fn check_generated() -> anyhow::Result<()> {
+    if matches!(env::var("CI").as_deref(), Err(_) | Ok("" | "0" | "false")) {
+        return Ok(());
+    }
+    let mut diff = program("git");
+    diff.args(["diff", "--exit-code", "--stat", "--"])
+        .args(GENERATED);
+    run("Generated files", &mut diff)
+        .context("commit what `cargo xtask build` writes: the files above are out of date")
+}
+
+/// Compiles what is counted, and what is compared with the module in Node: of the whole workspace, with a bench. Then
+/// the crates have the features that they have for the tests, and are compiled once.
+fn compile_programs() -> anyhow::Result<()> {
+    let mut compile = cargo();
+    linting(&mut compile)?
+        .args(["build", "--quiet", "--bench=timings"])
+        .args(["--bin=slam2d", "--bin=states", "--bin=slam2d_bench"])
+        .arg("--target-dir")
+        .arg(root().join("target"));
+    run("Compiling slam2d, states and slam2d_bench", &mut compile)
+}
+
+fn programs() -> PathBuf {
+    root().join("target/debug")
 }
 
 /// The test files of a folder by name: what `node --test` makes of a folder differs by version.
-fn test_files(folder: &str) -> Result<Vec<PathBuf>, Failure> {
-    let failed = |error: io::Error| Failure::new(format!("{folder}: {error}"));
-    let mut files = Vec::new();
-    for entry in fs::read_dir(root().join(folder)).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        if path.to_string_lossy().ends_with(".test.mjs") {
-            files.push(path);
-        }
-    }
+fn test_files(folder: &str) -> anyhow::Result<Vec<PathBuf>> {
+    let entries = fs::read_dir(root().join(folder))?;
+    let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    files.retain(|path| path.to_string_lossy().ends_with(".test.mjs"));
     files.sort();
     Ok(files)
+}
+
+/// The browser tests: all files, or those that are named, such as `drag`.
+fn browser_tests(chromium: &Path, only: &[String]) -> Command {
+    let mut node = program("node");
+    node.arg("tests/browser/run.mjs").env("CHROMIUM", chromium);
+    // The pieces before have compiled it; without them the test that needs it does.
+    if programs().join("slam2d").exists() {
+        node.env("SLAM_NATIVE", programs());
+    }
+    if !only.is_empty() {
+        node.args(["--only", &only.join(",")]);
+    }
+    node
+}
+
+/// `cargo xtask soak`: repeats the browser tests while a busy thread for each core loads the machine.
+///
+/// # Errors
+/// The rounds that failed; what failed in them stands in the output above.
+pub fn soak(rounds: u32, go_on: bool, only: &[String]) -> anyhow::Result<()> {
+    if !root().join("dist/schema.json").is_file() {
+        bail!("dist/ holds no site: `cargo xtask build` makes one");
+    }
+    tools::ensure_node_modules("tests/browser")?;
+    let chromium = tools::ensure_chromium_for_tests()?;
+    for _ in 0..thread::available_parallelism()?.get() {
+        thread::spawn(|| {
+            loop {
+                hint::black_box(0);
+            }
+        });
+    }
+    let mut failed = Vec::new();
+    for round in 1..=rounds {
+        let what = format!("Round {round} of {rounds}");
+        if let Err(error) = run(&what, &mut browser_tests(&chromium, only)) {
+            println!("{error}");
+            failed.push(round);
+            if !go_on {
+                break;
+            }
+        }
+    }
+    if failed.is_empty() {
+        println!("\nNo failure in {rounds} rounds");
+        return Ok(());
+    }
+    bail!("these rounds failed: {failed:?}")
+}
+
+/// `cargo xtask record-counts`: what the workloads take now is what the suite allows from now on.
+///
+/// # Errors
+/// If they do not compile, or valgrind is missing.
+pub fn record_counts() -> anyhow::Result<()> {
+    compile_programs()?;
+    let mut count = program(programs().join("slam2d_bench"));
+    count.args(["--counts", "accept"]).env("SLAM_NO_SKIP", "1");
+    run("Recording the instruction counts", &mut count)
+}
+
+/// Lints and tests a package that the suite leaves out: what it needs of others takes a minute and more to compile,
+/// and nothing of ours depends on it.
+///
+/// # Errors
+/// The step that failed.
+pub fn test_apart(package: &str) -> anyhow::Result<()> {
+    for (what, options) in [
+        ("Lints of", &["--no-run", "--all-targets"][..]),
+        ("Tests of", &[]),
+    ] {
+        let mut command = cargo();
+        linting(&mut command)?.args(["test", "--quiet", "--package", package]);
+        run(&format!("{what} {package}"), command.args(options))?;
+    }
+    Ok(())
+}
+
+fn summary(skipped: &str) -> String {
+    let mut lines: Vec<_> = skipped.lines().filter(|line| !line.is_empty()).collect();
+    lines.sort_unstable();
+    lines.dedup();
+    if lines.is_empty() {
+        return "Nothing was skipped".to_owned();
+    }
+    let title = "Skipped (SLAM_NO_SKIP=1 makes these failures):";
+    format!("{title}\n   {}", lines.join("\n   "))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::output;
 
     #[test]
-    fn lints_have_a_step_of_their_own_where_no_site_is_built() {
-        let steps = |pieces: &[Piece]| {
-            in_order(pieces)
-                .filter(|piece| *piece == Piece::Lints)
-                .count()
-        };
-        assert_eq!(steps(&Piece::QUICK), 1);
-        assert_eq!(steps(&Piece::ALL), 0);
+    fn pieces_run_in_the_order_of_the_suite() {
+        assert_eq!(
+            chosen(vec![Piece::Node, Piece::Counts], false),
+            [Piece::Counts, Piece::Node]
+        );
+        assert_eq!(chosen(Vec::new(), false), Piece::value_variants());
+        let quick = chosen(Vec::new(), true);
+        assert!(quick.contains(&Piece::Lints) && !quick.contains(&Piece::Site));
+    }
+
+    #[test]
+    fn what_was_skipped_is_listed_once_and_in_order() {
+        assert_eq!(summary("\n"), "Nothing was skipped");
+        assert_eq!(
+            summary("b: no data\na: no valgrind\nb: no data\n"),
+            "Skipped (SLAM_NO_SKIP=1 makes these failures):\n   a: no valgrind\n   b: no data"
+        );
+    }
+
+    #[test]
+    fn git_knows_the_generated_files() {
+        let listed = output(program("git").args(["ls-files", "--"]).args(GENERATED));
+        // No git, no check: an unpacked archive has no history.
+        if let Some(listed) = listed {
+            assert_eq!(listed.lines().count(), GENERATED.len());
+        }
     }
 
     #[test]

@@ -5,7 +5,6 @@
 //! computed: so nothing is optimized away, and a digest of all of it, taken while no clock runs,
 //! shows whether two builds compute the same.
 
-pub mod calibration;
 pub mod chapter;
 pub mod frames;
 pub mod measure;

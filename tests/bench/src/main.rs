@@ -6,8 +6,6 @@ mod clouds;
 mod counts;
 mod measured;
 mod page;
-mod peer;
-mod ratios;
 mod registration;
 mod report;
 mod sweep;
@@ -30,11 +28,8 @@ slam2d_bench turns                       for each line `ID MILLISECONDS` of stan
 slam2d_bench count                       instructions of one repetition of each workload as JSON;
                                          an empty object without valgrind
 slam2d_bench table TURNS.json COUNTS.json PAGE.md
-                                         print the tables of the workloads, from what measure.mjs
-                                         printed, and write them into a page
-slam2d_bench judge TURNS.json            fail where a row is beyond its limit on a quiet machine
-slam2d_bench peer PAGE.md                check and time the port in JavaScript with Node,
-                                         print its table and write it into a page
+                                         print the table of the workloads, from what measure.mjs
+                                         printed, and write it into a page
 slam2d_bench clouds FOLDER               write the clouds of the registration table, for slam2d register
 slam2d_bench registration SLAM2D FOLDER PAGE.md
                                          write the clouds, register them with the program SLAM2D and
@@ -53,11 +48,7 @@ fn main() -> ExitCode {
         ["names"] => say_json(&measure::names()),
         ["turns"] => turns(),
         ["count"] => count(),
-        ["table", turns, counts, page] => tables(Path::new(turns), Path::new(counts), page),
-        ["judge", turns] => Measured::read(Path::new(turns)).and_then(|all| all.judge()),
-        ["peer", page] => {
-            peer::table().and_then(|table| publish(Path::new(page), Block::Peer, &table))
-        }
+        ["table", turns, counts, page] => table(Path::new(turns), Path::new(counts), page),
         ["clouds", folder] => clouds::write(Path::new(folder)).and_then(|files| {
             let mut names = files.iter().map(|file| file.display().to_string());
             names.try_for_each(|name| say(&name))
@@ -127,12 +118,11 @@ fn count() -> Result<(), String> {
     say_json(&counts::of_one_repetition(counts))
 }
 
-fn tables(turns: &Path, counts: &Path, page: &str) -> Result<(), String> {
-    let measured = Measured::read(turns)?;
+fn table(turns: &Path, counts: &Path, page: &str) -> Result<(), String> {
+    let measured: Measured = measured::read(turns)?;
     let counts = measured::read(counts)?;
-    let page = Path::new(page);
-    publish(page, Block::Workloads, &report::table(&measured, &counts))?;
-    publish(page, Block::Ratios, &ratios::table(&measured))?;
+    let table = report::table(&measured, &counts);
+    publish(Path::new(page), Block::Workloads, &table)?;
     if counts.is_empty() {
         say(&format!("no instructions were counted: {NO_VALGRIND}"))?;
     }

@@ -9,7 +9,7 @@ use std::collections::btree_map::Entry;
 
 use serde::Serialize;
 
-use crate::{Run, Workload, calibration, workloads};
+use crate::{Run, Workload, workloads};
 
 /// A sample lasts at least this long: a page that stands alone has a clock of 5 µs.
 const SAMPLE_MS: f64 = 2.0;
@@ -22,8 +22,6 @@ const MIN_SAMPLES: u32 = 3;
 pub struct Turn {
     /// Milliseconds of one repetition, in the fastest sample of the turn.
     pub ms: f64,
-    /// The same, in the mean over all samples: what else the machine does shows here.
-    pub mean_ms: f64,
     /// Digest of the first run, in hexadecimal.
     pub digest: String,
 }
@@ -61,22 +59,19 @@ impl Turns {
     }
 }
 
-/// The names of all that is measured: the calibration loop first, then the workloads.
+/// The names of all that is measured.
 #[must_use]
 pub fn names() -> Vec<&'static str> {
-    let workloads = workloads();
-    let ids = workloads.iter().map(|workload| workload.id);
-    [calibration::ID].into_iter().chain(ids).collect()
+    workloads().iter().map(|workload| workload.id).collect()
 }
 
-/// The workload of a name, or the calibration loop.
+/// The workload of a name.
 ///
 /// # Errors
 /// One sentence where there is none.
 pub fn find(id: &str) -> Result<Workload, String> {
     workloads()
         .into_iter()
-        .chain([calibration::workload()])
         .find(|workload| workload.id == id)
         .ok_or_else(|| format!("there is no workload `{id}`"))
 }
@@ -96,23 +91,21 @@ impl Ready {
 
     fn turn(&mut self, budget_ms: f64, now_ms: &dyn Fn() -> f64) -> Turn {
         let started = now_ms();
-        let (mut fastest_ms, mut sum_ms) = (f64::INFINITY, 0.0);
-        let mut samples = 0_u32;
+        let mut fastest_ms = f64::INFINITY;
+        let mut samples = 0;
         while samples < MIN_SAMPLES || now_ms() - started < budget_ms {
             let sample_ms = self.sample(now_ms);
             if sample_ms < SAMPLE_MS {
                 self.runs *= 2;
-                (fastest_ms, sum_ms, samples) = (f64::INFINITY, 0.0, 0);
+                (fastest_ms, samples) = (f64::INFINITY, 0);
                 continue;
             }
             fastest_ms = fastest_ms.min(sample_ms);
-            sum_ms += sample_ms;
             samples += 1;
         }
         let repetitions = f64::from(self.runs) * f64::from(self.repetitions);
         Turn {
             ms: fastest_ms / repetitions,
-            mean_ms: sum_ms / f64::from(samples) / repetitions,
             digest: self.digest.clone(),
         }
     }
@@ -155,7 +148,6 @@ mod tests {
         });
         let turn = ready.turn(100.0, &now);
         assert_eq!(turn.ms, 12.0 / 4.0);
-        assert!(turn.ms < turn.mean_ms && turn.mean_ms < 20.0 / 4.0);
         let mut digest = Digest::new();
         digest.add_bits(7);
         assert_eq!(turn.digest, format!("{:016x}", digest.value()));

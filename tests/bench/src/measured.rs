@@ -1,14 +1,10 @@
-//! What `tests/bench/measure.mjs` measured, and what it says of the machine and of the limits.
+//! What `tests/bench/measure.mjs` measured.
 
 use std::fs;
 use std::path::Path;
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use slam2d_bench::calibration::{ID, QUIET, REFERENCE_MS};
-use slam2d_bench::{Workload, workloads};
-
-use crate::report::time;
 
 /// The turns of all workloads.
 #[derive(Deserialize)]
@@ -34,7 +30,6 @@ pub struct Entry {
 #[derive(Deserialize)]
 pub struct Turns {
     ms: Vec<f64>,
-    mean_ms: Vec<f64>,
     digest: String,
 }
 
@@ -61,14 +56,6 @@ impl Entry {
 }
 
 impl Measured {
-    /// Reads what the script printed.
-    ///
-    /// # Errors
-    /// One sentence that names the file that cannot be read.
-    pub fn read(path: &Path) -> Result<Self, String> {
-        read(path)
-    }
-
     /// The turns of a workload.
     pub fn of(&self, id: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.id == id)
@@ -80,81 +67,6 @@ impl Measured {
             .first()
             .map_or(0, |entry| entry.native.ms.len())
     }
-
-    /// How many times its reference the calibration loop took, in the median of the rounds.
-    ///
-    /// The mean of a turn counts, not its fastest sample: another program's time shows in it.
-    fn slowdown(&self) -> f64 {
-        let loops = self
-            .of(ID)
-            .map(|entry| median(entry.native.mean_ms.iter().copied()));
-        loops.map_or(f64::INFINITY, |ms| ms / REFERENCE_MS)
-    }
-
-    fn is_quiet(&self) -> bool {
-        self.slowdown() <= QUIET
-    }
-
-    /// What the calibration loop says of the machine.
-    pub fn machine_words(&self) -> String {
-        let verdict = if self.is_quiet() {
-            "the machine was quiet"
-        } else {
-            "the machine was busy or is another one, so a figure in bold is beyond its limit and no error"
-        };
-        format!(
-            "{} rounds. The calibration loop took {:.2} times its reference: {verdict}.",
-            self.rounds(),
-            self.slowdown()
-        )
-    }
-
-    /// Fails where a row is beyond its limit on a quiet machine.
-    ///
-    /// # Errors
-    /// A line for each such row.
-    pub fn judge(&self) -> Result<(), String> {
-        if !self.is_quiet() {
-            return Ok(());
-        }
-        let complaints: Vec<String> = workloads()
-            .iter()
-            .filter_map(|workload| Some((workload, self.of(workload.id)?)))
-            .flat_map(|(workload, entry)| complaints(workload, entry))
-            .collect();
-        if complaints.is_empty() {
-            Ok(())
-        } else {
-            Err(complaints.join("\n"))
-        }
-    }
-}
-
-/// A line for each limit that a workload exceeds.
-fn complaints(workload: &Workload, entry: &Entry) -> Vec<String> {
-    let mut complaints = Vec::new();
-    if let Some(limit) = workload.limit {
-        let builds = [
-            ("natively", entry.native.median_ms(), limit.native_ms),
-            ("in Chromium", entry.chromium.median_ms(), limit.wasm_ms),
-        ];
-        for (build, ms, most) in builds.into_iter().filter(|(_, ms, most)| ms > most) {
-            complaints.push(format!(
-                "{}: {} {build}, and the limit is {}",
-                workload.id,
-                time(ms),
-                time(most)
-            ));
-        }
-    }
-    let ratio = entry.chromium.ratio_to(&entry.native);
-    if let Some(most) = workload.most_of_native.filter(|most| ratio > *most) {
-        complaints.push(format!(
-            "{}: {ratio:.2} times the native time in Chromium, and the limit is {most:.2}",
-            workload.id
-        ));
-    }
-    complaints
 }
 
 /// The middle one of some values; no number where there are none.
@@ -182,7 +94,6 @@ pub mod tests {
     pub fn entry(id: &str, [native, node, chromium]: [f64; 3], digests: [&str; 3]) -> Entry {
         let turns = |ms: f64, digest: &str| Turns {
             ms: vec![ms; 3],
-            mean_ms: vec![ms; 3],
             digest: digest.to_owned(),
         };
         Entry {
@@ -193,44 +104,15 @@ pub mod tests {
         }
     }
 
-    /// The turns of some workloads, on a machine this much slower than the reference.
-    pub fn measured(slowdown: f64, mut entries: Vec<Entry>) -> Measured {
-        let ms = slowdown * REFERENCE_MS;
-        entries.insert(0, entry(ID, [ms; 3], [""; 3]));
+    /// The turns of some workloads.
+    pub fn measured(entries: Vec<Entry>) -> Measured {
         Measured { entries }
-    }
-
-    #[test]
-    fn a_row_beyond_its_limit_fails_on_a_quiet_machine_only() {
-        let slow_lap = || vec![entry("lap", [13.0, 13.0, 24.0], [""; 3])];
-        let message = measured(1.0, slow_lap()).judge().unwrap_err();
-        assert_eq!(
-            message,
-            "lap: 13.0 ms natively, and the limit is 12.0 ms\n\
-             lap: 1.85 times the native time in Chromium, and the limit is 1.60"
-        );
-        let busy = measured(1.5, slow_lap());
-        assert_eq!(busy.judge(), Ok(()));
-        let words = busy.machine_words();
-        assert!(
-            words.starts_with(
-                "3 rounds. The calibration loop took 1.50 times its reference: the machine was busy"
-            ),
-            "{words}"
-        );
-        let no_loop = Measured {
-            entries: slow_lap(),
-        };
-        assert_eq!(no_loop.judge(), Ok(()));
-        let fast = measured(1.0, vec![entry("lap", [11.0, 17.0, 17.0], [""; 3])]);
-        assert_eq!(fast.judge(), Ok(()));
     }
 
     #[test]
     fn a_ratio_compares_the_turns_of_each_round() {
         let turns = |ms: [f64; 3]| Turns {
             ms: ms.to_vec(),
-            mean_ms: ms.to_vec(),
             digest: String::new(),
         };
         // The second round met another program; the third only in one of the two turns.

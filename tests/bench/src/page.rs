@@ -7,12 +7,8 @@ use measuring::generated;
 /// A part of `docs/performance.md` that a command writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Block {
-    /// Medians and instruction counts of the workloads.
+    /// Medians, ratios and instruction counts of the workloads.
     Workloads,
-    /// What WebAssembly takes of the native time.
-    Ratios,
-    /// The port in JavaScript.
-    Peer,
     /// Registration of files.
     Registration,
     /// Distribution of the lap's figures over many seeds.
@@ -23,8 +19,6 @@ impl Block {
     fn name(self) -> &'static str {
         match self {
             Self::Workloads => "workloads",
-            Self::Ratios => "ratios",
-            Self::Peer => "peer",
             Self::Registration => "registration",
             Self::Sweep => "sweep",
         }
@@ -55,14 +49,7 @@ mod tests {
     #[test]
     fn the_document_has_the_marks_of_every_block() {
         let page = include_str!("../../../docs/performance.md");
-        let blocks = [
-            Block::Workloads,
-            Block::Ratios,
-            Block::Peer,
-            Block::Registration,
-            Block::Sweep,
-        ];
-        for block in blocks {
+        for block in [Block::Workloads, Block::Registration, Block::Sweep] {
             let (start, end) = (block.start(), block.end());
             assert!(
                 page.find(&start) < page.find(&end) && page.contains(&start),

@@ -6,15 +6,16 @@ use crate::counts::Counts;
 use crate::measured::{Entry, Measured};
 
 /// What stands where there is no figure.
-pub const NOTHING: &str = "–";
+const NOTHING: &str = "–";
 
 /// The table in Markdown, a row for each workload; `counts` are of one repetition, and empty where
 /// nothing could be counted.
 pub fn table(measured: &Measured, counts: &Counts) -> String {
     let mut lines = vec![
-        "| workload | native | limit | Chromium | limit | instructions, native | same bits |"
+        "| workload | native | limit | Chromium | limit | Chromium / native | limit | Node / native | instructions, \
+         native | same bits |"
             .to_owned(),
-        "|---|--:|--:|--:|--:|--:|---|".to_owned(),
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|---|".to_owned(),
     ];
     let rows = workloads();
     lines.extend(rows.iter().map(|workload| {
@@ -22,46 +23,51 @@ pub fn table(measured: &Measured, counts: &Counts) -> String {
         row(workload, measured.of(workload.id), count)
     }));
     lines.push(String::new());
-    lines.push(measured.machine_words());
+    lines.push(format!("{} rounds.", measured.rounds()));
     lines.join("\n")
 }
 
 fn row(workload: &Workload, entry: Option<&Entry>, count: Option<u64>) -> String {
-    let cell = |ms: Option<f64>, most: Option<f64>| {
-        let shown = ms.map_or(NOTHING.to_owned(), |ms| bold_beyond(time(ms), ms, most));
-        let most = most.map_or(NOTHING.to_owned(), time);
-        format!("{shown} | {most}")
+    let cell = |value: Option<f64>, most: Option<f64>, show: fn(f64) -> String| {
+        let shown = value.map_or(NOTHING.to_owned(), |value| match most {
+            Some(most) if value > most => format!("**{}**", show(value)),
+            _ => show(value),
+        });
+        format!("{shown} | {}", most.map_or(NOTHING.to_owned(), show))
     };
+    let ratio = |value: f64| format!("{value:.2}");
     let same = match entry.map(Entry::has_same_bits) {
         Some(true) => "yes",
         Some(false) => "**no**",
         None => NOTHING,
     };
     format!(
-        "| {} | {} | {} | {} | {same} |",
+        "| {} | {} | {} | {} | {} | {} | {same} |",
         workload.what,
         cell(
             entry.map(|entry| entry.native.median_ms()),
-            workload.limit.map(|limit| limit.native_ms)
+            workload.limit.map(|limit| limit.native_ms),
+            time,
         ),
         cell(
             entry.map(|entry| entry.chromium.median_ms()),
-            workload.limit.map(|limit| limit.wasm_ms)
+            workload.limit.map(|limit| limit.wasm_ms),
+            time,
         ),
+        cell(
+            entry.map(|entry| entry.chromium.ratio_to(&entry.native)),
+            workload.most_of_native,
+            ratio,
+        ),
+        entry.map_or(NOTHING.to_owned(), |entry| ratio(
+            entry.node.ratio_to(&entry.native)
+        )),
         instructions(count),
     )
 }
 
-/// What is shown of a value, in bold where it is beyond its limit.
-pub fn bold_beyond(shown: String, value: f64, most: Option<f64>) -> String {
-    match most {
-        Some(most) if value > most => format!("**{shown}**"),
-        _ => shown,
-    }
-}
-
 /// Three digits, in a unit that suits.
-pub fn time(milliseconds: f64) -> String {
+fn time(milliseconds: f64) -> String {
     match milliseconds {
         ms if ms >= 1.0 => format!("{} ms", three_digits(ms)),
         ms if ms >= 1e-3 => format!("{} µs", three_digits(1e3 * ms)),
@@ -108,13 +114,10 @@ mod tests {
 
     #[test]
     fn a_row_shows_what_is_known_and_whether_the_digests_agree() {
-        let measured = measured(
-            1.5,
-            vec![
-                entry("lap", [10.2, 15.0, 26.0], ["0a"; 3]),
-                entry("nearest", [44e-6, 60e-6, 60e-6], ["0b", "0b", "ff"]),
-            ],
-        );
+        let measured = measured(vec![
+            entry("lap", [10.2, 15.0, 26.0], ["0a"; 3]),
+            entry("nearest", [44e-6, 60e-6, 60e-6], ["0b", "0b", "ff"]),
+        ]);
         let table = table(&measured, &Counts::from([("lap".to_owned(), 114_488_777)]));
         let row = |what: &str| {
             let row = table.lines().find(|row| row.contains(what));
@@ -122,14 +125,14 @@ mod tests {
         };
         assert_eq!(
             row("canonical lap"),
-            "10.2 ms | 12.0 ms | **26.0 ms** | 25.0 ms | 114 M | yes |"
+            "10.2 ms | 12.0 ms | **26.0 ms** | 25.0 ms | **2.55** | 1.60 | 1.47 | 114 M | yes |"
         );
         assert_eq!(
             row("the same, dense map"),
-            "44.0 ns | 90.0 ns | 60.0 ns | 150 ns | – | **no** |"
+            "44.0 ns | 90.0 ns | 60.0 ns | 150 ns | 1.36 | 1.50 | 1.36 | – | **no** |"
         );
-        assert_eq!(row("occupancy grid"), "– | – | – | – | – | – |");
-        assert!(table.ends_with("is beyond its limit and no error."));
+        assert_eq!(row("occupancy grid"), "– | – | – | – | – | – | – | – | – |");
+        assert!(table.ends_with("\n3 rounds."));
         assert_eq!(table.lines().count(), 2 + workloads().len() + 2);
     }
 }

@@ -16,35 +16,76 @@ pub enum Theme {
     Dark,
 }
 
+/// Every colour by its name, `[light, dark]`; the style of the page and that of the element come from the same file.
+const COLORS: &[u8] = include_bytes!("../../palette.json");
+
+/// The two shades of a colour of the file, found by the compiler: `"name": ["#rrggbb", "#rrggbb"]`.
+const fn shades(name: &str) -> [Rgb; 2] {
+    let name = name.as_bytes();
+    let mut start = 0;
+    // A name that is missing ends in an index out of range, which does not compile.
+    while !is_at(name, start) {
+        start += 1;
+    }
+    let light = start + name.len() + b"\"\": [\"#".len();
+    [rgb_at(light), rgb_at(light + b"rrggbb\", \"#".len())]
+}
+
+/// Whether a name stands there, between quotation marks.
+const fn is_at(name: &[u8], start: usize) -> bool {
+    let mut at = 0;
+    while at < name.len() && COLORS[start + 1 + at] == name[at] {
+        at += 1;
+    }
+    at == name.len() && COLORS[start] == b'"' && COLORS[start + 1 + at] == b'"'
+}
+
+const fn rgb_at(start: usize) -> Rgb {
+    [byte_at(start), byte_at(start + 2), byte_at(start + 4)]
+}
+
+const fn byte_at(at: usize) -> u8 {
+    const fn digit(of: u8) -> u8 {
+        match of {
+            b'0'..=b'9' => of - b'0',
+            b'a'..=b'f' => of - b'a' + 10,
+            _ => panic!("a colour is #rrggbb in small letters"),
+        }
+    }
+    16 * digit(COLORS[at]) + digit(COLORS[at + 1])
+}
+
 /// The shade of a meaning in a theme.
 #[must_use]
 pub fn tone(theme: Theme, tone: Tone) -> Rgb {
-    match (theme, tone) {
-        (_, Tone::Prior) => hex(0x3b82f6),
-        (Theme::Light, Tone::Prediction) => hex(0xea580c),
-        (Theme::Dark, Tone::Prediction) => hex(0xf97316),
-        (Theme::Light, Tone::Measurement) => hex(0x166534),
-        (Theme::Dark, Tone::Measurement) => hex(0x86efac),
-        (Theme::Light, Tone::Revisit) => hex(0x3ca860),
-        (Theme::Dark, Tone::Revisit) => hex(0x247848),
-        (Theme::Light, Tone::Posterior) => hex(0x581c87),
-        (Theme::Dark, Tone::Posterior) => hex(0xf0abfc),
-        (Theme::Light, Tone::Truth) => hex(0x6b7280),
-        (Theme::Dark, Tone::Truth) => hex(0x94a3b8),
-        (Theme::Light, Tone::Ink) => hex(0x1f2937),
-        (Theme::Dark, Tone::Ink) => hex(0xe5e7eb),
-        (Theme::Light, Tone::Faint) => hex(0xd7dbe1),
-        (Theme::Dark, Tone::Faint) => hex(0x374151),
-        (Theme::Light, Tone::Paper) => hex(0xffffff),
-        (Theme::Dark, Tone::Paper) => hex(0x14181f),
-        (theme, Tone::Unseen) => mix(
-            self::tone(theme, Tone::Paper),
-            self::tone(theme, Tone::Faint),
-            0.5,
-        ),
-        (theme, Tone::Class(class)) => class_color(theme, class),
-        (_, Tone::Level(level)) => level_color(f32::from(level) / 255.0),
-    }
+    let shades = match tone {
+        Tone::Prior => const { shades("prior") },
+        Tone::Prediction => const { shades("prediction") },
+        Tone::Measurement => const { shades("measurement") },
+        Tone::Revisit => const { shades("revisit") },
+        Tone::Posterior => const { shades("posterior") },
+        Tone::Truth => const { shades("truth") },
+        Tone::Ink => const { shades("ink") },
+        Tone::Faint => const { shades("faint") },
+        Tone::Paper => const { shades("paper") },
+        Tone::Unseen => {
+            return mix(
+                self::tone(theme, Tone::Paper),
+                self::tone(theme, Tone::Faint),
+                0.5,
+            );
+        }
+        Tone::Class(class) => return class_color(theme, class),
+        Tone::Level(level) => return level_color(f32::from(level) / 255.0),
+    };
+    shades[theme as usize]
+}
+
+/// The colour of controls.
+#[must_use]
+pub fn accent(theme: Theme) -> Rgb {
+    const SHADES: [Rgb; 2] = shades("accent");
+    SHADES[theme as usize]
 }
 
 /// Classes differ in lightness first, so that they stay apart for every kind of colour vision. The
@@ -91,13 +132,12 @@ pub fn level_color(level: f32) -> Rgb {
 /// The colour of a verdict; a shape and a word always go with it.
 #[must_use]
 pub fn standing(theme: Theme, standing: Standing) -> Rgb {
-    match (theme, standing) {
-        (Theme::Light, Standing::Good) => hex(0x15803d),
-        (Theme::Dark, Standing::Good) => hex(0x4ade80),
-        (Theme::Light, Standing::Bad) => hex(0xb91c1c),
-        (Theme::Dark, Standing::Bad) => hex(0xfca5a5),
-        (theme, Standing::Neutral) => tone(theme, Tone::Truth),
-    }
+    let shades = match standing {
+        Standing::Good => const { shades("good") },
+        Standing::Bad => const { shades("bad") },
+        Standing::Neutral => return tone(theme, Tone::Truth),
+    };
+    shades[theme as usize]
 }
 
 /// Black or white, whichever reads better on that colour.

@@ -3,7 +3,7 @@
 use egui::{CornerRadius, FontFamily, FontId, Stroke, Style, TextStyle, Visuals, vec2};
 
 use crate::egui_surface::color;
-use crate::palette::{Theme, mix, readable_on, tone};
+use crate::palette::{Theme, accent, mix, readable_on, tone};
 use crate::scene::Tone;
 use crate::surface::TextSize;
 
@@ -39,10 +39,7 @@ pub fn style(theme: Theme) -> Style {
 fn visuals(theme: Theme) -> Visuals {
     let paper = tone(theme, Tone::Paper);
     let ink = tone(theme, Tone::Ink);
-    let accent = match theme {
-        Theme::Light => [0x1d, 0x4e, 0xd8],
-        Theme::Dark => [0x93, 0xc5, 0xfd],
-    };
+    let accent = accent(theme);
     let shade = |share: f32| color(mix(paper, ink, share));
     let mut visuals = match theme {
         Theme::Light => Visuals::light(),

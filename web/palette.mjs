@@ -1,0 +1,30 @@
+// The colours of widgets/palette.json as properties of a style.
+
+import { readFileSync } from 'node:fs';
+
+const PALETTE = JSON.parse(readFileSync(new URL('../widgets/palette.json', import.meta.url), 'utf8'));
+
+/** The shade of each colour in a theme, `light` or `dark`, by its name. */
+export function shades(theme) {
+  return Object.fromEntries(Object.entries(PALETTE).map(([name, pair]) => [name, pair[theme === 'dark' ? 1 : 0]]));
+}
+
+/** Light; dark by the system's choice, and dark by the reader's. */
+export function colorStyle() {
+  const properties = (theme) => {
+    const lines = Object.entries(shades(theme)).map(([name, shade]) => `  --${name}: ${shade};`);
+    return [`  color-scheme: ${theme};`, ...lines].join('\n');
+  };
+  return `:root {
+${properties('light')}
+}
+@media (prefers-color-scheme: dark) {
+:root:not([data-theme="light"]) {
+${properties('dark')}
+}
+}
+:root[data-theme="dark"] {
+${properties('dark')}
+}
+`;
+}
