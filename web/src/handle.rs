@@ -13,7 +13,9 @@ use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
 
 use crate::app::{Shared, WidgetApp, apply_theme, theme_of, web_options};
-use crate::{app, registry, state};
+use widgets::registry;
+
+use crate::{app, state};
 
 /// A widget, running on a canvas or not.
 #[wasm_bindgen]
@@ -34,7 +36,7 @@ impl Widget {
     /// Where there is no such widget.
     #[wasm_bindgen(constructor)]
     pub fn new(name: &str) -> Result<Self, JsError> {
-        let shell = registry::make(name).ok_or_else(|| JsError::new(&registry::unknown(name)))?;
+        let shell = registry::find(name).map_err(|problem| JsError::new(&problem))?();
         let told = current_values(&shell);
         let shared = Shared {
             shell: RefCell::new(shell),

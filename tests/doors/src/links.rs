@@ -5,7 +5,7 @@
 use kit::param::{ParamKind, ParamSpec};
 use kit::values::Values;
 
-use crate::widgets::SPECS;
+use widgets::registry::SPECS;
 
 /// A text is taken or refused. What is taken lies in the range and reads back to the same bits.
 pub fn door(data: &[u8]) {

@@ -73,20 +73,7 @@ pub const TARGETS: [Target; 11] = [
     },
     Target {
         name: "hands",
-        sources: &[
-            "widgets/w16_1_basin_explorer/src/model",
-            "widgets/w16_2_full_lap/src/model",
-            "widgets/w16_3_cost_terraces/src/model",
-            "widgets/w16_4_control_room/src/model",
-            "widgets/w16_5_pose_graph_toy/src/model",
-            "widgets/w16_6_whole_window/src/model",
-            "widgets/w16_7_been_here/src/model",
-            "widgets/w16_8_moving_box/src/model",
-            "widgets/w16_9_come_back/src/model",
-            "widgets/w16_10_own_robot/src/model",
-            "widgets/w16_11_procrustes/src/model",
-            "widgets/w16_12_jacobians/src/model",
-        ],
+        sources: &["widgets/src/"],
     },
 ];
 

@@ -1,0 +1,71 @@
+//! What the values of the parameter list mean to the core.
+
+use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LoopClosure};
+use ch16_slam2d::chi_squared::gate_threshold;
+use ch16_slam2d::loops::GateModel;
+use ch16_slam2d::matching::InformationFrame;
+use kit::values::Values;
+use pr_sim::Course;
+
+use crate::w16_2_full_lap::spec::OWN_WORLD;
+
+/// What a lap depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LapSettings {
+    /// What is driven through; none is the reader's own.
+    pub world: Option<BuiltInWorld>,
+    /// Seed of all noise.
+    pub seed: u32,
+    /// Multiplies the variances of the wheels.
+    pub noise_factor: f64,
+    /// Whether loops are closed.
+    pub loop_closure: LoopClosure,
+    /// Largest squared innovation that is believed.
+    pub gate_chi2: f64,
+    /// What the gate takes for the drift.
+    pub gate_model: GateModel,
+    /// What registers sweeps, for the front end and for loops.
+    pub matcher: LapMatcher,
+    /// In which frame an edge says what it is sure of.
+    pub information_frame: InformationFrame,
+}
+
+impl LapSettings {
+    /// Reads the list.
+    pub fn read(values: &Values) -> Self {
+        Self {
+            world: match values.get("world") {
+                OWN_WORLD => None,
+                world => Some(BuiltInWorld::ALL[world as usize]),
+            },
+            seed: values.get("seed") as u32,
+            noise_factor: values.get("noise"),
+            loop_closure: if values.get("loops") == 0.0 {
+                LoopClosure::Off
+            } else {
+                LoopClosure::On
+            },
+            gate_chi2: gate_threshold(values.get("gate")),
+            gate_model: if values.get("gate-model") == 0.0 {
+                GateModel::PathApproximation
+            } else {
+                GateModel::ExactMarginal
+            },
+            matcher: LapMatcher::ALL[values.get("matcher") as usize],
+            information_frame: InformationFrame::ALL[values.get("information") as usize],
+        }
+    }
+
+    /// What the core runs with; `own` is the reader's own course. None where that cannot be driven.
+    pub fn config(&self, own: Option<&Course>) -> Option<LapConfig> {
+        let mut config = match self.world {
+            Some(world) => LapConfig::in_world(world, self.seed, self.noise_factor),
+            None => LapConfig::with_seed_and_noise(self.seed, self.noise_factor).elsewhere(own?),
+        };
+        config.slam.loop_closure = self.loop_closure;
+        config.slam.loops.gate_chi2 = self.gate_chi2;
+        config.slam.loops.gate_model = self.gate_model;
+        let config = config.with_matcher(self.matcher);
+        Some(config.with_information(self.information_frame))
+    }
+}
