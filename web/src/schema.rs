@@ -28,7 +28,7 @@ pub fn widget(model: &dyn Model) -> Value {
         "title": spec.title,
         "misconception": spec.misconception,
         "notice": spec.notice,
-        "params": spec.params.iter().map(param).collect::<Vec<_>>(),
+        "params": spec.params.iter().map(|spec| param(spec)).collect::<Vec<_>>(),
         "buttons": buttons.collect::<Vec<_>>(),
         "presets": presets.collect::<Vec<_>>(),
         "keys": keys.collect::<Vec<_>>(),

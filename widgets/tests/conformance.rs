@@ -153,7 +153,7 @@ fn playing_goes_on_to_the_end_and_stops_there() {
             continue;
         }
         let timeline = model.timeline().expect("every other widget has a run");
-        let at = |model: &dyn Model| model.values().get(timeline.param);
+        let at = |model: &dyn Model| model.values().number(timeline.param);
         model.press("reset").unwrap();
         assert_eq!(at(model.as_ref()), 0.0, "{name}");
         model.press("play").unwrap();
@@ -216,7 +216,7 @@ fn a_preset_sets_what_it_names_and_can_be_pressed_again() {
                 // What it starts may go on from there at once.
                 let moved = shell.model().timeline().map(|timeline| timeline.param);
                 for (id, expected) in preset.set.iter().filter(|(id, _)| Some(*id) != moved) {
-                    assert_eq!(values.get(id), *expected, "{} {}", spec.id, preset.id);
+                    assert_eq!(values.number(id), *expected, "{} {}", spec.id, preset.id);
                 }
                 let told = format!("{:?}", shell.model().outcome());
                 assert_eq!(
@@ -378,7 +378,7 @@ fn every_control_is_on_screen_under_its_name_at_every_width_and_in_both_themes()
             let params = spec.params.iter().filter(|p| layer.has_param(p.id));
             let controls = (params
                 .filter(|param| param.id != MORE.id)
-                .filter_map(control))
+                .filter_map(|param| control(param)))
             .chain(buttons.map(|button| (Role::Button, button.label.to_owned())))
             .chain(
                 spec.presets

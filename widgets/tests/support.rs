@@ -42,7 +42,7 @@ pub fn drawn_whole(name: &str, width: f32) -> Harness<'static, Shell> {
 
 /// The value of a parameter.
 pub fn value(harness: &Harness<'_, Shell>, id: &str) -> f64 {
-    harness.state().model().values().get(id)
+    harness.state().model().values().number(id)
 }
 
 /// Presses a key while a slider has the focus.

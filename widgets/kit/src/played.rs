@@ -2,7 +2,7 @@
 //! widget that shows one.
 
 use crate::model::{Activity, Motion, Timeline, TimelineMark};
-use crate::playback::{Playback, SPEED, speed_factor};
+use crate::playback::{Playback, SPEED};
 use crate::spec::DEFAULTS;
 use crate::values::Values;
 
@@ -52,7 +52,7 @@ impl Played {
     /// The place that is shown.
     #[must_use]
     pub fn place(&self, values: &Values, last: f64) -> f64 {
-        values.get(self.param).min(last)
+        values.number(self.param).min(last)
     }
 
     /// Stops where it is.
@@ -86,7 +86,7 @@ impl Played {
         if !self.is_playing() {
             return Activity::Idle;
         }
-        let rate = steps_per_s * speed_factor(values.get(SPEED.id));
+        let rate = steps_per_s * values.get(&SPEED);
         let here = self.place(values, last);
         let next = self.playback.advance(here, last, elapsed_s, rate);
         values.store(self.param, next);
@@ -115,30 +115,22 @@ impl Played {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::param::MORE;
-    use crate::param::{ParamKind, ParamSpec};
+    use crate::param::{MORE, Param, ParamSpec};
 
-    const STEPS: ParamSpec = ParamSpec {
-        id: "steps",
-        label: "steps",
-        unit: "",
-        kind: ParamKind::Timeline { max: 1000.0 },
-        default: 1000.0,
-        help: "Steps done.",
-    };
-    const PARAMS: &[ParamSpec] = &[STEPS, SPEED, MORE];
+    static STEPS: Param<f64> = Param::timeline("steps", "steps", 1000.0).default(1000.0);
+    const PARAMS: &[&ParamSpec] = &[&STEPS.spec, &SPEED.spec, &MORE.spec];
 
     #[test]
     fn a_place_past_the_end_is_the_end_and_play_starts_over_there() {
         let (mut values, mut run) = (Values::defaults(PARAMS), Played::along("steps"));
         assert_eq!(run.place(&values, 10.0), 10.0);
         assert_eq!(run.press(&mut values, "play", 10.0), Pressed::Transport);
-        assert_eq!((values.get("steps"), run.is_playing()), (0.0, true));
+        assert_eq!((values.get(&STEPS), run.is_playing()), (0.0, true));
         assert_eq!(run.advance(&mut values, 10.0, 0.2, 5.0), Activity::Busy);
-        assert_eq!(values.get("steps"), 1.0);
+        assert_eq!(values.get(&STEPS), 1.0);
         values.store("speed", 4.0);
         run.advance(&mut values, 10.0, 0.2, 5.0);
-        assert_eq!(values.get("steps"), 5.0, "four times as fast");
+        assert_eq!(values.get(&STEPS), 5.0, "four times as fast");
     }
 
     #[test]
@@ -147,8 +139,8 @@ mod tests {
         values.store(MORE.id, 1.0);
         run.press(&mut values, "play", 10.0);
         assert_eq!(run.press(&mut values, "defaults", 10.0), Pressed::Defaults);
-        assert_eq!((values.get("steps"), run.is_playing()), (1000.0, false));
-        assert_eq!(values.get(MORE.id), 1.0);
+        assert_eq!((values.get(&STEPS), run.is_playing()), (1000.0, false));
+        assert!(values.get(&MORE));
         assert_eq!(run.press(&mut values, "quarter-turn", 10.0), Pressed::Other);
     }
 
@@ -157,6 +149,6 @@ mod tests {
         let (mut values, mut run) = (Values::defaults(PARAMS), Played::along("steps"));
         run.press(&mut values, "play", 10.0);
         run.set_motion(&mut values, Motion::Reduced, 10.0);
-        assert_eq!((values.get("steps"), run.is_playing()), (10.0, false));
+        assert_eq!((values.get(&STEPS), run.is_playing()), (10.0, false));
     }
 }

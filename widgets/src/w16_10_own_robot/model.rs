@@ -15,7 +15,7 @@ use kit::model::{
 };
 use kit::outside::Delivery;
 use kit::param::ParamError;
-use kit::playback::{Playback, speed_factor};
+use kit::playback::{Playback, SPEED};
 use kit::scene::Scene;
 use kit::spec::{DEFAULTS, WidgetSpec};
 use kit::values::{Changed, Values};
@@ -77,13 +77,13 @@ impl OwnRobot {
 
     /// The keyframe that is shown.
     fn keyframe(&self) -> usize {
-        (self.values.get("keyframe") as usize).min(self.last())
+        (self.values.number("keyframe") as usize).min(self.last())
     }
 
     /// The loop that is shown, where there is one.
     fn link(&self) -> Option<usize> {
         let last = self.robot.links.len().checked_sub(1)?;
-        Some((self.values.get("loop") as usize).min(last))
+        Some((self.values.number("loop") as usize).min(last))
     }
 
     /// Asks for something; of two orders of a kind that replace each other only the later stands.
@@ -112,7 +112,7 @@ impl OwnRobot {
     /// Where the robot of another log may be at first, in the words of an order.
     fn start(&self) -> String {
         let shown = self.robot.keyframes.get(self.keyframe());
-        match shown.filter(|_| self.values.get("start") == 1.0) {
+        match shown.filter(|_| self.values.number("start") == 1.0) {
             Some(shown) => {
                 let [x, y, theta] = shown.pose;
                 format!(" {x} {y} {theta}")
@@ -125,7 +125,7 @@ impl OwnRobot {
     fn place(&self) -> Option<(usize, &Place)> {
         let places = &self.robot.whereabouts.as_ref()?.places;
         let last = places.len().checked_sub(1)?;
-        let scan = self.values.get("scan");
+        let scan = self.values.number("scan");
         let after = places.partition_point(|place| place.scan <= scan);
         let shown = after.saturating_sub(1).min(last);
         Some((shown, &places[shown]))
@@ -162,7 +162,7 @@ impl OwnRobot {
 
     /// The keyframes to look into: of loops and ways that contradict the graph, and of scans that fit badly.
     fn doubts(&self) -> Vec<usize> {
-        let poor = self.values.get("poor");
+        let poor = self.values.number("poor");
         let keyframes = self.robot.keyframes.iter().enumerate();
         let badly = keyframes.filter(|(_, keyframe)| keyframe.fit < poor);
         let mut doubts: Vec<usize> = badly.map(|(k, _)| k).collect();
@@ -176,7 +176,7 @@ impl OwnRobot {
 
     /// Says what a log is for that is dropped.
     fn ask_drop(&mut self) {
-        let order = if self.values.get("drop") == 1.0 {
+        let order = if self.values.number("drop") == 1.0 {
             "drop where"
         } else {
             "drop map"
@@ -214,12 +214,12 @@ impl Model for OwnRobot {
             return press_preset(self, id);
         }
         self.playback.pause();
-        let dropped = self.values.get("drop");
+        let dropped = self.values.number("drop");
         self.values.reset();
         self.robot = Robot::default();
         self.orders.clear();
         self.ask("close".to_owned());
-        if dropped != self.values.get("drop") {
+        if dropped != self.values.number("drop") {
             self.ask_drop();
         }
         Ok(())
@@ -230,7 +230,7 @@ impl Model for OwnRobot {
             return Activity::Idle;
         }
         let last = self.last() as f64;
-        let rate = (last / PLAY_S).max(4.0) * speed_factor(self.values.get("speed"));
+        let rate = (last / PLAY_S).max(4.0) * self.values.get(&SPEED);
         let here = self.keyframe() as f64;
         let next = self.playback.advance(here, last, elapsed_s, rate);
         self.values.store("keyframe", next);

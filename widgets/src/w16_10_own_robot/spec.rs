@@ -36,8 +36,8 @@ const fn choice(id: &'static str, label: &'static str) -> Choice {
 }
 
 /// What the reader can change.
-pub const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
+pub const PARAMS: &[&ParamSpec] = &[
+    &ParamSpec {
         id: "colour",
         label: "colour the way by",
         unit: "",
@@ -52,7 +52,7 @@ pub const PARAMS: &[ParamSpec] = &[
         default: 0.0,
         help: "Time, the share of each scan that fits, the standard deviation by the graph, or the error against a reference that you give.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "links",
         label: "show loops",
         unit: "",
@@ -66,7 +66,7 @@ pub const PARAMS: &[ParamSpec] = &[
         default: 1.0,
         help: "Which loops stand on the map: none, those of the graph, or the refused ones as well.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "loop",
         label: "loop of the list",
         unit: "",
@@ -76,7 +76,7 @@ pub const PARAMS: &[ParamSpec] = &[
         default: 0.0,
         help: "The loop whose evidence is shown; 0 is the one that the graph believes least.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "marked",
         label: "marked keyframe",
         unit: "",
@@ -86,7 +86,7 @@ pub const PARAMS: &[ParamSpec] = &[
         default: 0.0,
         help: "One end of a loop that you add; the other is the keyframe that is shown.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "poor",
         label: "look into scans that fit less than",
         unit: "",
@@ -98,7 +98,7 @@ pub const PARAMS: &[ParamSpec] = &[
         default: 0.5,
         help: "Keyframes of whose scan a smaller share fits are ringed on the map, and “Next doubt” stops there.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "file",
         label: "file to save",
         unit: "",
@@ -106,7 +106,7 @@ pub const PARAMS: &[ParamSpec] = &[
         default: 0.0,
         help: "Map for Nav2, trajectory as TUM, graph as g2o, a report with pictures, the session with all of it to go on with, or where the robot of another log was.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "start",
         label: "look for the robot",
         unit: "",
@@ -119,7 +119,7 @@ pub const PARAMS: &[ParamSpec] = &[
         default: 0.0,
         help: "Where the other log begins on this map: anywhere, or within 1.5 m of the keyframe that is shown and turned by at most 34° against it.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "scan",
         label: "scan of the other log",
         unit: "",
@@ -127,7 +127,7 @@ pub const PARAMS: &[ParamSpec] = &[
         default: MOST_SCANS,
         help: "The scan of the other log whose place is shown; past the end, the last one.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "drop",
         label: "a log that you drop",
         unit: "",
@@ -140,7 +140,7 @@ pub const PARAMS: &[ParamSpec] = &[
         default: 0.0,
         help: "Whether a dropped log is mapped, or its robot is looked for on the map that is there.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "option",
         label: "of a recording",
         unit: "",
@@ -148,7 +148,7 @@ pub const PARAMS: &[ParamSpec] = &[
         default: 0.0,
         help: "What “Take another” changes where a recording has several: the topic of the scans or of the odometry, its frame, or the frame of the body.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "keyframe",
         label: "keyframe",
         unit: "",
@@ -158,8 +158,8 @@ pub const PARAMS: &[ParamSpec] = &[
         default: MOST_KEYFRAMES,
         help: "The keyframe whose scan lies over the map.",
     },
-    SPEED,
-    MORE,
+    &SPEED.spec,
+    &MORE.spec,
 ];
 
 const fn button(id: &'static str, label: &'static str, help: &'static str) -> ButtonSpec {

@@ -17,7 +17,7 @@ use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
-use crate::w16_11_procrustes::spec::{PARAMS, SPEC, WHOLE_TURN_DEG};
+use crate::w16_11_procrustes::spec::{PARAMS, SPEC, TURN, WHOLE_TURN_DEG};
 
 /// Names of the panels.
 pub mod panel {
@@ -74,7 +74,7 @@ impl ProcrustesTrace {
 
     /// The angle that is tried, rad.
     fn theta_rad(&self) -> f64 {
-        self.values.get("turn").to_radians()
+        self.values.get(&TURN).to_radians()
     }
 }
 

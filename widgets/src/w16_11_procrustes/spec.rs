@@ -1,7 +1,8 @@
 //! The widget's words and its one list of parameters.
 
+use ch16_lab::procrustes::{Handedness, Shape};
 use kit::layers::Opening;
-use kit::param::{Choice, MORE, ParamKind, ParamSpec};
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
@@ -14,108 +15,87 @@ pub const REACH_M: f64 = 3.0;
 /// A whole turn, °.
 pub const WHOLE_TURN_DEG: f64 = 360.0;
 
+pub(super) static SHAPE: OneOf<Shape> = OneOf::new(
+    "shape",
+    "what is seen twice",
+    &[
+        Choice::new("corners", "four corners"),
+        Choice::new("two", "two points"),
+        Choice::new("wall", "a bare wall"),
+        Choice::new("upside-down", "corners, upside down"),
+    ],
+    &[Shape::Corners, Shape::Two, Shape::Wall, Shape::UpsideDown],
+)
+.help("Points of two sweeps in pairs; the last is what a sensor sees that hangs upside down the second time.");
+
+pub(super) static TRIED: OneOf<Handedness> = OneOf::new(
+    "tried",
+    "matrices tried",
+    &[
+        Choice::new("turns", "turns"),
+        Choice::new("mirrors", "mirror images"),
+    ],
+    &[Handedness::Turn, Handedness::Mirror],
+)
+.help("The source is moved by turns, or mirrored first and turned then: together these are all orthogonal matrices.");
+
+pub(super) static SEED: Param<u32> = Param::seed("seed of the noise", 1)
+    .help("Where the range noise of both sweeps starts, 12 mm along each axis.");
+
+pub(super) static TURN: Param<f64> = Param::timeline("turn", "angle tried", WHOLE_TURN_DEG)
+    .unit("°")
+    .help("By how much the source is turned, after the mirror where there is one.");
+
 /// The parameters that move the points of the target: along x and along y.
-pub const MOVED: [[&str; 2]; MOST_PAIRS] = [
-    ["x1", "y1"],
-    ["x2", "y2"],
-    ["x3", "y3"],
-    ["x4", "y4"],
-    ["x5", "y5"],
+pub(super) static MOVED: [[Param<f64>; 2]; MOST_PAIRS] = [
+    [
+        moved("x1", "target 1: moved in x"),
+        moved("y1", "target 1: moved in y"),
+    ],
+    [
+        moved("x2", "target 2: moved in x"),
+        moved("y2", "target 2: moved in y"),
+    ],
+    [
+        moved("x3", "target 3: moved in x"),
+        moved("y3", "target 3: moved in y"),
+    ],
+    [
+        moved("x4", "target 4: moved in x"),
+        moved("y4", "target 4: moved in y"),
+    ],
+    [
+        moved("x5", "target 5: moved in x"),
+        moved("y5", "target 5: moved in y"),
+    ],
 ];
 
 /// What the reader can change.
-pub const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        id: "shape",
-        label: "what is seen twice",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "corners",
-                    label: "four corners",
-                },
-                Choice {
-                    id: "two",
-                    label: "two points",
-                },
-                Choice {
-                    id: "wall",
-                    label: "a bare wall",
-                },
-                Choice {
-                    id: "upside-down",
-                    label: "corners, upside down",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "Points of two sweeps in pairs; the last is what a sensor sees that hangs upside down the second time.",
-    },
-    ParamSpec {
-        id: "tried",
-        label: "matrices tried",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "turns",
-                    label: "turns",
-                },
-                Choice {
-                    id: "mirrors",
-                    label: "mirror images",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "The source is moved by turns, or mirrored first and turned then: together these are all orthogonal matrices.",
-    },
-    ParamSpec {
-        id: "seed",
-        label: "seed of the noise",
-        unit: "",
-        kind: ParamKind::SEED,
-        default: 1.0,
-        help: "Where the range noise of both sweeps starts, 12 mm along each axis.",
-    },
-    moved("x1", "target 1: moved in x"),
-    moved("y1", "target 1: moved in y"),
-    moved("x2", "target 2: moved in x"),
-    moved("y2", "target 2: moved in y"),
-    moved("x3", "target 3: moved in x"),
-    moved("y3", "target 3: moved in y"),
-    moved("x4", "target 4: moved in x"),
-    moved("y4", "target 4: moved in y"),
-    moved("x5", "target 5: moved in x"),
-    moved("y5", "target 5: moved in y"),
-    ParamSpec {
-        id: "turn",
-        label: "angle tried",
-        unit: "°",
-        kind: ParamKind::Timeline {
-            max: WHOLE_TURN_DEG,
-        },
-        default: 0.0,
-        help: "By how much the source is turned, after the mirror where there is one.",
-    },
-    SPEED,
-    MORE,
+pub const PARAMS: &[&ParamSpec] = &[
+    &SHAPE.spec,
+    &TRIED.spec,
+    &SEED.spec,
+    &MOVED[0][0].spec,
+    &MOVED[0][1].spec,
+    &MOVED[1][0].spec,
+    &MOVED[1][1].spec,
+    &MOVED[2][0].spec,
+    &MOVED[2][1].spec,
+    &MOVED[3][0].spec,
+    &MOVED[3][1].spec,
+    &MOVED[4][0].spec,
+    &MOVED[4][1].spec,
+    &TURN.spec,
+    &SPEED.spec,
+    &MORE.spec,
 ];
 
-const fn moved(id: &'static str, label: &'static str) -> ParamSpec {
-    ParamSpec {
-        id,
-        label,
-        unit: "m",
-        kind: ParamKind::Slider {
-            min: -REACH_M,
-            max: REACH_M,
-            step: 0.05,
-        },
-        default: 0.0,
-        help: "How far the point is dragged from where it was seen; only points of the scene count.",
-    }
+const fn moved(id: &'static str, label: &'static str) -> Param<f64> {
+    Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
+        .unit("m")
+        .help(
+            "How far the point is dragged from where it was seen; only points of the scene count.",
+        )
 }
 
 /// What never changes.
@@ -148,21 +128,21 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "two-points",
             label: "Two points only",
             help: "Turn and mirror image reach the same bound: two points cannot tell left from right.",
-            set: &[("shape", 1.0)],
+            set: &[SHAPE.to("two")],
             then: &["play"],
         },
         Preset {
             id: "bare-wall",
             label: "A bare wall",
             help: "The wall fixes the line, and noise decides the side: here the mirror image fits a little better.",
-            set: &[("shape", 2.0), ("seed", 2.0), ("tried", 1.0)],
+            set: &[SHAPE.to("wall"), SEED.to(2), TRIED.to("mirrors")],
             then: &["play"],
         },
         Preset {
             id: "upside-down",
             label: "Hang the sensor upside down",
             help: "A mirror image fits without a rest, and hides the mistake. The best turn leaves a cost that shows it.",
-            set: &[("shape", 3.0), ("tried", 1.0)],
+            set: &[SHAPE.to("upside-down"), TRIED.to("mirrors")],
             then: &["play"],
         },
     ],

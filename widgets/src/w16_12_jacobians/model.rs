@@ -20,7 +20,7 @@ use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 use pr_geom::SE2;
 
-use crate::w16_12_jacobians::spec::{MOST_STEPS, PARAMS, SPEC};
+use crate::w16_12_jacobians::spec::{MOST_STEPS, PARAMS, SPEC, STEPS};
 
 /// Names of the panels.
 pub mod panel {
@@ -178,7 +178,7 @@ impl Model for WrongJacobians {
         if at[0].is_finite() {
             self.played.pause();
             self.values
-                .store("steps", dragged_to(handle, at).min(self.last() as f64));
+                .put(&STEPS, dragged_to(handle, at).min(self.last() as f64));
         }
     }
 

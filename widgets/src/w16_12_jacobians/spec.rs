@@ -1,97 +1,76 @@
 //! The widget's words and its one list of parameters.
 
+use ch16_lab::jacobians::WrongJacobian;
 use kit::layers::Opening;
-use kit::param::{Choice, MORE, ParamKind, ParamSpec};
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
 /// Steps at which a descent ends in any case.
 pub const MOST_STEPS: usize = 40;
 
+/// What the curves show over the steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curve {
+    /// How far the farthest pose is from the optimum.
+    Distance,
+    /// How far χ² is above its minimum.
+    Chi2,
+}
+
+pub(super) static BIAS: Param<f64> =
+    Param::slider("bias", "each edge turns too little by", [0.0, 10.0], 0.5)
+        .unit("°")
+        .default(6.0)
+        .help("How far odometry contradicts the loop: at 0 all measurements agree.");
+
+pub(super) static WRONG: OneOf<WrongJacobian> = OneOf::new(
+    "wrong",
+    "the wrong Jacobian is",
+    &[
+        Choice::new("twice", "twice too long"),
+        Choice::new("left", "left for right"),
+    ],
+    &[WrongJacobian::TwiceTooLong, WrongJacobian::LeftForRight],
+)
+.help("Twice the exact one, or that of a perturbation on the other side of the pose.");
+
+pub(super) static SCATTER: Param<f64> =
+    Param::slider("scatter", "start thrown off by", [0.0, 0.3], 0.05)
+        .unit("m, rad")
+        .default(0.2)
+        .help(
+            "Standard deviation by which each pose is thrown off odometry before the first step.",
+        );
+
+pub(super) static SEED: Param<u32> =
+    Param::seed("seed of the throw", 1).help("Where the random numbers of the throw start.");
+
+pub(super) static CURVE: OneOf<Curve> = OneOf::new(
+    "curve",
+    "curves show",
+    &[
+        Choice::new("distance", "distance to the optimum"),
+        Choice::new("chi2", "χ² above the optimum"),
+    ],
+    &[Curve::Distance, Curve::Chi2],
+)
+.help("How far the farthest pose is from its place at the optimum, or by how much χ² is above its minimum.");
+
+pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MOST_STEPS as f64)
+    .default(MOST_STEPS as f64)
+    .help("How many steps each solver has done; past its last one it rests.");
+
 /// What the reader can change.
-pub const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        id: "bias",
-        label: "each edge turns too little by",
-        unit: "°",
-        kind: ParamKind::Slider {
-            min: 0.0,
-            max: 10.0,
-            step: 0.5,
-        },
-        default: 6.0,
-        help: "How far odometry contradicts the loop: at 0 all measurements agree.",
-    },
-    ParamSpec {
-        id: "wrong",
-        label: "the wrong Jacobian is",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "twice",
-                    label: "twice too long",
-                },
-                Choice {
-                    id: "left",
-                    label: "left for right",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "Twice the exact one, or that of a perturbation on the other side of the pose.",
-    },
-    ParamSpec {
-        id: "scatter",
-        label: "start thrown off by",
-        unit: "m, rad",
-        kind: ParamKind::Slider {
-            min: 0.0,
-            max: 0.3,
-            step: 0.05,
-        },
-        default: 0.2,
-        help: "Standard deviation by which each pose is thrown off odometry before the first step.",
-    },
-    ParamSpec {
-        id: "seed",
-        label: "seed of the throw",
-        unit: "",
-        kind: ParamKind::SEED,
-        default: 1.0,
-        help: "Where the random numbers of the throw start.",
-    },
-    ParamSpec {
-        id: "curve",
-        label: "curves show",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "distance",
-                    label: "distance to the optimum",
-                },
-                Choice {
-                    id: "chi2",
-                    label: "χ² above the optimum",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "How far the farthest pose is from its place at the optimum, or by how much χ² is above its minimum.",
-    },
-    ParamSpec {
-        id: "steps",
-        label: "steps done",
-        unit: "",
-        kind: ParamKind::Timeline {
-            max: MOST_STEPS as f64,
-        },
-        default: MOST_STEPS as f64,
-        help: "How many steps each solver has done; past its last one it rests.",
-    },
-    SPEED,
-    MORE,
+pub const PARAMS: &[&ParamSpec] = &[
+    &BIAS.spec,
+    &WRONG.spec,
+    &SCATTER.spec,
+    &SEED.spec,
+    &CURVE.spec,
+    &STEPS.spec,
+    &SPEED.spec,
+    &MORE.spec,
 ];
 
 /// What never changes.
@@ -117,28 +96,28 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "four",
             label: "Solve it in four ways",
             help: "Three end alike, after few steps or many; the wrong residual is among the quick ones, and ends elsewhere.",
-            set: &[("steps", 0.0)],
+            set: &[STEPS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "agree",
             label: "Let all measurements agree",
             help: "Nothing is left at the end, so nothing shows: even the wrong residual ends right.",
-            set: &[("bias", 0.0), ("steps", 0.0)],
+            set: &[BIAS.to(0.0), STEPS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "left",
             label: "Left for right",
             help: "A Jacobian of the wrong side is right where nothing is left: it ends a millimetre or two beside the optimum.",
-            set: &[("wrong", 1.0), ("steps", 0.0)],
+            set: &[WRONG.to("left"), STEPS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "half",
             label: "Half the contradiction",
             help: "The wrong residual is off by half as much, the approximate Jacobian by a quarter.",
-            set: &[("bias", 3.0), ("steps", 0.0)],
+            set: &[BIAS.to(3.0), STEPS.to(0.0)],
             then: &["play"],
         },
     ],

@@ -17,14 +17,16 @@ use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
 };
 use kit::param::{MORE, ParamError};
-use kit::playback::{Playback, speed_factor};
+use kit::playback::Playback;
+use kit::playback::SPEED;
 use kit::scene::Scene;
 use kit::spec::{DEFAULTS, WidgetSpec};
 use kit::values::{Changed, Values};
 
-use crate::w16_1_basin_explorer::spec::{EDGES, OFFSET_SPAN_M, PARAMS, SPEC, SWEEP};
+use crate::w16_1_basin_explorer::spec::{DX, DY, EDGE, HEADING, Phase};
+use crate::w16_1_basin_explorer::spec::{EDGES, ITERATION, OFFSET_SPAN_M, PARAMS, SPEC, SWEEP};
 use basins::Basins;
-use edge::{Edges, Phase};
+use edge::Edges;
 use paths::Paths;
 use settings::{config, other_variant, start, variant};
 
@@ -135,7 +137,7 @@ impl BasinExplorer {
 
     /// The iteration that is shown.
     fn iteration(&self) -> usize {
-        (self.values.get("iteration") as usize).min(self.last())
+        (self.values.get(&ITERATION) as usize).min(self.last())
     }
 
     /// The state at the iteration that is shown.
@@ -165,14 +167,11 @@ impl BasinExplorer {
         let heading_deg = rounded(start.heading_deg, 10.0);
         let offset = |value: f64| rounded(value, 100.0).clamp(-OFFSET_SPAN_M, OFFSET_SPAN_M);
         self.playback.pause();
-        for (id, value) in [
-            ("heading", heading_deg.clamp(-180.0, 180.0)),
-            ("dx", offset(start.dx_m)),
-            ("dy", offset(start.dy_m)),
-            ("iteration", 0.0),
-        ] {
-            self.store(id, value);
-        }
+        let values = &mut self.values;
+        values.put(&HEADING, heading_deg.clamp(-180.0, 180.0));
+        values.put(&DX, offset(start.dx_m));
+        values.put(&DY, offset(start.dy_m));
+        values.put(&ITERATION, 0.0);
         self.register();
         self.follow();
         self.preview = Preview::Shown;
@@ -183,14 +182,6 @@ impl BasinExplorer {
         self.basins.follow(&self.values);
         self.paths.follow(&self.values);
         self.edges.follow(&self.values);
-    }
-
-    /// Keeps a value that lies in its range by construction.
-    fn store(&mut self, id: &str, value: f64) -> Changed {
-        match self.values.set(SPEC.id, id, value) {
-            Ok(changed) => changed,
-            Err(error) => panic!("a value of our own was refused: {error}"),
-        }
     }
 }
 
@@ -204,7 +195,7 @@ impl Model for BasinExplorer {
     }
 
     fn layer(&self) -> Layer {
-        let opening = match Phase::of(&self.values) {
+        let opening = match self.values.get(&EDGE) {
             Phase::Off => SPEC.opening,
             Phase::Marking | Phase::Swept => edge::OPENING,
         };
@@ -217,7 +208,7 @@ impl Model for BasinExplorer {
         }
         match id {
             "iteration" | "speed" | "more" | "edge" => {}
-            _ if EDGES.contains(&id) => {}
+            _ if EDGES.iter().any(|edge| edge.id == id) => {}
             "seed" | "scene" => {
                 self.scene = settings::scene(&self.values);
                 self.basins.restart(&self.values);
@@ -240,11 +231,11 @@ impl Model for BasinExplorer {
         let (here, last) = (self.iteration() as f64, self.last() as f64);
         if let Some(position) = self.playback.press(id, here, last) {
             self.preview = Preview::Hidden;
-            self.store("iteration", position);
+            self.values.put(&ITERATION, position);
             return Ok(());
         }
         if id == SWEEP.id {
-            self.store("edge", 2.0);
+            self.values.put(&EDGE, Phase::Swept);
         } else if id != DEFAULTS.id {
             press_preset(self, id)?;
         } else {
@@ -261,15 +252,15 @@ impl Model for BasinExplorer {
         if !self.playback.is_playing() {
             return Activity::Idle;
         }
-        let rate = STEPS_PER_S * speed_factor(self.values.get("speed"));
+        let rate = STEPS_PER_S * self.values.get(&SPEED);
         let (here, last) = (self.iteration() as f64, self.last() as f64);
         let next = self.playback.advance(here, last, elapsed_s, rate);
-        self.store("iteration", next);
+        self.values.put(&ITERATION, next);
         Activity::Busy
     }
 
     fn work(&mut self) -> Activity {
-        if Phase::of(&self.values) == Phase::Swept
+        if self.values.get(&EDGE) == Phase::Swept
             && self.edges.work(&self.scene, &mut self.workspace) == Activity::Busy
         {
             return Activity::Busy;
@@ -282,7 +273,7 @@ impl Model for BasinExplorer {
 
     fn settle(&mut self) -> Activity {
         let mut done = Activity::Idle;
-        while Phase::of(&self.values) == Phase::Swept
+        while self.values.get(&EDGE) == Phase::Swept
             && self.edges.work(&self.scene, &mut self.workspace) == Activity::Busy
         {
             done = Activity::Busy;
@@ -340,7 +331,7 @@ impl Model for BasinExplorer {
 
     fn set_motion(&mut self, motion: Motion) {
         if let Some(end) = self.playback.set_motion(motion, self.last() as f64) {
-            self.store("iteration", end);
+            self.values.put(&ITERATION, end);
         }
     }
 }

@@ -4,7 +4,7 @@
 //! asked for first; the old one stays until the new one is whole, and the moment shown stays.
 
 mod drawing;
-mod flat;
+pub(super) mod flat;
 mod found;
 mod gates;
 mod graph_tools;
@@ -31,13 +31,14 @@ use kit::model::{
 };
 use kit::outside::Delivery;
 use kit::param::ParamError;
-use kit::playback::{Playback, speed_factor};
+use kit::playback::Playback;
+use kit::playback::SPEED;
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 use pr_sim::{Course, Sketch};
 
-use crate::w16_2_full_lap::spec::{EDITING, FLAT_CONTROLS, FLAT_KEYS, SPEC};
+use crate::w16_2_full_lap::spec::{EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WORLD};
 use flat::{Flat, Tool};
 use moment::Moment;
 use own::Own;
@@ -101,7 +102,7 @@ impl FullLap {
 
     /// The moment shown: that of the lap which is shown, however late the one is that was asked for.
     fn tick(&self) -> usize {
-        (self.values.get("t") as usize).min(self.runs.ticks())
+        (self.values.get(&TICK) as usize).min(self.runs.ticks())
     }
 
     fn last(&self) -> f64 {
@@ -111,9 +112,7 @@ impl FullLap {
     /// Goes to a tick; where a loop was closed in it, the nodes move from old to new.
     fn go_to(&mut self, tick: usize) {
         let tick = (tick as f64).min(self.last());
-        self.values
-            .set(SPEC.id, "t", tick)
-            .expect("a tick of the lap is within the timeline");
+        self.values.put(&TICK, tick);
         self.hovered = None;
         self.own.refresh(&self.values, &self.runs, tick as usize);
         // A loop of the reader's own stands already while the time goes on.
@@ -133,19 +132,10 @@ impl FullLap {
             (closed && self.playback.motion() == Motion::Full).then(Transition::default);
     }
 
-    /// Sets values that lie in their ranges by construction.
-    fn store(&mut self, values: impl IntoIterator<Item = (&'static str, f64)>) {
-        for (id, value) in values {
-            if let Err(error) = self.values.set(SPEC.id, id, value) {
-                panic!("a value of our own was refused: {error}");
-            }
-        }
-    }
-
     fn back_to_defaults(&mut self) {
-        let before = self.values.get("world");
+        let before = self.values.get(&WORLD);
         self.values.reset();
-        if before != self.values.get("world") {
+        if before != self.values.get(&WORLD) {
             self.world_chosen(before);
         }
         self.end_stroke();
@@ -170,7 +160,7 @@ impl FullLap {
     fn show(&mut self, record: LapRecord) {
         self.runs = Runs::new(record);
         self.hovered = None;
-        if self.values.get("t") > self.last() && !self.laps.is_running() {
+        if self.values.get(&TICK) > self.last() && !self.laps.is_running() {
             self.go_to(self.runs.ticks());
         }
         if self.flat.follows && !self.laps.is_running() {
@@ -189,7 +179,7 @@ impl FullLap {
     /// Plays on; stops for the animation of every loop on the way.
     fn play(&mut self, elapsed_s: f64) {
         let now = self.tick() as f64;
-        let rate = TICKS_PER_S * speed_factor(self.values.get("speed"));
+        let rate = TICKS_PER_S * self.values.get(&SPEED);
         let reached = self.playback.advance(now, self.last(), elapsed_s, rate) as usize;
         let ahead = |attempt: &&LoopAttempt| attempt.tick > now as usize && attempt.tick < reached;
         let stop = self.runs.graph.attempts().iter().find(ahead);
@@ -205,10 +195,10 @@ impl FullLap {
 
     /// The last tick of which anything tells.
     fn seen_until(&self) -> usize {
-        if self.values.get("future") == 0.0 {
-            self.tick()
-        } else {
+        if self.values.get(&FUTURE) {
             self.runs.ticks()
+        } else {
+            self.tick()
         }
     }
 
@@ -263,7 +253,7 @@ impl Model for FullLap {
             "t" if self.laps.is_running() && value > self.last() => self.refresh_own(),
             "t" => self.go_to(self.tick()),
             "speed" | "more" | "future" | "pick" | "number" => {}
-            "world" => self.world_chosen(before.get("world")),
+            "world" => self.world_chosen(before.get(&WORLD)),
             "edit" | "piece" | "piece-number" => {
                 self.end_stroke();
                 self.flat.note = None;
@@ -395,7 +385,7 @@ impl Model for FullLap {
             return Some(handle);
         }
         let panel = *picture::OVER_TIME.iter().find(|id| **id == panel)?;
-        grab_now(panel, self.values.get("t"), at, reach)
+        grab_now(panel, self.values.get(&TICK), at, reach)
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {

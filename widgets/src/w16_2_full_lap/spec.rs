@@ -1,9 +1,13 @@
 //! The widget's words and its one list of parameters.
 
+use super::model::flat::Tool;
 use ch16_lab::lap;
+use ch16_lab::lap::{BuiltInWorld, Choice as _, Claim, LapMatcher, OwnKernel};
 use ch16_slam2d::chi_squared::CHAPTER_QUANTILE;
+use ch16_slam2d::loops::GateModel;
+use ch16_slam2d::matching::InformationFrame;
 use kit::layers::Opening;
-use kit::param::{Choice, MORE, ParamKind, ParamSpec};
+use kit::param::{Choice, MORE, OneOf, Param, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::run::{LOOPS, NOISE, seed};
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
@@ -27,341 +31,224 @@ const MOST_NODES: f64 = 999.0;
 /// Where the widget starts: the tick of the canonical run's first loop.
 const FIRST_LOOP_TICK: f64 = 92.0;
 
-/// The value of `world` for the reader's own flat, after those that are built in.
-pub const OWN_WORLD: f64 = 5.0;
-
 /// Most characters of a flat in a link: four digits of base 64 for each number of the largest.
 const MOST_FLAT: usize = 33_000;
 
 /// Largest number of a wall, counted from 1.
 const MOST_PIECES: f64 = limits::WALLS as f64;
 
+/// What kind of part of the graph is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Picked {
+    /// No part.
+    Nothing,
+    /// A keyframe.
+    Keyframe,
+    /// An edge of odometry.
+    Edge,
+    /// A loop.
+    Loop,
+}
+
+pub(super) static WORLD: OneOf<Option<BuiltInWorld>> = OneOf::new(
+    "world",
+    "world",
+    &[
+        Choice::new("apartment", "the Apartment"),
+        Choice::new("ring", "a ring of corridors"),
+        Choice::new("twins", "two rooms alike"),
+        Choice::new("corridor", "a bare corridor"),
+        Choice::new("hall", "a round hall"),
+        Choice::new("own", "your own flat"),
+    ],
+    &[
+        Some(BuiltInWorld::Apartment),
+        Some(BuiltInWorld::Ring),
+        Some(BuiltInWorld::TwinRooms),
+        Some(BuiltInWorld::Corridor),
+        Some(BuiltInWorld::Hall),
+        None,
+    ],
+)
+.help("What is driven through. The Apartment by the chapter's estimator, every other world by the default one.");
+
+pub(super) static EDIT: OneOf<Option<Tool>> = OneOf::new(
+    "edit",
+    "tool on the map",
+    &[
+        Choice::new("off", "off"),
+        Choice::new("move", "move"),
+        Choice::new("wall", "draw walls"),
+        Choice::new("way", "way points"),
+        Choice::new("remove", "remove"),
+    ],
+    &[None, Some(Tool::Move), Some(Tool::Wall), Some(Tool::Way), Some(Tool::Remove)],
+)
+.help("What a press on the map does: moves a wall, an end, a way point or the start; draws a wall; places a way point behind the chosen one; removes what it meets. All on a grid of 5 cm.");
+
+pub(super) static PIECE: OneOf<Option<usize>> = OneOf::new(
+    "piece",
+    "piece of the flat",
+    &[
+        Choice::new("nothing", "nothing"),
+        Choice::new("wall", "a wall"),
+        Choice::new("first-end", "its first end"),
+        Choice::new("second-end", "its second end"),
+        Choice::new("way-point", "a way point"),
+        Choice::new("start", "the start"),
+        Choice::new("heading", "its heading"),
+    ],
+    &[None, Some(0), Some(1), Some(2), Some(3), Some(4), Some(5)],
+)
+.help("What of the flat the arrows move and Remove takes away. On the map, a press chooses it.");
+
+pub(super) static PIECE_NUMBER: Param<usize> =
+    Param::typed("piece-number", "number of the piece", MOST_PIECES)
+        .default(1.0)
+        .help("The number of the wall or of the way point, from 1.");
+
+pub(super) static FLAT: ParamSpec = ParamSpec {
+    id: "flat",
+    label: "your flat as text",
+    unit: "",
+    kind: ParamKind::Text { most: MOST_FLAT },
+    default: 0.0,
+    help: "Walls, start and way points of your own flat to the centimetre, as links carry them. It makes the world your own flat.",
+};
+
+pub(super) static SEED: Param<u32> = seed(lap::CANONICAL_SEED);
+
+pub(super) static GATE: Param<f64> = Param::slider("gate", "gate quantile", [0.90, 0.999], 0.001)
+    .default(CHAPTER_QUANTILE)
+    .help("Share of right loops that the χ² gate lets pass, 3 degrees of freedom: 0.95 is χ² up to 7.815.");
+
+pub(super) static GATE_MODEL: OneOf<GateModel> = OneOf::new(
+    "gate-model",
+    "drift in the gate",
+    &[
+        Choice::new("path", "path"),
+        Choice::new("exact", "exact"),
+    ],
+    &[GateModel::PathApproximation, GateModel::ExactMarginal],
+)
+.help("Path: the chapter's, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. An outline holds the positions that pass at the registered heading.");
+
+pub(super) static MATCHER: OneOf<LapMatcher> = OneOf::new(
+    "matcher",
+    "matcher",
+    &[
+        Choice::new("p2p", "point to point"),
+        Choice::new("p2l", "point to plane"),
+        Choice::new("ndt", "NDT"),
+    ],
+    LapMatcher::ALL,
+)
+.help("What registers each sweep, in the front end and for loops: the chapter's ICP, point to point, or point to plane, or the normal distributions transform.");
+
+pub(super) static INFORMATION: OneOf<InformationFrame> = OneOf::new(
+    "information",
+    "information",
+    &[
+        Choice::new("chapter", "as the chapter's figures"),
+        Choice::new("exact", "at the edge's target"),
+    ],
+    InformationFrame::ALL,
+)
+.help("The frame in which an edge says what it is sure of. As the chapter's figures were computed, it is turned by a heading of the world; exactly, it stands at the edge's target, the newer of its ends.");
+
+pub(super) static PICK: OneOf<Picked> = OneOf::new(
+    "pick",
+    "look at",
+    &[
+        Choice::new("nothing", "nothing"),
+        Choice::new("keyframe", "a keyframe"),
+        Choice::new("edge", "an edge"),
+        Choice::new("loop", "a loop"),
+    ],
+    &[Picked::Nothing, Picked::Keyframe, Picked::Edge, Picked::Loop],
+)
+.help("What of the graph is looked at and told in numbers. On the map, a click or a tap chooses it, and one beside everything chooses nothing.");
+
+pub(super) static NUMBER: Param<usize> = Param::typed("number", "number", MOST_NODES)
+    .help("The number of the keyframe; of the keyframe where the edge begins; of the newer keyframe of the loop.");
+
+pub(super) static OWN: OneOf<Option<Claim>> = OneOf::new(
+    "own",
+    "your own loop",
+    &[
+        Choice::new("none", "none"),
+        Choice::new("registered", "registered"),
+        Choice::new("truth", "the truth"),
+        Choice::new("same-place", "“the same place”"),
+    ],
+    &[None, Some(Claim::Registered), Some(Claim::Truth), Some(Claim::SamePlace)],
+)
+.help("A loop between any two keyframes. Registered: what the sweeps say, from where the graph believes them to be. The truth: what no robot knows. “The same place”: that both stand at one spot, right or wrong.");
+
+pub(super) static OWN_FROM: Param<usize> = Param::typed(
+    "own-from",
+    "your loop: from keyframe",
+    MOST_NODES,
+)
+.default(40.0)
+.help(
+    "One end of your own loop. On the map, drag from the keyframe that is looked at to any other.",
+);
+
+pub(super) static OWN_TO: Param<usize> =
+    Param::typed("own-to", "your loop: to keyframe", MOST_NODES)
+        .default(12.0)
+        .help("The other end of your own loop.");
+
+pub(super) static OWN_GATE: Param<bool> =
+    Param::switch("own-gate", "your loop has to pass the gate")
+        .on()
+        .help("Whether the tests may turn your own loop away: fit, pairs and gate where it is registered, the gate where it is asserted.");
+
+pub(super) static KERNEL: OneOf<OwnKernel> = OneOf::new(
+    "kernel",
+    "kernel of your loop",
+    &[
+        Choice::new("quadratic", "quadratic"),
+        Choice::new("huber", "Huber"),
+        Choice::new("dcs", "DCS"),
+    ],
+    OwnKernel::ALL,
+)
+.help("What the graph is solved under once your own loop is in it: plain least squares, Huber's kernel from 1.345 standard deviations on, or dynamic covariance scaling from χ² 10 on.");
+
+pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", MOST_TICKS)
+    .default(FIRST_LOOP_TICK)
+    .help("The moment shown; a tick is a quarter of a second, the marks are loops, and past the end means the end.");
+
+pub(super) static FUTURE: Param<bool> = Param::switch("future", "show what is to come")
+    .help("Draws the whole lap into the plots, also what comes after the moment shown.");
+
 /// What the reader can change.
-pub const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        id: "world",
-        label: "world",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "apartment",
-                    label: "the Apartment",
-                },
-                Choice {
-                    id: "ring",
-                    label: "a ring of corridors",
-                },
-                Choice {
-                    id: "twins",
-                    label: "two rooms alike",
-                },
-                Choice {
-                    id: "corridor",
-                    label: "a bare corridor",
-                },
-                Choice {
-                    id: "hall",
-                    label: "a round hall",
-                },
-                Choice {
-                    id: "own",
-                    label: "your own flat",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "What is driven through. The Apartment by the chapter's estimator, every other world by the default one.",
-    },
-    ParamSpec {
-        id: "edit",
-        label: "tool on the map",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "off",
-                    label: "off",
-                },
-                Choice {
-                    id: "move",
-                    label: "move",
-                },
-                Choice {
-                    id: "wall",
-                    label: "draw walls",
-                },
-                Choice {
-                    id: "way",
-                    label: "way points",
-                },
-                Choice {
-                    id: "remove",
-                    label: "remove",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "What a press on the map does: moves a wall, an end, a way point or the start; draws a wall; places a way point behind the chosen one; removes what it meets. All on a grid of 5 cm.",
-    },
-    ParamSpec {
-        id: "piece",
-        label: "piece of the flat",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "nothing",
-                    label: "nothing",
-                },
-                Choice {
-                    id: "wall",
-                    label: "a wall",
-                },
-                Choice {
-                    id: "first-end",
-                    label: "its first end",
-                },
-                Choice {
-                    id: "second-end",
-                    label: "its second end",
-                },
-                Choice {
-                    id: "way-point",
-                    label: "a way point",
-                },
-                Choice {
-                    id: "start",
-                    label: "the start",
-                },
-                Choice {
-                    id: "heading",
-                    label: "its heading",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "What of the flat the arrows move and Remove takes away. On the map, a press chooses it.",
-    },
-    ParamSpec {
-        id: "piece-number",
-        label: "number of the piece",
-        unit: "",
-        kind: ParamKind::Seed { max: MOST_PIECES },
-        default: 1.0,
-        help: "The number of the wall or of the way point, from 1.",
-    },
-    ParamSpec {
-        id: "flat",
-        label: "your flat as text",
-        unit: "",
-        kind: ParamKind::Text { most: MOST_FLAT },
-        default: 0.0,
-        help: "Walls, start and way points of your own flat to the centimetre, as links carry them. It makes the world your own flat.",
-    },
-    NOISE,
-    LOOPS,
-    seed(lap::CANONICAL_SEED),
-    ParamSpec {
-        id: "gate",
-        label: "gate quantile",
-        unit: "",
-        kind: ParamKind::Slider {
-            min: 0.90,
-            max: 0.999,
-            step: 0.001,
-        },
-        default: CHAPTER_QUANTILE,
-        help: "Share of right loops that the χ² gate lets pass, 3 degrees of freedom: 0.95 is χ² up to 7.815.",
-    },
-    ParamSpec {
-        id: "gate-model",
-        label: "drift in the gate",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "path",
-                    label: "path",
-                },
-                Choice {
-                    id: "exact",
-                    label: "exact",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "Path: the chapter's, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. An outline holds the positions that pass at the registered heading.",
-    },
-    ParamSpec {
-        id: "matcher",
-        label: "matcher",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "p2p",
-                    label: "point to point",
-                },
-                Choice {
-                    id: "p2l",
-                    label: "point to plane",
-                },
-                Choice {
-                    id: "ndt",
-                    label: "NDT",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "What registers each sweep, in the front end and for loops: the chapter's ICP, point to point, or point to plane, or the normal distributions transform.",
-    },
-    ParamSpec {
-        id: "information",
-        label: "information",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "chapter",
-                    label: "as the chapter's figures",
-                },
-                Choice {
-                    id: "exact",
-                    label: "at the edge's target",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "The frame in which an edge says what it is sure of. As the chapter's figures were computed, it is turned by a heading of the world; exactly, it stands at the edge's target, the newer of its ends.",
-    },
-    ParamSpec {
-        id: "pick",
-        label: "look at",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "nothing",
-                    label: "nothing",
-                },
-                Choice {
-                    id: "keyframe",
-                    label: "a keyframe",
-                },
-                Choice {
-                    id: "edge",
-                    label: "an edge",
-                },
-                Choice {
-                    id: "loop",
-                    label: "a loop",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "What of the graph is looked at and told in numbers. On the map, a click or a tap chooses it, and one beside everything chooses nothing.",
-    },
-    ParamSpec {
-        id: "number",
-        label: "number",
-        unit: "",
-        kind: ParamKind::Seed { max: MOST_NODES },
-        default: 0.0,
-        help: "The number of the keyframe; of the keyframe where the edge begins; of the newer keyframe of the loop.",
-    },
-    ParamSpec {
-        id: "own",
-        label: "your own loop",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "none",
-                    label: "none",
-                },
-                Choice {
-                    id: "registered",
-                    label: "registered",
-                },
-                Choice {
-                    id: "truth",
-                    label: "the truth",
-                },
-                Choice {
-                    id: "same-place",
-                    label: "“the same place”",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "A loop between any two keyframes. Registered: what the sweeps say, from where the graph believes them to be. The truth: what no robot knows. “The same place”: that both stand at one spot, right or wrong.",
-    },
-    ParamSpec {
-        id: "own-from",
-        label: "your loop: from keyframe",
-        unit: "",
-        kind: ParamKind::Seed { max: MOST_NODES },
-        default: 40.0,
-        help: "One end of your own loop. On the map, drag from the keyframe that is looked at to any other.",
-    },
-    ParamSpec {
-        id: "own-to",
-        label: "your loop: to keyframe",
-        unit: "",
-        kind: ParamKind::Seed { max: MOST_NODES },
-        default: 12.0,
-        help: "The other end of your own loop.",
-    },
-    ParamSpec {
-        id: "own-gate",
-        label: "your loop has to pass the gate",
-        unit: "",
-        kind: ParamKind::Switch,
-        default: 1.0,
-        help: "Whether the tests may turn your own loop away: fit, pairs and gate where it is registered, the gate where it is asserted.",
-    },
-    ParamSpec {
-        id: "kernel",
-        label: "kernel of your loop",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "quadratic",
-                    label: "quadratic",
-                },
-                Choice {
-                    id: "huber",
-                    label: "Huber",
-                },
-                Choice {
-                    id: "dcs",
-                    label: "DCS",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "What the graph is solved under once your own loop is in it: plain least squares, Huber's kernel from 1.345 standard deviations on, or dynamic covariance scaling from χ² 10 on.",
-    },
-    ParamSpec {
-        id: "t",
-        label: "tick",
-        unit: "",
-        kind: ParamKind::Timeline { max: MOST_TICKS },
-        default: FIRST_LOOP_TICK,
-        help: "The moment shown; a tick is a quarter of a second, the marks are loops, and past the end means the end.",
-    },
-    ParamSpec {
-        id: "future",
-        label: "show what is to come",
-        unit: "",
-        kind: ParamKind::Switch,
-        default: 0.0,
-        help: "Draws the whole lap into the plots, also what comes after the moment shown.",
-    },
-    SPEED,
-    MORE,
+pub const PARAMS: &[&ParamSpec] = &[
+    &WORLD.spec,
+    &EDIT.spec,
+    &PIECE.spec,
+    &PIECE_NUMBER.spec,
+    &FLAT,
+    &NOISE.spec,
+    &LOOPS.spec,
+    &SEED.spec,
+    &GATE.spec,
+    &GATE_MODEL.spec,
+    &MATCHER.spec,
+    &INFORMATION.spec,
+    &PICK.spec,
+    &NUMBER.spec,
+    &OWN.spec,
+    &OWN_FROM.spec,
+    &OWN_TO.spec,
+    &OWN_GATE.spec,
+    &KERNEL.spec,
+    &TICK.spec,
+    &FUTURE.spec,
+    &SPEED.spec,
+    &MORE.spec,
 ];
 
 /// One tick before the loop.
@@ -428,7 +315,7 @@ const fn flat_button(id: &'static str, label: &'static str, help: &'static str) 
 }
 
 /// Begins and ends the editing of the flat.
-const EDIT: ButtonSpec = flat_button(
+const EDIT_FLAT: ButtonSpec = flat_button(
     "edit-flat",
     "Edit the flat",
     "Puts a pencil into your hand, with which a drag on the map draws a wall, or puts it away.",
@@ -596,7 +483,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         ONE_ON,
         TIE,
         UNDO,
-        EDIT,
+        EDIT_FLAT,
         FLAT_BUTTONS[0],
         FLAT_BUTTONS[1],
         FLAT_BUTTONS[2],
@@ -618,42 +505,42 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "first-loop",
             label: "Watch the first loop",
             help: "Node 29 recognises the corridor at node 7. The robot's own error falls, the error over all keyframes rises.",
-            set: &[("t", FIRST_LOOP_TICK)],
+            set: &[TICK.to(FIRST_LOOP_TICK)],
             then: &["at"],
         },
         Preset {
             id: "rejected",
             label: "Seed 6: a loop is turned away",
             help: "The χ² is below the gate, but the sweep fits the old walls badly; four keyframes later a better match passes.",
-            set: &[("seed", 6.0), ("t", 90.0)],
+            set: &[SEED.to(6), TICK.to(90.0)],
             then: &[],
         },
         Preset {
             id: "no-loops",
             label: "Switch the loops off",
             help: "The front end alone: the same sweeps, and a map whose two passes end 0.24 m apart instead of 0.08 m.",
-            set: &[("loops", 0.0), ("t", LAP_TICKS)],
+            set: &[LOOPS.to(false), TICK.to(LAP_TICKS)],
             then: &[],
         },
         Preset {
             id: "noisy",
             label: "Four times the noise",
             help: "Odometry ends almost 5 m off, the front end holds, and the last loop closes in the last tick.",
-            set: &[("noise", 4.0), ("t", LAP_TICKS)],
+            set: &[NOISE.to(4.0), TICK.to(LAP_TICKS)],
             then: &[],
         },
         Preset {
             id: "tight-gate",
             label: "A tight gate on a noisy lap",
             help: "At the 0.90 quantile the gate turns away a loop that the chapter's gate accepts.",
-            set: &[("noise", 4.0), ("gate", 0.90), ("t", 116.0)],
+            set: &[NOISE.to(4.0), GATE.to(0.90), TICK.to(116.0)],
             then: &[],
         },
         Preset {
             id: "locked-out",
             label: "Right loops, locked out",
             help: "Seed 2 at three times the noise drifts more than the gate allows for: it turns away three right loops, and the drift goes on.",
-            set: &[("seed", 2.0), ("noise", 3.0), ("t", LAP_TICKS)],
+            set: &[SEED.to(2), NOISE.to(3.0), TICK.to(LAP_TICKS)],
             then: &[],
         },
         Preset {
@@ -661,10 +548,10 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             label: "The same lap, exact gate",
             help: "The chapter's gate turns the first loop away by its heading alone. The edges are less sure of the heading: the exact gate lets all three loops in, and the lap ends more than a metre closer.",
             set: &[
-                ("seed", 2.0),
-                ("noise", 3.0),
-                ("gate-model", 1.0),
-                ("t", 94.0),
+                SEED.to(2),
+                NOISE.to(3.0),
+                GATE_MODEL.to("exact"),
+                TICK.to(94.0),
             ],
             then: &[],
         },
@@ -673,11 +560,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             label: "A wrong loop, forced in",
             help: "“Keyframes 40 and 12 are the same place” is a lie of 6 m. Past the gate it folds the map: the history moves by up to 3.8 m, and every edge between the two is strained.",
             set: &[
-                ("own", 3.0),
-                ("own-from", 40.0),
-                ("own-to", 12.0),
-                ("own-gate", 0.0),
-                ("t", LAP_TICKS),
+                OWN.to("same-place"),
+                OWN_FROM.to(40),
+                OWN_TO.to(12),
+                OWN_GATE.to(false),
+                TICK.to(LAP_TICKS),
             ],
             then: &[],
         },
@@ -686,12 +573,12 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             label: "The same lie, tamed",
             help: "Dynamic covariance scaling gives a loop that is far off next to no weight: nothing moves.",
             set: &[
-                ("own", 3.0),
-                ("own-from", 40.0),
-                ("own-to", 12.0),
-                ("own-gate", 0.0),
-                ("kernel", 2.0),
-                ("t", LAP_TICKS),
+                OWN.to("same-place"),
+                OWN_FROM.to(40),
+                OWN_TO.to(12),
+                OWN_GATE.to(false),
+                KERNEL.to("dcs"),
+                TICK.to(LAP_TICKS),
             ],
             then: &[],
         },
@@ -700,11 +587,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             label: "A true loop that the gate refuses",
             help: "From keyframe 25, on the way back, to the start, as it truly is: the typical error over the keyframes falls from 0.59 m to 0.14 m. The gate refuses it, at χ² 13.0: drift does not explain it.",
             set: &[
-                ("own", 2.0),
-                ("own-from", 25.0),
-                ("own-to", 0.0),
-                ("own-gate", 0.0),
-                ("t", LAP_TICKS),
+                OWN.to("truth"),
+                OWN_FROM.to(25),
+                OWN_TO.to(0),
+                OWN_GATE.to(false),
+                TICK.to(LAP_TICKS),
             ],
             then: &[],
         },
@@ -713,10 +600,10 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             label: "A ring that closes",
             help: "Around a block and back to the start from the other side, by point to plane: the chain is held at both ends.",
             set: &[
-                ("world", 1.0),
-                ("matcher", 1.0),
-                ("information", 1.0),
-                ("t", RING_TICKS),
+                WORLD.to("ring"),
+                MATCHER.to("p2l"),
+                INFORMATION.to("exact"),
+                TICK.to(RING_TICKS),
             ],
             then: &[],
         },
@@ -724,14 +611,22 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "twins",
             label: "Two rooms alike",
             help: "The second room looks like the first, and after so long a way the gate is wide enough: the robot closes a wrong loop, and the two rooms become one.",
-            set: &[("world", 2.0), ("information", 1.0), ("t", TWINS_TICKS)],
+            set: &[
+                WORLD.to("twins"),
+                INFORMATION.to("exact"),
+                TICK.to(TWINS_TICKS),
+            ],
             then: &[],
         },
         Preset {
             id: "corridor",
             label: "A bare corridor",
             help: "Nothing is seen along it, so registration says that the robot hardly moves. The map agrees with itself, and the corridor is a fraction of its length.",
-            set: &[("world", 3.0), ("information", 1.0), ("t", CORRIDOR_TICKS)],
+            set: &[
+                WORLD.to("corridor"),
+                INFORMATION.to("exact"),
+                TICK.to(CORRIDOR_TICKS),
+            ],
             then: &[],
         },
         Preset {
@@ -739,10 +634,10 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             label: "A round hall",
             help: "The wall tells where the middle is, and nothing of the heading: by point to plane the robot is on the far side of the hall at the end, and the map agrees with itself to three centimetres.",
             set: &[
-                ("world", 4.0),
-                ("matcher", 1.0),
-                ("information", 1.0),
-                ("t", HALL_TICKS),
+                WORLD.to("hall"),
+                MATCHER.to("p2l"),
+                INFORMATION.to("exact"),
+                TICK.to(HALL_TICKS),
             ],
             then: &[],
         },
@@ -750,21 +645,21 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "own-flat",
             label: "Draw your own flat",
             help: "The Apartment with a pencil in your hand: each wall that you draw is there at once, and the lap follows.",
-            set: &[("edit", 2.0)],
+            set: &[EDIT.to("wall")],
             then: &[],
         },
         Preset {
             id: "bells",
             label: "The same lap by NDT",
             help: "The same sweeps, matched to bells in place of points: the lap ends 0.04 m off instead of 0.24 m.",
-            set: &[("matcher", 2.0), ("t", LAP_TICKS)],
+            set: &[MATCHER.to("ndt"), TICK.to(LAP_TICKS)],
             then: &[],
         },
         Preset {
             id: "sliding",
             label: "The same lap by planes",
             help: "The same sweeps, each point free to slide along its wall: the lap ends 0.05 m off instead of 0.24 m.",
-            set: &[("matcher", 1.0), ("t", LAP_TICKS)],
+            set: &[MATCHER.to("p2l"), TICK.to(LAP_TICKS)],
             then: &[],
         },
     ],

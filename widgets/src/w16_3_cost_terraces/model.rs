@@ -18,12 +18,15 @@ use kit::model::{
     press_preset,
 };
 use kit::param::ParamError;
-use kit::playback::{Playback, speed_factor};
+use kit::playback::Playback;
+use kit::playback::SPEED;
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
-use crate::w16_3_cost_terraces::spec::{HALF_SPAN_M, MAX_BALL_STEPS, MOST_DROPS, PARAMS, SPEC};
+use crate::w16_3_cost_terraces::spec::{
+    BALL_STEP, DROPS, HALF_SPAN_M, MAX_BALL_STEPS, MOST_DROPS, PARAMS, SPEC,
+};
 use picture::{Looked, Moment};
 use rests::Rests;
 use settings::Settings;
@@ -68,7 +71,7 @@ impl CostTerraces {
 
     /// Position on the timeline: past the last step means the end.
     fn step(&self) -> usize {
-        (self.values.get("t") as usize).min(self.last_step())
+        (self.values.get(&BALL_STEP) as usize).min(self.last_step())
     }
 
     /// Steps until both balls rest.
@@ -108,7 +111,7 @@ impl CostTerraces {
     /// Computes again what the values touch.
     fn follow(&mut self) {
         self.terrains.update(self.settings());
-        let drops = self.values.get("drops") as usize;
+        let drops = self.values.get(&DROPS);
         self.rests.follow(&self.terrains, drops);
     }
 
@@ -169,7 +172,7 @@ impl Model for CostTerraces {
         if !self.playback.is_playing() {
             return flying;
         }
-        let rate = STEPS_PER_S * speed_factor(self.values.get("speed"));
+        let rate = STEPS_PER_S * self.values.get(&SPEED);
         let last = self.last_step() as f64;
         let next = self
             .playback

@@ -2,7 +2,7 @@
 
 use ch16_lab::terrain::TerrainScene;
 use kit::layers::Opening;
-use kit::param::{Choice, MORE, ParamKind, ParamSpec};
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
@@ -10,7 +10,7 @@ use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 pub const HALF_SPAN_M: f64 = 1.3;
 
 /// Fewest and most cells a side; both odd, so that one cell lies on the truth.
-const CELLS: (f64, f64) = (49.0, 161.0);
+const CELLS_OF_A_SIDE: [f64; 2] = [49.0, 161.0];
 
 /// Most steps that a ball may take; the timeline never gets longer.
 pub const MAX_BALL_STEPS: usize = 400;
@@ -21,179 +21,122 @@ pub const MOST_DROPS: f64 = 100.0;
 /// The end of the slider of rows, where all are taken, however many points a sweep has.
 pub const MOST_ROWS: f64 = 120.0;
 
+/// Where the sweep was taken, and what it is matched with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Room A: walls in both directions. The sweep is its own map.
+    Room,
+    /// A corridor without doors: walls along x alone. Map and sweep were measured apart.
+    Corridor,
+    /// The Apartment's corridor, doors and all. The sweep is its own map.
+    OwnCorridor,
+}
+
+/// What decides a cell's colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Colors {
+    /// Its height, evenly from dark to bright.
+    ByHeight,
+    /// The share of cells that lie lower.
+    ByRank,
+}
+
+pub(super) static SCENE: OneOf<Place> = OneOf::new(
+    "scene",
+    "scene",
+    &[
+        Choice::new("room", "room"),
+        Choice::new("corridor", "corridor"),
+        Choice::new("own-corridor", "corridor on itself"),
+    ],
+    &[Place::Room, Place::Corridor, Place::OwnCorridor],
+)
+.help("Room A on its own points; a corridor without doors on a map that was measured apart; the Apartment's corridor, doors and all, on its own points.");
+
+pub(super) static TAU: Param<f64> = Param::slider("tau", "pair limit τ", [0.1, 1.6], 0.05)
+    .unit("m")
+    .default(0.15)
+    .help(
+        "ICP pairs a point with the nearest map point within τ; a point without a pair costs τ².",
+    );
+
+pub(super) static NDT_CELL: Param<f64> = Param::slider("ndt-cell", "NDT cell", [0.3, 1.2], 0.05)
+    .unit("m")
+    .default(TerrainScene::DEFAULT_NDT_CELL_M)
+    .help("NDT fits one Gaussian to the map points of each cell of this width.");
+
+pub(super) static HEADING: Param<f64> =
+    Param::slider("heading", "heading offset", [-180.0, 180.0], 1.0)
+        .unit("°")
+        .help("The sweep is turned by this much about the sensor before it is shifted.");
+
+pub(super) static CELLS: Param<f64> = Param::slider("cells", "cells a side", CELLS_OF_A_SIDE, 8.0)
+    .default(49.0)
+    .help("Both maps are sampled at this many shifts along each axis.");
+
+pub(super) static COLOURS: OneOf<Colors> = OneOf::new(
+    "colours",
+    "colours",
+    &[
+        Choice::new("value", "by value"),
+        Choice::new("rank", "by rank"),
+    ],
+    &[Colors::ByHeight, Colors::ByRank],
+)
+.default("rank")
+.help("By rank, every colour covers as many cells: low steps show on high ground.");
+
+pub(super) static SEED: Param<u32> = Param::seed("seed of the sweep", TerrainScene::SEED)
+    .help("Where the range noise of the sweep starts; 1472 is the chapter's.");
+
+pub(super) static PROBE_X: Param<f64> =
+    Param::slider("probe-x", "drop at Δx", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
+        .unit("m")
+        .default(0.4)
+        .help("Where the cross hair stands and the balls start, east of the truth.");
+
+pub(super) static PROBE_Y: Param<f64> =
+    Param::slider("probe-y", "drop at Δy", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
+        .unit("m")
+        .default(0.1)
+        .help("Where the cross hair stands and the balls start, north of the truth.");
+
+pub(super) static DROPS: Param<usize> =
+    Param::slider("drops", "sweeps dropped", [0.0, MOST_DROPS], 1.0)
+        .help("So many sweeps, each with noise of its own, are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m.");
+
+pub(super) static ROWS: Param<f64> = Param::slider("rows", "rows of H", [0.0, MOST_ROWS], 1.0)
+    .default(MOST_ROWS)
+    .help("So many points, in the order of the beams, give a row (n_x, n_y, p × n) of the point-to-plane step; to the right, all.");
+
+pub(super) static ODOMETRY: Param<f64> =
+    Param::slider("odometry", "σ of a row of odometry", [0.0, 0.5], 0.01)
+        .unit("m")
+        .help("Adds the row (1, 0, 0) with the weight 1/σ²; 0 adds none.");
+
+// Past the last step means the end: the balls lie where they rest.
+pub(super) static BALL_STEP: Param<f64> =
+    Param::timeline("t", "step of the balls", MAX_BALL_STEPS as f64)
+        .default(MAX_BALL_STEPS as f64)
+        .help("How many gradient steps both balls have taken.");
+
 /// What the reader can change.
-pub const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        id: "scene",
-        label: "scene",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "room",
-                    label: "room",
-                },
-                Choice {
-                    id: "corridor",
-                    label: "corridor",
-                },
-                Choice {
-                    id: "own-corridor",
-                    label: "corridor on itself",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "Room A on its own points; a corridor without doors on a map that was measured apart; the Apartment's corridor, doors and all, on its own points.",
-    },
-    ParamSpec {
-        id: "tau",
-        label: "pair limit τ",
-        unit: "m",
-        kind: ParamKind::Slider {
-            min: 0.1,
-            max: 1.6,
-            step: 0.05,
-        },
-        default: 0.15,
-        help: "ICP pairs a point with the nearest map point within τ; a point without a pair costs τ².",
-    },
-    ParamSpec {
-        id: "ndt-cell",
-        label: "NDT cell",
-        unit: "m",
-        kind: ParamKind::Slider {
-            min: 0.3,
-            max: 1.2,
-            step: 0.05,
-        },
-        default: TerrainScene::DEFAULT_NDT_CELL_M,
-        help: "NDT fits one Gaussian to the map points of each cell of this width.",
-    },
-    ParamSpec {
-        id: "heading",
-        label: "heading offset",
-        unit: "°",
-        kind: ParamKind::Slider {
-            min: -180.0,
-            max: 180.0,
-            step: 1.0,
-        },
-        default: 0.0,
-        help: "The sweep is turned by this much about the sensor before it is shifted.",
-    },
-    ParamSpec {
-        id: "cells",
-        label: "cells a side",
-        unit: "",
-        kind: ParamKind::Slider {
-            min: CELLS.0,
-            max: CELLS.1,
-            step: 8.0,
-        },
-        default: 49.0,
-        help: "Both maps are sampled at this many shifts along each axis.",
-    },
-    ParamSpec {
-        id: "colours",
-        label: "colours",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "value",
-                    label: "by value",
-                },
-                Choice {
-                    id: "rank",
-                    label: "by rank",
-                },
-            ],
-        },
-        default: 1.0,
-        help: "By rank, every colour covers as many cells: low steps show on high ground.",
-    },
-    ParamSpec {
-        id: "seed",
-        label: "seed of the sweep",
-        unit: "",
-        kind: ParamKind::SEED,
-        default: TerrainScene::SEED as f64,
-        help: "Where the range noise of the sweep starts; 1472 is the chapter's.",
-    },
-    ParamSpec {
-        id: "probe-x",
-        label: "drop at Δx",
-        unit: "m",
-        kind: ParamKind::Slider {
-            min: -HALF_SPAN_M,
-            max: HALF_SPAN_M,
-            step: 0.05,
-        },
-        default: 0.4,
-        help: "Where the cross hair stands and the balls start, east of the truth.",
-    },
-    ParamSpec {
-        id: "probe-y",
-        label: "drop at Δy",
-        unit: "m",
-        kind: ParamKind::Slider {
-            min: -HALF_SPAN_M,
-            max: HALF_SPAN_M,
-            step: 0.05,
-        },
-        default: 0.1,
-        help: "Where the cross hair stands and the balls start, north of the truth.",
-    },
-    ParamSpec {
-        id: "drops",
-        label: "sweeps dropped",
-        unit: "",
-        kind: ParamKind::Slider {
-            min: 0.0,
-            max: MOST_DROPS,
-            step: 1.0,
-        },
-        default: 0.0,
-        help: "So many sweeps, each with noise of its own, are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m.",
-    },
-    ParamSpec {
-        id: "rows",
-        label: "rows of H",
-        unit: "",
-        kind: ParamKind::Slider {
-            min: 0.0,
-            max: MOST_ROWS,
-            step: 1.0,
-        },
-        default: MOST_ROWS,
-        help: "So many points, in the order of the beams, give a row (n_x, n_y, p × n) of the point-to-plane step; to the right, all.",
-    },
-    ParamSpec {
-        id: "odometry",
-        label: "σ of a row of odometry",
-        unit: "m",
-        kind: ParamKind::Slider {
-            min: 0.0,
-            max: 0.5,
-            step: 0.01,
-        },
-        default: 0.0,
-        help: "Adds the row (1, 0, 0) with the weight 1/σ²; 0 adds none.",
-    },
-    ParamSpec {
-        id: "t",
-        label: "step of the balls",
-        unit: "",
-        kind: ParamKind::Timeline {
-            max: MAX_BALL_STEPS as f64,
-        },
-        // Past the last step means the end: the balls lie where they rest.
-        default: MAX_BALL_STEPS as f64,
-        help: "How many gradient steps both balls have taken.",
-    },
-    SPEED,
-    MORE,
+pub const PARAMS: &[&ParamSpec] = &[
+    &SCENE.spec,
+    &TAU.spec,
+    &NDT_CELL.spec,
+    &HEADING.spec,
+    &CELLS.spec,
+    &COLOURS.spec,
+    &SEED.spec,
+    &PROBE_X.spec,
+    &PROBE_Y.spec,
+    &DROPS.spec,
+    &ROWS.spec,
+    &ODOMETRY.spec,
+    &BALL_STEP.spec,
+    &SPEED.spec,
+    &MORE.spec,
 ];
 
 /// Drops both balls from the cross hair.

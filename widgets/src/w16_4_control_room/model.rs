@@ -15,13 +15,14 @@ use ch16_lab::lap::{LapRecord, NewestLap, NewestStep, RegistrationView, TickRepo
 use kit::chart::{dragged_to, grab_now};
 use kit::model::{Activity, Handle, Model, Motion, Outcome, Table, Timeline, press_preset};
 use kit::param::ParamError;
-use kit::playback::{Playback, speed_factor};
+use kit::playback::Playback;
+use kit::playback::SPEED;
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 use pr_sim::World;
 
-use crate::w16_4_control_room::spec::SPEC;
+use crate::w16_4_control_room::spec::{LANE, SPEC, TICK};
 use grid::GridView;
 use history::History;
 use log::Event;
@@ -83,12 +84,12 @@ impl ControlRoom {
     }
 
     fn tick(&self) -> usize {
-        self.values.get("t") as usize
+        self.values.get(&TICK) as usize
     }
 
     /// The lane whose data are said.
     fn lane(&self) -> usize {
-        self.values.get("lane") as usize
+        self.values.get(&LANE)
     }
 
     fn choose_lane(&mut self, lane: usize) {
@@ -130,7 +131,7 @@ impl ControlRoom {
         self.history = History::new(&self.record);
         self.events = log::events(&self.record);
         self.grid.forget();
-        self.go_to(self.values.get("t"));
+        self.go_to(self.values.get(&TICK));
         if !self.laps.is_running() {
             for _ in 0..core::mem::take(&mut self.next_events) {
                 self.next_event();
@@ -191,7 +192,7 @@ impl Model for ControlRoom {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let now = self.values.get("t");
+        let now = self.values.get(&TICK);
         if let Some(position) = self.playback.press(id, now, self.last()) {
             self.go_to(position);
             return Ok(());
@@ -208,8 +209,8 @@ impl Model for ControlRoom {
         if !self.playback.is_playing() {
             return Activity::Idle;
         }
-        let now = self.values.get("t");
-        let rate = TICKS_PER_S * speed_factor(self.values.get("speed"));
+        let now = self.values.get(&TICK);
+        let rate = TICKS_PER_S * self.values.get(&SPEED);
         let reached = self.playback.advance(now, self.last(), elapsed_s, rate);
         if reached != now {
             self.go_to(reached);
@@ -279,7 +280,7 @@ impl Model for ControlRoom {
             });
         }
         let panel = *picture::OVER_TIME.iter().find(|id| **id == panel)?;
-        grab_now(panel, self.values.get("t"), at, reach)
+        grab_now(panel, self.values.get(&TICK), at, reach)
     }
 
     fn drag(&mut self, handle: Handle, at: [f64; 2]) {
@@ -287,7 +288,7 @@ impl Model for ControlRoom {
             self.choose_lane(lane);
         }
         let tick = dragged_to(handle, at);
-        if tick != self.values.get("t") {
+        if tick != self.values.get(&TICK) {
             self.go_to(tick);
         }
     }

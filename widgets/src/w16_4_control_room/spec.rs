@@ -2,7 +2,7 @@
 
 use ch16_lab::lap;
 use kit::layers::Opening;
-use kit::param::{Choice, MORE, ParamKind, ParamSpec};
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
 use kit::playback::SPEED;
 use kit::run::{LOOPS, NOISE, seed};
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
@@ -10,40 +10,39 @@ use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 /// Ticks of a lap.
 const LAP_TICKS: f64 = lap::LAP_TICKS as f64;
 
+pub(super) static SEED: Param<u32> = seed(lap::CANONICAL_SEED);
+
+pub(super) static LANE: OneOf<usize> = OneOf::new(
+    "lane",
+    "lane",
+    &[
+        lane("predict"),
+        lane("register"),
+        lane("keyframe"),
+        lane("candidate"),
+        lane("fit"),
+        lane("gate"),
+        lane("optimize"),
+        lane("repaint"),
+    ],
+    &[0, 1, 2, 3, 4, 5, 6, 7],
+)
+.default("register")
+.help("The thing whose data of this tick are said; a press on a mark of the lanes chooses it.");
+
+pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", LAP_TICKS)
+    .default(60.0)
+    .help("The moment shown; a tick is a quarter of a second, and the marks are loops.");
+
 /// What the reader can change.
-pub const PARAMS: &[ParamSpec] = &[
-    NOISE,
-    LOOPS,
-    seed(lap::CANONICAL_SEED),
-    ParamSpec {
-        id: "lane",
-        label: "lane",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                lane("predict"),
-                lane("register"),
-                lane("keyframe"),
-                lane("candidate"),
-                lane("fit"),
-                lane("gate"),
-                lane("optimize"),
-                lane("repaint"),
-            ],
-        },
-        default: 1.0,
-        help: "The thing whose data of this tick are said; a press on a mark of the lanes chooses it.",
-    },
-    ParamSpec {
-        id: "t",
-        label: "tick",
-        unit: "",
-        kind: ParamKind::Timeline { max: LAP_TICKS },
-        default: 60.0,
-        help: "The moment shown; a tick is a quarter of a second, and the marks are loops.",
-    },
-    SPEED,
-    MORE,
+pub const PARAMS: &[&ParamSpec] = &[
+    &NOISE.spec,
+    &LOOPS.spec,
+    &SEED.spec,
+    &LANE.spec,
+    &TICK.spec,
+    &SPEED.spec,
+    &MORE.spec,
 ];
 
 const fn lane(name: &'static str) -> Choice {
@@ -85,42 +84,42 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "watch",
             label: "Watch the whole run",
             help: "From the first sweep to the end of the lap, over three loops.",
-            set: &[("t", 0.0)],
+            set: &[TICK.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "blurred",
             label: "Just before the first loop",
             help: "The corridor has been mapped twice, and the two passes disagree by 0.12 m.",
-            set: &[("t", 91.0)],
+            set: &[TICK.to(91.0)],
             then: &[],
         },
         Preset {
             id: "rebuilt",
             label: "The grid drawn again",
             help: "One tick and one loop later the passes disagree by 0.08 m, and the walls are sharper.",
-            set: &[("t", 92.0)],
+            set: &[TICK.to(92.0)],
             then: &[],
         },
         Preset {
             id: "noisy",
             label: "Four times the noise",
             help: "The threshold τ opens up from 0.77 m to 1.51 m: predictions are worse, so pairs are looked for farther away.",
-            set: &[("noise", 4.0), ("t", 60.0)],
+            set: &[NOISE.to(4.0), TICK.to(60.0)],
             then: &[],
         },
         Preset {
             id: "wrong-loop",
             label: "A wrong loop gets in",
             help: "Seed 6 at twice the noise: the first loop passes every test, and is 0.36 m off. Only the truth tells, and no robot knows it.",
-            set: &[("seed", 6.0), ("noise", 2.0), ("t", 92.0)],
+            set: &[SEED.to(6), NOISE.to(2.0), TICK.to(92.0)],
             then: &[],
         },
         Preset {
             id: "open",
             label: "No loops",
             help: "Without loops nothing ever moves a pose again. The two passes end 0.24 m apart instead of 0.08 m, and 104 cells are surely occupied instead of 175.",
-            set: &[("loops", 0.0), ("t", LAP_TICKS)],
+            set: &[LOOPS.to(false), TICK.to(LAP_TICKS)],
             then: &[],
         },
     ],

@@ -21,7 +21,9 @@ use kit::spec::{PLAY, STEP, WidgetSpec};
 use kit::values::{Changed, Values};
 use pr_geom::{SE2, math};
 
-use crate::w16_6_whole_window::spec::{OFFSET_SPAN_M, PARAMS, SPEC};
+use crate::w16_6_whole_window::spec::{
+    DX, DY, HEADING, OFFSET_SPAN_M, PARAMS, PROGRESS, SEED, SPEC,
+};
 use hunt::{Hunt, Refined};
 
 /// Names of the panels.
@@ -64,7 +66,7 @@ impl WholeWindow {
     #[must_use]
     pub fn new() -> Self {
         let values = Values::defaults(PARAMS);
-        let scene = BasinScene::with_seed(values.get("seed") as u32);
+        let scene = BasinScene::with_seed(values.get(&SEED));
         let mut workspace = IcpWorkspace::new();
         Self {
             hunt: Hunt::new(&scene, settings::config(&values), &mut workspace),
@@ -134,13 +136,13 @@ impl WholeWindow {
         let offset = |value: f64| rounded(value, 100.0).clamp(-OFFSET_SPAN_M, OFFSET_SPAN_M);
         let turned = SE2::new(0.0, 0.0, start.heading_deg.to_radians()).theta();
         self.played.pause();
-        self.values.store(
-            "heading",
+        self.values.put(
+            &HEADING,
             rounded(turned.to_degrees(), 1.0).clamp(-180.0, 180.0),
         );
-        self.values.store("dx", offset(start.dx_m));
-        self.values.store("dy", offset(start.dy_m));
-        self.values.store("progress", 0.0);
+        self.values.put(&DX, offset(start.dx_m));
+        self.values.put(&DY, offset(start.dy_m));
+        self.values.put(&PROGRESS, 0.0);
         self.start_over();
     }
 }
@@ -161,7 +163,7 @@ impl Model for WholeWindow {
             return Ok(());
         }
         if id == "seed" {
-            self.scene = BasinScene::with_seed(self.values.get("seed") as u32);
+            self.scene = BasinScene::with_seed(self.values.get(&SEED));
         }
         self.start_over();
         Ok(())
@@ -177,7 +179,7 @@ impl Model for WholeWindow {
         match self.played.press(&mut self.values, id, last) {
             Pressed::Transport => {}
             Pressed::Defaults => {
-                self.scene = BasinScene::with_seed(self.values.get("seed") as u32);
+                self.scene = BasinScene::with_seed(self.values.get(&SEED));
                 self.start_over();
             }
             Pressed::Other => return press_preset(self, id),
@@ -200,7 +202,7 @@ impl Model for WholeWindow {
         let activity = self.played.advance(&mut self.values, last, elapsed_s, rate);
         // ICP goes at its own pace, from its first step on.
         if here < searched && self.played.is_playing() && self.place() as f64 > searched {
-            self.values.store("progress", searched);
+            self.values.put(&PROGRESS, searched);
         }
         activity
     }

@@ -2,7 +2,7 @@
 
 use ch16_lab::basin::BasinScene;
 use kit::layers::Opening;
-use kit::param::{MORE, ParamKind, ParamSpec};
+use kit::param::{MORE, Param, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
@@ -12,91 +12,59 @@ pub const OFFSET_SPAN_M: f64 = 1.5;
 /// More boxes than any search takes up, and what ICP adds.
 const MOST_STEPS: f64 = 200_000.0;
 
+pub(super) static HEADING: Param<f64> = Param::slider(
+    "heading",
+    "heading error of the start",
+    [-180.0, 180.0],
+    1.0,
+)
+.unit("°")
+.default(75.0)
+.help("How far the start is turned away from the truth: ICP depends on it, the search does not.");
+
+pub(super) static DX: Param<f64> = offset("dx", "Δx of the start");
+
+pub(super) static DY: Param<f64> = offset("dy", "Δy of the start");
+
+pub(super) static WINDOW: Param<f64> = Param::slider("window", "window ±", [0.5, 3.0], 0.25)
+    .unit("m")
+    .default(1.5)
+    .help("How far from the start the search looks, along x and along y.");
+
+pub(super) static TURN: Param<f64> = Param::slider("turn", "headings ±", [30.0, 180.0], 15.0)
+    .unit("°")
+    .default(180.0)
+    .help("How far from the start's heading the search looks; 180 is the whole turn.");
+
+pub(super) static CELL: Param<f64> = Param::slider("cell", "cell", [0.05, 0.2], 0.01)
+    .unit("m")
+    .default(0.05)
+    .help("How fine the search is; the map is blurred with it.");
+
+pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
+    .help("Where the range noise of both sweeps starts; 457 is the chapter's.");
+
+pub(super) static PROGRESS: Param<f64> = Param::timeline("progress", "boxes taken up", MOST_STEPS)
+    .help("How many boxes the search has taken up; behind the last one come the steps of ICP.");
+
 /// What the reader can change.
-pub const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        id: "heading",
-        label: "heading error of the start",
-        unit: "°",
-        kind: ParamKind::Slider {
-            min: -180.0,
-            max: 180.0,
-            step: 1.0,
-        },
-        default: 75.0,
-        help: "How far the start is turned away from the truth: ICP depends on it, the search does not.",
-    },
-    offset("dx", "Δx of the start"),
-    offset("dy", "Δy of the start"),
-    ParamSpec {
-        id: "window",
-        label: "window ±",
-        unit: "m",
-        kind: ParamKind::Slider {
-            min: 0.5,
-            max: 3.0,
-            step: 0.25,
-        },
-        default: 1.5,
-        help: "How far from the start the search looks, along x and along y.",
-    },
-    ParamSpec {
-        id: "turn",
-        label: "headings ±",
-        unit: "°",
-        kind: ParamKind::Slider {
-            min: 30.0,
-            max: 180.0,
-            step: 15.0,
-        },
-        default: 180.0,
-        help: "How far from the start's heading the search looks; 180 is the whole turn.",
-    },
-    ParamSpec {
-        id: "cell",
-        label: "cell",
-        unit: "m",
-        kind: ParamKind::Slider {
-            min: 0.05,
-            max: 0.2,
-            step: 0.01,
-        },
-        default: 0.05,
-        help: "How fine the search is; the map is blurred with it.",
-    },
-    ParamSpec {
-        id: "seed",
-        label: "seed of the sweeps",
-        unit: "",
-        kind: ParamKind::SEED,
-        default: BasinScene::SEED as f64,
-        help: "Where the range noise of both sweeps starts; 457 is the chapter's.",
-    },
-    ParamSpec {
-        id: "progress",
-        label: "boxes taken up",
-        unit: "",
-        kind: ParamKind::Timeline { max: MOST_STEPS },
-        default: 0.0,
-        help: "How many boxes the search has taken up; behind the last one come the steps of ICP.",
-    },
-    SPEED,
-    MORE,
+pub const PARAMS: &[&ParamSpec] = &[
+    &HEADING.spec,
+    &DX.spec,
+    &DY.spec,
+    &WINDOW.spec,
+    &TURN.spec,
+    &CELL.spec,
+    &SEED.spec,
+    &PROGRESS.spec,
+    &SPEED.spec,
+    &MORE.spec,
 ];
 
-const fn offset(id: &'static str, label: &'static str) -> ParamSpec {
-    ParamSpec {
-        id,
-        label,
-        unit: "m",
-        kind: ParamKind::Slider {
-            min: -OFFSET_SPAN_M,
-            max: OFFSET_SPAN_M,
-            step: 0.05,
-        },
-        default: 0.0,
-        help: "How far the start, which is the window's middle, is moved away from the truth.",
-    }
+const fn offset(id: &'static str, label: &'static str) -> Param<f64> {
+    Param::slider(id, label, [-OFFSET_SPAN_M, OFFSET_SPAN_M], 0.05)
+        .unit("m")
+        .help("How far the start, which is the window's middle, is moved away from the truth.")
 }
 
 /// One box, under the name that it has here.
@@ -130,35 +98,35 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "quarter-turn",
             label: "Start 75° off",
             help: "ICP alone falls into the quarter turn. The search comes home.",
-            set: &[("progress", 0.0)],
+            set: &[PROGRESS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "upside-down",
             label: "Start upside down",
             help: "ICP alone stays upside down, and fits well. For the search the half turn is the runner-up.",
-            set: &[("heading", 180.0), ("progress", 0.0)],
+            set: &[HEADING.to(180.0), PROGRESS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "wide",
             label: "Four times the window",
             help: "±3 m in place of ±1.5 m: four times the poses, and not twice the work.",
-            set: &[("window", 3.0), ("progress", 0.0)],
+            set: &[WINDOW.to(3.0), PROGRESS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "without-home",
             label: "A window without home",
             help: "Only ±60° around a start 75° off: home is not in it, and the search says that no place fits.",
-            set: &[("turn", 60.0), ("progress", 0.0)],
+            set: &[TURN.to(60.0), PROGRESS.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "coarse",
             label: "Coarse cells",
             help: "Cells of 0.2 m blur the room: the quarter turn fits almost as well as the half turn.",
-            set: &[("cell", 0.2), ("progress", 0.0)],
+            set: &[CELL.to(0.2), PROGRESS.to(0.0)],
             then: &["play"],
         },
     ],

@@ -17,7 +17,9 @@ use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
-use crate::w16_7_been_here::spec::{LAST_OLD, MOST_ALIKE, PARAMS, SPEC};
+use crate::w16_7_been_here::spec::{
+    CALLED, LAST_OLD, MOST_ALIKE, MOST_KEYFRAMES, NEWEST, OLDER, PARAMS, SPEC,
+};
 use lap::{Places, Work};
 
 /// Names of the panels.
@@ -89,6 +91,14 @@ impl BeenHere {
         self.places.as_ref().map_or(0, Places::last)
     }
 
+    /// Where a run ends: past every place, while the lap is still computed.
+    fn end(&self) -> f64 {
+        match self.work {
+            Some(_) => MOST_KEYFRAMES,
+            None => self.last() as f64,
+        }
+    }
+
     /// The newest keyframe that is shown.
     fn newest(&self) -> usize {
         self.played.place(&self.values, self.last() as f64) as usize
@@ -98,7 +108,7 @@ impl BeenHere {
     fn pair(&self) -> Option<[usize; 2]> {
         let places = self.places.as_ref()?;
         let new = self.newest();
-        let asked = self.values.get("old");
+        let asked = self.values.get(&OLDER);
         let old = if asked == MOST_ALIKE {
             places
                 .most_alike(self.detector(), new)
@@ -111,7 +121,7 @@ impl BeenHere {
 
     /// The threshold of a detector.
     fn threshold(&self, detector: usize) -> f64 {
-        let called = self.values.get("called");
+        let called = self.values.get(&CALLED);
         self.places
             .as_ref()
             .map_or(f64::NAN, |places| places.threshold(detector, called))
@@ -135,8 +145,8 @@ impl Model for BeenHere {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let last = self.last() as f64;
-        match self.played.press(&mut self.values, id, last) {
+        let end = self.end();
+        match self.played.press(&mut self.values, id, end) {
             Pressed::Transport => {}
             Pressed::Defaults => self.follow(),
             Pressed::Other => return press_preset(self, id),
@@ -222,13 +232,13 @@ impl Model for BeenHere {
             return;
         }
         self.played.pause();
-        self.values.store("new", new as f64);
+        self.values.put(&NEWEST, new as f64);
         self.values
-            .store("old", (old.min(new - 1) as f64).min(LAST_OLD));
+            .put(&OLDER, (old.min(new - 1) as f64).min(LAST_OLD));
     }
 
     fn set_motion(&mut self, motion: Motion) {
-        let last = self.last() as f64;
-        self.played.set_motion(&mut self.values, motion, last);
+        let end = self.end();
+        self.played.set_motion(&mut self.values, motion, end);
     }
 }

@@ -1,8 +1,9 @@
 //! The widget's words and its one list of parameters.
 
+use ch16_lab::lap::BuiltInWorld;
 use ch16_lab::lap::CANONICAL_SEED;
 use kit::layers::Opening;
-use kit::param::{Choice, MORE, ParamKind, ParamSpec};
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
 use kit::playback::SPEED;
 use kit::run;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
@@ -16,88 +17,68 @@ pub const LAST_OLD: f64 = 120.0;
 /// The value of `old` that asks for the keyframe that looks most alike.
 pub const MOST_ALIKE: f64 = -1.0;
 
+pub(super) static CALLED: Param<f64> = Param::slider(
+    "called",
+    "pairs called the same place",
+    [0.0, 60.0],
+    1.0,
+)
+.unit("%")
+.default(15.0)
+.help(
+    "So many pairs, those most alike, are called the same: a threshold for every detector at once.",
+);
+
+pub(super) static DETECTOR: OneOf<usize> = OneOf::new(
+    "detector",
+    "alike by",
+    &[
+        Choice::new("nearby", "nearness"),
+        Choice::new("histogram", "ranges"),
+        Choice::new("context", "Scan Context"),
+    ],
+    &[0, 1, 2],
+)
+.default("context")
+.help("By the estimated poses, by the histogram of ranges, or by rings and sectors.");
+
+pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
+    "world",
+    "world",
+    &[
+        Choice::new("apartment", "the Apartment"),
+        Choice::new("ring", "a ring of corridors"),
+    ],
+    &[BuiltInWorld::Apartment, BuiltInWorld::Ring],
+)
+.help("Where the lap is driven.");
+
+pub(super) static OLDER: Param<f64> = Param::slider(
+    "old",
+    "older keyframe of the pair",
+    [MOST_ALIKE, LAST_OLD],
+    1.0,
+)
+.default(MOST_ALIKE)
+.help("Which older keyframe the newest one is compared with; −1 is the one that looks most alike.");
+
+pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
+
+pub(super) static NEWEST: Param<f64> = Param::timeline("new", "keyframe", MOST_KEYFRAMES)
+    .default(MOST_KEYFRAMES)
+    .help("The newest keyframe that is known; past the last one it is the whole lap.");
+
 /// What the reader can change.
-pub const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        id: "called",
-        label: "pairs called the same place",
-        unit: "%",
-        kind: ParamKind::Slider {
-            min: 0.0,
-            max: 60.0,
-            step: 1.0,
-        },
-        default: 15.0,
-        help: "So many pairs, those most alike, are called the same: a threshold for every detector at once.",
-    },
-    ParamSpec {
-        id: "detector",
-        label: "alike by",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "nearby",
-                    label: "nearness",
-                },
-                Choice {
-                    id: "histogram",
-                    label: "ranges",
-                },
-                Choice {
-                    id: "context",
-                    label: "Scan Context",
-                },
-            ],
-        },
-        default: 2.0,
-        help: "By the estimated poses, by the histogram of ranges, or by rings and sectors.",
-    },
-    ParamSpec {
-        id: "world",
-        label: "world",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "apartment",
-                    label: "the Apartment",
-                },
-                Choice {
-                    id: "ring",
-                    label: "a ring of corridors",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "Where the lap is driven.",
-    },
-    ParamSpec {
-        id: "old",
-        label: "older keyframe of the pair",
-        unit: "",
-        kind: ParamKind::Slider {
-            min: MOST_ALIKE,
-            max: LAST_OLD,
-            step: 1.0,
-        },
-        default: MOST_ALIKE,
-        help: "Which older keyframe the newest one is compared with; −1 is the one that looks most alike.",
-    },
-    run::seed(CANONICAL_SEED),
-    run::NOISE,
-    ParamSpec {
-        id: "new",
-        label: "keyframe",
-        unit: "",
-        kind: ParamKind::Timeline {
-            max: MOST_KEYFRAMES,
-        },
-        default: MOST_KEYFRAMES,
-        help: "The newest keyframe that is known; past the last one it is the whole lap.",
-    },
-    SPEED,
-    MORE,
+pub const PARAMS: &[&ParamSpec] = &[
+    &CALLED.spec,
+    &DETECTOR.spec,
+    &WORLD.spec,
+    &OLDER.spec,
+    &SEED.spec,
+    &run::NOISE.spec,
+    &NEWEST.spec,
+    &SPEED.spec,
+    &MORE.spec,
 ];
 
 /// One keyframe, under the name that it has here.
@@ -131,35 +112,35 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "lap",
             label: "Drive the lap",
             help: "Each new keyframe is compared with all older ones, and a column is added.",
-            set: &[("new", 0.0)],
+            set: &[NEWEST.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "ranges",
             label: "By ranges alone",
             help: "The corridor is one square of ink: the histogram cannot tell its places apart.",
-            set: &[("detector", 1.0)],
+            set: &[DETECTOR.to("histogram")],
             then: &[],
         },
         Preset {
             id: "nearby",
             label: "By the estimated pose",
             help: "On a short lap the pose says most; it is wrong where drift is large.",
-            set: &[("detector", 0.0)],
+            set: &[DETECTOR.to("nearby")],
             then: &[],
         },
         Preset {
             id: "drifted",
             label: "Four times the noise",
             help: "The wheels drift, and what is near in the graph is less often the same place. Looks do not drift.",
-            set: &[("noise", 4.0)],
+            set: &[run::NOISE.to(4.0)],
             then: &[],
         },
         Preset {
             id: "ring",
             label: "A ring of corridors",
             help: "Four corridors that look alike: every look-alike is a trap here.",
-            set: &[("world", 1.0)],
+            set: &[WORLD.to("ring")],
             then: &[],
         },
     ],

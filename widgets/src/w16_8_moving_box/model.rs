@@ -18,7 +18,7 @@ use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
-use crate::w16_8_moving_box::spec::{MOST_SHARE, PARAMS, SPEC};
+use crate::w16_8_moving_box::spec::{MOST_SHARE, PARAMS, SHARE, SPEC};
 use curves::Curves;
 
 /// Names of the panels.
@@ -179,7 +179,7 @@ impl Model for MovingBox {
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
         // The line at the share that is shown.
-        let away = at[0] - self.values.get("share");
+        let away = at[0] - self.values.get(&SHARE);
         (panel == panel::BIAS && away.abs() <= reach[0]).then_some(Handle {
             panel: panel::BIAS,
             id: "share",
@@ -191,7 +191,7 @@ impl Model for MovingBox {
         let share = (at[0] - handle.offset[0]).round();
         if share.is_finite() {
             self.played.pause();
-            self.values.store("share", share.clamp(0.0, MOST_SHARE));
+            self.values.put(&SHARE, share.clamp(0.0, MOST_SHARE));
             self.follow();
         }
     }

@@ -1,7 +1,8 @@
 //! The widget's words and its one list of parameters.
 
+use ch16_slam2d::icp::IcpVariant;
 use kit::layers::Opening;
-use kit::param::{Choice, MORE, ParamKind, ParamSpec};
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
@@ -11,107 +12,65 @@ pub const MOST_SHARE: f64 = 60.0;
 /// Iterations at which a registration ends in any case.
 pub const MOST_ITERATIONS: f64 = 30.0;
 
+pub(super) static SHARE: Param<f64> =
+    Param::slider("share", "points on the box", [0.0, MOST_SHARE], 1.0)
+        .unit("%")
+        .default(20.0)
+        .help("Which share of the points of both sweeps lies on the box that was moved.");
+
+pub(super) static MOVED: Param<f64> = Param::slider("moved", "box moved by", [0.0, 0.8], 0.05)
+    .unit("m")
+    .default(0.3)
+    .help("How far the box was moved between the sweeps, away from the sensor along x.");
+
+pub(super) static DROPPED: Param<f64> =
+    Param::slider("dropped", "trimmed: pairs dropped", [0.0, 70.0], 5.0)
+        .unit("%")
+        .default(25.0)
+        .help("Which share of the pairs trimming drops in each iteration, the longest first.");
+
+pub(super) static HUBER: Param<f64> = Param::slider("huber", "Huber width", [0.01, 0.3], 0.01)
+    .unit("m")
+    .default(0.05)
+    .help("Pairs longer than this pull with the same force, however long they are.");
+
+pub(super) static TAU: Param<f64> = Param::slider("tau", "pairing distance τ", [0.1, 1.6], 0.05)
+    .unit("m")
+    .default(0.7)
+    .help("A point farther than this from the target has no pair: a gate is a kernel, too.");
+
+pub(super) static VARIANT: OneOf<IcpVariant> = OneOf::new(
+    "variant",
+    "error that ICP reduces",
+    &[
+        Choice::new("point-to-point", "point to point"),
+        Choice::new("point-to-plane", "point to plane"),
+    ],
+    &[IcpVariant::PointToPoint, IcpVariant::PointToPlane],
+)
+.help("Distance between paired points, or distance along the wall's normal.");
+
+pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", 1).help(
+    "Where the range noise of the sweeps above starts; the curves go over their own hundred seeds.",
+);
+
+pub(super) static ITERATION: Param<f64> =
+    Param::timeline("iteration", "iteration", MOST_ITERATIONS)
+        .default(MOST_ITERATIONS)
+        .help("Which iteration is shown of all three; past its last one a registration rests.");
+
 /// What the reader can change.
-pub const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        id: "share",
-        label: "points on the box",
-        unit: "%",
-        kind: ParamKind::Slider {
-            min: 0.0,
-            max: MOST_SHARE,
-            step: 1.0,
-        },
-        default: 20.0,
-        help: "Which share of the points of both sweeps lies on the box that was moved.",
-    },
-    ParamSpec {
-        id: "moved",
-        label: "box moved by",
-        unit: "m",
-        kind: ParamKind::Slider {
-            min: 0.0,
-            max: 0.8,
-            step: 0.05,
-        },
-        default: 0.3,
-        help: "How far the box was moved between the sweeps, away from the sensor along x.",
-    },
-    ParamSpec {
-        id: "dropped",
-        label: "trimmed: pairs dropped",
-        unit: "%",
-        kind: ParamKind::Slider {
-            min: 0.0,
-            max: 70.0,
-            step: 5.0,
-        },
-        default: 25.0,
-        help: "Which share of the pairs trimming drops in each iteration, the longest first.",
-    },
-    ParamSpec {
-        id: "huber",
-        label: "Huber width",
-        unit: "m",
-        kind: ParamKind::Slider {
-            min: 0.01,
-            max: 0.3,
-            step: 0.01,
-        },
-        default: 0.05,
-        help: "Pairs longer than this pull with the same force, however long they are.",
-    },
-    ParamSpec {
-        id: "tau",
-        label: "pairing distance τ",
-        unit: "m",
-        kind: ParamKind::Slider {
-            min: 0.1,
-            max: 1.6,
-            step: 0.05,
-        },
-        default: 0.7,
-        help: "A point farther than this from the target has no pair: a gate is a kernel, too.",
-    },
-    ParamSpec {
-        id: "variant",
-        label: "error that ICP reduces",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "point-to-point",
-                    label: "point to point",
-                },
-                Choice {
-                    id: "point-to-plane",
-                    label: "point to plane",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "Distance between paired points, or distance along the wall's normal.",
-    },
-    ParamSpec {
-        id: "seed",
-        label: "seed of the sweeps",
-        unit: "",
-        kind: ParamKind::SEED,
-        default: 1.0,
-        help: "Where the range noise of the sweeps above starts; the curves go over their own hundred seeds.",
-    },
-    ParamSpec {
-        id: "iteration",
-        label: "iteration",
-        unit: "",
-        kind: ParamKind::Timeline {
-            max: MOST_ITERATIONS,
-        },
-        default: MOST_ITERATIONS,
-        help: "Which iteration is shown of all three; past its last one a registration rests.",
-    },
-    SPEED,
-    MORE,
+pub const PARAMS: &[&ParamSpec] = &[
+    &SHARE.spec,
+    &MOVED.spec,
+    &DROPPED.spec,
+    &HUBER.spec,
+    &TAU.spec,
+    &VARIANT.spec,
+    &SEED.spec,
+    &ITERATION.spec,
+    &SPEED.spec,
+    &MORE.spec,
 ];
 
 /// What never changes.
@@ -138,28 +97,28 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "fifth",
             label: "A fifth of the points",
             help: "The exercise: plain is pulled after the box, trimmed and Huber hardly.",
-            set: &[("iteration", 0.0)],
+            set: &[ITERATION.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "most",
             label: "More than trimming drops",
             help: "At half of the points the box has more pairs than a quarter: who degrades most gracefully?",
-            set: &[("share", 50.0), ("iteration", 0.0)],
+            set: &[SHARE.to(50.0), ITERATION.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "none",
             label: "No box",
             help: "Without a box all three agree, and trimming has thrown good pairs away.",
-            set: &[("share", 0.0), ("iteration", 0.0)],
+            set: &[SHARE.to(0.0), ITERATION.to(0.0)],
             then: &["play"],
         },
         Preset {
             id: "gate",
             label: "A short τ",
             help: "With τ of 0.2 m the box has few partners, and plain is as good as the others.",
-            set: &[("tau", 0.2), ("iteration", 0.0)],
+            set: &[TAU.to(0.2), ITERATION.to(0.0)],
             then: &["play"],
         },
     ],

@@ -20,7 +20,7 @@ use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 use pr_geom::SE2;
 
-use crate::w16_9_come_back::spec::{PARAMS, PLAN_M, SPEC};
+use crate::w16_9_come_back::spec::{HEADING, MOST_MOMENTS, PARAMS, PLAN_M, SPEC, START_X, START_Y};
 use known::{Known, Work};
 
 /// Names of the panels.
@@ -95,6 +95,14 @@ impl ComeBack {
         told.map_or(0, |morning| morning.moments().len() - 1)
     }
 
+    /// Where a run ends: past every place, while the morning is still computed.
+    fn end(&self) -> f64 {
+        match self.work {
+            Some(_) => MOST_MOMENTS,
+            None => self.last() as f64,
+        }
+    }
+
     fn place(&self) -> usize {
         self.played.place(&self.values, self.last() as f64) as usize
     }
@@ -109,10 +117,9 @@ impl ComeBack {
         let tenth = |value: f64, most: f64| ((value * 10.0).round() / 10.0).clamp(0.0, most);
         let heading_deg = (pose.theta().to_degrees() / 5.0).round() * 5.0;
         self.played.pause();
-        self.values.store("x", tenth(pose.x(), PLAN_M[0]));
-        self.values.store("y", tenth(pose.y(), PLAN_M[1]));
-        self.values
-            .store("heading", heading_deg.clamp(-180.0, 180.0));
+        self.values.put(&START_X, tenth(pose.x(), PLAN_M[0]));
+        self.values.put(&START_Y, tenth(pose.y(), PLAN_M[1]));
+        self.values.put(&HEADING, heading_deg.clamp(-180.0, 180.0));
         self.follow();
     }
 }
@@ -135,8 +142,8 @@ impl Model for ComeBack {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let last = self.last() as f64;
-        match self.played.press(&mut self.values, id, last) {
+        let end = self.end();
+        match self.played.press(&mut self.values, id, end) {
             Pressed::Transport => {}
             Pressed::Defaults => self.follow(),
             Pressed::Other => return press_preset(self, id),
@@ -225,7 +232,7 @@ impl Model for ComeBack {
         if self.played.is_playing() {
             self.settle();
         }
-        let last = self.last() as f64;
-        self.played.set_motion(&mut self.values, motion, last);
+        let end = self.end();
+        self.played.set_motion(&mut self.values, motion, end);
     }
 }

@@ -1,8 +1,9 @@
 //! The widget's words and its one list of parameters.
 
+use ch16_lab::lap::BuiltInWorld;
 use ch16_lab::lap::CANONICAL_SEED;
 use kit::layers::Opening;
-use kit::param::{Choice, MORE, ParamKind, ParamSpec};
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
 use kit::playback::SPEED;
 use kit::run;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
@@ -13,83 +14,59 @@ pub const PLAN_M: [f64; 2] = [12.0, 9.0];
 /// More moments than any morning has.
 pub const MOST_MOMENTS: f64 = 4000.0;
 
+pub(super) static LAPS: Param<usize> =
+    Param::slider("laps", "laps since the wardrobe moved", [0.0, 2.0], 1.0)
+        .help("The map is of one lap before that night, and of so many after it.");
+
+pub(super) static START_X: Param<f64> = place("x", "switched on at x", PLAN_M[0], 4.4);
+
+pub(super) static START_Y: Param<f64> = place("y", "switched on at y", PLAN_M[1], 4.4);
+
+pub(super) static HEADING: Param<f64> =
+    Param::slider("heading", "heading there", [-180.0, 180.0], 5.0)
+        .unit("°")
+        .help("Where the robot looks when it is switched on. Nobody tells it.");
+
+pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
+    "world",
+    "world",
+    &[
+        Choice::new("apartment", "the Apartment"),
+        Choice::new("ring", "a ring of corridors"),
+        Choice::new("twins", "two rooms alike"),
+    ],
+    &[
+        BuiltInWorld::Apartment,
+        BuiltInWorld::Ring,
+        BuiltInWorld::TwinRooms,
+    ],
+)
+.help("Where it all happens. The wardrobe stands in the Apartment alone.");
+
+pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
+
+pub(super) static MOMENT: Param<f64> = Param::timeline("moment", "moment", MOST_MOMENTS)
+    .default(MOST_MOMENTS)
+    .help("Which moment of the morning is shown: boxes of a search, and scans.");
+
 /// What the reader can change.
-pub const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        id: "laps",
-        label: "laps since the wardrobe moved",
-        unit: "",
-        kind: ParamKind::Slider {
-            min: 0.0,
-            max: 2.0,
-            step: 1.0,
-        },
-        default: 0.0,
-        help: "The map is of one lap before that night, and of so many after it.",
-    },
-    place("x", "switched on at x", PLAN_M[0], 4.4),
-    place("y", "switched on at y", PLAN_M[1], 4.4),
-    ParamSpec {
-        id: "heading",
-        label: "heading there",
-        unit: "°",
-        kind: ParamKind::Slider {
-            min: -180.0,
-            max: 180.0,
-            step: 5.0,
-        },
-        default: 0.0,
-        help: "Where the robot looks when it is switched on. Nobody tells it.",
-    },
-    ParamSpec {
-        id: "world",
-        label: "world",
-        unit: "",
-        kind: ParamKind::Choice {
-            options: &[
-                Choice {
-                    id: "apartment",
-                    label: "the Apartment",
-                },
-                Choice {
-                    id: "ring",
-                    label: "a ring of corridors",
-                },
-                Choice {
-                    id: "twins",
-                    label: "two rooms alike",
-                },
-            ],
-        },
-        default: 0.0,
-        help: "Where it all happens. The wardrobe stands in the Apartment alone.",
-    },
-    run::seed(CANONICAL_SEED),
-    ParamSpec {
-        id: "moment",
-        label: "moment",
-        unit: "",
-        kind: ParamKind::Timeline { max: MOST_MOMENTS },
-        default: MOST_MOMENTS,
-        help: "Which moment of the morning is shown: boxes of a search, and scans.",
-    },
-    SPEED,
-    MORE,
+pub const PARAMS: &[&ParamSpec] = &[
+    &LAPS.spec,
+    &START_X.spec,
+    &START_Y.spec,
+    &HEADING.spec,
+    &WORLD.spec,
+    &SEED.spec,
+    &MOMENT.spec,
+    &SPEED.spec,
+    &MORE.spec,
 ];
 
-const fn place(id: &'static str, label: &'static str, max: f64, default: f64) -> ParamSpec {
-    ParamSpec {
-        id,
-        label,
-        unit: "m",
-        kind: ParamKind::Slider {
-            min: 0.0,
-            max,
-            step: 0.1,
-        },
-        default,
-        help: "Where the robot is put overnight, on the plan. Nobody tells it.",
-    }
+const fn place(id: &'static str, label: &'static str, max: f64, default: f64) -> Param<f64> {
+    Param::slider(id, label, [0.0, max], 0.1)
+        .unit("m")
+        .default(default)
+        .help("Where the robot is put overnight, on the plan. Nobody tells it.")
 }
 
 /// One moment, under the name that it has here.
@@ -124,11 +101,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             label: "Switched on in a room",
             help: "The lap never entered it, so the robot says that it does not know, and drives out of the door.",
             set: &[
-                ("world", 0.0),
-                ("x", 2.6),
-                ("y", 2.2),
-                ("heading", 120.0),
-                ("moment", 0.0),
+                WORLD.to("apartment"),
+                START_X.to(2.6),
+                START_Y.to(2.2),
+                HEADING.to(120.0),
+                MOMENT.to(0.0),
             ],
             then: &["play"],
         },
@@ -137,11 +114,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             label: "Switched on in the corridor",
             help: "Here the map was driven: one scan is enough, among millions of poses.",
             set: &[
-                ("world", 0.0),
-                ("x", 4.4),
-                ("y", 4.4),
-                ("heading", 0.0),
-                ("moment", 0.0),
+                WORLD.to("apartment"),
+                START_X.to(4.4),
+                START_Y.to(4.4),
+                HEADING.to(0.0),
+                MOMENT.to(0.0),
             ],
             then: &["play"],
         },
@@ -149,7 +126,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             id: "forget",
             label: "One more lap",
             help: "The wardrobe is gone from where it stood: newer scans have looked through it.",
-            set: &[("world", 0.0), ("laps", 1.0)],
+            set: &[WORLD.to("apartment"), LAPS.to(1)],
             then: &[],
         },
         Preset {
@@ -157,11 +134,11 @@ pub const SPEC: WidgetSpec = WidgetSpec {
             label: "In one of two rooms alike",
             help: "Both rooms fit to the millimetre: no pose is told before the robot is out of the door.",
             set: &[
-                ("world", 2.0),
-                ("x", 6.2),
-                ("y", 3.7),
-                ("heading", 180.0),
-                ("moment", 0.0),
+                WORLD.to("twins"),
+                START_X.to(6.2),
+                START_Y.to(3.7),
+                HEADING.to(180.0),
+                MOMENT.to(0.0),
             ],
             then: &["play"],
         },

@@ -65,13 +65,13 @@ fn play_maps_the_sample_then_holds_it_then_plays_the_way() {
     let mut robot = mapped();
     assert_eq!(robot.advance(1.0), Activity::Idle);
     robot.press("play").unwrap();
-    assert_eq!(robot.values().get("keyframe"), 0.0);
+    assert_eq!(robot.values().number("keyframe"), 0.0);
     let mut frames = 0;
     while robot.advance(0.1) == Activity::Busy {
         frames += 1;
         assert!(frames < 1000, "it never ends");
     }
-    assert_eq!(robot.values().get("keyframe"), 4.0);
+    assert_eq!(robot.values().number("keyframe"), 4.0);
     assert_eq!(
         robot.take_orders(),
         ["look 4"],
@@ -146,14 +146,17 @@ fn the_list_is_walked_and_every_choice_becomes_an_order() {
     let mut robot = mapped();
     robot.press("next").unwrap();
     assert_eq!(
-        (robot.values().get("loop"), robot.values().get("keyframe")),
+        (
+            robot.values().number("loop"),
+            robot.values().number("keyframe")
+        ),
         (1.0, 4.0)
     );
     assert!(robot.shown_tables()[0].title.contains("12 points fit"));
     robot.press("turn").unwrap();
     robot.press("next").unwrap();
     assert_eq!(
-        robot.values().get("loop"),
+        robot.values().number("loop"),
         0.0,
         "after the last comes the first"
     );
@@ -163,10 +166,10 @@ fn the_list_is_walked_and_every_choice_becomes_an_order() {
     robot.press("add").unwrap();
     robot.press("unpin").unwrap();
     robot.press("doubt").unwrap();
-    assert_eq!(robot.values().get("keyframe"), 3.0);
+    assert_eq!(robot.values().number("keyframe"), 3.0);
     robot.set("poor", 0.75).unwrap();
     robot.press("doubt").unwrap();
-    assert_eq!(robot.values().get("keyframe"), 4.0, "0.6 of it fits");
+    assert_eq!(robot.values().number("keyframe"), 4.0, "0.6 of it fits");
     robot.set("file", 4.0).unwrap();
     robot.press("save").unwrap();
     robot.press("cancel").unwrap();
@@ -193,7 +196,7 @@ fn a_press_shows_a_keyframe_and_a_drag_moves_the_one_that_is_shown() {
     let handle = robot.grab("map", at, reach).unwrap();
     assert_eq!(handle.id, "keyframe");
     robot.drag(handle, at);
-    assert_eq!(robot.values().get("keyframe"), 2.0);
+    assert_eq!(robot.values().number("keyframe"), 2.0);
     assert_eq!(robot.take_orders(), ["look 2"]);
     let handle = robot.grab("map", at, reach).unwrap();
     assert_eq!(handle.id, "held");
@@ -370,7 +373,7 @@ fn another_file_takes_the_place_of_the_first_and_a_bad_one_is_answered() {
     robot.set("keyframe", 2.0).unwrap();
     tell(&mut robot, "opening", "other.bag", &[]);
     assert!(robot.robot().keyframes.is_empty());
-    assert_eq!(robot.values().get("keyframe"), 999_999.0);
+    assert_eq!(robot.values().number("keyframe"), 999_999.0);
     tell(
         &mut robot,
         "failed",

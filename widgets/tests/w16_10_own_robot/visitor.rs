@@ -74,18 +74,18 @@ fn its_verdicts_are_said_in_words_and_numbers_and_walked_through() {
     assert!(said(&robot).contains("At scan 4 it is lost."));
     robot.press("change").unwrap();
     assert_eq!(
-        robot.values().get("scan"),
+        robot.values().number("scan"),
         0.0,
         "after the last change comes the first scan"
     );
     robot.press("change").unwrap();
-    assert_eq!(robot.values().get("scan"), 2.0);
+    assert_eq!(robot.values().number("scan"), 2.0);
     assert!(
         said(&robot)
             .contains("At scan 2 it is found at x 2.0 m, y 0.2 m, turned 0°, known to 0.05 m.")
     );
     robot.press("change").unwrap();
-    assert_eq!(robot.values().get("scan"), 4.0);
+    assert_eq!(robot.values().number("scan"), 4.0);
     let facts = robot.outcome().facts;
     let fact = |id: &str| facts.iter().find(|fact| fact.id == id).unwrap().value;
     assert_eq!(

@@ -93,8 +93,8 @@ fn a_point_of_the_target_is_dragged_and_the_answer_follows() {
         .grab(panel::POINTS, [seen[1].x + 0.02, seen[1].y], [0.1, 0.1])
         .unwrap();
     trace.drag(handle, [seen[1].x + 0.52, seen[1].y - 0.3]);
-    assert_eq!(trace.values().get("x2"), 0.5);
-    assert_eq!(trace.values().get("y2"), -0.3);
+    assert_eq!(trace.values().number("x2"), 0.5);
+    assert_eq!(trace.values().number("y2"), -0.3);
     assert!((fact(&trace, "aligned_deg") - before).abs() > 1.0);
     // Where the whole target is dragged into its own mirror image, the mirror image wins.
     for (k, id) in ["target1", "target2", "target3", "target4"]
@@ -111,7 +111,7 @@ fn a_point_of_the_target_is_dragged_and_the_answer_follows() {
     assert_eq!(trace.outcome().verdict, "a mirror image fits best");
     trace.drag(handle, [f64::NAN, 0.0]);
     trace.drag(handle, [1e300, -1e300]);
-    assert_eq!(trace.values().get("x2"), 3.0);
+    assert_eq!(trace.values().number("x2"), 3.0);
     assert!(
         trace
             .grab(panel::MAP_TURN, at(seen[0]), [0.1, 0.1])
@@ -125,9 +125,9 @@ fn the_angle_is_dragged_along_the_trace() {
     let mut trace = with(&[("turn", 100.0)]);
     let handle = trace.grab(panel::TRACE, [101.0, 0.0], [3.0, 1.0]).unwrap();
     trace.drag(handle, [220.6, 0.0]);
-    assert_eq!(trace.values().get("turn"), 220.0);
+    assert_eq!(trace.values().number("turn"), 220.0);
     trace.drag(handle, [900.0, 0.0]);
-    assert_eq!(trace.values().get("turn"), WHOLE_TURN_DEG);
+    assert_eq!(trace.values().number("turn"), WHOLE_TURN_DEG);
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn playing_goes_once_around_and_ends() {
     }
     // 360° at 60° a second, ten frames a second.
     assert!((60..=61).contains(&frames), "{frames}");
-    assert_eq!(trace.values().get("turn"), WHOLE_TURN_DEG);
+    assert_eq!(trace.values().number("turn"), WHOLE_TURN_DEG);
     trace.set_motion(Motion::Reduced);
     trace.press("two-points").unwrap();
     assert_eq!(trace.advance(0.1), Activity::Idle);

@@ -79,11 +79,11 @@ fn the_step_is_dragged_along_the_curves() {
     let mut widget = with(&[("steps", 3.0)]);
     let handle = widget.grab(panel::CURVE, [3.2, 0.0], [0.5, 1.0]).unwrap();
     widget.drag(handle, [7.1, 0.0]);
-    assert_eq!(widget.values().get("steps"), 7.0);
+    assert_eq!(widget.values().number("steps"), 7.0);
     widget.drag(handle, [f64::NAN, 0.0]);
     widget.drag(handle, [1e300, 0.0]);
     assert_eq!(
-        widget.values().get("steps"),
+        widget.values().number("steps"),
         widget.timeline().unwrap().last
     );
     assert!(

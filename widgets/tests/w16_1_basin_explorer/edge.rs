@@ -52,16 +52,16 @@ fn a_press_on_a_covered_map_marks_its_edge_and_a_drag_moves_it() {
     for (panel, id) in [(panel::POINT, "edge-p2p"), (panel::PLANE, "edge-p2l")] {
         let handle = model.grab(panel, [-41.6, 0.4], [3.0, 0.1]).unwrap();
         model.drag(handle, [-41.6, 0.4]);
-        assert_eq!(model.values().get(id), 42.0);
+        assert_eq!(model.values().number(id), 42.0);
         model.drag(handle, [300.0, 0.0]);
-        assert_eq!(model.values().get(id), 180.0);
+        assert_eq!(model.values().number(id), 180.0);
         model.drag(handle, [f64::NAN, 0.0]);
-        assert_eq!(model.values().get(id), 180.0);
+        assert_eq!(model.values().number(id), 180.0);
     }
     assert_eq!(model.outcome().verdict, "both edges are marked");
     // The start is where it was: the press was a mark.
-    assert_eq!(model.values().get("heading"), 0.0);
-    assert_eq!(model.values().get("variant"), 0.0);
+    assert_eq!(model.values().number("heading"), 0.0);
+    assert_eq!(model.values().number("variant"), 0.0);
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn the_sweep_goes_piece_by_piece_and_begins_anew_with_another_tau() {
 fn without_the_question_nothing_is_marked_and_the_defaults_end_it() {
     let mut model = swept([30.0, 40.0]);
     model.press("defaults").unwrap();
-    assert_eq!(model.values().get("edge"), 0.0);
+    assert_eq!(model.values().number("edge"), 0.0);
     let before = BasinExplorer::new().outcome();
     assert_eq!(model.outcome(), before);
     assert_eq!(with(&[("edge-p2p", 30.0)]).outcome(), before);

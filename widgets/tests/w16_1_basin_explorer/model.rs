@@ -84,22 +84,22 @@ fn what_is_grabbed_becomes_the_start_and_follows_the_pointer() {
     model.drag(handle, [at[0] + 0.4, at[1] - 0.2]);
     let values = model.values();
     assert_eq!(
-        values.get("iteration"),
+        values.number("iteration"),
         0.0,
         "the guess shows while it is dragged"
     );
     // Offsets are kept to the centimetre, and the run had ended 7 mm from the truth.
     assert!(
-        (values.get("dx") - 0.4).abs() < 0.016,
+        (values.number("dx") - 0.4).abs() < 0.016,
         "{}",
-        values.get("dx")
+        values.number("dx")
     );
     assert!(
-        (values.get("dy") + 0.2).abs() < 0.016,
+        (values.number("dy") + 0.2).abs() < 0.016,
         "{}",
-        values.get("dy")
+        values.number("dy")
     );
-    assert!(values.get("heading").abs() < 0.3);
+    assert!(values.number("heading").abs() < 0.3);
 }
 
 #[test]
@@ -116,9 +116,9 @@ fn the_handle_turns_the_source_about_its_sensor() {
         .grab(panel::SWEEPS, ahead, [0.05, 0.05])
         .expect("the handle");
     model.drag(handle, [0.5 - ahead[1] - 0.35, -0.35 + ahead[0] - 0.5]);
-    assert!((model.values().get("heading") - 90.0).abs() < 0.1);
+    assert!((model.values().number("heading") - 90.0).abs() < 0.1);
     assert_eq!(
-        (model.values().get("dx"), model.values().get("dy")),
+        (model.values().number("dx"), model.values().number("dy")),
         (0.0, 0.0)
     );
 }
@@ -150,19 +150,22 @@ fn a_press_on_a_basin_map_starts_there_with_that_variant() {
         .expect("every spot is a start");
     model.drag(handle, [90.0, -1.0]);
     let values = model.values();
-    assert_eq!((values.get("heading"), values.get("dx")), (90.0, -1.0));
-    assert_eq!(values.get("dy"), 0.45, "the other offset stays");
-    assert_eq!(values.get("variant"), 1.0);
+    assert_eq!(
+        (values.number("heading"), values.number("dx")),
+        (90.0, -1.0)
+    );
+    assert_eq!(values.number("dy"), 0.45, "the other offset stays");
+    assert_eq!(values.number("variant"), 1.0);
     model.set("axis", 1.0).unwrap();
     let handle = model
         .grab(panel::POINT, [10.0, 0.3], [1.0, 1.0])
         .expect("every spot is a start");
     model.drag(handle, [10.0, 0.3]);
     assert_eq!(
-        (model.values().get("dx"), model.values().get("dy")),
+        (model.values().number("dx"), model.values().number("dy")),
         (-1.0, 0.3)
     );
-    assert_eq!(model.values().get("variant"), 0.0);
+    assert_eq!(model.values().number("variant"), 0.0);
 }
 
 #[test]
@@ -251,11 +254,11 @@ fn a_picture_is_uploaded_again_only_when_it_changed() {
 fn dragging_a_slider_keeps_the_place_on_the_timeline() {
     let mut model = with(&[("iteration", 4.0)]);
     model.set("heading", 50.0).unwrap();
-    assert_eq!(model.values().get("iteration"), 4.0);
+    assert_eq!(model.values().number("iteration"), 4.0);
     // Past the last iteration means the end, however long the run is.
     let model = with(&[("variant", 1.0), ("iteration", 30.0)]);
     let timeline = model.timeline().unwrap();
-    assert!(timeline.last < model.values().get("iteration"));
+    assert!(timeline.last < model.values().number("iteration"));
     assert!(
         model
             .summary()

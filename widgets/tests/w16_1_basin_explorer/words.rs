@@ -33,7 +33,7 @@ fn home_is_the_place_and_the_heading_and_the_sentence_says_which_one_is_missing(
 #[test]
 fn it_opens_before_anything_is_solved() {
     let model = BasinExplorer::new();
-    assert_eq!(model.values().get("iteration"), 0.0);
+    assert_eq!(model.values().number("iteration"), 0.0);
     assert!(!shows_the_end(&model));
 }
 
@@ -84,7 +84,7 @@ fn every_preset_does_what_its_button_says() {
         let mut model = BasinExplorer::new();
         model.press(id).expect("a preset of the widget");
         assert_eq!(
-            model.values().get("iteration"),
+            model.values().number("iteration"),
             0.0,
             "{id} starts at the guess"
         );
@@ -97,7 +97,7 @@ fn every_preset_does_what_its_button_says() {
         while model.advance(0.1) == Activity::Busy {}
         let timeline = model.timeline().expect("the widget has one");
         assert_eq!(
-            model.values().get("iteration"),
+            model.values().number("iteration"),
             timeline.last,
             "{id} plays to the end"
         );

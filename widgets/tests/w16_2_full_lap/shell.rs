@@ -41,9 +41,6 @@ fn a_key_on_the_noise_slider_drives_another_lap_and_keeps_the_time() {
     assert_eq!(value(&harness, "noise"), 1.05);
     assert_ne!(fact(&harness, "odometry_error_m"), before);
     assert_eq!(value(&harness, "t"), 92.0);
-    let changes = harness.state_mut().take_changes();
-    assert_eq!(changes.len(), 1, "{changes:?}");
-    assert_eq!(changes[0].id, "noise");
 }
 
 #[test]
@@ -56,7 +53,6 @@ fn a_value_between_two_steps_stays_until_somebody_moves_it() {
         .unwrap();
     harness.run_steps(3);
     assert_eq!(value(&harness, "noise"), 1.2345);
-    assert!(harness.state_mut().take_changes().is_empty());
 }
 
 #[test]

@@ -265,10 +265,10 @@ fn a_dropped_ball_plays_to_its_rest_and_stops() {
     let timeline = model.timeline().unwrap();
     assert!(!timeline.playing);
     // Past the last step means the end, here as after the next drag of the cross hair.
-    assert!(model.values().get("t") >= timeline.last);
+    assert!(model.values().number("t") >= timeline.last);
     model.press("reset").unwrap();
     model.press("step").unwrap();
-    assert_eq!(model.values().get("t"), 1.0);
+    assert_eq!(model.values().number("t"), 1.0);
 }
 
 #[test]
@@ -277,7 +277,7 @@ fn with_reduced_motion_the_balls_are_at_rest_at_once() {
     model.set_motion(Motion::Reduced);
     model.press("drop").unwrap();
     assert_eq!(model.advance(1.0), Activity::Idle);
-    assert!(model.values().get("t") >= model.timeline().unwrap().last);
+    assert!(model.values().number("t") >= model.timeline().unwrap().last);
 }
 
 #[test]
@@ -306,12 +306,12 @@ fn a_press_on_either_map_puts_the_cross_hair_there() {
     for panel in ["icp", "ndt"] {
         let handle = model.grab(panel, [-0.5, 0.25], [0.1, 0.1]).unwrap();
         model.drag(handle, [-0.5, 0.25]);
-        assert_eq!(model.values().get("probe-x"), -0.5);
-        assert_eq!(model.values().get("probe-y"), 0.25);
+        assert_eq!(model.values().number("probe-x"), -0.5);
+        assert_eq!(model.values().number("probe-y"), 0.25);
         // Dragged off the map, it stays at the border.
         model.drag(handle, [9.0, -9.0]);
-        assert_eq!(model.values().get("probe-x"), 1.3);
-        assert_eq!(model.values().get("probe-y"), -1.3);
+        assert_eq!(model.values().number("probe-x"), 1.3);
+        assert_eq!(model.values().number("probe-y"), -1.3);
     }
     assert!(model.grab("slice-x", [0.0, 0.5], [0.1, 0.1]).is_none());
 }

@@ -62,7 +62,7 @@ fn the_picture_of_the_bells_shows_bells_in_every_preset() {
 fn it_opens_on_terraces_where_icps_ball_sticks() {
     let model = CostTerraces::new();
     assert_eq!(model.outcome().verdict, "ICP sticks");
-    assert_eq!(model.values().get("colours"), 1.0, "by rank");
+    assert_eq!(model.values().number("colours"), 1.0, "by rank");
     let (opening, bowl) = (hollows(&model), hollows(&preset("bowl")));
     assert!(
         opening > 20 && bowl < 5,
@@ -230,7 +230,7 @@ fn flying(model: &dyn Model) -> Vec<[f64; 2]> {
 fn drop_100_works_in_pieces_and_its_points_fly_to_rest() {
     let mut model = with(&[("scene", 1.0)]);
     model.press("drop-100").unwrap();
-    assert_eq!(model.values().get("drops"), 100.0);
+    assert_eq!(model.values().number("drops"), 100.0);
     for number in 1..=100 {
         assert_eq!(model.work(), Activity::Busy);
         assert_eq!(fact(&model, "rests"), f64::from(number));

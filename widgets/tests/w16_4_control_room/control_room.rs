@@ -111,14 +111,14 @@ fn scrubbing_back_shows_what_playing_showed() {
     let mut played = ControlRoom::new();
     played.set("t", 0.0).unwrap();
     played.press("play").unwrap();
-    while played.values().get("t") < 96.0 {
+    while played.values().number("t") < 96.0 {
         assert_eq!(played.advance(0.125), Activity::Busy);
     }
     played.press("play").unwrap();
     assert_eq!(played.advance(0.125), Activity::Idle);
     let mut scrubbed = ControlRoom::new();
     scrubbed.set("t", 129.0).unwrap();
-    scrubbed.set("t", played.values().get("t")).unwrap();
+    scrubbed.set("t", played.values().number("t")).unwrap();
     assert_eq!(played.outcome(), scrubbed.outcome());
     assert_eq!(played.summary(), scrubbed.summary());
 }
@@ -134,7 +134,7 @@ fn the_line_at_the_moment_shown_can_be_dragged_in_every_plot_over_time() {
     let line = room.grab("tau", [61.0, 0.1], [3.0, 0.1]).unwrap();
     for (to, tick) in [(71.0, 70.0), (-40.0, 0.0), (500.0, 129.0)] {
         room.drag(line, [to, 0.0]);
-        assert_eq!(room.values().get("t"), tick);
+        assert_eq!(room.values().number("t"), tick);
     }
 }
 
@@ -158,7 +158,7 @@ fn changing_the_run_keeps_the_moment() {
     set(&mut room, "t", 87.0);
     let before = room.outcome();
     set(&mut room, "noise", 4.0);
-    assert_eq!(room.values().get("t"), 87.0);
+    assert_eq!(room.values().number("t"), 87.0);
     assert_ne!(room.outcome(), before);
     press(&mut room, "defaults");
     set(&mut room, "t", 87.0);
@@ -195,13 +195,13 @@ fn the_next_event_is_one_of_the_run_that_is_asked_for() {
     set(&mut room, "t", 60.0);
     room.set("seed", 6.0).unwrap();
     room.press("next-event").unwrap();
-    assert_eq!(room.values().get("t"), 60.0);
+    assert_eq!(room.values().number("t"), 60.0);
     room.settle();
     let mut at_once = ControlRoom::new();
     set(&mut at_once, "t", 60.0);
     set(&mut at_once, "seed", 6.0);
     press(&mut at_once, "next-event");
-    assert_eq!(room.values().get("t"), at_once.values().get("t"));
+    assert_eq!(room.values().number("t"), at_once.values().number("t"));
 }
 
 #[test]
@@ -210,7 +210,7 @@ fn the_transport_steps_resets_and_restores() {
     set(&mut room, "noise", 2.0);
     for (button, tick) in [("step", 61.0), ("reset", 0.0), ("defaults", 60.0)] {
         press(&mut room, button);
-        assert_eq!(room.values().get("t"), tick, "{button}");
+        assert_eq!(room.values().number("t"), tick, "{button}");
     }
     // At the default tick the map cannot disagree with itself yet: NaN, which equals nothing.
     let mut fresh = ControlRoom::new();
@@ -284,7 +284,7 @@ fn a_press_on_a_mark_of_a_lane_shows_its_data() {
         .grab("lanes", [93.0, 3.1], [2.0, 0.4])
         .expect("the gate at tick 92");
     room.drag(handle, [93.0, 3.1]);
-    assert_eq!(room.values().get("t"), 92.0);
+    assert_eq!(room.values().number("t"), 92.0);
     let sentence = room.outcome().sentence;
     assert!(sentence.starts_with("loop 29 to 7 accepted"), "{sentence}");
 }
@@ -343,8 +343,8 @@ fn every_mark_of_every_lane_says_its_data_when_it_is_pressed_or_chosen() {
         let spot = [92.3, 8.0 - lane as f64];
         let handle = pressed.grab("lanes", spot, [2.0, 0.4]).expect(name);
         pressed.drag(handle, spot);
-        assert_eq!(pressed.values().get("t"), 92.0, "{name}");
-        assert_eq!(pressed.values().get("lane"), lane as f64, "{name}");
+        assert_eq!(pressed.values().number("t"), 92.0, "{name}");
+        assert_eq!(pressed.values().number("lane"), lane as f64, "{name}");
         let sentence = pressed.outcome().sentence;
         assert!(sentence.contains(said), "{name}: {sentence}");
         // By key: the lane and the tick are controls.
@@ -390,7 +390,7 @@ fn the_next_event_chooses_its_lane() {
     let mut room = ControlRoom::new();
     set(&mut room, "t", 91.0);
     press(&mut room, "next-event");
-    assert_eq!(room.values().get("t"), 92.0);
+    assert_eq!(room.values().number("t"), 92.0);
     let sentence = room.outcome().sentence;
     assert!(sentence.contains("Keyframe: node 29"), "{sentence}");
 }

@@ -29,7 +29,7 @@ fn every_preset_is_tested_here() {
 #[test]
 fn watching_goes_from_the_first_sweep_to_the_end_over_three_loops() {
     let mut room = after("watch");
-    assert_eq!(room.values().get("t"), 0.0);
+    assert_eq!(room.values().number("t"), 0.0);
     assert_eq!(fact(&room, "keyframes"), 1.0);
     while room.advance(0.25) == Activity::Busy {}
     assert_eq!(room.outcome().verdict, "run finished");
@@ -43,7 +43,7 @@ fn the_first_loop_brings_the_passes_together_and_sharpens_the_walls() {
     let at = after("rebuilt");
     assert_eq!(fact(&before, "loops"), 0.0);
     assert_eq!(at.outcome().verdict, "loop accepted");
-    assert_eq!(at.values().get("t"), before.values().get("t") + 1.0);
+    assert_eq!(at.values().number("t"), before.values().number("t") + 1.0);
     let apart =
         |room: &ControlRoom| format!("disagree by {:.2} m", fact(room, "map_disagreement_m"));
     assert_promised("blurred", &apart(&before));
@@ -81,14 +81,14 @@ fn a_loop_that_passes_every_test_may_be_wrong_and_is_called_so() {
     assert_promised("wrong-loop", "0.36 m off");
     let first = &room.timeline().unwrap().marks[0];
     assert_eq!(first.standing, Standing::Bad);
-    assert_eq!(first.at, room.values().get("t"), "it is the first loop");
+    assert_eq!(first.at, room.values().number("t"), "it is the first loop");
 }
 
 #[test]
 fn without_loops_the_passes_stay_apart_and_the_walls_blurred() {
     let open = after("open");
     let mut closed = ControlRoom::new();
-    closed.set("t", open.values().get("t")).unwrap();
+    closed.set("t", open.values().number("t")).unwrap();
     assert!(open.timeline().unwrap().marks.is_empty());
     let apart = |room: &ControlRoom| fact(room, "map_disagreement_m");
     let sure = |room: &ControlRoom| fact(room, "sure_cells");
@@ -130,6 +130,6 @@ fn the_back_end_works_only_at_keyframes() {
     expected.push(ticks[0]);
     for tick in expected {
         room.press("next-event").unwrap();
-        assert_eq!(room.values().get("t"), tick);
+        assert_eq!(room.values().number("t"), tick);
     }
 }

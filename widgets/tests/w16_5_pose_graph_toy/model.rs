@@ -64,15 +64,15 @@ fn a_dragged_pose_is_the_new_start_and_the_others_stay_where_they_are_shown() {
     toy.press("step").unwrap();
     let handle = toy.grab(panel::GRAPH, [2.4, 0.0], [0.1, 0.1]).unwrap();
     toy.drag(handle, [2.4, 1.0]);
-    assert_eq!(toy.values().get("steps"), 0.0);
+    assert_eq!(toy.values().number("steps"), 0.0);
     // Shown at 1.2 and 2.4, odometry has them at 1 and 2.
     for (id, value) in [("x2", 0.2), ("x3", 0.4), ("y3", 1.0), ("y2", 0.0)] {
-        assert!((toy.values().get(id) - value).abs() < 1e-9, "{id}");
+        assert!((toy.values().number(id) - value).abs() < 1e-9, "{id}");
     }
     assert!(fact(&toy, "chi2") > 1.0);
     let tip = toy.grab(panel::GRAPH, [2.7, 1.0], [0.05, 0.05]).unwrap();
     toy.drag(tip, [2.4, 2.0]);
-    assert!((toy.values().get("turn3") - 90.0).abs() < 0.1);
+    assert!((toy.values().number("turn3") - 90.0).abs() < 0.1);
 }
 
 #[test]
@@ -84,8 +84,8 @@ fn a_drag_to_nowhere_moves_nothing_and_one_far_off_stays_in_reach() {
     toy.drag(handle, [f64::INFINITY, 0.0]);
     assert_eq!(&before, toy.values());
     toy.drag(handle, [1e300, -1e300]);
-    assert_eq!(toy.values().get("x2"), 3.0);
-    assert_eq!(toy.values().get("y2"), -3.0);
+    assert_eq!(toy.values().number("x2"), 3.0);
+    assert_eq!(toy.values().number("y2"), -3.0);
 }
 
 #[test]

@@ -77,7 +77,7 @@ fn playing_goes_through_the_search_and_the_steps_of_icp() {
     window.press("play").unwrap();
     let (mut places, mut frames) = (Vec::new(), 0);
     while window.advance(1.0 / 30.0) == Activity::Busy {
-        places.push(window.values().get("progress"));
+        places.push(window.values().number("progress"));
         frames += 1;
     }
     let last = window.timeline().unwrap().last;
@@ -98,14 +98,14 @@ fn a_dragged_start_is_searched_anew_and_lies_where_it_was_put() {
         .grab(panel::PLACES, [0.5, -0.35], [0.05, 0.05])
         .unwrap();
     window.drag(handle, [1.0, -0.15]);
-    assert_eq!(window.values().get("progress"), 0.0);
-    assert!((window.values().get("dx") - 0.5).abs() < 1e-9);
-    assert!((window.values().get("dy") - 0.2).abs() < 1e-9);
+    assert_eq!(window.values().number("progress"), 0.0);
+    assert!((window.values().number("dx") - 0.5).abs() < 1e-9);
+    assert!((window.values().number("dy") - 0.2).abs() < 1e-9);
     assert_eq!(window.outcome().verdict, "searching");
     window.drag(handle, [f64::NAN, 0.0]);
-    assert!((window.values().get("dx") - 0.5).abs() < 1e-9);
+    assert!((window.values().number("dx") - 0.5).abs() < 1e-9);
     window.drag(handle, [1e300, -1e300]);
-    assert_eq!(window.values().get("dx"), 1.5);
+    assert_eq!(window.values().number("dx"), 1.5);
     assert!(window.grab("nothing", [0.5, -0.35], [0.1, 0.1]).is_none());
 }
 

@@ -82,8 +82,8 @@ fn a_pair_is_chosen_in_the_matrix_by_either_of_its_two_places() {
     for at in [[40.0, 5.2], [4.8, 40.3]] {
         let handle = been.grab(panel::MATRIX, at, [0.1, 0.1]).unwrap();
         been.drag(handle, at);
-        assert_eq!(been.values().get("new"), 40.0);
-        assert_eq!(been.values().get("old"), 5.0);
+        assert_eq!(been.values().number("new"), 40.0);
+        assert_eq!(been.values().number("old"), 5.0);
         assert!(been.outcome().sentence.contains("Keyframes 5 and 40"));
     }
     let handle = been.grab(panel::MATRIX, [9.0, 3.0], [0.1, 0.1]).unwrap();
@@ -91,11 +91,11 @@ fn a_pair_is_chosen_in_the_matrix_by_either_of_its_two_places() {
         been.drag(handle, nowhere);
     }
     been.drag(handle, [-1e300, -1e300]);
-    assert_eq!(been.values().get("new"), 40.0, "there is no pair there");
+    assert_eq!(been.values().number("new"), 40.0, "there is no pair there");
     been.drag(handle, [1e300, 1e300]);
     let last = been.timeline().unwrap().last;
-    assert_eq!(been.values().get("new"), last);
-    assert!(been.values().get("old") < last);
+    assert_eq!(been.values().number("new"), last);
+    assert!(been.values().number("old") < last);
     assert!(been.grab(panel::SCANS, [0.0, 0.0], [1.0, 1.0]).is_none());
 }
 
@@ -111,14 +111,14 @@ fn playing_drives_the_lap_from_its_start_to_its_end() {
     been.settle();
     let mut newest = 0.0;
     while been.advance(0.1) == Activity::Busy {
-        assert!(been.values().get("new") >= newest);
-        newest = been.values().get("new");
+        assert!(been.values().number("new") >= newest);
+        newest = been.values().number("new");
     }
     assert_eq!(newest, been.timeline().unwrap().last);
     been.set_motion(Motion::Reduced);
     been.press("reset").unwrap();
     been.press("play").unwrap();
-    assert_eq!(been.values().get("new"), newest);
+    assert_eq!(been.values().number("new"), newest);
 }
 
 #[test]

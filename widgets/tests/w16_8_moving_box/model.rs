@@ -72,11 +72,11 @@ fn the_share_is_dragged_along_the_curves() {
     let mut moving = MovingBox::new();
     let handle = moving.grab(panel::BIAS, [20.5, 1.0], [1.0, 1.0]).unwrap();
     moving.drag(handle, [40.6, 3.0]);
-    assert_eq!(moving.values().get("share"), 40.0);
+    assert_eq!(moving.values().number("share"), 40.0);
     moving.drag(handle, [f64::NAN, 0.0]);
-    assert_eq!(moving.values().get("share"), 40.0);
+    assert_eq!(moving.values().number("share"), 40.0);
     moving.drag(handle, [1e300, 0.0]);
-    assert_eq!(moving.values().get("share"), 60.0);
+    assert_eq!(moving.values().number("share"), 60.0);
     assert!(moving.grab(panel::BIAS, [20.0, 1.0], [1.0, 1.0]).is_none());
     assert!(moving.grab("plain", [60.0, 1.0], [1.0, 1.0]).is_none());
 }

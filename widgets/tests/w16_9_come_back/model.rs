@@ -90,15 +90,18 @@ fn the_robot_is_put_and_turned_on_the_map_and_the_map_stays() {
     let mut back = ComeBack::new();
     back.settle();
     let keyframes = fact(&back, "keyframes");
-    let (x, y) = (back.values().get("x"), back.values().get("y"));
+    let (x, y) = (back.values().number("x"), back.values().number("y"));
     let place = back.grab(panel::MAP, [x, y], [0.1, 0.1]).unwrap();
     back.drag(place, [9.33, 6.08]);
-    assert_eq!((back.values().get("x"), back.values().get("y")), (9.3, 6.1));
-    let heading = back.values().get("heading").to_radians();
+    assert_eq!(
+        (back.values().number("x"), back.values().number("y")),
+        (9.3, 6.1)
+    );
+    let heading = back.values().number("heading").to_radians();
     let tip = [9.3 + heading.cos(), 6.1 + heading.sin()];
     let turn = back.grab(panel::MAP, tip, [0.1, 0.1]).unwrap();
     back.drag(turn, [9.3, 9.0]);
-    assert_eq!(back.values().get("heading"), 90.0);
+    assert_eq!(back.values().number("heading"), 90.0);
     let mut pieces = 0;
     while back.work().goes_on() {
         pieces += 1;
@@ -109,9 +112,12 @@ fn the_robot_is_put_and_turned_on_the_map_and_the_map_stays() {
     for nowhere in [[f64::NAN, 3.0], [f64::INFINITY, 0.0]] {
         back.drag(place, nowhere);
     }
-    assert_eq!(back.values().get("x"), 9.3);
+    assert_eq!(back.values().number("x"), 9.3);
     back.drag(place, [-1e300, 1e300]);
-    assert_eq!((back.values().get("x"), back.values().get("y")), (0.0, 9.0));
+    assert_eq!(
+        (back.values().number("x"), back.values().number("y")),
+        (0.0, 9.0)
+    );
     assert!(back.grab(panel::SCORES, [0.0, 0.0], [9.0, 9.0]).is_none());
 }
 
@@ -124,8 +130,8 @@ fn playing_goes_through_the_boxes_and_the_scans_to_the_end() {
     let mut at = 0.0;
     let mut waited = 0;
     while back.advance(0.1) == Activity::Busy {
-        assert!(back.values().get("moment") >= at);
-        at = back.values().get("moment");
+        assert!(back.values().number("moment") >= at);
+        at = back.values().number("moment");
         waited += usize::from(back.scene().panels[0].title.contains("boxes wait"));
     }
     assert!(waited > 0);
@@ -133,5 +139,5 @@ fn playing_goes_through_the_boxes_and_the_scans_to_the_end() {
     back.set_motion(Motion::Reduced);
     back.press("reset").unwrap();
     back.press("play").unwrap();
-    assert_eq!(back.values().get("moment"), at);
+    assert_eq!(back.values().number("moment"), at);
 }

@@ -33,7 +33,7 @@ impl OwnRobot {
                 }
             }
             "add" => {
-                let marked = self.values.get("marked");
+                let marked = self.values.number("marked");
                 self.ask(format!("add {marked} {keyframe}"));
                 // What is added comes first.
                 self.values.store("loop", 0.0);
@@ -43,7 +43,7 @@ impl OwnRobot {
             "north" => nudge(self, [0.0, 1.0]),
             "south" => nudge(self, [0.0, -1.0]),
             "save" => {
-                let file = FILES[self.values.get("file") as usize].label;
+                let file = FILES[self.values.number("file") as usize].label;
                 self.ask(format!("save {file}"));
             }
             _ if id == PLAY.id => self.press_play(),
@@ -77,7 +77,7 @@ impl OwnRobot {
 
     /// Asks for the next topic or frame that the recording offers for the option that is chosen.
     fn take_other(&mut self) {
-        let option = OPTIONS[self.values.get("option") as usize].id;
+        let option = OPTIONS[self.values.number("option") as usize].id;
         let offer = self
             .robot
             .offers

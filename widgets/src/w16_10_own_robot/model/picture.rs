@@ -94,7 +94,7 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
     if own.robot.links.iter().any(|link| shows(&own.values, link)) {
         legend.push(LegendEntry::line("loop", Tone::Revisit, Stroke::Solid));
     }
-    if own.values.get("links") == 2.0 && own.robot.links.iter().any(|link| !link.is_in_graph()) {
+    if own.values.number("links") == 2.0 && own.robot.links.iter().any(|link| !link.is_in_graph()) {
         legend.push(LegendEntry::line("refused", Tone::Truth, Stroke::Dotted));
     }
     if own.link().is_some() {
@@ -297,7 +297,7 @@ fn here(own: &OwnRobot) -> Vec<Layer> {
             2.5,
         ));
     }
-    let marked = own.values.get("marked") as usize;
+    let marked = own.values.number("marked") as usize;
     if marked > 0
         && let Some(at) = at(robot, marked)
     {

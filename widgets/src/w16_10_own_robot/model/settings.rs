@@ -20,7 +20,7 @@ pub enum Colour {
 impl Colour {
     /// The one that is chosen.
     pub fn of(values: &Values) -> Self {
-        match values.get("colour") as usize {
+        match values.number("colour") as usize {
             0 => Self::Time,
             1 => Self::Fit,
             2 => Self::Sigma,
@@ -55,7 +55,7 @@ impl Colour {
 
 /// Whether a loop is shown on the map.
 pub fn shows(values: &Values, link: &Link) -> bool {
-    match values.get("links") as usize {
+    match values.number("links") as usize {
         0 => false,
         1 => link.is_in_graph(),
         _ => true,

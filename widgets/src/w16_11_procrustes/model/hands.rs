@@ -5,7 +5,7 @@ use kit::model::Handle;
 
 use super::settings::seen;
 use super::{ProcrustesTrace, panel};
-use crate::w16_11_procrustes::spec::{MOST_PAIRS, MOVED, REACH_M, WHOLE_TURN_DEG};
+use crate::w16_11_procrustes::spec::{MOST_PAIRS, MOVED, REACH_M, TURN, WHOLE_TURN_DEG};
 
 /// Names of what is held: each point of the target.
 const TARGETS: [&str; MOST_PAIRS] = ["target1", "target2", "target3", "target4", "target5"];
@@ -13,7 +13,7 @@ const TARGETS: [&str; MOST_PAIRS] = ["target1", "target2", "target3", "target4",
 /// The nearest point of the target within reach, or the line at the angle.
 pub fn grab(trace: &ProcrustesTrace, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
     if panel == panel::TRACE {
-        return grab_now(panel::TRACE, trace.values.get("turn"), at, reach);
+        return grab_now(panel::TRACE, trace.values.get(&TURN), at, reach);
     }
     if panel != panel::POINTS {
         return None;
@@ -42,7 +42,7 @@ pub fn drag(trace: &mut ProcrustesTrace, handle: Handle, at: [f64; 2]) {
     if handle.panel == panel::TRACE {
         trace
             .values
-            .store("turn", dragged_to(handle, at).min(WHOLE_TURN_DEG));
+            .put(&TURN, dragged_to(handle, at).min(WHOLE_TURN_DEG));
         return;
     }
     let Some(k) = TARGETS.iter().position(|id| *id == handle.id) else {
@@ -54,7 +54,7 @@ pub fn drag(trace: &mut ProcrustesTrace, handle: Handle, at: [f64; 2]) {
         let moved = at[axis] - handle.offset[axis] - home;
         ((100.0 * moved).round() / 100.0).clamp(-REACH_M, REACH_M)
     };
-    trace.values.store(MOVED[k][0], away(0, home.x));
-    trace.values.store(MOVED[k][1], away(1, home.y));
+    trace.values.put(&MOVED[k][0], away(0, home.x));
+    trace.values.put(&MOVED[k][1], away(1, home.y));
     trace.follow();
 }

@@ -7,7 +7,7 @@ use pr_sim::World;
 
 use super::words::whole_degrees;
 use super::{ProcrustesTrace, panel};
-use crate::w16_11_procrustes::spec::WHOLE_TURN_DEG;
+use crate::w16_11_procrustes::spec::{TURN, WHOLE_TURN_DEG};
 
 /// The points are shown to at least so far from the middle of the target, m.
 const LEAST_REACH_M: f64 = 2.4;
@@ -92,7 +92,7 @@ fn points(trace: &ProcrustesTrace) -> Panel {
         id: panel::POINTS,
         title: format!(
             "At {:.0}°: trace {:.2} m²",
-            trace.values.get("turn"),
+            trace.values.get(&TURN),
             problem.trace_m2(kind, trace.theta_rad())
         ),
         weight: Weight::Main,
@@ -127,7 +127,7 @@ fn curves(trace: &ProcrustesTrace) -> Panel {
         tone,
         width_px: 1.5,
     };
-    let turn = trace.values.get("turn");
+    let turn = trace.values.get(&TURN);
     let mut layers = vec![
         Layer::Line {
             points: vec![[turn, -top], [turn, top]],

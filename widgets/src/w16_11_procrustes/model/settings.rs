@@ -3,27 +3,22 @@
 use ch16_lab::procrustes::{Handedness, Pairs, Shape};
 use kit::values::Values;
 
-use crate::w16_11_procrustes::spec::MOVED;
+use crate::w16_11_procrustes::spec::{MOVED, SEED, SHAPE, TRIED};
 
 /// What is seen twice.
 pub fn shape(values: &Values) -> Shape {
-    match values.get("shape") as usize {
-        0 => Shape::Corners,
-        1 => Shape::Two,
-        2 => Shape::Wall,
-        _ => Shape::UpsideDown,
-    }
+    values.get(&SHAPE)
 }
 
 /// The pairs as they were seen.
 pub fn seen(values: &Values) -> Pairs {
-    Pairs::seen(shape(values), values.get("seed") as u32)
+    Pairs::seen(shape(values), values.get(&SEED))
 }
 
 /// The pairs with the points of the target where the reader has put them.
 pub fn pairs(values: &Values) -> Pairs {
     let mut pairs = seen(values);
-    for (point, [x, y]) in pairs.target.iter_mut().zip(MOVED) {
+    for (point, [x, y]) in pairs.target.iter_mut().zip(&MOVED) {
         point.x += values.get(x);
         point.y += values.get(y);
     }
@@ -32,9 +27,5 @@ pub fn pairs(values: &Values) -> Pairs {
 
 /// The kind of matrices that are tried.
 pub fn tried(values: &Values) -> Handedness {
-    if values.get("tried") == 0.0 {
-        Handedness::Turn
-    } else {
-        Handedness::Mirror
-    }
+    values.get(&TRIED)
 }

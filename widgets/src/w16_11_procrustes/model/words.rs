@@ -4,7 +4,7 @@ use ch16_lab::procrustes::{Handedness, Procrustes, Winner};
 use kit::model::{Fact, Outcome, Standing};
 
 use super::ProcrustesTrace;
-use crate::w16_11_procrustes::spec::WHOLE_TURN_DEG;
+use crate::w16_11_procrustes::spec::{TURN, WHOLE_TURN_DEG};
 
 /// What matrices of a kind are called.
 pub fn plural(kind: Handedness) -> &'static str {
@@ -115,7 +115,7 @@ pub fn summary(trace: &ProcrustesTrace) -> String {
         trace.pairs.len(),
         targets.join("; "),
         plural(trace.tried()),
-        trace.values.get("turn"),
+        trace.values.get(&TURN),
         trace.problem.trace_m2(trace.tried(), theta_rad),
         outcome(trace).sentence,
     )

@@ -6,6 +6,8 @@ use pr_geom::{SE2, math};
 
 use super::{NAMES, WrongJacobians, panel};
 
+use crate::w16_12_jacobians::spec::{CURVE, Curve};
+
 /// Tones and marks of the solvers.
 const TONES: [Tone; 4] = [
     Tone::Posterior,
@@ -103,7 +105,7 @@ fn capital(name: &str) -> String {
 
 /// Powers of ten over the steps: a factor a step is a straight line.
 fn curve(widget: &WrongJacobians) -> Panel {
-    let is_distance = widget.values.get("curve") == 0.0;
+    let is_distance = widget.values.get(&CURVE) == Curve::Distance;
     let best_chi2 = widget.solved.least_chi2;
     let of = |moment: &Moment| {
         let value = if is_distance {

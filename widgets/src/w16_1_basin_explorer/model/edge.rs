@@ -9,7 +9,7 @@ use kit::values::Values;
 
 use super::BasinExplorer;
 use super::settings::{config, variant_name};
-use crate::w16_1_basin_explorer::spec::{EDGES, OFFSET_SPAN_M};
+use crate::w16_1_basin_explorer::spec::{EDGE, EDGES, OFFSET_SPAN_M, Phase};
 
 /// A mark this near to the edge is right, °.
 const RIGHT_DEG: f64 = 5.0;
@@ -19,31 +19,9 @@ const VARIANTS: [IcpVariant; 2] = [IcpVariant::PointToPoint, IcpVariant::PointTo
 /// What is shown first while the edge is asked for.
 pub const OPENING: Opening = Opening {
     panels: &["basin-point-to-point", "basin-point-to-plane"],
-    params: &EDGES,
+    params: &["edge-p2p", "edge-p2l"],
     buttons: &["sweep", "defaults"],
 };
-
-/// How far the question is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Phase {
-    /// Nobody asks.
-    Off,
-    /// The reader marks both edges; the maps are covered.
-    Marking,
-    /// The edges are swept, and all is shown.
-    Swept,
-}
-
-impl Phase {
-    /// The one that the values choose.
-    pub fn of(values: &Values) -> Self {
-        match values.get("edge") as usize {
-            0 => Self::Off,
-            1 => Self::Marking,
-            _ => Self::Swept,
-        }
-    }
-}
 
 /// The searches for both edges, in the order of the maps.
 pub struct Edges {
@@ -88,7 +66,7 @@ fn reached(search: &EdgeSearch) -> f64 {
 
 /// The edges that the reader has marked, °; 0 where there is no mark.
 fn marks(values: &Values) -> [f64; 2] {
-    EDGES.map(|id| values.get(id))
+    EDGES.each_ref().map(|edge| values.get(edge))
 }
 
 /// A line at a heading error, to both sides.
@@ -104,7 +82,7 @@ fn lines(heading_deg: f64, stroke: Stroke, tone: Tone) -> Layer {
 
 /// What the question draws over the map of a variant.
 pub fn layers(explorer: &BasinExplorer, of: IcpVariant) -> Vec<Layer> {
-    let phase = Phase::of(&explorer.values);
+    let phase = explorer.values.get(&EDGE);
     if phase == Phase::Off {
         return Vec::new();
     }
@@ -143,7 +121,7 @@ pub fn layers(explorer: &BasinExplorer, of: IcpVariant) -> Vec<Layer> {
 
 /// What the lines are.
 pub fn legend(values: &Values) -> Vec<LegendEntry> {
-    match Phase::of(values) {
+    match values.get(&EDGE) {
         Phase::Off => Vec::new(),
         Phase::Marking => vec![
             LegendEntry::line("your edge", Tone::Ink, Stroke::Solid),
@@ -159,7 +137,7 @@ pub fn legend(values: &Values) -> Vec<LegendEntry> {
 /// The question and its answer in words; none while nobody asks.
 pub fn outcome(explorer: &BasinExplorer) -> Option<Outcome> {
     let values = &explorer.values;
-    match Phase::of(values) {
+    match values.get(&EDGE) {
         Phase::Off => None,
         Phase::Marking => Some(question(values)),
         Phase::Swept => Some(answer(explorer)),

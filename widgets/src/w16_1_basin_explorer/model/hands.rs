@@ -1,12 +1,12 @@
 //! What the reader takes hold of: the source by its points, its turning handle, a basin map.
 
+use ch16_slam2d::icp::IcpVariant;
 use kit::model::Handle;
 use pr_geom::{Point2, SE2, math};
 
 use super::basins::start_at;
-use super::edge::Phase;
 use super::{BasinExplorer, panel};
-use crate::w16_1_basin_explorer::spec::EDGES;
+use crate::w16_1_basin_explorer::spec::{EDGE, EDGES, Phase, VARIANT};
 
 /// Distance of the turning handle from the sensor, m.
 const TURN_ARM_M: f64 = 1.0;
@@ -40,7 +40,7 @@ pub fn grab(
     let panel = maps.into_iter().find(|id| *id == panel)?;
     Some(Handle {
         panel,
-        id: if Phase::of(&explorer.values) == Phase::Marking {
+        id: if explorer.values.get(&EDGE) == Phase::Marking {
             thing::EDGE
         } else {
             thing::START
@@ -74,8 +74,8 @@ fn grab_source(explorer: &BasinExplorer, at: [f64; 2], reach: [f64; 2]) -> Optio
 pub fn drag(explorer: &mut BasinExplorer, handle: Handle, at: [f64; 2]) {
     if handle.id == thing::EDGE {
         if at[0].is_finite() {
-            let id = EDGES[usize::from(handle.panel == panel::PLANE)];
-            explorer.store(id, at[0].abs().round().min(180.0));
+            let edge = &EDGES[usize::from(handle.panel == panel::PLANE)];
+            explorer.values.put(edge, at[0].abs().round().min(180.0));
         }
         return;
     }
@@ -83,8 +83,11 @@ pub fn drag(explorer: &mut BasinExplorer, handle: Handle, at: [f64; 2]) {
     let spot = [at[0] - handle.offset[0], at[1] - handle.offset[1]];
     let start = match handle.id {
         thing::START => {
-            let variant = f64::from(u8::from(handle.panel == panel::PLANE));
-            explorer.store("variant", variant);
+            let variant = match handle.panel {
+                panel::PLANE => IcpVariant::PointToPlane,
+                _ => IcpVariant::PointToPoint,
+            };
+            explorer.values.put(&VARIANT, variant);
             start_at(&explorer.values, at)
         }
         thing::TURN => {

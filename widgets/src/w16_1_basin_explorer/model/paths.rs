@@ -1,13 +1,13 @@
 //! The ways of other starts over a basin map: heading and offset, iteration by iteration.
 
-use ch16_lab::basin::{BasinScene, BasinStart};
+use ch16_lab::basin::{BasinScene, BasinStart, OffsetAxis};
 use ch16_slam2d::icp::{IcpConfig, IcpWorkspace};
 use kit::model::Activity;
 use kit::values::Values;
 
 use super::basins::{start_at, start_spot};
 use super::settings::{config, variant};
-use crate::w16_1_basin_explorer::spec::OFFSET_SPAN_M;
+use crate::w16_1_basin_explorer::spec::{AXIS, DX, DY, OFFSET_SPAN_M, PATHS};
 
 /// Headings of the starts, degrees apart.
 const HEADING_STEP_DEG: f64 = 20.0;
@@ -34,7 +34,7 @@ pub struct Paths {
 #[derive(Clone, Copy, PartialEq)]
 struct Key {
     config: IcpConfig,
-    axis: f64,
+    axis: OffsetAxis,
     other_offset_m: f64,
 }
 
@@ -75,7 +75,7 @@ impl Paths {
             return Activity::Idle;
         };
         scene.register_from(&start, &key.config, workspace);
-        let along_y = key.axis != 0.0;
+        let along_y = key.axis == OffsetAxis::Dy;
         let poses = workspace.trace().iter().map(|state| state.pose);
         let spots = poses.map(|pose| start_spot(&scene.start_of(&pose), along_y));
         self.done.push(Path {
@@ -92,14 +92,13 @@ impl Paths {
 
 impl Key {
     fn of(values: &Values) -> Option<Self> {
-        let other = if values.get("axis") == 0.0 {
-            "dy"
-        } else {
-            "dx"
+        let other = match values.get(&AXIS) {
+            OffsetAxis::Dx => &DY,
+            OffsetAxis::Dy => &DX,
         };
-        (values.get("paths") != 0.0).then(|| Self {
+        values.get(&PATHS).then(|| Self {
             config: config(values, variant(values)),
-            axis: values.get("axis"),
+            axis: values.get(&AXIS),
             other_offset_m: values.get(other),
         })
     }

@@ -8,13 +8,13 @@ use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, T
 use pr_geom::{Point2, SE2};
 
 use super::basins::{class, spot_of, start_spot};
-use super::edge::{self, Phase};
+use super::edge;
 use super::hands::turn_handle;
 use super::paths::broken;
 use super::settings::{axis, start, variant, variant_name};
 use super::words::error_m;
 use super::{BasinExplorer, panel};
-use crate::w16_1_basin_explorer::spec::OFFSET_SPAN_M;
+use crate::w16_1_basin_explorer::spec::{EDGE, OFFSET_SPAN_M, Phase};
 
 /// Of so many points one leaves a trail.
 const POINTS_PER_TRAIL: usize = 11;
@@ -259,7 +259,7 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
         String::new()
     };
     let mut layers = Vec::new();
-    let covered = Phase::of(&explorer.values) == Phase::Marking;
+    let covered = explorer.values.get(&EDGE) == Phase::Marking;
     if !covered {
         layers.push(Layer::Raster(explorer.basins.raster(of)));
         layers.extend(letters(explorer, of));

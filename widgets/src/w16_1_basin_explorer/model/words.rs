@@ -7,8 +7,11 @@ use kit::model::{Fact, Outcome, Standing};
 use pr_geom::{SE2, math};
 
 use super::BasinExplorer;
-use super::edge::{self, Phase};
+use super::edge;
 use super::settings::{variant, variant_name};
+use crate::w16_1_basin_explorer::spec::{EDGE, Phase};
+
+use crate::w16_1_basin_explorer::spec::HEADING;
 
 /// How the minimum is judged that a run reached: the same that colours its cell of a basin map.
 pub fn standing(minimum: Minimum) -> Standing {
@@ -29,7 +32,7 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
         sentence: format!(
             "From {:.0}° off, {} ends {:.2} m and {:.1}° from the truth: rmse {:.3} m over {} \
              pairs; it {} {}.",
-            explorer.values.get("heading"),
+            explorer.values.get(&HEADING),
             variant_name(variant(&explorer.values)),
             end.error_m,
             end.error_deg.abs(),
@@ -50,7 +53,7 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
 }
 
 pub fn summary(explorer: &BasinExplorer) -> String {
-    if Phase::of(&explorer.values) == Phase::Marking {
+    if explorer.values.get(&EDGE) == Phase::Marking {
         return format!(
             "Two basin maps of headings and offsets, covered until the edge of the right basin is marked. {}",
             outcome(explorer).sentence

@@ -1,6 +1,6 @@
 //! How the flat changes: by the pointer, by buttons, by a link and by a file.
 
-use ch16_lab::lap::{BuiltInWorld, Choice as _};
+use ch16_lab::lap::BuiltInWorld;
 use kit::model::Handle;
 use kit::param::{ParamError, printable};
 use pr_sim::{Course, Sketch};
@@ -12,7 +12,7 @@ use super::panel;
 use super::pick::Step;
 use super::picture;
 use super::piece::Piece;
-use crate::w16_2_full_lap::spec::{OWN_WORLD, SPEC};
+use crate::w16_2_full_lap::spec::{EDIT, FLAT, SPEC, WORLD};
 
 /// The name of the file that a flat is saved as.
 const FILE_NAME: &str = "flat.json";
@@ -29,24 +29,21 @@ impl FullLap {
     }
 
     /// The value of `world` changed.
-    pub(super) fn world_chosen(&mut self, before: f64) {
+    pub(super) fn world_chosen(&mut self, before: Option<BuiltInWorld>) {
         let sketch = self.flat.sketch.clone();
         self.flat.remember(Kept {
             world: before,
             sketch,
         });
-        if is_own(&self.values) {
-            let sketch = self.flat.sketch.clone();
-            self.take(sketch);
-        } else {
-            self.leave_own();
+        match self.values.get(&WORLD) {
+            None => self.take(self.flat.sketch.clone()),
+            Some(world) => self.leave_own(world),
         }
     }
 
     /// A built-in world is chosen.
-    fn leave_own(&mut self) {
-        self.store([("flat", 0.0)]);
-        let world = BuiltInWorld::ALL[self.values.get("world") as usize];
+    fn leave_own(&mut self, world: BuiltInWorld) {
+        self.values.store(FLAT.id, 0.0);
         self.flat.become_of(Sketch::of(&world.course()));
         self.recompute();
     }
@@ -77,7 +74,7 @@ impl FullLap {
         if let Err(error) = self.values.set_text(SPEC.id, "flat", &text) {
             panic!("a flat of our own was refused: {error}");
         }
-        self.store([("world", OWN_WORLD)]);
+        self.values.put(&WORLD, None);
         self.flat.become_of(sketch);
         self.recompute();
     }
@@ -95,13 +92,13 @@ impl FullLap {
 
     fn kept(&self) -> Kept {
         Kept {
-            world: self.values.get("world"),
+            world: self.values.get(&WORLD),
             sketch: self.flat.sketch.clone(),
         }
     }
 
     fn choose(&mut self, piece: Option<Piece>) {
-        self.store(Piece::values(piece));
+        Piece::put(piece, &mut self.values);
     }
 
     /// The chosen piece, where the flat has it.
@@ -122,7 +119,7 @@ impl FullLap {
                 let is_off = Tool::chosen(&self.values).is_none();
                 self.playback.pause();
                 // With a wall in the hand: a drag draws at once.
-                self.store([("edit", if is_off { 2.0 } else { 0.0 })]);
+                self.values.put(&EDIT, is_off.then_some(Tool::Wall));
             }
             "piece-back" => self.step_piece(Step::Back),
             "piece-on" => self.step_piece(Step::On),
@@ -234,11 +231,12 @@ impl FullLap {
             return;
         };
         self.flat.follows = true;
-        if world == OWN_WORLD {
-            self.take(sketch);
-        } else {
-            self.store([("world", world)]);
-            self.leave_own();
+        match world {
+            None => self.take(sketch),
+            Some(built_in) => {
+                self.values.put(&WORLD, world);
+                self.leave_own(built_in);
+            }
         }
     }
 

@@ -3,6 +3,7 @@
 //! A flat is a [`Sketch`]: it need not be drivable while it is drawn. Whatever changes it goes through
 //! [`Flat::remember`], so that all of it can be taken back.
 
+use ch16_lab::lap::BuiltInWorld;
 use kit::scene::Bounds;
 use kit::values::Values;
 use pr_sim::sketch::{PlaceCm, limits, to_m};
@@ -10,7 +11,7 @@ use pr_sim::{Course, CourseError, Sketch};
 
 use super::grid::{moved, snapped};
 use super::piece::Piece;
-use crate::w16_2_full_lap::spec::OWN_WORLD;
+use crate::w16_2_full_lap::spec::{EDIT, WORLD};
 
 /// So many changes can be taken back.
 const MOST_UNDO: usize = 200;
@@ -35,12 +36,9 @@ pub enum Tool {
 }
 
 impl Tool {
-    const ALL: [Self; 4] = [Self::Move, Self::Wall, Self::Way, Self::Remove];
-
     /// The tool in the reader's hand; none where nothing is edited.
     pub fn chosen(values: &Values) -> Option<Self> {
-        let index = (values.get("edit") as usize).checked_sub(1)?;
-        Self::ALL.get(index).copied()
+        values.get(&EDIT)
     }
 }
 
@@ -48,7 +46,7 @@ impl Tool {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept {
     /// The value of `world`.
-    pub world: f64,
+    pub world: Option<BuiltInWorld>,
     /// What was drawn.
     pub sketch: Sketch,
 }
@@ -146,7 +144,7 @@ impl Flat {
 
 /// Whether the world is the reader's own.
 pub fn is_own(values: &Values) -> bool {
-    values.get("world") == OWN_WORLD
+    values.get(&WORLD).is_none()
 }
 
 /// Puts a wall behind the others; its number, or why it cannot be.

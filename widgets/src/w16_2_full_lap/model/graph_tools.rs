@@ -3,13 +3,12 @@
 use super::FullLap;
 use super::found::stepped;
 use super::pick::{Part, Step};
-use crate::w16_2_full_lap::spec::LOOP_BUTTONS;
+use crate::w16_2_full_lap::spec::{LOOP_BUTTONS, OWN, OWN_FROM, OWN_TO};
 
 impl FullLap {
     /// Looks at a part of the graph, or at nothing.
     pub(super) fn look_at(&mut self, part: Option<Part>) {
-        let [pick, number] = Part::values(part);
-        self.store([("pick", pick), ("number", number)]);
+        Part::put(part, &mut self.values);
     }
 
     /// Looks at the next part, or at the one before.
@@ -21,9 +20,10 @@ impl FullLap {
     /// A loop of the reader's own between two keyframes.
     pub(super) fn tie(&mut self, [from, to]: [usize; 2]) {
         // What was chosen of it stays; without a choice, the sweeps are asked.
-        let claim = self.values.get("own").max(1.0);
-        let ends = [("own-from", from as f64), ("own-to", to as f64)];
-        self.store([("own", claim)].into_iter().chain(ends));
+        let claim = self.values.get(&OWN).unwrap_or_default();
+        self.values.put(&OWN, Some(claim));
+        self.values.put(&OWN_FROM, from);
+        self.values.put(&OWN_TO, to);
         self.own.tied = None;
         self.refresh_own();
     }
@@ -50,7 +50,7 @@ impl FullLap {
             None => {
                 // A value changes, so that whoever hears the page hears of it.
                 self.own.keep(&self.values);
-                self.store([("own-from", node as f64)]);
+                self.values.put(&OWN_FROM, node);
                 self.refresh_own();
                 self.own.tied = Some(node);
             }
@@ -58,8 +58,7 @@ impl FullLap {
     }
 
     pub(super) fn undo(&mut self) {
-        let before = self.own.undone(&self.values);
-        self.store(before);
+        self.own.undone(&mut self.values);
         self.refresh_own();
     }
 

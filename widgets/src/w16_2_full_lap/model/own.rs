@@ -1,12 +1,14 @@
 //! A loop of the reader's own: what the settings ask for, what came of it, and the way back.
 
-use ch16_lab::lap::{Choice, Claim, GateUse, OwnKernel, OwnLoop, OwnLoopError, OwnLoopRequest};
+use ch16_lab::lap::{Claim, GateUse, OwnLoop, OwnLoopError, OwnLoopRequest};
 use kit::values::Values;
 
 use super::runs::Runs;
 
-/// The parameters that say which loop it is.
-const WHICH: [&str; 3] = ["own", "own-from", "own-to"];
+use crate::w16_2_full_lap::spec::{KERNEL, OWN, OWN_FROM, OWN_GATE, OWN_TO};
+
+/// Which loop it is: what it claims, and its ends.
+type Which = (Option<Claim>, [usize; 2]);
 
 /// All parameters of it.
 pub const PARAMS: [&str; 5] = ["own", "own-from", "own-to", "own-gate", "kernel"];
@@ -21,7 +23,7 @@ pub struct Own {
     pub made: Option<Result<OwnLoop, OwnLoopError>>,
     /// A keyframe at which a loop begins.
     pub tied: Option<usize>,
-    before: Vec<[f64; WHICH.len()]>,
+    before: Vec<Which>,
     /// The keyframe from which a loop is being dragged: one drag is one change.
     dragged: Option<usize>,
 }
@@ -49,23 +51,24 @@ impl Own {
         self.before.push(now);
     }
 
-    /// The values of the loop before the last change; without one, no loop at all.
-    pub fn undone(&mut self, values: &Values) -> Vec<(&'static str, f64)> {
+    /// Puts back the loop before the last change; without one, no loop at all.
+    pub fn undone(&mut self, values: &mut Values) {
         self.tied = None;
         let now = which(values);
         let mut before = self.before.pop();
         while before == Some(now) {
             before = self.before.pop();
         }
-        let [_, from, to] = now;
-        let before = before.unwrap_or([0.0, from, to]);
-        WHICH.into_iter().zip(before).collect()
+        let (claim, [from, to]) = before.unwrap_or((None, now.1));
+        values.put(&OWN, claim);
+        values.put(&OWN_FROM, from);
+        values.put(&OWN_TO, to);
     }
 
     /// Whether it runs between these two already.
     pub fn is_between(&self, values: &Values, ends: [usize; 2]) -> bool {
-        let [own, from, to] = which(values);
-        own != 0.0 && [from, to] == ends.map(|end| end as f64)
+        let (claim, between) = which(values);
+        claim.is_some() && between == ends
     }
 
     /// A loop is dragged out of a keyframe; says whether it is the first of this drag.
@@ -84,22 +87,23 @@ impl Own {
     }
 }
 
-fn which(values: &Values) -> [f64; WHICH.len()] {
-    WHICH.map(|id| values.get(id))
+fn which(values: &Values) -> Which {
+    let ends = [&OWN_FROM, &OWN_TO].map(|end| values.get(end));
+    (values.get(&OWN), ends)
 }
 
 /// What the settings ask for at a tick; none where they ask for no loop.
 pub fn request(values: &Values, tick: usize) -> Option<OwnLoopRequest> {
-    let claim = (values.get("own") as usize).checked_sub(1)?;
+    let (claim, nodes) = which(values);
     Some(OwnLoopRequest {
         tick,
-        nodes: ["own-from", "own-to"].map(|id| values.get(id) as usize),
-        claim: Claim::ALL[claim],
-        gate: if values.get("own-gate") == 0.0 {
-            GateUse::Bypassed
-        } else {
+        nodes,
+        claim: claim?,
+        gate: if values.get(&OWN_GATE) {
             GateUse::Asked
+        } else {
+            GateUse::Bypassed
         },
-        kernel: OwnKernel::ALL[values.get("kernel") as usize],
+        kernel: values.get(&KERNEL),
     })
 }

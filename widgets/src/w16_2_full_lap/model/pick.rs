@@ -2,6 +2,8 @@
 
 use kit::values::Values;
 
+use crate::w16_2_full_lap::spec::{NUMBER, PICK, Picked};
+
 /// Part of the graph, by the numbers of its keyframes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
@@ -27,23 +29,25 @@ pub enum Step {
 impl Part {
     /// What the settings choose; none where they choose nothing.
     pub fn chosen(values: &Values) -> Option<Self> {
-        let number = values.get("number") as usize;
-        match values.get("pick") as usize {
-            1 => Some(Self::Keyframe(number)),
-            2 => Some(Self::Edge(number)),
-            3 => Some(Self::Loop(number)),
-            _ => None,
+        let number = values.get(&NUMBER);
+        match values.get(&PICK) {
+            Picked::Nothing => None,
+            Picked::Keyframe => Some(Self::Keyframe(number)),
+            Picked::Edge => Some(Self::Edge(number)),
+            Picked::Loop => Some(Self::Loop(number)),
         }
     }
 
-    /// The values that choose it; the own loop is told where nothing else is looked at.
-    pub fn values(part: Option<Self>) -> [f64; 2] {
-        match part {
-            Some(Self::Keyframe(number)) => [1.0, number as f64],
-            Some(Self::Edge(number)) => [2.0, number as f64],
-            Some(Self::Loop(number)) => [3.0, number as f64],
-            Some(Self::Own) | None => [0.0, 0.0],
-        }
+    /// Makes the values choose it; the own loop is told where nothing else is looked at.
+    pub fn put(part: Option<Self>, values: &mut Values) {
+        let (picked, number) = match part {
+            Some(Self::Keyframe(number)) => (Picked::Keyframe, number),
+            Some(Self::Edge(number)) => (Picked::Edge, number),
+            Some(Self::Loop(number)) => (Picked::Loop, number),
+            Some(Self::Own) | None => (Picked::Nothing, 0),
+        };
+        values.put(&PICK, picked);
+        values.put(&NUMBER, number);
     }
 
     /// Its keyframe; none of the own loop, of which there is one.

@@ -10,6 +10,8 @@ use super::grid::{GRID_CM, HEADING_STEP_DEG, moved, snapped};
 use super::panel;
 use super::pick::Step;
 
+use crate::w16_2_full_lap::spec::{PIECE, PIECE_NUMBER};
+
 /// The tip of the heading stands so far from the start, m.
 const HEADING_ARM_M: f64 = 0.6;
 
@@ -43,15 +45,15 @@ const KINDS: [&str; 6] = [
 impl Piece {
     /// What the settings choose, where the flat has it.
     pub fn chosen(values: &Values, sketch: &Sketch) -> Option<Self> {
-        let kind = (values.get("piece") as usize).checked_sub(1)?;
-        let index = (values.get("piece-number") as usize).checked_sub(1);
+        let kind = values.get(&PIECE)?;
+        let index = values.get(&PIECE_NUMBER).checked_sub(1);
         Self::of(kind, index.unwrap_or(0)).filter(|piece| piece.is_in(sketch))
     }
 
-    /// The settings that choose it.
-    pub fn values(piece: Option<Self>) -> [(&'static str, f64); 2] {
-        let (kind, index) = piece.map_or((0, 0), |piece| (piece.kind() + 1, piece.index()));
-        [("piece", kind as f64), ("piece-number", index as f64 + 1.0)]
+    /// Makes the settings choose it.
+    pub fn put(piece: Option<Self>, values: &mut Values) {
+        values.put(&PIECE, piece.map(Self::kind));
+        values.put(&PIECE_NUMBER, piece.map_or(0, Self::index) + 1);
     }
 
     fn of(kind: usize, index: usize) -> Option<Self> {

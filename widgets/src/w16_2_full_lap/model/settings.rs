@@ -1,13 +1,15 @@
 //! What the values of the parameter list mean to the core.
 
-use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LoopClosure};
+use ch16_lab::lap::{BuiltInWorld, LapConfig, LapMatcher, LoopClosure};
 use ch16_slam2d::chi_squared::gate_threshold;
 use ch16_slam2d::loops::GateModel;
 use ch16_slam2d::matching::InformationFrame;
+use kit::run::LOOPS;
+use kit::run::NOISE;
 use kit::values::Values;
 use pr_sim::Course;
 
-use crate::w16_2_full_lap::spec::OWN_WORLD;
+use crate::w16_2_full_lap::spec::{GATE, GATE_MODEL, INFORMATION, MATCHER, SEED, WORLD};
 
 /// What a lap depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,25 +36,18 @@ impl LapSettings {
     /// Reads the list.
     pub fn read(values: &Values) -> Self {
         Self {
-            world: match values.get("world") {
-                OWN_WORLD => None,
-                world => Some(BuiltInWorld::ALL[world as usize]),
-            },
-            seed: values.get("seed") as u32,
-            noise_factor: values.get("noise"),
-            loop_closure: if values.get("loops") == 0.0 {
-                LoopClosure::Off
-            } else {
+            world: values.get(&WORLD),
+            seed: values.get(&SEED),
+            noise_factor: values.get(&NOISE),
+            loop_closure: if values.get(&LOOPS) {
                 LoopClosure::On
-            },
-            gate_chi2: gate_threshold(values.get("gate")),
-            gate_model: if values.get("gate-model") == 0.0 {
-                GateModel::PathApproximation
             } else {
-                GateModel::ExactMarginal
+                LoopClosure::Off
             },
-            matcher: LapMatcher::ALL[values.get("matcher") as usize],
-            information_frame: InformationFrame::ALL[values.get("information") as usize],
+            gate_chi2: gate_threshold(values.get(&GATE)),
+            gate_model: values.get(&GATE_MODEL),
+            matcher: values.get(&MATCHER),
+            information_frame: values.get(&INFORMATION),
         }
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kit::scene::{Bounds, Cell, Raster};
 use pr_geom::sort_numbers;
 
-use super::settings::Colors;
+use crate::w16_3_cost_terraces::spec::Colors;
 use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;
 
 /// A ball that rests this near to the truth has come home, m: the limit that counts as success in

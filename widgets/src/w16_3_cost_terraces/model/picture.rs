@@ -9,8 +9,8 @@ use kit::scene::{Axis, Scene};
 
 use super::landscape::Landscape;
 use super::rests::Rests;
-use super::settings::Colors;
 use super::terrains::Terrains;
+use crate::w16_3_cost_terraces::spec::Colors;
 use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;
 use plots::{Along, Measure};
 

@@ -2,27 +2,10 @@
 
 use kit::values::Values;
 
-use crate::w16_3_cost_terraces::spec::MOST_ROWS;
-
-/// Where the sweep was taken, and what it is matched with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// Room A: walls in both directions. The sweep is its own map.
-    Room,
-    /// A corridor without doors: walls along x alone. Map and sweep were measured apart.
-    Corridor,
-    /// The Apartment's corridor, doors and all. The sweep is its own map.
-    OwnCorridor,
-}
-
-/// What decides a cell's colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Colors {
-    /// Its height, evenly from dark to bright.
-    ByHeight,
-    /// The share of cells that lie lower.
-    ByRank,
-}
+use crate::w16_3_cost_terraces::spec::{
+    CELLS, COLOURS, Colors, HEADING, MOST_ROWS, NDT_CELL, ODOMETRY, PROBE_X, PROBE_Y, Place, ROWS,
+    SCENE, SEED, TAU,
+};
 
 /// The parameters as the model uses them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,27 +36,19 @@ impl Settings {
     /// Reads the list.
     pub fn read(values: &Values) -> Self {
         Self {
-            place: match values.get("scene") as u32 {
-                0 => Place::Room,
-                1 => Place::Corridor,
-                _ => Place::OwnCorridor,
-            },
-            tau_m: values.get("tau"),
-            seed: values.get("seed") as u32,
-            ndt_cell_m: values.get("ndt-cell"),
-            heading_deg: values.get("heading"),
-            cells: odd(values.get("cells")),
-            colors: if values.get("colours") == 0.0 {
-                Colors::ByHeight
-            } else {
-                Colors::ByRank
-            },
-            probe_m: [values.get("probe-x"), values.get("probe-y")],
-            rows: match values.get("rows") {
+            place: values.get(&SCENE),
+            tau_m: values.get(&TAU),
+            seed: values.get(&SEED),
+            ndt_cell_m: values.get(&NDT_CELL),
+            heading_deg: values.get(&HEADING),
+            cells: odd(values.get(&CELLS)),
+            colors: values.get(&COLOURS),
+            probe_m: [values.get(&PROBE_X), values.get(&PROBE_Y)],
+            rows: match values.get(&ROWS) {
                 MOST_ROWS => usize::MAX,
                 rows => rows as usize,
             },
-            odometry_m: Some(values.get("odometry")).filter(|&sigma_m| sigma_m > 0.0),
+            odometry_m: Some(values.get(&ODOMETRY)).filter(|&sigma_m| sigma_m > 0.0),
         }
     }
 }

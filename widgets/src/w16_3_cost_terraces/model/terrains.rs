@@ -10,7 +10,8 @@ use kit::scene::Bounds;
 use pr_geom::{SE2, Vector2, math};
 
 use super::landscape::{Ball, End, Landscape};
-use super::settings::{Place, Settings};
+use super::settings::Settings;
+use crate::w16_3_cost_terraces::spec::Place;
 use crate::w16_3_cost_terraces::spec::{HALF_SPAN_M, MAX_BALL_STEPS};
 
 /// The ellipse is drawn as if at least this were known of every direction, 1/m²: no axis is longer

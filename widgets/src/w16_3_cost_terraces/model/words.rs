@@ -5,8 +5,9 @@ use kit::ticks::signed;
 
 use super::landscape::{Ball, End};
 use super::rests::{Rests, Scatter};
-use super::settings::{Place, Settings};
+use super::settings::Settings;
 use super::terrains::Terrains;
+use crate::w16_3_cost_terraces::spec::Place;
 
 /// What became of the balls, with the numbers.
 pub fn outcome(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Outcome {

@@ -3,9 +3,9 @@
 use kit::model::Handle;
 use pr_geom::{Point2, SE2, math};
 
-use super::settings::Shape;
 use super::{PoseGraphToy, panel};
-use crate::w16_5_pose_graph_toy::spec::{MOST_POSES, MOVED, REACH_M};
+use crate::w16_5_pose_graph_toy::spec::GRAPH;
+use crate::w16_5_pose_graph_toy::spec::{MOST_POSES, MOVED, REACH_M, STEPS};
 
 /// Distance of the turning handle from its pose, m.
 const TURN_ARM_M: f64 = 0.3;
@@ -68,18 +68,18 @@ pub fn drag(toy: &mut PoseGraphToy, handle: Handle, at: [f64; 2]) {
 /// Makes poses the start, rounded so that links stay short.
 fn put(toy: &mut PoseGraphToy, poses: &[SE2]) {
     let rounded = |value: f64, per_unit: f64| (value * per_unit).round() / per_unit;
-    let driven = Shape::of(&toy.values).driven();
+    let driven = toy.values.get(&GRAPH).driven();
     toy.played.pause();
-    for ((pose, home), [x, y, turn]) in poses.iter().zip(&driven).zip(MOVED) {
+    for ((pose, home), [x, y, turn]) in poses.iter().zip(&driven).zip(&MOVED) {
         let along = |value: f64| rounded(value, 100.0).clamp(-REACH_M, REACH_M);
         let turned = SE2::new(0.0, 0.0, pose.theta() - home.theta()).theta();
-        toy.values.store(x, along(pose.x() - home.x()));
-        toy.values.store(y, along(pose.y() - home.y()));
-        toy.values.store(
+        toy.values.put(x, along(pose.x() - home.x()));
+        toy.values.put(y, along(pose.y() - home.y()));
+        toy.values.put(
             turn,
             rounded(turned.to_degrees(), 10.0).clamp(-180.0, 180.0),
         );
     }
-    toy.values.store("steps", 0.0);
+    toy.values.put(&STEPS, 0.0);
     toy.solve();
 }

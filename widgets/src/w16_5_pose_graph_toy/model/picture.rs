@@ -10,6 +10,8 @@ use pr_geom::{SE2, math};
 use super::hands::turn_handle;
 use super::{PoseGraphToy, panel};
 
+use crate::w16_5_pose_graph_toy::spec::PINNED;
+
 /// Room around the poses, m.
 const MARGIN_M: f64 = 0.7;
 /// The map is at least so large, m.
@@ -74,7 +76,7 @@ fn graph(toy: &PoseGraphToy) -> Panel {
         ));
     }
     layers.extend(poses.iter().enumerate().flat_map(|(k, pose)| node(k, pose)));
-    if toy.values.get("pinned") != 0.0 {
+    if toy.values.get(&PINNED) {
         layers.push(words([poses[0].x(), poses[0].y() - 0.28], "pinned"));
     }
     let [x, y] = axes(toy);

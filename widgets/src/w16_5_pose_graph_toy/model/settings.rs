@@ -5,32 +5,12 @@ use kit::values::Values;
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
-use crate::w16_5_pose_graph_toy::spec::MOVED;
+use crate::w16_5_pose_graph_toy::spec::{GAP, GRAPH, MOVED, ODOMETRY, PINNED, STIFFNESS, Shape};
 
 /// Sides of the square and of the ring, m.
 const SIDE_M: f64 = 1.0;
 
-/// Which graph.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
-    /// The chapter's three poses on a line.
-    Line,
-    /// Four poses around a square.
-    Square,
-    /// Six poses around a ring.
-    Ring,
-}
-
 impl Shape {
-    /// The one that is chosen.
-    pub fn of(values: &Values) -> Self {
-        match values.get("graph") as usize {
-            0 => Self::Line,
-            1 => Self::Square,
-            _ => Self::Ring,
-        }
-    }
-
     /// Number of poses.
     pub fn poses(self) -> usize {
         match self {
@@ -63,8 +43,8 @@ impl Shape {
 
 /// The poses as the reader has put them.
 pub fn start(values: &Values) -> Vec<SE2> {
-    let driven = Shape::of(values).driven();
-    let put = driven.iter().zip(MOVED).map(|(pose, [x, y, turn])| {
+    let driven = values.get(&GRAPH).driven();
+    let put = driven.iter().zip(&MOVED).map(|(pose, [x, y, turn])| {
         SE2::new(
             pose.x() + values.get(x),
             pose.y() + values.get(y),
@@ -77,9 +57,9 @@ pub fn start(values: &Values) -> Vec<SE2> {
 /// The graph with its poses as the reader has put them: odometry from each pose to the next, and a
 /// loop from the first to the last.
 pub fn graph(values: &Values) -> PoseGraph {
-    let shape = Shape::of(values);
+    let shape = values.get(&GRAPH);
     let mut graph = PoseGraph::new();
-    let pinned = values.get("pinned") != 0.0;
+    let pinned = values.get(&PINNED);
     for (k, pose) in start(values).into_iter().enumerate() {
         if k == 0 && pinned {
             graph.add_fixed_node(pose);
@@ -87,16 +67,16 @@ pub fn graph(values: &Values) -> PoseGraph {
             graph.add_node(pose);
         }
     }
-    let odometry = Matrix3::from_diagonal_element(values.get("odometry"));
+    let odometry = Matrix3::from_diagonal_element(values.get(&ODOMETRY));
     let step = shape.odometry();
     let last = shape.poses() - 1;
     for k in 0..last {
         graph.add_edge(k, k + 1, step, odometry, EdgeKind::Odometry);
     }
     // Ahead of the first pose, in its frame.
-    let gap = SE2::translation(values.get("gap"), 0.0);
+    let gap = SE2::translation(values.get(&GAP), 0.0);
     let seen = gap * shape.driven()[last];
-    let stiffness = Matrix3::from_diagonal_element(values.get("stiffness"));
+    let stiffness = Matrix3::from_diagonal_element(values.get(&STIFFNESS));
     graph.add_edge(0, last, seen, stiffness, EdgeKind::Loop);
     graph
 }

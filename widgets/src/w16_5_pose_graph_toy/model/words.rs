@@ -5,6 +5,8 @@ use kit::model::{Fact, Outcome, Standing};
 
 use super::PoseGraphToy;
 
+use crate::w16_5_pose_graph_toy::spec::PINNED;
+
 /// `2 to 3`, as the poses are numbered on screen.
 pub fn ends(edge: &EdgeView) -> String {
     format!("{} to {}", edge.from.index() + 1, edge.to.index() + 1)
@@ -30,7 +32,7 @@ pub fn standing(toy: &PoseGraphToy) -> Standing {
 }
 
 fn is_pinned(toy: &PoseGraphToy) -> bool {
-    toy.values.get("pinned") != 0.0
+    toy.values.get(&PINNED)
 }
 
 pub fn outcome(toy: &PoseGraphToy) -> Outcome {

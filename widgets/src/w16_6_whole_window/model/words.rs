@@ -8,6 +8,8 @@ use pr_geom::SE2;
 use super::WholeWindow;
 use super::hunt::TURNS;
 
+use crate::w16_6_whole_window::spec::HEADING;
+
 /// How the answer is judged.
 pub fn standing(window: &WholeWindow) -> Standing {
     match (&window.hunt.found, window.refined()) {
@@ -34,7 +36,7 @@ pub fn outcome(window: &WholeWindow) -> Outcome {
     let alone = &window.hunt.alone.outcome;
     let start = format!(
         "From {:.0}° off, ICP alone ends {}.",
-        window.values.get("heading"),
+        window.values.get(&HEADING),
         ending(alone)
     );
     let work = format!(

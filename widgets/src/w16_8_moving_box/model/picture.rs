@@ -8,7 +8,7 @@ use pr_geom::{Point2, SE2};
 
 use super::curves::SEEDS;
 use super::{MovingBox, panel};
-use crate::w16_8_moving_box::spec::MOST_SHARE;
+use crate::w16_8_moving_box::spec::{MOST_SHARE, SHARE};
 
 /// Tones and marks of the methods.
 const TONES: [Tone; 3] = [Tone::Prediction, Tone::Prior, Tone::Posterior];
@@ -92,7 +92,7 @@ fn sensor(pose: SE2, mark: Mark, tone: Tone) -> Layer {
 /// Bias in millimetres over the share of the box.
 fn bias(moving: &MovingBox) -> Panel {
     let curves = &moving.curves;
-    let share = moving.values.get("share");
+    let share = moving.values.get(&SHARE);
     let known = |method: usize| {
         curves
             .bias_m(method)

@@ -7,6 +7,8 @@ use pr_geom::math;
 use super::MovingBox;
 use super::curves::SEEDS;
 
+use crate::w16_8_moving_box::spec::SHARE;
+
 /// A registration this near is home, m: half the step between neighbouring points of a wall.
 const HOME_M: f64 = 0.02;
 
@@ -44,7 +46,7 @@ pub fn verdict(moving: &MovingBox) -> &'static str {
 }
 
 pub fn outcome(moving: &MovingBox) -> Outcome {
-    let share = moving.values.get("share");
+    let share = moving.values.get(&SHARE);
     let told = BoxMethods::NAMES
         .iter()
         .enumerate()
@@ -90,7 +92,7 @@ fn facts(moving: &MovingBox) -> Vec<Fact> {
 
 /// The bias at the share that is chosen; no number unless the curves hold it with all their seeds.
 fn bias_m(moving: &MovingBox, method: usize) -> f64 {
-    let share = moving.values.get("share");
+    let share = moving.values.get(&SHARE);
     let mut points = moving.curves.bias_m(method);
     let at = points.find(|(at, _)| *at == share);
     let is_whole = moving.curves.seeds() == SEEDS;

@@ -7,7 +7,7 @@ use pr_sim::{Course, Sketch};
 
 use super::*;
 use crate::w16_2_full_lap::model::piece::Piece;
-use crate::w16_2_full_lap::spec::OWN_WORLD;
+use crate::w16_2_full_lap::spec::WORLD;
 
 const REACH: [f64; 2] = [0.15, 0.15];
 
@@ -43,7 +43,7 @@ fn a_wall_that_is_drawn_is_there_at_once_and_the_lap_follows() {
     let drawn = flat(&model).walls_cm;
     assert_eq!(drawn.len(), 19);
     assert_eq!(drawn[18], [[500, 380], [500, 410]]);
-    assert_eq!(model.values().get("world"), OWN_WORLD);
+    assert_eq!(model.values().get(&WORLD), None);
     assert_eq!(model.piece(), Some(Piece::Wall(18)));
     let walls = |model: &FullLap| match &model.scene().panels[0].layers[0] {
         Layer::Segments { segments, .. } => segments.len(),
@@ -71,7 +71,7 @@ fn strokes_from_one_corner_are_two_walls_and_each_is_taken_back_by_itself() {
     press(&mut model, "take-back");
     assert_eq!(flat(&model).walls_cm.len(), 19);
     press(&mut model, "take-back");
-    assert_eq!(model.values().get("world"), 0.0, "the Apartment itself");
+    assert_eq!(model.values().number("world"), 0.0, "the Apartment itself");
     assert_eq!(model.values().to_text("flat"), "");
     press(&mut model, "take-back");
     assert_eq!(model.outcome().sentence, "nothing to take back");
@@ -85,7 +85,7 @@ fn a_press_without_a_drag_draws_nothing_and_says_how() {
     let mut model = editing(2.0);
     stroke(&mut model, &[[1.0, 1.0], [1.01, 1.0]]);
     model.tap("map", [1.0, 1.0], REACH);
-    assert_eq!(model.values().get("world"), 0.0);
+    assert_eq!(model.values().number("world"), 0.0);
     assert!(model.outcome().sentence.contains("drag from one end"));
 }
 
@@ -279,7 +279,7 @@ fn a_link_carries_the_flat_and_a_damaged_one_leaves_it() {
 
 #[test]
 fn world_and_flat_never_disagree() {
-    let mut model = at(&[("world", OWN_WORLD)]);
+    let mut model = at(&[WORLD.to("own")]);
     assert_eq!(
         flat(&model),
         apartment(),
@@ -291,21 +291,18 @@ fn world_and_flat_never_disagree() {
     assert_eq!(model.values().to_text("flat"), "");
     set(&mut model, "edit", 2.0);
     stroke(&mut model, &[[8.0, 0.4], [8.0, 0.0]]);
-    assert_eq!(model.values().get("world"), OWN_WORLD);
+    assert_eq!(model.values().get(&WORLD), None);
     assert_eq!(
         flat(&model).walls_cm.len(),
         Sketch::of(&Course::twin_rooms()).walls_cm.len() + 1
     );
     press(&mut model, "defaults");
-    assert_eq!(model.values().get("world"), 0.0);
+    assert_eq!(model.values().number("world"), 0.0);
     assert_eq!(model.values().to_text("flat"), "");
     assert!(picture(&model) == picture(&FullLap::new()));
     press(&mut model, "take-back");
-    assert_eq!(
-        model.values().get("world"),
-        OWN_WORLD,
-        "also that can be taken back"
-    );
+    let world = model.values().get(&WORLD);
+    assert_eq!(world, None, "also that can be taken back");
 }
 
 #[test]

@@ -7,7 +7,7 @@ const REACH: [f64; 2] = [0.18, 0.18];
 const WRONG: [(&str, f64); 3] = [("own", 3.0), ("own-gate", 0.0), ("t", 129.0)];
 
 fn ends(model: &FullLap) -> [f64; 3] {
-    ["own", "own-from", "own-to"].map(|id| model.values().get(id))
+    ["own", "own-from", "own-to"].map(|id| model.values().number(id))
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn a_loop_is_dragged_from_the_keyframe_that_is_looked_at_to_another_and_taken_ba
         "only what is looked at"
     );
     model.tap("map", from, REACH);
-    let node = model.values().get("number");
+    let node = model.values().number("number");
     let handle = model.grab("map", from, REACH).unwrap();
     // A press that trembles ties nothing.
     model.drag(handle, from);
@@ -97,7 +97,7 @@ fn keys_tie_two_keyframes_and_undo_goes_back_change_by_change() {
             .ends_with("look at another keyframe and press Tie again")
     );
     assert_eq!(
-        model.values().get("own-from"),
+        model.values().number("own-from"),
         36.0,
         "a change that is heard"
     );

@@ -28,7 +28,10 @@ fn a_tap_on_a_keyframe_tells_its_number_error_and_chi_squared_and_one_beside_tel
     let at_it = node_at(&model, 12);
     model.tap("map", at_it, REACH);
     assert_eq!(
-        (model.values().get("pick"), model.values().get("number")),
+        (
+            model.values().number("pick"),
+            model.values().number("number")
+        ),
         (1.0, 12.0)
     );
     let runs = &model.runs;
@@ -52,7 +55,7 @@ fn a_tap_on_a_keyframe_tells_its_number_error_and_chi_squared_and_one_beside_tel
             .any(|text| text.starts_with(&label))
     );
     model.tap("map", [6.0, 8.5], REACH);
-    assert_eq!(model.values().get("pick"), 0.0);
+    assert_eq!(model.values().number("pick"), 0.0);
     assert!(fact(&model, "looked_at_error_m").is_nan());
 }
 

@@ -119,7 +119,7 @@ fn transport_buttons_step_reset_and_restore() {
     assert_eq!(model.tick(), 51);
     press(&mut model, "reset");
     assert_eq!(model.tick(), 0);
-    assert_eq!(model.values().get("noise"), 2.0);
+    assert_eq!(model.values().number("noise"), 2.0);
     press(&mut model, "defaults");
     assert_eq!(model.values(), &Values::defaults(SPEC.params));
     assert!(picture(&model) == picture(&FullLap::new()));

@@ -6,7 +6,7 @@ use ch16_slam2d::matching::InformationFrame;
 use kit::param::ParamKind;
 
 use super::*;
-use crate::w16_2_full_lap::spec::OWN_WORLD;
+use crate::w16_2_full_lap::spec::WORLD;
 
 /// The help of a preset says so.
 fn assert_promised(preset: &str, words: &str) {
@@ -198,7 +198,7 @@ fn named<T: Choice>() -> Vec<(&'static str, &'static str)> {
 #[test]
 fn matchers_and_frames_are_called_as_on_the_command_line_and_drive_the_same_lap() {
     let mut worlds = named::<BuiltInWorld>();
-    assert_eq!(worlds.len() as f64, OWN_WORLD);
+    assert_eq!(WORLD.to("own").1, worlds.len() as f64);
     worlds.push(("own", "your own flat"));
     assert_eq!(options("world"), worlds);
     assert_eq!(options("matcher"), named::<LapMatcher>());

@@ -42,7 +42,7 @@ fn presets_of_other_worlds_show_the_end_of_their_lap() {
     for preset in ["ring", "twins", "corridor", "hall"] {
         let mut model = FullLap::new();
         press(&mut model, preset);
-        assert_eq!(model.values().get("t"), model.last(), "{preset}");
+        assert_eq!(model.values().number("t"), model.last(), "{preset}");
     }
 }
 
@@ -51,13 +51,13 @@ fn a_moment_asked_for_before_its_lap_is_known_is_kept() {
     let mut model = FullLap::new();
     model.set("world", 1.0).unwrap();
     model.set("t", 200.0).unwrap();
-    assert_eq!(model.values().get("t"), 200.0);
+    assert_eq!(model.values().number("t"), 200.0);
     assert!(model.tick() <= 129, "the old lap is shown until then");
     model.settle();
     assert_eq!(model.tick(), 200);
     // A lap that ends before it is shown at its end.
     set(&mut model, "world", 0.0);
-    assert_eq!(model.values().get("t"), 129.0);
+    assert_eq!(model.values().number("t"), 129.0);
 }
 
 #[test]

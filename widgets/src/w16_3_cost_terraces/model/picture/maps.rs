@@ -4,7 +4,7 @@ use kit::scene::{Aspect, ColorBar, Layer, LegendEntry, Mark, Panel, Stroke, Tone
 
 use super::{Looked, Moment, shift_axis};
 use crate::w16_3_cost_terraces::model::landscape::Landscape;
-use crate::w16_3_cost_terraces::model::settings::Colors;
+use crate::w16_3_cost_terraces::spec::Colors;
 use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;
 
 /// ICP's cost; dark is low. The dropped sweeps fly over it.
