@@ -7,7 +7,6 @@ use kit::model::{Motion, finish_work};
 use kit::outside::Delivery;
 use kit::palette::Theme;
 use kit::param::{ParamError, ParamSpec};
-use kit::shell::Shell;
 use kit::zoom::Look;
 use wasm_bindgen::prelude::*;
 
