@@ -55,20 +55,12 @@ fn points(trace: &ProcrustesTrace) -> Panel {
         })
         .collect();
     let target: Vec<[f64; 2]> = trace.pairs.target.iter().map(|q| [q.x, q.y]).collect();
-    let line = |points: &[[f64; 2]], stroke, tone, width_px| Layer::Line {
-        points: points.to_vec(),
-        stroke,
-        tone,
-        width_px,
+    let line = |points: &[[f64; 2]], stroke, tone, width_px| {
+        Layer::line(points.to_vec(), stroke, tone, width_px)
     };
     let pairs = moved.iter().zip(&target).map(|(p, q)| [*p, *q]);
     let mut layers = vec![
-        Layer::Segments {
-            segments: pairs.collect(),
-            stroke: Stroke::Dotted,
-            tone: Tone::Ink,
-            width_px: 1.25,
-        },
+        Layer::segments(pairs.collect(), Stroke::Dotted, Tone::Ink, 1.25),
         line(&target, Stroke::Solid, Tone::Measurement, 1.25),
         line(&moved, Stroke::Solid, tone(kind), 1.75),
         Layer::points(moved.clone(), mark(kind), tone(kind), 4.5),
@@ -121,20 +113,22 @@ fn curves(trace: &ProcrustesTrace) -> Panel {
     } else {
         1.0
     };
-    let level = |height: f64, tone| Layer::Line {
-        points: vec![[0.0, height], [WHOLE_TURN_DEG, height]],
-        stroke: Stroke::Dotted,
-        tone,
-        width_px: 1.5,
+    let level = |height: f64, tone| {
+        Layer::line(
+            vec![[0.0, height], [WHOLE_TURN_DEG, height]],
+            Stroke::Dotted,
+            tone,
+            1.5,
+        )
     };
     let turn = trace.values.get(&TURN);
     let mut layers = vec![
-        Layer::Line {
-            points: vec![[turn, -top], [turn, top]],
-            stroke: Stroke::Solid,
-            tone: Tone::Faint,
-            width_px: 2.5,
-        },
+        Layer::line(
+            vec![[turn, -top], [turn, top]],
+            Stroke::Solid,
+            Tone::Faint,
+            2.5,
+        ),
         level(first + second, Tone::Ink),
         level(first - second, Tone::Faint),
     ];
@@ -143,15 +137,15 @@ fn curves(trace: &ProcrustesTrace) -> Panel {
             let degrees = f64::from(degrees);
             [degrees, problem.trace_m2(kind, degrees.to_radians())]
         };
-        layers.push(Layer::Line {
-            points: (0..=WHOLE_TURN_DEG as u32)
+        layers.push(Layer::line(
+            (0..=WHOLE_TURN_DEG as u32)
                 .step_by(CURVE_STEP_DEG as usize)
                 .map(at)
                 .collect(),
-            stroke: Stroke::Solid,
-            tone: tone(kind),
-            width_px: if kind == trace.tried() { 2.5 } else { 1.25 },
-        });
+            Stroke::Solid,
+            tone(kind),
+            if kind == trace.tried() { 2.5 } else { 1.25 },
+        ));
         let best = problem.best(kind);
         let place = vec![[whole_degrees(best.theta_rad), best.trace_m2]];
         layers.push(Layer::points(place, mark(kind), tone(kind), 4.5));
@@ -202,12 +196,12 @@ fn map(id: &'static str, by: &str, kind: Handedness, theta_rad: f64) -> Panel {
         [moved.x, moved.y]
     };
     let walls = world.walls().iter();
-    let mut layers = vec![Layer::Segments {
-        segments: walls.map(|wall| [put(wall.start), put(wall.end)]).collect(),
-        stroke: Stroke::Solid,
-        tone: tone(kind),
-        width_px: 1.75,
-    }];
+    let mut layers = vec![Layer::segments(
+        walls.map(|wall| [put(wall.start), put(wall.end)]).collect(),
+        Stroke::Solid,
+        tone(kind),
+        1.75,
+    )];
     layers.extend(World::apartment_rooms().map(|room| Layer::Text {
         at: put(room.bounds.min + 0.5 * (room.bounds.max - room.bounds.min)),
         text: room.name.to_owned(),

@@ -1,7 +1,7 @@
 //! The tables: the best matrix of each kind beside the picture, the curves for the export.
 
 use ch16_lab::procrustes::Handedness;
-use kit::model::{Table, TablePlace};
+use kit::model::Table;
 
 use super::ProcrustesTrace;
 use super::words::plural;
@@ -10,10 +10,6 @@ use crate::w16_11_procrustes::spec::WHOLE_TURN_DEG;
 /// All tables, the shown one first.
 pub fn all(trace: &ProcrustesTrace) -> Vec<Table> {
     vec![matrices(trace), points(trace), curves(trace)]
-}
-
-fn columns<const N: usize>(names: [&str; N]) -> Vec<String> {
-    names.map(str::to_owned).to_vec()
 }
 
 /// The best matrix of each kind.
@@ -33,13 +29,12 @@ pub fn matrices(trace: &ProcrustesTrace) -> Table {
             format!("{:.4}", problem.cost_m2(kind, best.theta_rad)),
         ]
     });
-    Table {
-        id: "matrices",
-        title: "The best of each kind".to_owned(),
-        columns: columns(["kind", "det", "angle (°)", "trace (m²)", "cost (m²)"]),
-        rows: rows.to_vec(),
-        place: TablePlace::Shown,
-    }
+    Table::shown(
+        "matrices",
+        "The best of each kind",
+        &["kind", "det", "angle (°)", "trace (m²)", "cost (m²)"],
+        rows.to_vec(),
+    )
 }
 
 fn points(trace: &ProcrustesTrace) -> Table {
@@ -50,19 +45,18 @@ fn points(trace: &ProcrustesTrace) -> Table {
         row.extend(cells);
         row
     });
-    Table {
-        id: "pairs",
-        title: "The pairs".to_owned(),
-        columns: columns([
+    Table::exported(
+        "pairs",
+        "The pairs",
+        &[
             "pair",
             "source x (m)",
             "source y (m)",
             "target x (m)",
             "target y (m)",
-        ]),
-        rows: rows.collect(),
-        place: TablePlace::ExportOnly,
-    }
+        ],
+        rows.collect(),
+    )
 }
 
 fn curves(trace: &ProcrustesTrace) -> Table {
@@ -75,11 +69,10 @@ fn curves(trace: &ProcrustesTrace) -> Table {
             of(Handedness::Mirror),
         ]
     });
-    Table {
-        id: "trace",
-        title: "The trace over the angle".to_owned(),
-        columns: columns(["angle (°)", "turns (m²)", "mirror images (m²)"]),
-        rows: rows.collect(),
-        place: TablePlace::ExportOnly,
-    }
+    Table::exported(
+        "trace",
+        "The trace over the angle",
+        &["angle (°)", "turns (m²)", "mirror images (m²)"],
+        rows.collect(),
+    )
 }

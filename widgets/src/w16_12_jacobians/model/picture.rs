@@ -63,24 +63,19 @@ fn map(widget: &WrongJacobians, solver: usize) -> Panel {
     let now = places(&shown.poses);
     let best = places(&widget.solved.optimum);
     let [x, y] = axes(widget);
-    let line = |points: Vec<[f64; 2]>, stroke, tone, width_px| Layer::Line {
-        points,
-        stroke,
-        tone,
-        width_px,
-    };
+    let line =
+        |points: Vec<[f64; 2]>, stroke, tone, width_px| Layer::line(points, stroke, tone, width_px);
     let ends = now.first().zip(now.last());
     let layers = vec![
         line(best, Stroke::Dotted, Tone::Ink, 1.5),
-        Layer::Segments {
-            segments: ends
-                .map(|(first, last)| [*first, *last])
+        Layer::segments(
+            ends.map(|(first, last)| [*first, *last])
                 .into_iter()
                 .collect(),
-            stroke: Stroke::Solid,
-            tone: Tone::Faint,
-            width_px: 1.5,
-        },
+            Stroke::Solid,
+            Tone::Faint,
+            1.5,
+        ),
         line(now.clone(), Stroke::Solid, TONES[solver], 1.5),
         Layer::points(now, MARKS[solver], TONES[solver], 3.5),
     ];
@@ -126,12 +121,12 @@ fn curve(widget: &WrongJacobians) -> Panel {
     let top = highest.ceil() + 0.5;
     let low = LOWEST_POWER - 0.5;
     let now = widget.step() as f64;
-    let mut layers = vec![Layer::Line {
-        points: vec![[now, low], [now, top]],
-        stroke: Stroke::Solid,
-        tone: Tone::Faint,
-        width_px: 2.5,
-    }];
+    let mut layers = vec![Layer::line(
+        vec![[now, low], [now, top]],
+        Stroke::Solid,
+        Tone::Faint,
+        2.5,
+    )];
     for (solver, line) in lines.into_iter().enumerate() {
         layers.push(Layer::points(
             line.clone(),
@@ -139,12 +134,7 @@ fn curve(widget: &WrongJacobians) -> Panel {
             TONES[solver],
             2.5,
         ));
-        layers.push(Layer::Line {
-            points: line,
-            stroke: Stroke::Solid,
-            tone: TONES[solver],
-            width_px: 1.75,
-        });
+        layers.push(Layer::line(line, Stroke::Solid, TONES[solver], 1.75));
     }
     let [title, label] = if is_distance {
         [

@@ -1,16 +1,12 @@
 //! The tables: the four ends beside the picture, every step for the export.
 
-use kit::model::{Table, TablePlace};
+use kit::model::Table;
 
 use super::{NAMES, WrongJacobians};
 
 /// All tables, the shown one first.
 pub fn all(widget: &WrongJacobians) -> Vec<Table> {
     vec![ends(widget), every_step(widget)]
-}
-
-fn columns<const N: usize>(names: [&str; N]) -> Vec<String> {
-    names.map(str::to_owned).to_vec()
 }
 
 fn ends(widget: &WrongJacobians) -> Table {
@@ -22,13 +18,12 @@ fn ends(widget: &WrongJacobians) -> Table {
             format!("{:.2}", run.end().chi2),
         ]
     });
-    Table {
-        id: "ends",
-        title: "The four ends".to_owned(),
-        columns: columns(["solver", "steps", "off (m)", "χ²"]),
-        rows: rows.collect(),
-        place: TablePlace::Shown,
-    }
+    Table::shown(
+        "ends",
+        "The four ends",
+        &["solver", "steps", "off (m)", "χ²"],
+        rows.collect(),
+    )
 }
 
 fn every_step(widget: &WrongJacobians) -> Table {
@@ -43,11 +38,10 @@ fn every_step(widget: &WrongJacobians) -> Table {
             ]
         })
     });
-    Table {
-        id: "steps",
-        title: "Every step".to_owned(),
-        columns: columns(["solver", "step", "off (m)", "χ²"]),
-        rows: rows.collect(),
-        place: TablePlace::ExportOnly,
-    }
+    Table::exported(
+        "steps",
+        "Every step",
+        &["solver", "step", "off (m)", "χ²"],
+        rows.collect(),
+    )
 }

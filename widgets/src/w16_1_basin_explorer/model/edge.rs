@@ -72,12 +72,12 @@ fn marks(values: &Values) -> [f64; 2] {
 /// A line at a heading error, to both sides.
 fn lines(heading_deg: f64, stroke: Stroke, tone: Tone) -> Layer {
     let side = |x: f64| [[x, -OFFSET_SPAN_M], [x, OFFSET_SPAN_M]];
-    Layer::Segments {
-        segments: vec![side(-heading_deg), side(heading_deg)],
+    Layer::segments(
+        vec![side(-heading_deg), side(heading_deg)],
         stroke,
         tone,
-        width_px: 2.5,
-    }
+        2.5,
+    )
 }
 
 /// What the question draws over the map of a variant.
@@ -93,12 +93,12 @@ pub fn layers(explorer: &BasinExplorer, of: IcpVariant) -> Vec<Layer> {
         let edge = reached(&explorer.edges.searches[k]);
         layers.push(lines(edge, Stroke::Dashed, Tone::Truth));
         // Along the pure rotations, where it was swept.
-        layers.push(Layer::Line {
-            points: vec![[-edge, 0.0], [edge, 0.0]],
-            stroke: Stroke::Dashed,
-            tone: Tone::Truth,
-            width_px: 2.5,
-        });
+        layers.push(Layer::line(
+            vec![[-edge, 0.0], [edge, 0.0]],
+            Stroke::Dashed,
+            Tone::Truth,
+            2.5,
+        ));
     }
     if mark > 0.0 {
         layers.push(lines(mark, Stroke::Solid, Tone::Ink));

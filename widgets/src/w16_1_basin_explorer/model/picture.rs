@@ -51,15 +51,15 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     let source = scene.source().transformed(&pose);
 
     let mut layers = vec![
-        Layer::Line {
-            points: outline(
+        Layer::line(
+            outline(
                 &scene.source().transformed(&scene.truth()),
                 wall_gap_m(scene.place()),
             ),
-            stroke: Stroke::Dashed,
-            tone: Tone::Truth,
-            width_px: 1.5,
-        },
+            Stroke::Dashed,
+            Tone::Truth,
+            1.5,
+        ),
         points(scene.target(), Mark::Cross, Tone::Measurement, 3.0),
     ];
     let guess = scene.guess(&start(&explorer.values));
@@ -77,8 +77,8 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
     layers.extend([
         points(&source, Mark::Square, Tone::Posterior, 2.6),
         // Above the points: a pair may be shorter than a mark is wide.
-        Layer::Segments {
-            segments: links
+        Layer::segments(
+            links
                 .iter()
                 .map(|pair| {
                     [
@@ -87,20 +87,20 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
                     ]
                 })
                 .collect(),
-            stroke: Stroke::Solid,
-            tone: Tone::Ink,
-            width_px: 1.25,
-        },
+            Stroke::Solid,
+            Tone::Ink,
+            1.25,
+        ),
         Layer::points(lonely(&source, &links), Mark::Circle, Tone::Prediction, 5.0),
         sensor(SE2::identity(), Mark::Cross, Tone::Measurement),
         sensor(scene.truth(), Mark::Plus, Tone::Truth),
         sensor(guess, Mark::Circle, Tone::Prior),
-        Layer::Segments {
-            segments: vec![[[pose.x(), pose.y()], [turn.x, turn.y]]],
-            stroke: Stroke::Solid,
-            tone: Tone::Posterior,
-            width_px: 1.5,
-        },
+        Layer::segments(
+            vec![[[pose.x(), pose.y()], [turn.x, turn.y]]],
+            Stroke::Solid,
+            Tone::Posterior,
+            1.5,
+        ),
         sensor(pose, Mark::Square, Tone::Posterior),
         Layer::Handle {
             at: [turn.x, turn.y],
@@ -181,12 +181,9 @@ fn preview(explorer: &BasinExplorer) -> Vec<Layer> {
     };
     let sensor = Point2::new(0.0, 0.0);
     let some = source.iter().step_by(POINTS_PER_TRAIL);
-    let trails = some.chain(core::iter::once(sensor)).map(|of| Layer::Line {
-        points: way(of),
-        stroke: Stroke::Dotted,
-        tone: Tone::Posterior,
-        width_px: 1.25,
-    });
+    let trails = some
+        .chain(core::iter::once(sensor))
+        .map(|of| Layer::line(way(of), Stroke::Dotted, Tone::Posterior, 1.25));
     let ghost = points(&source.transformed(&end), Mark::Dot, Tone::Posterior, 1.3);
     trails
         .chain([
@@ -336,12 +333,8 @@ fn letters(explorer: &BasinExplorer, of: IcpVariant) -> impl Iterator<Item = Lay
 /// The ways of other starts over the map, each with a dot where it ends, and that of the own start
 /// where its end may be seen.
 fn ways(explorer: &BasinExplorer) -> Vec<Layer> {
-    let line = |points: Vec<[f64; 2]>, tone, width_px| Layer::Line {
-        points,
-        stroke: Stroke::Solid,
-        tone,
-        width_px,
-    };
+    let line =
+        |points: Vec<[f64; 2]>, tone, width_px| Layer::line(points, Stroke::Solid, tone, width_px);
     let mut layers = Vec::new();
     for path in explorer.paths.done() {
         let end = path.spots.last().copied().into_iter().collect();

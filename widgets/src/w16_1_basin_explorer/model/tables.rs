@@ -2,7 +2,7 @@
 
 use ch16_lab::basin::{BasinOutcome, Minimum};
 use ch16_slam2d::icp::IcpVariant;
-use kit::model::{Table, TablePlace};
+use kit::model::Table;
 use kit::ticks::signed;
 
 use super::BasinExplorer;
@@ -42,17 +42,14 @@ fn variants(explorer: &BasinExplorer) -> Table {
     if chosen == IcpVariant::PointToPlane {
         rows.swap(0, 1);
     }
-    Table {
-        id: "variants",
-        title: "Both errors from this start".to_owned(),
-        columns: [
+    Table::shown(
+        "variants",
+        "Both errors from this start",
+        &[
             "error", "ends in", "off (m)", "off (°)", "rmse (m)", "steps",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
+        ],
         rows,
-        place: TablePlace::Shown,
-    }
+    )
 }
 
 /// The way of the registration.
@@ -79,13 +76,7 @@ fn iterations(explorer: &BasinExplorer) -> Table {
         "y (m)",
         "theta (rad)",
     ];
-    Table {
-        id: "iterations",
-        title: "Every iteration".to_owned(),
-        columns: head.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        place: TablePlace::ExportOnly,
-    }
+    Table::exported("iterations", "Every iteration", &head, rows.collect())
 }
 
 /// Both basin maps.
@@ -97,13 +88,12 @@ fn basins(explorer: &BasinExplorer) -> Table {
         "point to point",
         "point to plane",
     ];
-    Table {
-        id: "basins",
-        title: "The minimum reached from every start".to_owned(),
-        columns: head.map(str::to_owned).to_vec(),
-        rows: basin_rows(explorer),
-        place: TablePlace::ExportOnly,
-    }
+    Table::exported(
+        "basins",
+        "The minimum reached from every start",
+        &head,
+        basin_rows(explorer),
+    )
 }
 
 /// One row a cell; a cell that is not computed yet is empty.

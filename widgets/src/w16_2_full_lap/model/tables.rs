@@ -113,17 +113,16 @@ fn loops(runs: &Runs, seen: usize) -> Table {
             verdict_with_reason(attempt).to_owned(),
         ]
     };
-    Table {
-        id: "loops",
-        title: format!(
+    Table::shown(
+        "loops",
+        format!(
             "Loops tried, {} gate χ² {:.3}",
             model_name(runs.loop_config().gate_model),
             runs.gate_chi2()
         ),
-        columns: head.map(str::to_owned).to_vec(),
-        rows: runs.attempts_until(seen).iter().map(row).collect(),
-        place: TablePlace::Shown,
-    }
+        &head,
+        runs.attempts_until(seen).iter().map(row).collect(),
+    )
 }
 
 /// All that is known of each attempt.
@@ -169,13 +168,12 @@ fn loop_attempts(runs: &Runs, seen: usize) -> Table {
             verdict_with_reason(attempt).to_owned(),
         ]
     };
-    Table {
-        id: "loop-attempts",
-        title: "Loops tried".to_owned(),
-        columns: head.map(str::to_owned).to_vec(),
-        rows: runs.attempts_until(seen).iter().map(row).collect(),
-        place: TablePlace::ExportOnly,
-    }
+    Table::exported(
+        "loop-attempts",
+        "Loops tried",
+        &head,
+        runs.attempts_until(seen).iter().map(row).collect(),
+    )
 }
 
 fn verdict_with_reason(attempt: &LoopAttempt) -> &'static str {
@@ -217,13 +215,12 @@ fn over_time(runs: &Runs, seen: usize) -> Table {
         let cells = columns.into_iter().map(exact);
         core::iter::once(tick.to_string()).chain(cells).collect()
     };
-    Table {
-        id: "errors-over-time",
-        title: "Errors over time".to_owned(),
-        columns: head.map(str::to_owned).to_vec(),
-        rows: (0..=seen).map(row).collect(),
-        place: TablePlace::ExportOnly,
-    }
+    Table::exported(
+        "errors-over-time",
+        "Errors over time",
+        &head,
+        (0..=seen).map(row).collect(),
+    )
 }
 
 fn keyframes(runs: &Runs, seen: usize) -> Table {
@@ -247,13 +244,12 @@ fn keyframes(runs: &Runs, seen: usize) -> Table {
             .chain(cells)
             .collect()
     };
-    Table {
-        id: "keyframes",
-        title: format!("Keyframes after tick {seen}"),
-        columns: head.map(str::to_owned).to_vec(),
-        rows: poses.iter().enumerate().map(row).collect(),
-        place: TablePlace::ExportOnly,
-    }
+    Table::exported(
+        "keyframes",
+        format!("Keyframes after tick {seen}"),
+        &head,
+        poses.iter().enumerate().map(row).collect(),
+    )
 }
 
 /// Every edge of the graph at the moment shown.
@@ -285,13 +281,12 @@ pub fn edges(moment: &Moment) -> Table {
             .chain(numbers.map(exact))
             .collect()
     };
-    Table {
-        id: "edges",
-        title: format!("Edges after tick {}", moment.tick),
-        columns: head.map(str::to_owned).to_vec(),
-        rows: moment.edges_with_own().map(row).collect(),
-        place: TablePlace::ExportOnly,
-    }
+    Table::exported(
+        "edges",
+        format!("Edges after tick {}", moment.tick),
+        &head,
+        moment.edges_with_own().map(row).collect(),
+    )
 }
 
 /// Four digits, as the chapter's table; a dash where there is none.

@@ -1,6 +1,6 @@
 //! The data of every panel: shown beside the picture, or given out as CSV.
 
-use kit::model::{Table, TablePlace};
+use kit::model::Table;
 use kit::ticks::signed;
 
 use super::landscape::{Ball, Landscape, shift_m};
@@ -53,22 +53,6 @@ pub fn all(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Vec<Table
     tables
 }
 
-fn table(
-    id: &'static str,
-    title: &str,
-    columns: &[&str],
-    place: TablePlace,
-    rows: Vec<Vec<String>>,
-) -> Table {
-    Table {
-        id,
-        title: title.to_owned(),
-        columns: columns.iter().map(|&head| head.to_owned()).collect(),
-        rows,
-        place,
-    }
-}
-
 /// Where each measure is lowest, and where its ball ends.
 fn results(terrains: &Terrains) -> Table {
     let row = |name: &str, landscape: &Landscape| {
@@ -78,11 +62,10 @@ fn results(terrains: &Terrains) -> Table {
             point(landscape.ball.end_m()),
         ]
     };
-    table(
+    Table::shown(
         "balls",
         "Lowest cells and balls, Δx and Δy",
         &["measure", "lowest cell (m)", "ball ends at (m)"],
-        TablePlace::Shown,
         vec![row("ICP", &terrains.icp), row("NDT", &terrains.ndt)],
     )
 }
@@ -102,11 +85,10 @@ fn information(terrains: &Terrains) -> Table {
             format!("{eigenvalue:.2}"),
         ]
     };
-    table(
+    Table::exported(
         "information",
         "Information at the truth",
         &["direction", "angle from x (°)", "eigenvalue (1/cm²)"],
-        TablePlace::ExportOnly,
         vec![row("firmest", 0), row("loosest", 1)],
     )
 }
@@ -122,11 +104,10 @@ fn rows(terrains: &Terrains) -> Table {
             terrains.rows.know(index + 1, None).rank.to_string(),
         ]
     });
-    table(
+    Table::exported(
         "rows",
         "Rows of H",
         &["row", "n_x", "n_y", "p × n (m)", "rank so far"],
-        TablePlace::ExportOnly,
         each.collect(),
     )
 }
@@ -138,7 +119,7 @@ fn dropped(rests: &Rests) -> Table {
         let shown = numbers.iter().map(|m| format!("{m:.4}"));
         core::iter::once(number.to_string()).chain(shown).collect()
     });
-    table(
+    Table::exported(
         "rests",
         "Rests of the dropped sweeps",
         &[
@@ -148,7 +129,6 @@ fn dropped(rests: &Rests) -> Table {
             "rests Δx (m)",
             "rests Δy (m)",
         ],
-        TablePlace::ExportOnly,
         rows.collect(),
     )
 }
@@ -168,7 +148,7 @@ fn partners(terrains: &Terrains, settings: &Settings) -> Table {
             core::iter::once(what.to_owned()).chain(shown).collect()
         })
     });
-    table(
+    Table::exported(
         "partners",
         "Partners at the cross hair",
         &[
@@ -178,7 +158,6 @@ fn partners(terrains: &Terrains, settings: &Settings) -> Table {
             "map x (m)",
             "map y (m)",
         ],
-        TablePlace::ExportOnly,
         rows.collect(),
     )
 }
@@ -190,7 +169,7 @@ fn bells(terrains: &Terrains) -> Table {
         let numbers = [bell.mean_m, long, short].concat();
         numbers.iter().map(|m| format!("{m:.4}")).collect()
     });
-    table(
+    Table::exported(
         "bells",
         "Bells of NDT's map",
         &[
@@ -201,7 +180,6 @@ fn bells(terrains: &Terrains) -> Table {
             "short axis x (m)",
             "short axis y (m)",
         ],
-        TablePlace::ExportOnly,
         rows.collect(),
     )
 }
@@ -224,11 +202,10 @@ fn slice(
                 (-negative_score).to_string(),
             ]
         });
-    table(
+    Table::exported(
         id,
         title,
         &[head, "ICP cost (m²)", "NDT score"],
-        TablePlace::ExportOnly,
         rows.collect(),
     )
 }
@@ -247,11 +224,10 @@ fn way(id: &'static str, title: &str, height: &str, ball: &Ball) -> Table {
                 h.to_string(),
             ]
         });
-    table(
+    Table::exported(
         id,
         title,
         &["step", "Δx (m)", "Δy (m)", height],
-        TablePlace::ExportOnly,
         rows.collect(),
     )
 }
@@ -268,11 +244,5 @@ fn maps(terrains: &Terrains) -> Table {
         ]
     });
     let columns = ["Δx (m)", "Δy (m)", "ICP cost (m²)", "NDT score"];
-    table(
-        "maps",
-        "Both maps",
-        &columns,
-        TablePlace::ExportOnly,
-        rows.collect(),
-    )
+    Table::exported("maps", "Both maps", &columns, rows.collect())
 }

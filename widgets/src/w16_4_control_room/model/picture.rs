@@ -39,12 +39,12 @@ fn map(record: &LapRecord, tick: usize, raster: &Raster, world: &World) -> Panel
     let truth = |tick| record.drive.truth(tick);
     let layers = vec![
         Layer::Raster(raster.clone()),
-        Layer::Line {
-            points: (0..=tick).map(|tick| xy(&truth(tick))).collect(),
-            stroke: Stroke::Dashed,
-            tone: Tone::Truth,
-            width_px: 1.5,
-        },
+        Layer::line(
+            (0..=tick).map(|tick| xy(&truth(tick))).collect(),
+            Stroke::Dashed,
+            Tone::Truth,
+            1.5,
+        ),
         factors(record, tick, EdgeKind::Odometry, 1.5),
         factors(record, tick, EdgeKind::Loop, 2.5),
         Layer::points(
@@ -128,8 +128,8 @@ fn registration_layers(record: &LapRecord, tick: usize, view: &RegistrationView)
     let pairs = view.icp.pairs.iter();
     vec![
         Layer::points(positions(&view.local_cloud), Mark::Circle, Tone::Prior, 2.0),
-        Layer::Segments {
-            segments: pairs
+        Layer::segments(
+            pairs
                 .map(|pair| {
                     [
                         [pair.source.x, pair.source.y],
@@ -137,10 +137,10 @@ fn registration_layers(record: &LapRecord, tick: usize, view: &RegistrationView)
                     ]
                 })
                 .collect(),
-            stroke: Stroke::Solid,
-            tone: Tone::Ink,
-            width_px: 1.0,
-        },
+            Stroke::Solid,
+            Tone::Ink,
+            1.0,
+        ),
         Layer::points(
             placed(&view.prediction),
             Mark::Triangle,
@@ -162,15 +162,15 @@ fn estimate(record: &LapRecord, tick: usize) -> SE2 {
 fn factors(record: &LapRecord, tick: usize, kind: EdgeKind, width_px: f32) -> Layer {
     let poses = record.lap.poses(tick);
     let edges = record.lap.edges(tick).iter();
-    Layer::Segments {
-        segments: edges
+    Layer::segments(
+        edges
             .filter(|edge| edge.kind == kind)
             .map(|edge| [xy(&poses[edge.from]), xy(&poses[edge.to])])
             .collect(),
-        stroke: Stroke::Solid,
-        tone: Tone::Posterior,
+        Stroke::Solid,
+        Tone::Posterior,
         width_px,
-    }
+    )
 }
 
 fn positions(cloud: &PointCloud) -> Vec<[f64; 2]> {

@@ -1,6 +1,6 @@
 //! The tables: the event log, and the data of every plot.
 
-use kit::model::{Table, TablePlace};
+use kit::model::Table;
 
 use super::ControlRoom;
 use super::log::Event;
@@ -24,38 +24,34 @@ pub fn all(room: &ControlRoom) -> Vec<Table> {
 /// What every lane did in the tick shown.
 fn this_tick(room: &ControlRoom) -> Table {
     let done = room.now().into_iter().flat_map(lanes::data);
-    Table {
-        id: "control-room-tick",
-        title: format!("Tick {}, lane by lane", room.tick()),
-        columns: ["lane", "what it did"].map(str::to_owned).to_vec(),
-        rows: done
-            .map(|(name, data)| vec![name.to_owned(), data])
+    Table::shown(
+        "control-room-tick",
+        format!("Tick {}, lane by lane", room.tick()),
+        &["lane", "what it did"],
+        done.map(|(name, data)| vec![name.to_owned(), data])
             .collect(),
-        place: TablePlace::Shown,
-    }
+    )
 }
 
 /// The newest events up to a tick, newest first.
 fn newest_events(events: &[Event], now: usize) -> Table {
     let past = &events[..events.partition_point(|event| event.tick <= now)];
-    Table {
-        id: "control-room-log",
-        title: "Event log, newest first".to_owned(),
-        columns: ["tick", "part", "event"].map(str::to_owned).to_vec(),
-        rows: past.iter().rev().take(SHOWN_EVENTS).map(row).collect(),
-        place: TablePlace::Shown,
-    }
+    Table::shown(
+        "control-room-log",
+        "Event log, newest first",
+        &["tick", "part", "event"],
+        past.iter().rev().take(SHOWN_EVENTS).map(row).collect(),
+    )
 }
 
 /// All events, for the export.
 fn full_log(events: &[Event]) -> Table {
-    Table {
-        id: "control-room-events",
-        title: "Event log".to_owned(),
-        columns: ["tick", "part", "event"].map(str::to_owned).to_vec(),
-        rows: events.iter().map(row).collect(),
-        place: TablePlace::ExportOnly,
-    }
+    Table::exported(
+        "control-room-events",
+        "Event log",
+        &["tick", "part", "event"],
+        events.iter().map(row).collect(),
+    )
 }
 
 fn row(event: &Event) -> Vec<String> {
@@ -93,13 +89,12 @@ fn over_time(room: &ControlRoom) -> Table {
             finite(history.disagreement_m[tick]),
         ]
     });
-    Table {
-        id: "control-room-over-time",
-        title: "The run, tick by tick".to_owned(),
-        columns: head.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        place: TablePlace::ExportOnly,
-    }
+    Table::exported(
+        "control-room-over-time",
+        "The run, tick by tick",
+        &head,
+        rows.collect(),
+    )
 }
 
 /// The number, or nothing where there is none.

@@ -62,12 +62,12 @@ fn graph(toy: &PoseGraphToy) -> Panel {
             width_px: (0.7 + 1.2 * math::sqrt(edge.edge.information[(0, 0)])) as f32,
         });
         let wanted = *from * edge.edge.measurement;
-        layers.push(Layer::Segments {
-            segments: vec![[[to.x(), to.y()], [wanted.x(), wanted.y()]]],
-            stroke: Stroke::Dotted,
-            tone: tone(edge),
-            width_px: 2.0,
-        });
+        layers.push(Layer::segments(
+            vec![[[to.x(), to.y()], [wanted.x(), wanted.y()]]],
+            Stroke::Dotted,
+            tone(edge),
+            2.0,
+        ));
         layers.push(Layer::points(
             vec![[wanted.x(), wanted.y()]],
             Mark::Plus,
@@ -112,12 +112,12 @@ fn graph(toy: &PoseGraphToy) -> Panel {
 fn node(k: usize, pose: &SE2) -> Vec<Layer> {
     let tip = turn_handle(pose);
     vec![
-        Layer::Segments {
-            segments: vec![[[pose.x(), pose.y()], [tip.x, tip.y]]],
-            stroke: Stroke::Solid,
-            tone: Tone::Posterior,
-            width_px: 2.0,
-        },
+        Layer::segments(
+            vec![[[pose.x(), pose.y()], [tip.x, tip.y]]],
+            Stroke::Solid,
+            Tone::Posterior,
+            2.0,
+        ),
         Layer::points(vec![[tip.x, tip.y]], Mark::Dot, Tone::Posterior, 4.0),
         Layer::Handle {
             at: [pose.x(), pose.y()],
@@ -139,14 +139,16 @@ fn words(at: [f64; 2], text: &str) -> Layer {
 /// The way of each pose over the steps so far.
 fn trails(toy: &PoseGraphToy) -> impl Iterator<Item = Layer> + '_ {
     let moments = &toy.course.moments[..=toy.step()];
-    (0..toy.shown().poses.len()).map(|k| Layer::Line {
-        points: moments
-            .iter()
-            .map(|moment| [moment.poses[k].x(), moment.poses[k].y()])
-            .collect(),
-        stroke: Stroke::Solid,
-        tone: Tone::Prior,
-        width_px: 1.25,
+    (0..toy.shown().poses.len()).map(|k| {
+        Layer::line(
+            moments
+                .iter()
+                .map(|moment| [moment.poses[k].x(), moment.poses[k].y()])
+                .collect(),
+            Stroke::Solid,
+            Tone::Prior,
+            1.25,
+        )
     })
 }
 
@@ -211,18 +213,18 @@ fn bars(toy: &PoseGraphToy) -> Panel {
     for (k, edge) in toy.course.edges.iter().enumerate() {
         let x = k as f64 + 1.0;
         let (now, was) = (shown.edge_chi2[k], start.edge_chi2[k]);
-        layers.push(Layer::Segments {
-            segments: vec![[[x, 0.0], [x, now]]],
-            stroke: Stroke::Solid,
-            tone: tone(edge),
-            width_px: 14.0,
-        });
-        layers.push(Layer::Segments {
-            segments: vec![[[x - 0.3, was], [x + 0.3, was]]],
-            stroke: Stroke::Dotted,
-            tone: Tone::Prior,
-            width_px: 2.0,
-        });
+        layers.push(Layer::segments(
+            vec![[[x, 0.0], [x, now]]],
+            Stroke::Solid,
+            tone(edge),
+            14.0,
+        ));
+        layers.push(Layer::segments(
+            vec![[[x - 0.3, was], [x + 0.3, was]]],
+            Stroke::Dotted,
+            Tone::Prior,
+            2.0,
+        ));
         layers.push(words([x, now + 0.09 * y.max], &short(now)));
         let name = format!("{}–{}", edge.from.index() + 1, edge.to.index() + 1);
         layers.push(words([x, 0.94 * y.max], &name));

@@ -1,6 +1,6 @@
 //! The tables: every spring beside the picture, and the steps for the export.
 
-use kit::model::{Table, TablePlace};
+use kit::model::Table;
 
 use super::PoseGraphToy;
 use super::words::{ends, kind};
@@ -29,22 +29,19 @@ fn springs(toy: &PoseGraphToy) -> Table {
                 format!("{chi2:.3}"),
             ]
         });
-    Table {
-        id: "springs",
-        title: "The springs".to_owned(),
-        columns: [
+    Table::shown(
+        "springs",
+        "The springs",
+        &[
             "spring",
             "kind",
             "measured ahead (m)",
             "now (m)",
             "stiffness",
             "χ²",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-        place: TablePlace::Shown,
-    }
+        ],
+        rows.collect(),
+    )
 }
 
 fn steps(toy: &PoseGraphToy) -> Table {
@@ -65,13 +62,10 @@ fn steps(toy: &PoseGraphToy) -> Table {
                 ]
             })
         });
-    Table {
-        id: "steps",
-        title: "Every pose after every step".to_owned(),
-        columns: ["step", "χ²", "pose", "x (m)", "y (m)", "heading (rad)"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-        place: TablePlace::ExportOnly,
-    }
+    Table::exported(
+        "steps",
+        "Every pose after every step",
+        &["step", "χ²", "pose", "x (m)", "y (m)", "heading (rad)"],
+        rows.collect(),
+    )
 }

@@ -36,12 +36,12 @@ fn sweeps(window: &WholeWindow) -> Panel {
             Tone::Prediction,
             1.6,
         ),
-        Layer::Line {
-            points: window.hunt.alone.way.iter().map(position).collect(),
-            stroke: Stroke::Dotted,
-            tone: Tone::Prediction,
-            width_px: 1.5,
-        },
+        Layer::line(
+            window.hunt.alone.way.iter().map(position).collect(),
+            Stroke::Dotted,
+            Tone::Prediction,
+            1.5,
+        ),
         points(
             &scene.source().transformed(&pose),
             Mark::Square,
@@ -50,12 +50,12 @@ fn sweeps(window: &WholeWindow) -> Panel {
         ),
         sensor(scene.truth(), Mark::Plus, Tone::Truth),
         sensor(guess, Mark::Circle, Tone::Prior),
-        Layer::Segments {
-            segments: vec![[position(&guess), [turn.x, turn.y]]],
-            stroke: Stroke::Solid,
-            tone: Tone::Prior,
-            width_px: 1.5,
-        },
+        Layer::segments(
+            vec![[position(&guess), [turn.x, turn.y]]],
+            Stroke::Solid,
+            Tone::Prior,
+            1.5,
+        ),
         Layer::Handle {
             at: [turn.x, turn.y],
             tone: Tone::Prior,

@@ -1,6 +1,6 @@
 //! The tables: the turns of the room and both answers beside the picture, the search for the export.
 
-use kit::model::{Table, TablePlace};
+use kit::model::Table;
 use kit::ticks::signed;
 
 use super::WholeWindow;
@@ -41,15 +41,12 @@ fn turns(window: &WholeWindow) -> Table {
                 signed(turned, 1),
             ]
         });
-    Table {
-        id: "turns",
-        title: "The turns of the room".to_owned(),
-        columns: ["best pose at", "score", "behind", "off (°)"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-        place: TablePlace::Shown,
-    }
+    Table::shown(
+        "turns",
+        "The turns of the room",
+        &["best pose at", "score", "behind", "off (°)"],
+        rows.collect(),
+    )
 }
 
 /// ICP alone, and ICP from what the search finds.
@@ -68,15 +65,12 @@ fn answers(window: &WholeWindow) -> Table {
             end.iterations.to_string(),
         ]
     });
-    Table {
-        id: "answers",
-        title: "Both answers from this start".to_owned(),
-        columns: ["who", "ends in", "off (m)", "off (°)", "steps of ICP"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-        place: TablePlace::Shown,
-    }
+    Table::shown(
+        "answers",
+        "Both answers from this start",
+        &["who", "ends in", "off (m)", "off (°)", "steps of ICP"],
+        rows.collect(),
+    )
 }
 
 /// Every box that was taken up.
@@ -107,11 +101,10 @@ fn boxes(window: &WholeWindow) -> Table {
         );
         Some(row)
     });
-    Table {
-        id: "boxes",
-        title: "Every box that was taken up".to_owned(),
-        columns: head.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        place: TablePlace::ExportOnly,
-    }
+    Table::exported(
+        "boxes",
+        "Every box that was taken up",
+        &head,
+        rows.collect(),
+    )
 }

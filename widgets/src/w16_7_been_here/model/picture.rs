@@ -223,12 +223,12 @@ fn curves(been: &BeenHere) -> Panel {
     };
     for (k, curve) in places.curves.iter().enumerate() {
         let points = curve.points.iter();
-        panel.layers.push(Layer::Line {
-            points: points.map(|at| [at.recall, at.precision]).collect(),
-            stroke: Stroke::Solid,
-            tone: TONES[k],
-            width_px: if k == been.detector() { 2.75 } else { 1.5 },
-        });
+        panel.layers.push(Layer::line(
+            points.map(|at| [at.recall, at.precision]).collect(),
+            Stroke::Solid,
+            TONES[k],
+            if k == been.detector() { 2.75 } else { 1.5 },
+        ));
         let threshold = been.threshold(k);
         let at = places.graded_at(k, threshold).point(threshold);
         let at = at.map(|at| [at.recall, at.precision]).into_iter();
@@ -254,15 +254,15 @@ fn map(been: &BeenHere) -> Panel {
         x: Axis::new("x (m)", bounds.min.x - 0.4, bounds.max.x + 0.4),
         y: Axis::new("y (m)", bounds.min.y - 0.4, bounds.max.y + 0.4),
         layers: vec![
-            Layer::Segments {
-                segments: walls
+            Layer::segments(
+                walls
                     .iter()
                     .map(|wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]])
                     .collect(),
-                stroke: Stroke::Solid,
-                tone: Tone::Ink,
-                width_px: 1.5,
-            },
+                Stroke::Solid,
+                Tone::Ink,
+                1.5,
+            ),
             Layer::points(
                 way.map(|place| [place.truth.x(), place.truth.y()])
                     .collect(),
@@ -270,12 +270,12 @@ fn map(been: &BeenHere) -> Panel {
                 Tone::Truth,
                 2.0,
             ),
-            Layer::Segments {
-                segments: vec![[[old.x(), old.y()], [new.x(), new.y()]]],
-                stroke: Stroke::Dotted,
-                tone: Tone::Posterior,
-                width_px: 1.75,
-            },
+            Layer::segments(
+                vec![[[old.x(), old.y()], [new.x(), new.y()]]],
+                Stroke::Dotted,
+                Tone::Posterior,
+                1.75,
+            ),
             Layer::pose(old.to_array(), Mark::Cross, Tone::Measurement, 6.0),
             Layer::pose(new.to_array(), Mark::Square, Tone::Posterior, 6.0),
         ],

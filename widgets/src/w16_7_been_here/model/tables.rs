@@ -1,7 +1,7 @@
 //! The tables: the detectors beside the picture, all pairs for the export.
 
 use ch16_lab::lap::{Choice, LapDetector};
-use kit::model::{Table, TablePlace};
+use kit::model::Table;
 
 use super::BeenHere;
 
@@ -34,15 +34,12 @@ fn detectors(been: &BeenHere) -> Table {
             ]
         })
     });
-    Table {
-        id: "detectors",
-        title: "The detectors at this threshold".to_owned(),
-        columns: ["alike by", "called", "right", "precision", "recall", "area"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-        place: TablePlace::Shown,
-    }
+    Table::shown(
+        "detectors",
+        "The detectors at this threshold",
+        &["alike by", "called", "right", "precision", "recall", "area"],
+        rows.collect(),
+    )
 }
 
 fn pairs(been: &BeenHere) -> Table {
@@ -65,11 +62,5 @@ fn pairs(been: &BeenHere) -> Table {
         "same place",
         "graded",
     ];
-    Table {
-        id: "pairs",
-        title: "Every pair of keyframes".to_owned(),
-        columns: head.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        place: TablePlace::ExportOnly,
-    }
+    Table::exported("pairs", "Every pair of keyframes", &head, rows.collect())
 }

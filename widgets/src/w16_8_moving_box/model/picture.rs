@@ -27,15 +27,17 @@ fn sweeps(moving: &MovingBox, method: usize) -> Panel {
     let points = |cloud: &PointCloud, mark, tone| {
         Layer::points(cloud.iter().map(|p| [p.x, p.y]).collect(), mark, tone, 2.0)
     };
-    let outline = |corners: &[Point2<f64>; 4], stroke| Layer::Line {
-        points: corners
-            .iter()
-            .chain([&corners[0]])
-            .map(|c| [c.x, c.y])
-            .collect(),
-        stroke,
-        tone: Tone::Ink,
-        width_px: 1.25,
+    let outline = |corners: &[Point2<f64>; 4], stroke| {
+        Layer::line(
+            corners
+                .iter()
+                .chain([&corners[0]])
+                .map(|c| [c.x, c.y])
+                .collect(),
+            stroke,
+            Tone::Ink,
+            1.25,
+        )
     };
     let [before, after] = scene.boxes();
     let [x, y] = BoxScene::error_m(&shown.pose);
@@ -102,20 +104,15 @@ fn bias(moving: &MovingBox) -> Panel {
     let lines = [0, 1, 2].map(known);
     let highest = lines.iter().flatten().map(|at| at[1]).fold(10.0, f64::max);
     let y = axis_from_zero("bias of the translation (mm)", highest);
-    let mut layers = vec![Layer::Line {
-        points: vec![[share, 0.0], [share, y.max]],
-        stroke: Stroke::Solid,
-        tone: Tone::Faint,
-        width_px: 2.5,
-    }];
+    let mut layers = vec![Layer::line(
+        vec![[share, 0.0], [share, y.max]],
+        Stroke::Solid,
+        Tone::Faint,
+        2.5,
+    )];
     for (k, line) in lines.into_iter().enumerate() {
         layers.push(Layer::points(line.clone(), MARKS[k], TONES[k], 3.0));
-        layers.push(Layer::Line {
-            points: line,
-            stroke: Stroke::Solid,
-            tone: TONES[k],
-            width_px: 1.75,
-        });
+        layers.push(Layer::line(line, Stroke::Solid, TONES[k], 1.75));
     }
     let progress = if curves.progress() < 1.0 {
         format!(

@@ -1,7 +1,7 @@
 //! The tables: the three registrations beside the picture, the curves for the export.
 
 use ch16_lab::moving_box::BoxMethods;
-use kit::model::{Table, TablePlace};
+use kit::model::Table;
 use kit::ticks::signed;
 
 use super::MovingBox;
@@ -25,17 +25,14 @@ fn methods(moving: &MovingBox) -> Table {
             run.end.iterations.to_string(),
         ]
     });
-    Table {
-        id: "methods",
-        title: "The three registrations".to_owned(),
-        columns: [
+    Table::shown(
+        "methods",
+        "The three registrations",
+        &[
             "method", "off (m)", "in x", "in y", "rmse (m)", "pairs", "steps",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-        place: TablePlace::Shown,
-    }
+        ],
+        rows.collect(),
+    )
 }
 
 fn curves(moving: &MovingBox) -> Table {
@@ -52,18 +49,15 @@ fn curves(moving: &MovingBox) -> Table {
                 told(huber.1),
             ]
         });
-    Table {
-        id: "bias",
-        title: format!("Bias over {} seeds", moving.curves.seeds()),
-        columns: [
+    Table::exported(
+        "bias",
+        format!("Bias over {} seeds", moving.curves.seeds()),
+        &[
             "points on the box (%)",
             "plain (m)",
             "trimmed (m)",
             "Huber (m)",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-        place: TablePlace::ExportOnly,
-    }
+        ],
+        rows.collect(),
+    )
 }

@@ -19,14 +19,14 @@ fn map(back: &ComeBack) -> Panel {
     let mut layers = Vec::new();
     if let Some(known) = &back.known {
         let walls = known.tomorrow.world.walls().iter();
-        layers.push(Layer::Segments {
-            segments: walls
+        layers.push(Layer::segments(
+            walls
                 .map(|wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]])
                 .collect(),
-            stroke: Stroke::Solid,
-            tone: Tone::Faint,
-            width_px: 3.0,
-        });
+            Stroke::Solid,
+            Tone::Faint,
+            3.0,
+        ));
         let points = known.map.points().iter().map(|p| [p.x, p.y]).collect();
         layers.push(Layer::points(points, Mark::Dot, Tone::Ink, 1.4));
     }
@@ -34,12 +34,12 @@ fn map(back: &ComeBack) -> Panel {
     let start = back.start();
     let turn = turn_handle(&start);
     layers.extend([
-        Layer::Segments {
-            segments: vec![[[start.x(), start.y()], [turn.x, turn.y]]],
-            stroke: Stroke::Solid,
-            tone: Tone::Prior,
-            width_px: 1.5,
-        },
+        Layer::segments(
+            vec![[[start.x(), start.y()], [turn.x, turn.y]]],
+            Stroke::Solid,
+            Tone::Prior,
+            1.5,
+        ),
         Layer::Handle {
             at: [turn.x, turn.y],
             tone: Tone::Prior,
@@ -78,12 +78,7 @@ fn belief(back: &ComeBack) -> Vec<Layer> {
     let way = (0..=moment.tick).map(|tick| [truth(tick).x(), truth(tick).y()]);
     let mut layers = vec![
         boxes(&moment.boxes),
-        Layer::Line {
-            points: way.collect(),
-            stroke: Stroke::Dashed,
-            tone: Tone::Truth,
-            width_px: 1.5,
-        },
+        Layer::line(way.collect(), Stroke::Dashed, Tone::Truth, 1.5),
         pose(truth(moment.tick), Mark::Plus, Tone::Truth),
     ];
     if let Some(next) = moment.runner_up {
@@ -116,12 +111,12 @@ fn boxes(boxes: &[PoseBox]) -> Layer {
             [f64::NAN; 2],
         ]
     };
-    Layer::Line {
-        points: boxes.iter().flat_map(outline).collect(),
-        stroke: Stroke::Solid,
-        tone: Tone::Prediction,
-        width_px: 1.0,
-    }
+    Layer::line(
+        boxes.iter().flat_map(outline).collect(),
+        Stroke::Solid,
+        Tone::Prediction,
+        1.0,
+    )
 }
 
 fn scores(back: &ComeBack) -> Panel {
@@ -145,18 +140,13 @@ fn scores(back: &ComeBack) -> Panel {
             .filter_map(|(tick, report)| Some(at(tick, report.runner_up()?.score)));
         let now = back.moment().map_or(1.0, |moment| moment.tick as f64 + 1.0);
         layers = vec![
-            Layer::Line {
-                points: vec![[now, 0.0], [now, 1.04]],
-                stroke: Stroke::Solid,
-                tone: Tone::Faint,
-                width_px: 2.0,
-            },
-            Layer::Line {
-                points: fits.collect(),
-                stroke: Stroke::Solid,
-                tone: Tone::Measurement,
-                width_px: 1.75,
-            },
+            Layer::line(
+                vec![[now, 0.0], [now, 1.04]],
+                Stroke::Solid,
+                Tone::Faint,
+                2.0,
+            ),
+            Layer::line(fits.collect(), Stroke::Solid, Tone::Measurement, 1.75),
             Layer::points(next.collect(), Mark::Triangle, Tone::Prediction, 4.0),
             Layer::points(best.collect(), Mark::Square, Tone::Posterior, 4.0),
         ];

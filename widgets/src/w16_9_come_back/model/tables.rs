@@ -1,6 +1,6 @@
 //! The tables: each scan of the morning, for the export.
 
-use kit::model::{Table, TablePlace};
+use kit::model::Table;
 
 use super::ComeBack;
 
@@ -30,11 +30,10 @@ pub fn all(back: &ComeBack) -> Vec<Table> {
         "next place's score",
         "position error (m)",
     ];
-    vec![Table {
-        id: "scans",
-        title: "Every scan of the morning".to_owned(),
-        columns: head.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        place: TablePlace::ExportOnly,
-    }]
+    vec![Table::exported(
+        "scans",
+        "Every scan of the morning",
+        &head,
+        rows.collect(),
+    )]
 }

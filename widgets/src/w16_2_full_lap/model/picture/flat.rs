@@ -26,18 +26,8 @@ pub fn layers(drawn: &Drawn) -> Vec<Layer> {
     let [x, y] = places[0];
     let heading = Piece::Heading.place(sketch);
     let mut layers = vec![
-        Layer::Line {
-            points: places.clone(),
-            stroke: Stroke::Dotted,
-            tone: Tone::Ink,
-            width_px: 1.5,
-        },
-        Layer::Segments {
-            segments: vec![[places[0], heading]],
-            stroke: Stroke::Solid,
-            tone: Tone::Ink,
-            width_px: 2.5,
-        },
+        Layer::line(places.clone(), Stroke::Dotted, Tone::Ink, 1.5),
+        Layer::segments(vec![[places[0], heading]], Stroke::Solid, Tone::Ink, 2.5),
     ];
     let handle = |at, label| Layer::Handle {
         at,
@@ -74,12 +64,7 @@ fn chosen(drawn: &Drawn) -> Vec<Layer> {
     match piece {
         Piece::Wall(index) | Piece::FirstEnd(index) | Piece::SecondEnd(index) => {
             let wall = walls(drawn)[index];
-            let mut layers = vec![Layer::Segments {
-                segments: vec![wall],
-                stroke: Stroke::Solid,
-                tone: Tone::Ink,
-                width_px: 5.0,
-            }];
+            let mut layers = vec![Layer::segments(vec![wall], Stroke::Solid, Tone::Ink, 5.0)];
             let ends = [Piece::FirstEnd(index), Piece::SecondEnd(index)];
             for (end, at) in ends.into_iter().zip(wall) {
                 if piece == end || matches!(piece, Piece::Wall(_)) {

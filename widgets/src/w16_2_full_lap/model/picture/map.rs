@@ -114,15 +114,15 @@ pub fn shown_bounds(moment: &Moment) -> Bounds {
 /// The walls as they are drawn, also before the lap has followed.
 fn walls(moment: &Moment) -> Layer {
     let ends = |wall: &Wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]];
-    Layer::Segments {
-        segments: match &moment.drawn {
+    Layer::segments(
+        match &moment.drawn {
             Some(drawn) => flat::walls(drawn),
             None => moment.runs.world().walls().iter().map(ends).collect(),
         },
-        stroke: Stroke::Solid,
-        tone: Tone::Ink,
-        width_px: 1.0,
-    }
+        Stroke::Solid,
+        Tone::Ink,
+        1.0,
+    )
 }
 
 /// In the middle of each room, where no sweep has points.
@@ -158,11 +158,13 @@ fn map_points(moment: &Moment) -> [Layer; 2] {
 
 fn paths(moment: &Moment) -> [Layer; 3] {
     let until = 0..=moment.tick;
-    let path = |pose_at: &dyn Fn(usize) -> SE2, stroke, tone| Layer::Line {
-        points: until.clone().map(|tick| xy(&pose_at(tick))).collect(),
-        stroke,
-        tone,
-        width_px: 1.75,
+    let path = |pose_at: &dyn Fn(usize) -> SE2, stroke, tone| {
+        Layer::line(
+            until.clone().map(|tick| xy(&pose_at(tick))).collect(),
+            stroke,
+            tone,
+            1.75,
+        )
     };
     [
         path(&|tick| moment.runs.truth(tick), Stroke::Dashed, Tone::Truth),
@@ -203,12 +205,7 @@ pub fn loop_mark(moment: &Moment, attempt: &LoopAttempt) -> [f64; 2] {
 fn loop_layers(attempt: &LoopAttempt, arc: Vec<[f64; 2]>, top: [f64; 2]) -> [Layer; 2] {
     let look = LoopLook::of(attempt);
     [
-        Layer::Line {
-            points: arc,
-            stroke: look.stroke,
-            tone: look.tone,
-            width_px: 2.5,
-        },
+        Layer::line(arc, look.stroke, look.tone, 2.5),
         Layer::points(vec![top], look.mark, look.tone, 4.5),
     ]
 }
@@ -222,12 +219,12 @@ fn history(moment: &Moment) -> Vec<Layer> {
     let old: Vec<_> = moment.old_nodes.iter().map(xy).collect();
     let moved = old.iter().zip(moment.nodes.iter().map(xy));
     vec![
-        Layer::Segments {
-            segments: moved.flat_map(|(old, new)| arrow(*old, new)).collect(),
-            stroke: Stroke::Solid,
-            tone: Tone::Prior,
-            width_px: 1.5,
-        },
+        Layer::segments(
+            moved.flat_map(|(old, new)| arrow(*old, new)).collect(),
+            Stroke::Solid,
+            Tone::Prior,
+            1.5,
+        ),
         Layer::points(old, Mark::Circle, Tone::Prior, 3.5),
     ]
 }

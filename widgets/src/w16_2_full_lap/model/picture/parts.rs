@@ -34,11 +34,8 @@ pub fn edges(moment: &Moment) -> Vec<Layer> {
     let layers = widths.into_iter().zip(WIDTHS);
     layers
         .filter(|(segments, _)| !segments.is_empty())
-        .map(|(segments, (_, width_px))| Layer::Segments {
-            segments,
-            stroke: Stroke::Solid,
-            tone: Tone::Posterior,
-            width_px,
+        .map(|(segments, (_, width_px))| {
+            Layer::segments(segments, Stroke::Solid, Tone::Posterior, width_px)
         })
         .collect()
 }
@@ -67,12 +64,7 @@ pub fn looked_at(moment: &Moment) -> Vec<Layer> {
 
 fn part_layers(moment: &Moment, part: Part, is_picked: bool) -> Vec<Layer> {
     let mut layers = Vec::new();
-    let line = |points| Layer::Line {
-        points,
-        stroke: Stroke::Solid,
-        tone: Tone::Ink,
-        width_px: 3.0,
-    };
+    let line = |points| Layer::line(points, Stroke::Solid, Tone::Ink, 3.0);
     let at = match find(moment, part) {
         Some(Found::Keyframe(node)) => {
             let at = xy(&moment.nodes[node]);
@@ -115,12 +107,7 @@ pub fn own(moment: &Moment) -> Vec<Layer> {
     let top = arc[arc.len() / 2];
     let name = format!("your loop {}", ends(&own.attempt));
     vec![
-        Layer::Line {
-            points: arc,
-            stroke: look.stroke,
-            tone: look.tone,
-            width_px: 4.0,
-        },
+        Layer::line(arc, look.stroke, look.tone, 4.0),
         Layer::points(vec![top], look.mark, look.tone, 6.0),
         Layer::label(top, name, CLEAR_PX),
     ]

@@ -113,12 +113,12 @@ pub fn gate(moment: &Moment) -> Panel {
     };
     let mut layers = vec![
         chart.now_line(y.max),
-        Layer::Line {
-            points: vec![[0.0, gate], [runs.ticks() as f64 + ROOM_TICKS, gate]],
-            stroke: Stroke::Dotted,
-            tone: Tone::Ink,
-            width_px: 1.5,
-        },
+        Layer::line(
+            vec![[0.0, gate], [runs.ticks() as f64 + ROOM_TICKS, gate]],
+            Stroke::Dotted,
+            Tone::Ink,
+            1.5,
+        ),
         look(&LoopLook::ACCEPTED, of(true)),
         look(&LoopLook::REFUSED, of(false)),
     ];

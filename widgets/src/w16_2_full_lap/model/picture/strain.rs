@@ -52,19 +52,9 @@ pub fn strain(moment: &Moment) -> Panel {
     let loops = marks(&now, EdgeKind::Loop);
     let look = &LoopLook::ACCEPTED;
     let mut layers = vec![
-        Layer::Segments {
-            segments: stems(&odometry),
-            stroke: Stroke::Solid,
-            tone: Tone::Posterior,
-            width_px: 1.5,
-        },
+        Layer::segments(stems(&odometry), Stroke::Solid, Tone::Posterior, 1.5),
         Layer::points(odometry, Mark::Square, Tone::Posterior, 2.5),
-        Layer::Segments {
-            segments: stems(&loops),
-            stroke: look.stroke,
-            tone: look.tone,
-            width_px: 1.5,
-        },
+        Layer::segments(stems(&loops), look.stroke, look.tone, 1.5),
         Layer::points(loops, look.mark, look.tone, 4.5),
     ];
     let mut legend = vec![

@@ -104,14 +104,8 @@ fn cross_hair([x, y]: [f64; 2], stroke: Stroke) -> [Layer; 2] {
         [[-HALF_SPAN_M, y], [HALF_SPAN_M, y]],
         [[x, -HALF_SPAN_M], [x, HALF_SPAN_M]],
     ];
-    [(Tone::Paper, Stroke::Solid, 3.0), (Tone::Ink, stroke, 1.0)].map(|(tone, stroke, width_px)| {
-        Layer::Segments {
-            segments: segments.clone(),
-            stroke,
-            tone,
-            width_px,
-        }
-    })
+    [(Tone::Paper, Stroke::Solid, 3.0), (Tone::Ink, stroke, 1.0)]
+        .map(|(tone, stroke, width_px)| Layer::segments(segments.clone(), stroke, tone, width_px))
 }
 
 /// A mark on a slightly larger one of paper.
@@ -130,10 +124,5 @@ fn haloed_line(points: &[[f64; 2]], stroke: Stroke) -> [Layer; 2] {
         (Tone::Paper, Stroke::Solid, 4.0),
         (Tone::Posterior, stroke, 2.0),
     ]
-    .map(|(tone, stroke, width_px)| Layer::Line {
-        points: points.to_vec(),
-        stroke,
-        tone,
-        width_px,
-    })
+    .map(|(tone, stroke, width_px)| Layer::line(points.to_vec(), stroke, tone, width_px))
 }

@@ -28,12 +28,8 @@ pub fn pairs(terrains: &Terrains, moment: Moment) -> Panel {
         next,
         points,
     } = terrains.pairing_at(moment.looked_m());
-    let segments = |segments, stroke, tone, width_px| Layer::Segments {
-        segments,
-        stroke,
-        tone,
-        width_px,
-    };
+    let segments =
+        |segments, stroke, tone, width_px| Layer::segments(segments, stroke, tone, width_px);
     let mut layers = vec![
         segments(pairs, Stroke::Solid, Tone::Ink, 0.75),
         map_points(terrains),
@@ -77,12 +73,12 @@ pub fn pairs(terrains: &Terrains, moment: Moment) -> Panel {
 pub fn bells(terrains: &Terrains, moment: Moment) -> Panel {
     let bells = terrains.bells();
     let mut layers = vec![
-        Layer::Segments {
-            segments: bells.iter().flat_map(|bell| edges(bell.cell_m)).collect(),
-            stroke: Stroke::Solid,
-            tone: Tone::Faint,
-            width_px: 1.0,
-        },
+        Layer::segments(
+            bells.iter().flat_map(|bell| edges(bell.cell_m)).collect(),
+            Stroke::Solid,
+            Tone::Faint,
+            1.0,
+        ),
         sweep(terrains, moment),
     ];
     layers.extend(bells.iter().flat_map(|bell| {

@@ -64,12 +64,8 @@ pub fn slice(terrains: &Terrains, moment: Moment, measure: Measure, along: Along
     let (low, high) = (low.min(high), low.max(high).max(LEAST_SPAN));
     let margin = 0.05 * (high - low);
     let (min, max) = (low - margin, high + margin);
-    let upright = |at: f64, stroke, tone| Layer::Segments {
-        segments: vec![[[at, min], [at, max]]],
-        stroke,
-        tone,
-        width_px: 1.5,
-    };
+    let upright =
+        |at: f64, stroke, tone| Layer::segments(vec![[[at, min], [at, max]]], stroke, tone, 1.5);
     Panel {
         id: match (measure, along) {
             (Measure::Icp, Along::X) => "icp-x",
@@ -85,12 +81,7 @@ pub fn slice(terrains: &Terrains, moment: Moment, measure: Measure, along: Along
         layers: vec![
             upright(0.0, Stroke::Dashed, Tone::Truth),
             upright(here, Stroke::Dotted, Tone::Prior),
-            Layer::Line {
-                points: curve,
-                stroke: Stroke::Solid,
-                tone: Tone::Ink,
-                width_px: 2.0,
-            },
+            Layer::line(curve, Stroke::Solid, Tone::Ink, 2.0),
         ],
         legend: vec![
             LegendEntry::line("truth", Tone::Truth, Stroke::Dashed),

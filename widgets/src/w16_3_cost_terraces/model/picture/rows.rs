@@ -23,12 +23,7 @@ pub fn panel(terrains: &Terrains) -> Panel {
         .iter()
         .map(|row| [row.point.into(), (row.point + row.normal * NORMAL_M).into()])
         .collect();
-    let lines = |segments, tone, width_px| Layer::Segments {
-        segments,
-        stroke: Stroke::Solid,
-        tone,
-        width_px,
-    };
+    let lines = |segments, tone, width_px| Layer::segments(segments, Stroke::Solid, tone, width_px);
     let last: Vec<_> = normals.last().copied().into_iter().collect();
     let ends = last.iter().map(|[from, _]| *from).collect();
     let null = know.null.map(|null| arrow(center, [null.x, null.y]));

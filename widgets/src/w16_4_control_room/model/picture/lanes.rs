@@ -199,12 +199,12 @@ pub fn data(report: &TickReport) -> impl Iterator<Item = (&'static str, String)>
 pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
     let last = record.ticks() as f64;
     let names = LANES.iter().enumerate();
-    let mut layers = vec![Layer::Line {
-        points: vec![[now as f64, 0.4], [now as f64, height(0) + 0.9]],
-        stroke: Stroke::Solid,
-        tone: Tone::Faint,
-        width_px: 2.0,
-    }];
+    let mut layers = vec![Layer::line(
+        vec![[now as f64, 0.4], [now as f64, height(0) + 0.9]],
+        Stroke::Solid,
+        Tone::Faint,
+        2.0,
+    )];
     layers.extend([
         Layer::points(
             done(record, now, Done::Well),

@@ -23,19 +23,10 @@ pub fn panel(window: &WholeWindow) -> Panel {
         let just = |until: usize| until <= step && until + SEEN_FALLING > step;
         seen.fate == Some(BoxFate::Pruned) && seen.until.is_some_and(just)
     });
-    let segments = |segments: Vec<_>, tone, width_px| Layer::Segments {
-        segments,
-        stroke: Stroke::Solid,
-        tone,
-        width_px,
-    };
+    let segments =
+        |segments: Vec<_>, tone, width_px| Layer::segments(segments, Stroke::Solid, tone, width_px);
     let mut layers = vec![
-        Layer::Line {
-            points: surface(window),
-            stroke: Stroke::Solid,
-            tone: Tone::Ink,
-            width_px: 1.5,
-        },
+        Layer::line(surface(window), Stroke::Solid, Tone::Ink, 1.5),
         segments(dropped.map(bar).collect(), Tone::Truth, 1.5),
         segments(waiting.map(bar).collect(), Tone::Prediction, 2.5),
     ];
@@ -43,11 +34,13 @@ pub fn panel(window: &WholeWindow) -> Panel {
         let taken = vec![bar(&search.boxes()[taken])];
         layers.push(segments(taken, Tone::Posterior, 5.0));
     }
-    let level = |score: f64, tone| Layer::Line {
-        points: vec![[-180.0, score], [180.0, score]],
-        stroke: Stroke::Dotted,
-        tone,
-        width_px: 1.75,
+    let level = |score: f64, tone| {
+        Layer::line(
+            vec![[-180.0, score], [180.0, score]],
+            Stroke::Dotted,
+            tone,
+            1.75,
+        )
     };
     layers.extend(moment.best.map(|best| level(best.score, Tone::Posterior)));
     layers.extend(
@@ -115,12 +108,7 @@ pub fn gap(window: &WholeWindow) -> Panel {
         bounds.push(at(moment.bound));
         best.push(at(moment.best.map(|best| best.score)));
     }
-    let line = |points, tone| Layer::Line {
-        points,
-        stroke: Stroke::Solid,
-        tone,
-        width_px: 1.75,
-    };
+    let line = |points, tone| Layer::line(points, Stroke::Solid, tone, 1.75);
     let now = window.step() as f64;
     Panel {
         id: panel::GAP,
@@ -130,12 +118,12 @@ pub fn gap(window: &WholeWindow) -> Panel {
         x: Axis::new("boxes taken up", 0.0, last.max(1) as f64),
         y: Axis::new("score", 0.0, 1.04),
         layers: vec![
-            Layer::Line {
-                points: vec![[now, 0.0], [now, 1.04]],
-                stroke: Stroke::Solid,
-                tone: Tone::Faint,
-                width_px: 2.0,
-            },
+            Layer::line(
+                vec![[now, 0.0], [now, 1.04]],
+                Stroke::Solid,
+                Tone::Faint,
+                2.0,
+            ),
             line(bounds, Tone::Prediction),
             line(best, Tone::Posterior),
         ],

@@ -78,12 +78,7 @@ fn boxes<'a>(boxes: impl Iterator<Item = &'a PoseBox>, tone: Tone, width_px: f32
             [f64::NAN; 2],
         ]);
     }
-    Layer::Line {
-        points,
-        stroke: Stroke::Solid,
-        tone,
-        width_px,
-    }
+    Layer::line(points, Stroke::Solid, tone, width_px)
 }
 
 /// Paper where nothing fits, ink where all does.

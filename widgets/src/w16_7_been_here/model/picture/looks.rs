@@ -41,12 +41,8 @@ fn histograms(old: &RangeHistogram, new: &RangeHistogram, max_range_m: f64) -> P
         bins.flat_map(|(k, share)| [[k as f64 * width, *share], [(k + 1) as f64 * width, *share]])
             .collect()
     };
-    let line = |histogram, tone, width_px| Layer::Line {
-        points: steps(histogram),
-        stroke: Stroke::Solid,
-        tone,
-        width_px,
-    };
+    let line =
+        |histogram, tone, width_px| Layer::line(steps(histogram), Stroke::Solid, tone, width_px);
     Panel {
         id: panel::LOOKS,
         title: format!("Histograms of ranges: χ² distance {:.3}", old.distance(new)),
