@@ -13,12 +13,12 @@ macro_rules! widgets {
 
         /// How the model of each widget is made, in the order of [`SPECS`].
         pub const MODELS: [fn() -> Box<dyn Model>; SPECS.len()] =
-            [$(|| Box::new(crate::$module::model::$model::new())),*];
+            [$(|| Box::new(crate::$module::model::$model::default())),*];
 
         /// How each widget is made, ready to be drawn, in the order of [`SPECS`].
         #[cfg(feature = "view")]
         pub const SHELLS: [fn() -> Shell; SPECS.len()] = [$(|| {
-            let model = crate::$module::model::$model::new();
+            let model = crate::$module::model::$model::default();
             Shell::new(Box::new(model), Box::new(crate::$module::view::$view))
         }),*];
     };

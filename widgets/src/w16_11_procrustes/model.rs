@@ -43,15 +43,8 @@ pub struct ProcrustesTrace {
 }
 
 impl Default for ProcrustesTrace {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl ProcrustesTrace {
     /// Four corners, seen twice.
-    #[must_use]
-    pub fn new() -> Self {
+    fn default() -> Self {
         let values = Values::defaults(PARAMS);
         let pairs = settings::pairs(&values);
         Self {
@@ -61,7 +54,9 @@ impl ProcrustesTrace {
             played: Played::along("turn"),
         }
     }
+}
 
+impl ProcrustesTrace {
     fn follow(&mut self) {
         self.pairs = settings::pairs(&self.values);
         self.problem = Procrustes::new(&self.pairs.source, &self.pairs.target);

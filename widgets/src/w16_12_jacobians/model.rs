@@ -67,15 +67,8 @@ impl Solved {
 }
 
 impl Default for WrongJacobians {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl WrongJacobians {
     /// A ring that contradicts itself by 6° an edge, at the end of all four.
-    #[must_use]
-    pub fn new() -> Self {
+    fn default() -> Self {
         let values = Values::defaults(PARAMS);
         Self {
             solved: Solved::new(&values),
@@ -83,7 +76,9 @@ impl WrongJacobians {
             played: Played::along("steps"),
         }
     }
+}
 
+impl WrongJacobians {
     /// Steps of the longest way.
     fn last(&self) -> usize {
         let lasts = self.solved.runs.iter().map(Descent::steps);

@@ -81,15 +81,8 @@ struct Run {
 }
 
 impl Default for BasinExplorer {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl BasinExplorer {
     /// The widget with every setting at its default.
-    #[must_use]
-    pub fn new() -> Self {
+    fn default() -> Self {
         let values = Values::defaults(PARAMS);
         let scene = settings::scene(&values);
         let mut workspace = IcpWorkspace::new();
@@ -114,7 +107,9 @@ impl BasinExplorer {
         explorer.register();
         explorer
     }
+}
 
+impl BasinExplorer {
     /// Registers from the current start, in both variants.
     fn register(&mut self) {
         let start = start(&self.values);

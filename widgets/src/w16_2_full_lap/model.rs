@@ -69,18 +69,11 @@ pub struct FullLap {
 }
 
 impl Default for FullLap {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl FullLap {
     /// The chapter's run, at its first loop.
     ///
     /// # Panics
     /// Never: a lap that was asked for ends.
-    #[must_use]
-    pub fn new() -> Self {
+    fn default() -> Self {
         let values = Values::defaults(SPEC.params);
         let mut laps = NewestLap::new();
         let config = LapSettings::read(&values).config(None);
@@ -99,7 +92,9 @@ impl FullLap {
             hovered: None,
         }
     }
+}
 
+impl FullLap {
     /// The moment shown: that of the lap which is shown, however late the one is that was asked for.
     fn tick(&self) -> usize {
         (self.values.get(&TICK) as usize).min(self.runs.ticks())

@@ -45,15 +45,8 @@ pub struct CostTerraces {
 }
 
 impl Default for CostTerraces {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl CostTerraces {
     /// The widget with every parameter at its default.
-    #[must_use]
-    pub fn new() -> Self {
+    fn default() -> Self {
         let values = Values::defaults(PARAMS);
         let terrains = Terrains::new(Settings::read(&values));
         Self {
@@ -64,7 +57,9 @@ impl CostTerraces {
             hover_m: None,
         }
     }
+}
 
+impl CostTerraces {
     fn settings(&self) -> Settings {
         Settings::read(&self.values)
     }

@@ -51,18 +51,11 @@ pub struct ControlRoom {
 }
 
 impl Default for ControlRoom {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl ControlRoom {
     /// The chapter's run on its way out.
     ///
     /// # Panics
     /// Never: a lap that was asked for ends.
-    #[must_use]
-    pub fn new() -> Self {
+    fn default() -> Self {
         let values = Values::defaults(SPEC.params);
         let mut laps = NewestLap::new();
         laps.ask(config(&values));
@@ -82,7 +75,9 @@ impl ControlRoom {
         room.show();
         room
     }
+}
 
+impl ControlRoom {
     fn tick(&self) -> usize {
         self.values.get(&TICK) as usize
     }

@@ -43,15 +43,8 @@ pub struct PoseGraphToy {
 }
 
 impl Default for PoseGraphToy {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl PoseGraphToy {
     /// The chapter's three poses, before the first step.
-    #[must_use]
-    pub fn new() -> Self {
+    fn default() -> Self {
         let values = Values::defaults(PARAMS);
         Self {
             course: Course::new(settings::graph(&values)),
@@ -59,7 +52,9 @@ impl PoseGraphToy {
             played: Played::along("steps"),
         }
     }
+}
 
+impl PoseGraphToy {
     fn solve(&mut self) {
         self.course = Course::new(settings::graph(&self.values));
     }

@@ -56,15 +56,8 @@ pub struct WholeWindow {
 }
 
 impl Default for WholeWindow {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl WholeWindow {
     /// The start from which ICP fails, before the search.
-    #[must_use]
-    pub fn new() -> Self {
+    fn default() -> Self {
         let values = Values::defaults(PARAMS);
         let scene = BasinScene::with_seed(values.get(&SEED));
         let mut workspace = IcpWorkspace::new();
@@ -77,7 +70,9 @@ impl WholeWindow {
             searches: 1,
         }
     }
+}
 
+impl WholeWindow {
     fn start_over(&mut self) {
         let config = settings::config(&self.values);
         self.hunt = Hunt::new(&self.scene, config, &mut self.workspace);

@@ -53,15 +53,8 @@ pub struct BeenHere {
 }
 
 impl Default for BeenHere {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl BeenHere {
     /// The chapter's lap, not yet driven.
-    #[must_use]
-    pub fn new() -> Self {
+    fn default() -> Self {
         let values = Values::defaults(PARAMS);
         let config = settings::config(&values);
         Self {
@@ -73,7 +66,9 @@ impl BeenHere {
             laps: 0,
         }
     }
+}
 
+impl BeenHere {
     /// Drives anew where the settings ask for another lap.
     fn follow(&mut self) {
         let config = settings::config(&self.values);

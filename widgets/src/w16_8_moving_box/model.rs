@@ -50,15 +50,8 @@ pub struct MovingBox {
 }
 
 impl Default for MovingBox {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl MovingBox {
     /// A fifth of the points on the box.
-    #[must_use]
-    pub fn new() -> Self {
+    fn default() -> Self {
         let values = Values::defaults(PARAMS);
         let mut workspace = IcpWorkspace::new();
         let (config, methods) = (settings::config(&values), settings::methods(&values));
@@ -72,7 +65,9 @@ impl MovingBox {
             scene,
         }
     }
+}
 
+impl MovingBox {
     fn follow(&mut self) {
         let (config, methods) = (
             settings::config(&self.values),

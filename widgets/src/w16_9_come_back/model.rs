@@ -47,15 +47,8 @@ pub struct ComeBack {
 }
 
 impl Default for ComeBack {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl ComeBack {
     /// The default start, before the map is driven.
-    #[must_use]
-    pub fn new() -> Self {
+    fn default() -> Self {
         let values = Values::defaults(PARAMS);
         Self {
             work: Some(Work::map(&values)),
@@ -65,7 +58,9 @@ impl ComeBack {
             values,
         }
     }
+}
 
+impl ComeBack {
     /// Drives another map, or switches the robot on elsewhere on the one that is known.
     fn follow(&mut self) {
         let known = self

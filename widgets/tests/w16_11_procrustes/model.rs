@@ -10,7 +10,7 @@ use widgets::w16_11_procrustes::spec::{SPEC, WHOLE_TURN_DEG};
 use crate::support::fact;
 
 fn with(values: &[(&str, f64)]) -> ProcrustesTrace {
-    let mut trace = ProcrustesTrace::new();
+    let mut trace = ProcrustesTrace::default();
     for (id, value) in values {
         trace.set(id, *value).unwrap();
     }
@@ -25,7 +25,7 @@ fn title(trace: &ProcrustesTrace, id: &str) -> String {
 
 #[test]
 fn four_corners_are_turned_and_the_trace_has_its_top_at_the_alignment() {
-    let mut trace = ProcrustesTrace::new();
+    let mut trace = ProcrustesTrace::default();
     assert_eq!(trace.outcome().verdict, "a turn fits best");
     let bound = fact(&trace, "bound_m2");
     assert!((fact(&trace, "turn_trace_m2") - bound).abs() < 1e-12);
@@ -71,7 +71,7 @@ fn the_two_maps_are_one_where_a_turn_fits_best_and_mirror_images_else() {
     let both = |trace: &ProcrustesTrace| {
         [panel::MAP_TURN, panel::MAP_UNCHECKED].map(|id| walls(trace, id))
     };
-    let [turned, unchecked] = both(&ProcrustesTrace::new());
+    let [turned, unchecked] = both(&ProcrustesTrace::default());
     assert_eq!(turned, unchecked);
     // The first two walls span a parallelogram whose sign is the handedness.
     let sign = |walls: &[[[f64; 2]; 2]]| {
@@ -85,7 +85,7 @@ fn the_two_maps_are_one_where_a_turn_fits_best_and_mirror_images_else() {
 
 #[test]
 fn a_point_of_the_target_is_dragged_and_the_answer_follows() {
-    let mut trace = ProcrustesTrace::new();
+    let mut trace = ProcrustesTrace::default();
     let seen = Pairs::seen(Shape::Corners, 1).target;
     let at = |p: Point2<f64>| [p.x, p.y];
     let before = fact(&trace, "aligned_deg");
@@ -132,7 +132,7 @@ fn the_angle_is_dragged_along_the_trace() {
 
 #[test]
 fn playing_goes_once_around_and_ends() {
-    let mut trace = ProcrustesTrace::new();
+    let mut trace = ProcrustesTrace::default();
     trace.press("play").unwrap();
     let mut frames = 0;
     while trace.advance(0.1) == Activity::Busy {
@@ -149,7 +149,7 @@ fn playing_goes_once_around_and_ends() {
 #[test]
 fn every_preset_does_what_its_button_says() {
     let verdict = |id: &str| {
-        let mut trace = ProcrustesTrace::new();
+        let mut trace = ProcrustesTrace::default();
         trace.press(id).unwrap();
         trace.outcome().verdict
     };

@@ -9,7 +9,7 @@ use widgets::w16_12_jacobians::spec::{MOST_STEPS, SPEC};
 use crate::support::fact;
 
 fn with(values: &[(&str, f64)]) -> WrongJacobians {
-    let mut widget = WrongJacobians::new();
+    let mut widget = WrongJacobians::default();
     for (id, value) in values {
         widget.set(id, *value).unwrap();
     }
@@ -51,7 +51,7 @@ fn where_measurements_agree_all_four_end_alike() {
 
 #[test]
 fn each_curve_ends_where_the_table_says() {
-    let widget = WrongJacobians::new();
+    let widget = WrongJacobians::default();
     let panels = widget.scene().panels;
     let curve = panels
         .iter()
@@ -96,7 +96,7 @@ fn the_step_is_dragged_along_the_curves() {
 #[test]
 fn every_preset_does_what_its_button_says() {
     let after = |id: &str| {
-        let mut widget = WrongJacobians::new();
+        let mut widget = WrongJacobians::default();
         widget.press(id).unwrap();
         widget
     };

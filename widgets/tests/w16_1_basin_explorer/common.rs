@@ -7,7 +7,7 @@ use widgets::w16_1_basin_explorer::model::BasinExplorer;
 use crate::support::panel_of;
 
 pub fn with(values: &[(&str, f64)]) -> BasinExplorer {
-    let mut model = BasinExplorer::new();
+    let mut model = BasinExplorer::default();
     for (id, value) in values {
         model.set(id, *value).expect("a value of the range");
     }

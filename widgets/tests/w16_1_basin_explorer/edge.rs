@@ -8,7 +8,7 @@ use crate::support::{fact, panel_of};
 use crate::w16_1_basin_explorer::common::with;
 
 fn asked() -> BasinExplorer {
-    let mut model = BasinExplorer::new();
+    let mut model = BasinExplorer::default();
     model.press("mark-edge").unwrap();
     model
 }
@@ -120,7 +120,7 @@ fn without_the_question_nothing_is_marked_and_the_defaults_end_it() {
     let mut model = swept([30.0, 40.0]);
     model.press("defaults").unwrap();
     assert_eq!(model.values().number("edge"), 0.0);
-    let before = BasinExplorer::new().outcome();
+    let before = BasinExplorer::default().outcome();
     assert_eq!(model.outcome(), before);
     assert_eq!(with(&[("edge-p2p", 30.0)]).outcome(), before);
 }

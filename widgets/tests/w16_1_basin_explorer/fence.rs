@@ -43,7 +43,7 @@ fn one_post_off_fits_as_well_as_home() {
 
 #[test]
 fn the_preset_sets_the_fence_and_defaults_lead_back_to_the_room() {
-    let mut model = BasinExplorer::new();
+    let mut model = BasinExplorer::default();
     let room = model.summary();
     model.press("fence").unwrap();
     assert_eq!(model.outcome().verdict, "one post off");

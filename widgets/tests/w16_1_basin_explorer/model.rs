@@ -67,7 +67,7 @@ fn the_verdicts_are_those_of_the_reference_runs() {
 
 #[test]
 fn the_chapters_seed_is_the_default_one() {
-    let default = BasinExplorer::new();
+    let default = BasinExplorer::default();
     let typed = with(&[("seed", 8.0), ("seed", f64::from(0x1C9))]);
     assert_eq!(default.outcome(), typed.outcome());
     assert_ne!(default.outcome(), with(&[("seed", 8.0)]).outcome());
@@ -144,7 +144,7 @@ fn drags_far_outside_stay_within_the_ranges() {
 
 #[test]
 fn a_press_on_a_basin_map_starts_there_with_that_variant() {
-    let mut model = BasinExplorer::new();
+    let mut model = BasinExplorer::default();
     let handle = model
         .grab(panel::PLANE, [90.0, -1.0], [1.0, 1.0])
         .expect("every spot is a start");
@@ -200,7 +200,7 @@ fn a_basin_map_says_what_a_run_from_that_spot_says() {
 
 #[test]
 fn basin_maps_fill_in_small_pieces_and_only_start_over_when_they_must() {
-    let mut model = BasinExplorer::new();
+    let mut model = BasinExplorer::default();
     let pieces = fill(&mut model);
     assert!(pieces > 2000, "pieces must be small: {pieces}");
     for (id, value) in [
@@ -233,7 +233,7 @@ fn basin_maps_fill_in_small_pieces_and_only_start_over_when_they_must() {
 
 #[test]
 fn a_picture_is_uploaded_again_only_when_it_changed() {
-    let mut model = BasinExplorer::new();
+    let mut model = BasinExplorer::default();
     let revision = |model: &BasinExplorer| {
         let panel = panel_of(model, panel::POINT);
         panel.layers.iter().find_map(|layer| match layer {
@@ -268,7 +268,7 @@ fn dragging_a_slider_keeps_the_place_on_the_timeline() {
 
 #[test]
 fn tables_hold_every_iteration_and_every_start() {
-    let mut model = BasinExplorer::new();
+    let mut model = BasinExplorer::default();
     fill(&mut model);
     let tables = model.tables();
     let rows = |id: &str| {

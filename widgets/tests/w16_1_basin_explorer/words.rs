@@ -32,7 +32,7 @@ fn home_is_the_place_and_the_heading_and_the_sentence_says_which_one_is_missing(
 
 #[test]
 fn it_opens_before_anything_is_solved() {
-    let model = BasinExplorer::new();
+    let model = BasinExplorer::default();
     assert_eq!(model.values().number("iteration"), 0.0);
     assert!(!shows_the_end(&model));
 }
@@ -81,7 +81,7 @@ fn every_preset_does_what_its_button_says() {
         ("fence", "one post off", Standing::Bad),
         ("short-sighted", "another false minimum", Standing::Bad),
     ] {
-        let mut model = BasinExplorer::new();
+        let mut model = BasinExplorer::default();
         model.press(id).expect("a preset of the widget");
         assert_eq!(
             model.values().number("iteration"),
@@ -149,13 +149,13 @@ fn shows_the_end(model: &BasinExplorer) -> bool {
 #[test]
 fn moving_the_start_shows_where_it_leads_and_playing_hides_it_again() {
     for (id, value) in [("heading", 60.0), ("dx", -0.3), ("dy", 0.2)] {
-        let mut model = BasinExplorer::new();
+        let mut model = BasinExplorer::default();
         model.set(id, value).unwrap();
         assert!(shows_the_end(&model), "{id}");
         model.press("play").unwrap();
         assert!(!shows_the_end(&model), "{id}");
     }
-    let mut model = BasinExplorer::new();
+    let mut model = BasinExplorer::default();
     let sensor = [0.5 + 0.55, -0.35 + 0.45];
     let held = model.grab(panel::SWEEPS, sensor, [0.05, 0.05]).unwrap();
     model.drag(held, [0.2, 0.1]);
@@ -246,7 +246,7 @@ fn iterations(model: &BasinExplorer) -> Vec<Vec<f64>> {
 
 #[test]
 fn a_short_sighted_tau_leaves_most_points_without_a_pair() {
-    let mut model = BasinExplorer::new();
+    let mut model = BasinExplorer::default();
     model.press("short-sighted").unwrap();
     let rows = iterations(&model);
     // Columns: iteration, pairs, rmse, error, x, y; of 155 points.

@@ -7,7 +7,7 @@ use widgets::w16_3_cost_terraces::model::CostTerraces;
 use crate::support::{fact, panel_of as panel};
 
 fn with(settings: &[(&str, f64)]) -> CostTerraces {
-    let mut model = CostTerraces::new();
+    let mut model = CostTerraces::default();
     for (id, value) in settings {
         model.set(id, *value).unwrap();
     }
@@ -15,7 +15,7 @@ fn with(settings: &[(&str, f64)]) -> CostTerraces {
 }
 
 fn preset(id: &str) -> CostTerraces {
-    let mut model = CostTerraces::new();
+    let mut model = CostTerraces::default();
     let preset = model.spec().presets.iter().find(|preset| preset.id == id);
     apply_preset(&mut model, preset.unwrap()).unwrap();
     model
@@ -98,7 +98,7 @@ fn the_loosest_direction_of_the_corridor_is_along_its_walls() {
     let share = |model: &dyn Model| {
         fact(model, "information_loose_per_cm2") / fact(model, "information_firm_per_cm2")
     };
-    let room = CostTerraces::new();
+    let room = CostTerraces::default();
     assert!(share(&corridor) < 0.01, "corridor {}", share(&corridor));
     assert!(share(&room) > 0.5, "room {}", share(&room));
     // The chapter: the corridor's point-to-plane matrix has rank 2.
@@ -177,7 +177,7 @@ fn a_wide_tau_brings_home_what_ndt_loses() {
 
 #[test]
 fn a_turned_sweep_has_no_shift_without_cost() {
-    let (straight, turned) = (CostTerraces::new(), preset("turned"));
+    let (straight, turned) = (CostTerraces::default(), preset("turned"));
     assert_eq!(raster_low(&straight), 0.0);
     assert!(raster_low(&turned) > 0.0);
     assert_eq!(fact(&straight, "ndt_lowest_m"), 0.0);
@@ -209,7 +209,7 @@ fn a_parameter_recomputes_what_depends_on_it_and_nothing_else() {
         ("scene", 1.0, [true, true]),
         ("seed", 7.0, [true, true]),
     ] {
-        let mut model = CostTerraces::new();
+        let mut model = CostTerraces::default();
         let before = revisions(&model);
         model.set(id, value).unwrap();
         let after = revisions(&model);
@@ -242,7 +242,7 @@ fn the_order_of_the_settings_does_not_matter() {
 
 #[test]
 fn defaults_bring_back_the_first_picture() {
-    let fresh = CostTerraces::new();
+    let fresh = CostTerraces::default();
     for preset in fresh.spec().presets {
         let mut model = self::preset(preset.id);
         model.press("defaults").unwrap();
@@ -254,7 +254,7 @@ fn defaults_bring_back_the_first_picture() {
 
 #[test]
 fn a_dropped_ball_plays_to_its_rest_and_stops() {
-    let mut model = CostTerraces::new();
+    let mut model = CostTerraces::default();
     model.press("drop").unwrap();
     assert!(model.timeline().unwrap().playing);
     let mut frames = 0;
@@ -273,7 +273,7 @@ fn a_dropped_ball_plays_to_its_rest_and_stops() {
 
 #[test]
 fn with_reduced_motion_the_balls_are_at_rest_at_once() {
-    let mut model = CostTerraces::new();
+    let mut model = CostTerraces::default();
     model.set_motion(Motion::Reduced);
     model.press("drop").unwrap();
     assert_eq!(model.advance(1.0), Activity::Idle);
@@ -282,7 +282,7 @@ fn with_reduced_motion_the_balls_are_at_rest_at_once() {
 
 #[test]
 fn a_ball_never_climbs() {
-    for preset in CostTerraces::new().spec().presets {
+    for preset in CostTerraces::default().spec().presets {
         let (id, model) = (preset.id, self::preset(preset.id));
         for ball in ["icp-ball", "ndt-ball"] {
             let tables = model.tables();
@@ -302,7 +302,7 @@ fn a_ball_never_climbs() {
 
 #[test]
 fn a_press_on_either_map_puts_the_cross_hair_there() {
-    let mut model = CostTerraces::new();
+    let mut model = CostTerraces::default();
     for panel in ["icp", "ndt"] {
         let handle = model.grab(panel, [-0.5, 0.25], [0.1, 0.1]).unwrap();
         model.drag(handle, [-0.5, 0.25]);
@@ -318,11 +318,11 @@ fn a_press_on_either_map_puts_the_cross_hair_there() {
 
 #[test]
 fn the_extremes_of_every_parameter_have_every_figure_and_a_cell_on_the_truth() {
-    let fresh = CostTerraces::new();
+    let fresh = CostTerraces::default();
     for (spec, _) in fresh.values().iter() {
         let (min, max) = spec.range();
         for value in [min, max] {
-            let mut model = CostTerraces::new();
+            let mut model = CostTerraces::default();
             model.set(spec.id, value).unwrap();
             model.settle();
             let outcome = model.outcome();
@@ -349,7 +349,7 @@ fn every_value_of_cells_keeps_a_cell_on_the_truth() {
 
 #[test]
 fn the_pointer_over_one_map_reads_both() {
-    let mut model = CostTerraces::new();
+    let mut model = CostTerraces::default();
     let titles = |model: &CostTerraces| {
         let panels = model.scene().panels;
         ["icp", "ndt"].map(|id| {

@@ -7,7 +7,7 @@ use widgets::w16_3_cost_terraces::model::CostTerraces;
 use crate::support::{fact, panel_of as panel};
 
 fn with(settings: &[(&str, f64)]) -> CostTerraces {
-    let mut model = CostTerraces::new();
+    let mut model = CostTerraces::default();
     for (id, value) in settings {
         model.set(id, *value).unwrap();
     }
@@ -15,7 +15,7 @@ fn with(settings: &[(&str, f64)]) -> CostTerraces {
 }
 
 fn preset(id: &str) -> CostTerraces {
-    let mut model = CostTerraces::new();
+    let mut model = CostTerraces::default();
     let preset = model.spec().presets.iter().find(|preset| preset.id == id);
     apply_preset(&mut model, preset.expect(id)).unwrap();
     model
@@ -44,7 +44,7 @@ fn hollows(model: &dyn Model) -> usize {
 
 #[test]
 fn the_picture_of_the_bells_shows_bells_in_every_preset() {
-    for spec in CostTerraces::new().spec().presets {
+    for spec in CostTerraces::default().spec().presets {
         let bells = panel(&preset(spec.id), "bells");
         let is_inside = |[x, y]: [f64; 2]| {
             (bells.x.min..bells.x.max).contains(&x) && (bells.y.min..bells.y.max).contains(&y)
@@ -60,7 +60,7 @@ fn the_picture_of_the_bells_shows_bells_in_every_preset() {
 
 #[test]
 fn it_opens_on_terraces_where_icps_ball_sticks() {
-    let model = CostTerraces::new();
+    let model = CostTerraces::default();
     assert_eq!(model.outcome().verdict, "ICP sticks");
     assert_eq!(model.values().number("colours"), 1.0, "by rank");
     let (opening, bowl) = (hollows(&model), hollows(&preset("bowl")));
@@ -142,7 +142,7 @@ fn bells_m(model: &dyn Model) -> Vec<f64> {
 
 #[test]
 fn the_bells_follow_the_cell_slider() {
-    let mut model = CostTerraces::new();
+    let mut model = CostTerraces::default();
     let median = |mut lengths: Vec<f64>| {
         lengths.sort_by(f64::total_cmp);
         lengths[lengths.len() / 2]
@@ -263,7 +263,7 @@ fn drop_100_works_in_pieces_and_its_points_fly_to_rest() {
 
 #[test]
 fn the_newest_scene_is_the_one_whose_sweeps_are_dropped() {
-    let mut model = CostTerraces::new();
+    let mut model = CostTerraces::default();
     model.set("drops", 100.0).unwrap();
     for _ in 0..40 {
         model.work();
@@ -288,8 +288,8 @@ fn slices_of_a_landscape_share_an_axis_and_the_ellipse_keeps_its_scale() {
         let panel = panel(model, "information");
         (panel.x, panel.y)
     };
-    let usual = ellipse(&CostTerraces::new());
-    for spec in CostTerraces::new().spec().presets {
+    let usual = ellipse(&CostTerraces::default());
+    for spec in CostTerraces::default().spec().presets {
         let model = preset(spec.id);
         for [x, y] in [["icp-x", "icp-y"], ["ndt-x", "ndt-y"]] {
             assert_eq!(panel(&model, x).y, panel(&model, y).y, "{}", spec.id);

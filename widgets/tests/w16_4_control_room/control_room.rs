@@ -41,7 +41,7 @@ fn revision(room: &ControlRoom) -> u64 {
 
 #[test]
 fn the_end_of_every_reference_run_has_its_grid_its_loops_and_its_errors() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     for (seed, noise, loops) in [
         (12_648_430, 1.0, true),
         (6, 2.0, true),
@@ -79,7 +79,7 @@ fn the_end_of_every_reference_run_has_its_grid_its_loops_and_its_errors() {
 
 #[test]
 fn the_grid_is_drawn_again_when_a_loop_moves_its_keyframes() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     set(&mut room, "t", 91.0);
     let before = fact(&room, "occupied_cells");
     assert_eq!(fact(&room, "loops"), 0.0);
@@ -97,7 +97,7 @@ fn the_grid_is_drawn_again_when_a_loop_moves_its_keyframes() {
 
 #[test]
 fn a_tick_without_a_keyframe_uploads_no_new_texture() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     set(&mut room, "t", 0.0);
     let first = revision(&room);
     press(&mut room, "step");
@@ -108,7 +108,7 @@ fn a_tick_without_a_keyframe_uploads_no_new_texture() {
 
 #[test]
 fn scrubbing_back_shows_what_playing_showed() {
-    let mut played = ControlRoom::new();
+    let mut played = ControlRoom::default();
     played.set("t", 0.0).unwrap();
     played.press("play").unwrap();
     while played.values().number("t") < 96.0 {
@@ -116,7 +116,7 @@ fn scrubbing_back_shows_what_playing_showed() {
     }
     played.press("play").unwrap();
     assert_eq!(played.advance(0.125), Activity::Idle);
-    let mut scrubbed = ControlRoom::new();
+    let mut scrubbed = ControlRoom::default();
     scrubbed.set("t", 129.0).unwrap();
     scrubbed.set("t", played.values().number("t")).unwrap();
     assert_eq!(played.outcome(), scrubbed.outcome());
@@ -125,7 +125,7 @@ fn scrubbing_back_shows_what_playing_showed() {
 
 #[test]
 fn the_line_at_the_moment_shown_can_be_dragged_in_every_plot_over_time() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     for panel in &room.scene().panels {
         let grabbed = room.grab(panel.id, [61.0, 0.1], [3.0, 0.1]);
         assert_eq!(grabbed.is_some(), panel.x.label == "tick", "{}", panel.id);
@@ -140,7 +140,7 @@ fn the_line_at_the_moment_shown_can_be_dragged_in_every_plot_over_time() {
 
 #[test]
 fn the_start_shows_the_first_sweep_where_nothing_is_off_yet() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     set(&mut room, "t", 0.0);
     assert_eq!(fact(&room, "estimate_error_m"), 0.0);
     assert_eq!(fact(&room, "odometry_error_m"), 0.0);
@@ -154,7 +154,7 @@ fn the_start_shows_the_first_sweep_where_nothing_is_off_yet() {
 
 #[test]
 fn changing_the_run_keeps_the_moment() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     set(&mut room, "t", 87.0);
     let before = room.outcome();
     set(&mut room, "noise", 4.0);
@@ -167,7 +167,7 @@ fn changing_the_run_keeps_the_moment() {
 
 #[test]
 fn a_setting_runs_in_pieces_of_a_tick_and_the_old_run_stays_until_the_new_one_is_whole() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     set(&mut room, "t", 92.0);
     let before = room.outcome();
     for noise in [2.0, 3.0, 4.0] {
@@ -182,7 +182,7 @@ fn a_setting_runs_in_pieces_of_a_tick_and_the_old_run_stays_until_the_new_one_is
     }
     // One lap and its front end alone, of 129 ticks each, and two ends: of three values one is run.
     assert!((129..=260).contains(&pieces), "{pieces} pieces");
-    let mut at_once = ControlRoom::new();
+    let mut at_once = ControlRoom::default();
     set(&mut at_once, "t", 92.0);
     set(&mut at_once, "noise", 4.0);
     assert_eq!(room.outcome(), at_once.outcome());
@@ -191,13 +191,13 @@ fn a_setting_runs_in_pieces_of_a_tick_and_the_old_run_stays_until_the_new_one_is
 
 #[test]
 fn the_next_event_is_one_of_the_run_that_is_asked_for() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     set(&mut room, "t", 60.0);
     room.set("seed", 6.0).unwrap();
     room.press("next-event").unwrap();
     assert_eq!(room.values().number("t"), 60.0);
     room.settle();
-    let mut at_once = ControlRoom::new();
+    let mut at_once = ControlRoom::default();
     set(&mut at_once, "t", 60.0);
     set(&mut at_once, "seed", 6.0);
     press(&mut at_once, "next-event");
@@ -206,14 +206,14 @@ fn the_next_event_is_one_of_the_run_that_is_asked_for() {
 
 #[test]
 fn the_transport_steps_resets_and_restores() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     set(&mut room, "noise", 2.0);
     for (button, tick) in [("step", 61.0), ("reset", 0.0), ("defaults", 60.0)] {
         press(&mut room, button);
         assert_eq!(room.values().number("t"), tick, "{button}");
     }
     // At the default tick the map cannot disagree with itself yet: NaN, which equals nothing.
-    let mut fresh = ControlRoom::new();
+    let mut fresh = ControlRoom::default();
     for widget in [&mut room, &mut fresh] {
         widget.set("t", 87.0).unwrap();
     }
@@ -224,7 +224,7 @@ fn the_transport_steps_resets_and_restores() {
 
 #[test]
 fn every_lap_ends_where_the_timeline_does() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     let spec = SPEC.params.iter().find(|spec| spec.id == "t").unwrap();
     let (_, last) = spec.range();
     for (seed, noise) in [(0.0, 0.25), (6.0, 2.0), (4_294_967_295.0, 4.0)] {
@@ -252,7 +252,7 @@ fn lane_marks(room: &ControlRoom) -> [Vec<[f64; 2]>; 2] {
 
 #[test]
 fn every_lane_has_a_mark_for_what_was_done_up_to_the_tick_shown() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     set(&mut room, "t", 92.0);
     let [passed, refused] = lane_marks(&room);
     let lane = |height: f64| passed.iter().filter(|mark| mark[1] == height).count();
@@ -278,7 +278,7 @@ fn every_lane_has_a_mark_for_what_was_done_up_to_the_tick_shown() {
 
 #[test]
 fn a_press_on_a_mark_of_a_lane_shows_its_data() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     set(&mut room, "t", 129.0);
     let handle = room
         .grab("lanes", [93.0, 3.1], [2.0, 0.4])
@@ -299,7 +299,7 @@ fn lanes(room: &ControlRoom) -> Panel {
 
 #[test]
 fn the_name_of_a_lane_stands_on_it_before_its_first_mark() {
-    let panel = lanes(&ControlRoom::new());
+    let panel = lanes(&ControlRoom::default());
     let names: Vec<_> = panel
         .layers
         .iter()
@@ -336,7 +336,7 @@ const SAID: [(&str, &str); 8] = [
 
 #[test]
 fn every_mark_of_every_lane_says_its_data_when_it_is_pressed_or_chosen() {
-    let mut pressed = ControlRoom::new();
+    let mut pressed = ControlRoom::default();
     set(&mut pressed, "t", 129.0);
     for (lane, (name, said)) in SAID.into_iter().enumerate() {
         set(&mut pressed, "t", 129.0);
@@ -348,7 +348,7 @@ fn every_mark_of_every_lane_says_its_data_when_it_is_pressed_or_chosen() {
         let sentence = pressed.outcome().sentence;
         assert!(sentence.contains(said), "{name}: {sentence}");
         // By key: the lane and the tick are controls.
-        let mut chosen = ControlRoom::new();
+        let mut chosen = ControlRoom::default();
         set(&mut chosen, "lane", lane as f64);
         set(&mut chosen, "t", 92.0);
         assert_eq!(chosen.outcome(), pressed.outcome());
@@ -387,7 +387,7 @@ fn every_mark_of_every_lane_says_its_data_when_it_is_pressed_or_chosen() {
 
 #[test]
 fn the_next_event_chooses_its_lane() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     set(&mut room, "t", 91.0);
     press(&mut room, "next-event");
     assert_eq!(room.values().number("t"), 92.0);
@@ -397,7 +397,7 @@ fn the_next_event_chooses_its_lane() {
 
 #[test]
 fn plots_show_nothing_of_what_is_still_to_come() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     let lines = |room: &ControlRoom| {
         let panels = room.scene().panels.into_iter();
         let plots = panels.filter(|panel| ["tau", "errors", "lanes"].contains(&panel.id));
@@ -431,7 +431,7 @@ fn plots_show_nothing_of_what_is_still_to_come() {
 fn the_grid_has_a_legend_whose_areas_are_the_colours_of_its_cells() {
     use kit::palette::{Theme, cell, contrast, tone};
     use kit::scene::Cell;
-    let room = ControlRoom::new();
+    let room = ControlRoom::default();
     let scene = room.scene();
     let legend = &scene.panels[0].legend;
     for (label, of) in [

@@ -7,7 +7,7 @@ use widgets::w16_4_control_room::spec::SPEC;
 use crate::support::fact;
 
 fn after(preset: &str) -> ControlRoom {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     room.press(preset).unwrap();
     room.settle();
     room
@@ -87,7 +87,7 @@ fn a_loop_that_passes_every_test_may_be_wrong_and_is_called_so() {
 #[test]
 fn without_loops_the_passes_stay_apart_and_the_walls_blurred() {
     let open = after("open");
-    let mut closed = ControlRoom::new();
+    let mut closed = ControlRoom::default();
     closed.set("t", open.values().number("t")).unwrap();
     assert!(open.timeline().unwrap().marks.is_empty());
     let apart = |room: &ControlRoom| fact(room, "map_disagreement_m");
@@ -107,7 +107,7 @@ fn without_loops_the_passes_stay_apart_and_the_walls_blurred() {
 
 #[test]
 fn the_back_end_works_only_at_keyframes() {
-    let mut room = ControlRoom::new();
+    let mut room = ControlRoom::default();
     let tables = room.tables();
     let log = tables
         .iter()

@@ -7,7 +7,7 @@ use widgets::w16_5_pose_graph_toy::spec::SPEC;
 use crate::support::fact;
 
 fn with(values: &[(&str, f64)]) -> PoseGraphToy {
-    let mut toy = PoseGraphToy::new();
+    let mut toy = PoseGraphToy::default();
     for (id, value) in values {
         toy.set(id, *value).unwrap();
     }
@@ -23,7 +23,7 @@ fn springs(toy: &PoseGraphToy) -> Vec<f64> {
 
 #[test]
 fn one_step_takes_the_chapters_three_poses_from_0_36_to_0_12() {
-    let mut toy = PoseGraphToy::new();
+    let mut toy = PoseGraphToy::default();
     assert!((fact(&toy, "chi2") - 0.36).abs() < 1e-12);
     assert_eq!(springs(&toy), [0.0, 0.0, 0.36]);
     toy.press("step").unwrap();
@@ -60,7 +60,7 @@ fn without_a_pin_the_graph_comes_to_the_same_cost_elsewhere() {
 
 #[test]
 fn a_dragged_pose_is_the_new_start_and_the_others_stay_where_they_are_shown() {
-    let mut toy = PoseGraphToy::new();
+    let mut toy = PoseGraphToy::default();
     toy.press("step").unwrap();
     let handle = toy.grab(panel::GRAPH, [2.4, 0.0], [0.1, 0.1]).unwrap();
     toy.drag(handle, [2.4, 1.0]);
@@ -77,7 +77,7 @@ fn a_dragged_pose_is_the_new_start_and_the_others_stay_where_they_are_shown() {
 
 #[test]
 fn a_drag_to_nowhere_moves_nothing_and_one_far_off_stays_in_reach() {
-    let mut toy = PoseGraphToy::new();
+    let mut toy = PoseGraphToy::default();
     let handle = toy.grab(panel::GRAPH, [1.0, 0.0], [0.1, 0.1]).unwrap();
     let before = toy.values().clone();
     toy.drag(handle, [f64::NAN, 0.0]);
@@ -97,7 +97,7 @@ fn every_preset_does_what_its_button_says() {
         ("square", ""),
         ("tangled", ""),
     ] {
-        let mut toy = PoseGraphToy::new();
+        let mut toy = PoseGraphToy::default();
         toy.press(id).unwrap();
         while toy.advance(0.2) == Activity::Busy {}
         assert_eq!(toy.outcome().standing, Standing::Good, "{id}");
@@ -109,7 +109,7 @@ fn every_preset_does_what_its_button_says() {
         assert!(fact(&toy, "chi2") < fact(&toy, "chi2_start"), "{id}");
     }
     assert_eq!(SPEC.presets.len(), 5, "a preset without a test");
-    let mut tangled = PoseGraphToy::new();
+    let mut tangled = PoseGraphToy::default();
     tangled.press("tangled").unwrap();
     assert!(
         fact(&tangled, "steps_to_rest") > 2.0,

@@ -7,7 +7,7 @@ use widgets::w16_6_whole_window::spec::SPEC;
 use crate::support::fact;
 
 fn with(values: &[(&str, f64)]) -> WholeWindow {
-    let mut window = WholeWindow::new();
+    let mut window = WholeWindow::default();
     for (id, value) in values {
         window.set(id, *value).unwrap();
     }
@@ -43,7 +43,7 @@ fn it_finds_home_from_every_heading() {
 
 #[test]
 fn the_search_goes_on_in_pieces_and_its_end_does_not_depend_on_them() {
-    let mut pieces = WholeWindow::new();
+    let mut pieces = WholeWindow::default();
     assert_eq!(pieces.outcome().verdict, "searching");
     let mut count = 0;
     while pieces.outcome().verdict == "searching" {
@@ -118,7 +118,7 @@ fn every_preset_does_what_its_button_says() {
         ("without-home", "no place fits", Standing::Bad),
         ("coarse", "the search finds home", Standing::Good),
     ] {
-        let mut window = WholeWindow::new();
+        let mut window = WholeWindow::default();
         window.press(id).unwrap();
         window.settle();
         assert_eq!(window.outcome().verdict, verdict, "{id}");

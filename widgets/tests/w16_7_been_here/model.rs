@@ -17,7 +17,7 @@ fn set(been: &mut BeenHere, values: &[(&str, f64)]) {
 }
 
 fn with(values: &[(&str, f64)]) -> BeenHere {
-    let mut been = BeenHere::new();
+    let mut been = BeenHere::default();
     set(&mut been, values);
     been
 }
@@ -64,7 +64,7 @@ fn a_looser_threshold_finds_more_and_is_wrong_more_often() {
 
 #[test]
 fn the_lap_is_driven_and_compared_in_pieces() {
-    let mut pieces = BeenHere::new();
+    let mut pieces = BeenHere::default();
     assert_eq!(pieces.outcome().verdict, "driving");
     let mut count = 0;
     while pieces.work().goes_on() {
@@ -101,7 +101,7 @@ fn a_pair_is_chosen_in_the_matrix_by_either_of_its_two_places() {
 
 #[test]
 fn playing_drives_the_lap_from_its_start_to_its_end() {
-    let mut been = BeenHere::new();
+    let mut been = BeenHere::default();
     been.press("lap").unwrap();
     assert_eq!(
         been.advance(0.1),
@@ -146,7 +146,7 @@ fn a_turned_scan_shifts_its_sectors_by_the_turn() {
 
 #[test]
 fn every_preset_shows_a_lap_with_its_grades() {
-    let mut been = BeenHere::new();
+    let mut been = BeenHere::default();
     for preset in SPEC.presets {
         been.press(preset.id).unwrap();
         been.settle();

@@ -7,7 +7,7 @@ use widgets::w16_8_moving_box::spec::SPEC;
 use crate::support::fact;
 
 fn with(values: &[(&str, f64)]) -> MovingBox {
-    let mut moving = MovingBox::new();
+    let mut moving = MovingBox::default();
     for (id, value) in values {
         moving.set(id, *value).unwrap();
     }
@@ -47,7 +47,7 @@ fn a_box_that_did_not_move_pulls_nobody() {
 
 #[test]
 fn the_curves_fill_in_seed_by_seed_and_end() {
-    let mut moving = MovingBox::new();
+    let mut moving = MovingBox::default();
     assert!(fact(&moving, "plain_bias_m").is_nan());
     let mut pieces = 0;
     while moving.work().goes_on() {
@@ -69,7 +69,7 @@ fn the_curves_fill_in_seed_by_seed_and_end() {
 
 #[test]
 fn the_share_is_dragged_along_the_curves() {
-    let mut moving = MovingBox::new();
+    let mut moving = MovingBox::default();
     let handle = moving.grab(panel::BIAS, [20.5, 1.0], [1.0, 1.0]).unwrap();
     moving.drag(handle, [40.6, 3.0]);
     assert_eq!(moving.values().number("share"), 40.0);
@@ -84,7 +84,7 @@ fn the_share_is_dragged_along_the_curves() {
 #[test]
 fn every_preset_does_what_its_button_says() {
     let after = |id: &str| {
-        let mut moving = MovingBox::new();
+        let mut moving = MovingBox::default();
         moving.press(id).unwrap();
         moving
     };

@@ -14,7 +14,7 @@ fn told(back: &ComeBack) -> String {
 }
 
 fn pressed(id: &str) -> ComeBack {
-    let mut back = ComeBack::new();
+    let mut back = ComeBack::default();
     back.press(id).unwrap();
     back.settle();
     back
@@ -49,7 +49,7 @@ fn in_one_of_two_rooms_alike_no_pose_is_told_from_within() {
 
 #[test]
 fn another_lap_forgets_the_wardrobe_where_it_stood() {
-    let mut back = ComeBack::new();
+    let mut back = ComeBack::default();
     back.settle();
     assert!(fact(&back, "wardrobe_points") > 20.0);
     back.press("forget").unwrap();
@@ -71,7 +71,7 @@ fn the_options_are_worlds_of_the_core_in_their_order() {
 
 #[test]
 fn everything_is_computed_in_pieces() {
-    let mut pieces = ComeBack::new();
+    let mut pieces = ComeBack::default();
     assert_eq!(pieces.outcome().verdict, "a lap is driven");
     let mut count = 0;
     while pieces.work().goes_on() {
@@ -80,14 +80,14 @@ fn everything_is_computed_in_pieces() {
     // The ticks of the lap, driven and mapped, and the morning's.
     assert!(count > 300, "{count} pieces");
     assert_eq!(pieces.settle(), Activity::Idle);
-    let mut whole = ComeBack::new();
+    let mut whole = ComeBack::default();
     whole.settle();
     assert_eq!(told(&pieces), told(&whole));
 }
 
 #[test]
 fn the_robot_is_put_and_turned_on_the_map_and_the_map_stays() {
-    let mut back = ComeBack::new();
+    let mut back = ComeBack::default();
     back.settle();
     let keyframes = fact(&back, "keyframes");
     let (x, y) = (back.values().number("x"), back.values().number("y"));
@@ -123,7 +123,7 @@ fn the_robot_is_put_and_turned_on_the_map_and_the_map_stays() {
 
 #[test]
 fn playing_goes_through_the_boxes_and_the_scans_to_the_end() {
-    let mut back = ComeBack::new();
+    let mut back = ComeBack::default();
     back.press("room").unwrap();
     assert_eq!(back.advance(0.1), Activity::Busy, "it is not there yet");
     back.settle();

@@ -25,7 +25,7 @@ fn fact(model: &FullLap, id: &str) -> f64 {
 }
 
 fn at(settings: &[(&str, f64)]) -> FullLap {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     for (id, value) in settings {
         model.set(id, *value).unwrap();
     }

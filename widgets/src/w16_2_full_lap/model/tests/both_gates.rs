@@ -34,7 +34,7 @@ fn the_chosen_gate_is_the_one_that_the_lap_asked() {
 
 #[test]
 fn the_facts_give_the_chi_squared_of_both_gates() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     let path = fact(&model, "chi2_path");
     let exact = fact(&model, "chi2_exact");
     assert_eq!(fact(&model, "chi2"), path);
@@ -102,7 +102,7 @@ fn the_gate_that_decides_is_solid_and_the_other_one_dotted() {
 
 #[test]
 fn the_exact_gate_lets_the_locked_out_loops_in() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     press(&mut model, "locked-out");
     let locked_out = results(&model).graph;
     press(&mut model, "let-in");

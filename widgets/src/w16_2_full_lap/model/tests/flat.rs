@@ -227,7 +227,7 @@ fn a_flat_that_cannot_be_driven_says_why_and_draws_no_lap_of_another() {
     };
     assert!(!nodes(&model));
     // A link opens it, too, and says the same.
-    let mut linked = FullLap::new();
+    let mut linked = FullLap::default();
     linked
         .set_text("flat", &model.values().to_text("flat"))
         .unwrap();
@@ -257,7 +257,7 @@ fn a_link_carries_the_flat_and_a_damaged_one_leaves_it() {
     stroke(&mut model, &[[1.0, 1.0], [2.0, 1.0]]);
     model.settle();
     let text = model.values().to_text("flat");
-    let mut other = FullLap::new();
+    let mut other = FullLap::default();
     // In the order of the list, as a new picture is set up: the world first.
     for (id, text) in [("world", "own"), ("flat", &text)] {
         other.set_text(id, text).unwrap();
@@ -299,7 +299,7 @@ fn world_and_flat_never_disagree() {
     press(&mut model, "defaults");
     assert_eq!(model.values().number("world"), 0.0);
     assert_eq!(model.values().to_text("flat"), "");
-    assert!(picture(&model) == picture(&FullLap::new()));
+    assert!(picture(&model) == picture(&FullLap::default()));
     press(&mut model, "take-back");
     let world = model.values().get(&WORLD);
     assert_eq!(world, None, "also that can be taken back");
@@ -324,7 +324,7 @@ fn a_file_is_saved_opened_and_refused_in_one_sentence() {
         });
         model.settle();
     };
-    let mut other = FullLap::new();
+    let mut other = FullLap::default();
     give(&mut other, json);
     assert_eq!(flat(&other), flat(&model));
     let before = other.values().clone();

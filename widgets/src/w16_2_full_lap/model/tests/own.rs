@@ -42,7 +42,7 @@ fn the_settings_name_the_loop_and_the_picture_shows_where_its_error_goes() {
 #[test]
 fn the_presets_show_what_they_say() {
     let help = |id: &str| SPEC.presets.iter().find(|p| p.id == id).unwrap().help;
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     press(&mut model, "wrong-loop");
     let moved = format!("by up to {:.1} m", fact(&model, "own_shift_m"));
     assert!(help("wrong-loop").contains(&moved), "{moved}");

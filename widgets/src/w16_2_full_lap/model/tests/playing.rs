@@ -32,7 +32,7 @@ fn before_at_and_after_stay_with_their_loop_and_next_goes_round() {
 
 #[test]
 fn at_a_loop_the_nodes_move_from_the_old_poses_to_the_new_ones() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     let settled = shown_nodes(&model);
     press(&mut model, "at");
     let old = shown_nodes(&model);
@@ -57,7 +57,7 @@ fn at_a_loop_the_nodes_move_from_the_old_poses_to_the_new_ones() {
 
 #[test]
 fn with_reduced_motion_a_loop_jumps() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     let settled = shown_nodes(&model);
     model.set_motion(Motion::Reduced);
     press(&mut model, "at");
@@ -122,7 +122,7 @@ fn transport_buttons_step_reset_and_restore() {
     assert_eq!(model.values().number("noise"), 2.0);
     press(&mut model, "defaults");
     assert_eq!(model.values(), &Values::defaults(SPEC.params));
-    assert!(picture(&model) == picture(&FullLap::new()));
+    assert!(picture(&model) == picture(&FullLap::default()));
     let mut model = at(&[("t", 129.0)]);
     press(&mut model, "step");
     assert_eq!(model.tick(), 129, "the lap has an end");

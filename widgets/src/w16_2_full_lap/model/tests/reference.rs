@@ -18,7 +18,7 @@ fn number(value: &Value, key: &str) -> f64 {
 
 #[test]
 fn every_reference_lap_comes_out_of_its_settings() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     for lap in reference_laps() {
         set(&mut model, "seed", number(&lap, "seed"));
         set(&mut model, "noise", number(&lap, "noise"));
@@ -66,7 +66,7 @@ fn every_reference_lap_comes_out_of_its_settings() {
 
 #[test]
 fn at_every_tick_the_poses_are_those_of_the_reference() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     for lap in reference_laps() {
         set(&mut model, "seed", number(&lap, "seed"));
         set(&mut model, "noise", number(&lap, "noise"));
@@ -117,7 +117,7 @@ fn the_canonical_table_is_the_chapters() {
 
 #[test]
 fn what_the_notes_say_of_the_canonical_run_holds() {
-    let model = FullLap::new();
+    let model = FullLap::default();
     let Results { front_end, graph } = results(&model);
     let third = graph.map_disagreement_m.unwrap() / front_end.map_disagreement_m.unwrap();
     assert!((0.30..0.37).contains(&third), "about a third: {third}");

@@ -16,7 +16,7 @@ fn assert_promised(preset: &str, words: &str) {
 
 #[test]
 fn the_start_is_the_first_loop_of_the_canonical_run() {
-    let model = FullLap::new();
+    let model = FullLap::default();
     assert_eq!(model.runs.graph.attempts()[0].tick, model.tick());
     assert_eq!(
         model.outcome().sentence,
@@ -170,9 +170,9 @@ fn without_loops_the_two_passes_end_as_far_apart_as_the_preset_says() {
 #[test]
 fn every_matcher_ends_the_lap_as_far_off_as_its_preset_says() {
     let end_error = |model: &FullLap| results(model).graph.keyframe_end_error_m;
-    let chapter = end_error(&FullLap::new());
+    let chapter = end_error(&FullLap::default());
     for preset in ["bells", "sliding"] {
-        let mut model = FullLap::new();
+        let mut model = FullLap::default();
         press(&mut model, preset);
         let off = end_error(&model);
         assert_promised(
@@ -219,7 +219,7 @@ fn matchers_and_frames_are_called_as_on_the_command_line_and_drive_the_same_lap(
 
 #[test]
 fn the_first_loop_helps_the_robot_and_not_its_history() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     press(&mut model, "first-loop");
     assert!(fact(&model, "graph_error_m") < fact(&model, "front_end_error_m"));
     assert!(fact(&model, "rms_after_m") > fact(&model, "rms_before_m"));
@@ -251,7 +251,7 @@ fn a_wrong_loop_is_called_wrong_wherever_it_is_named() {
 
 #[test]
 fn seed_6_has_a_loop_that_passes_the_gate_and_is_turned_away_all_the_same() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     press(&mut model, "rejected");
     let attempt = model.runs.graph.attempt_at(model.tick()).unwrap();
     assert!(attempt.verification.gate.passes() && !attempt.accepted());
@@ -268,7 +268,7 @@ fn seed_6_has_a_loop_that_passes_the_gate_and_is_turned_away_all_the_same() {
 
 #[test]
 fn the_noisy_preset_shows_what_it_says() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     press(&mut model, "noisy");
     let results = results(&model);
     assert!((4.7..5.0).contains(&results.graph.odometry_end_error_m));
@@ -280,7 +280,7 @@ fn the_noisy_preset_shows_what_it_says() {
 
 #[test]
 fn the_tight_gate_turns_away_a_loop_that_the_chapters_gate_accepts() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     press(&mut model, "tight-gate");
     // NIST/SEMATECH e-Handbook: χ² of 0.90 with 3 degrees of freedom.
     assert_eq!(fact(&model, "gate_chi2"), 6.251);
@@ -297,7 +297,7 @@ fn the_tight_gate_turns_away_a_loop_that_the_chapters_gate_accepts() {
 
 #[test]
 fn the_locked_out_preset_turns_away_three_right_loops_by_the_gate_alone() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     press(&mut model, "locked-out");
     let attempts = model.runs.graph.attempts();
     assert_eq!(attempts.len(), 3);

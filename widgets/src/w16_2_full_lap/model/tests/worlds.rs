@@ -40,7 +40,7 @@ fn every_world_is_driven_as_on_the_command_line_and_says_where_it_is() {
 #[test]
 fn presets_of_other_worlds_show_the_end_of_their_lap() {
     for preset in ["ring", "twins", "corridor", "hall"] {
-        let mut model = FullLap::new();
+        let mut model = FullLap::default();
         press(&mut model, preset);
         assert_eq!(model.values().number("t"), model.last(), "{preset}");
     }
@@ -48,7 +48,7 @@ fn presets_of_other_worlds_show_the_end_of_their_lap() {
 
 #[test]
 fn a_moment_asked_for_before_its_lap_is_known_is_kept() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     model.set("world", 1.0).unwrap();
     model.set("t", 200.0).unwrap();
     assert_eq!(model.values().number("t"), 200.0);
@@ -63,7 +63,7 @@ fn a_moment_asked_for_before_its_lap_is_known_is_kept() {
 #[test]
 fn in_the_twin_rooms_a_wrong_loop_passes_every_test_by_each_matcher() {
     for matcher in [LapMatcher::PointToPoint, LapMatcher::PointToPlane] {
-        let mut model = FullLap::new();
+        let mut model = FullLap::default();
         press(&mut model, "twins");
         let index = LapMatcher::ALL.iter().position(|it| *it == matcher);
         set(&mut model, "matcher", index.unwrap() as f64);
@@ -81,7 +81,7 @@ fn in_the_twin_rooms_a_wrong_loop_passes_every_test_by_each_matcher() {
 
 #[test]
 fn the_bare_corridor_comes_out_a_fraction_of_its_length_and_its_map_agrees_with_itself() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     press(&mut model, "corridor");
     let runs = &model.runs;
     let farthest = runs
@@ -98,7 +98,7 @@ fn the_bare_corridor_comes_out_a_fraction_of_its_length_and_its_map_agrees_with_
 
 #[test]
 fn in_the_round_hall_the_robot_ends_on_the_far_side_and_the_map_agrees_with_itself() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     press(&mut model, "hall");
     // The way around has a radius of 2.2 m, "three centimetres".
     assert!(fact(&model, "graph_error_m") > 3.0);
@@ -107,7 +107,7 @@ fn in_the_round_hall_the_robot_ends_on_the_far_side_and_the_map_agrees_with_itse
 
 #[test]
 fn around_the_ring_loops_close_from_the_other_side() {
-    let mut model = FullLap::new();
+    let mut model = FullLap::default();
     press(&mut model, "ring");
     assert!(fact(&model, "loops_closed") >= 1.0);
     assert!(fact(&model, "keyframe_rms_m") < 0.5);
