@@ -14,7 +14,7 @@ use kit::shell::Shell;
 use kit::spec::Preset;
 use widgets::registry::{MODELS, SHELLS, SPECS, find, names};
 
-use crate::support::{drawn, press_key, value};
+use crate::support::{HEIGHT, drawn, press_key, value};
 
 /// States beside the defaults in which the ends of every parameter are tried.
 ///
@@ -361,6 +361,7 @@ fn control(spec: &ParamSpec) -> Option<(Role, String)> {
 #[test]
 fn every_control_is_on_screen_under_its_name_at_every_width_and_in_both_themes() {
     for spec in SPECS {
+        let mut harness = still(spec.id, 340.0);
         for (width, theme) in [
             (340.0, Theme::Light),
             (390.0, Theme::Dark),
@@ -368,9 +369,9 @@ fn every_control_is_on_screen_under_its_name_at_every_width_and_in_both_themes()
             (1100.0, Theme::Dark),
             (1400.0, Theme::Light),
         ] {
-            let mut harness = still(spec.id, width);
+            harness.set_size(vec2(width, HEIGHT));
             harness.state_mut().set_theme(theme);
-            harness.run_steps(2);
+            harness.run_steps(3);
             let height = harness.state().content_height();
             let model = harness.state().model();
             let layer = model.layer();

@@ -8,6 +8,9 @@ use kit::model::Model;
 use kit::scene::Panel;
 use kit::shell::Shell;
 
+/// Height of the screen: no widget is higher.
+pub const HEIGHT: f32 = 3000.0;
+
 /// A number of the outcome.
 pub fn fact(model: &dyn Model, id: &str) -> f64 {
     let facts = model.outcome().facts;
@@ -25,7 +28,7 @@ pub fn drawn(name: &str, width: f32, prepare: impl FnOnce(&mut Shell)) -> Harnes
     let mut shell = widgets::registry::find(name).expect("a widget of the registry")();
     prepare(&mut shell);
     let mut harness = Harness::builder()
-        .with_size(vec2(width, 3000.0))
+        .with_size(vec2(width, HEIGHT))
         .with_max_steps(3000)
         .build_ui_state(|ui, shell: &mut Shell| shell.ui(ui), shell);
     harness.run_steps(3);
