@@ -12,12 +12,13 @@ use kit::model::{
 };
 use kit::param::MORE;
 use kit::param::ParamError;
+use kit::playback::SPEED;
 use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
-use crate::w16_11_procrustes::spec::{PARAMS, SPEC, TURN, WHOLE_TURN_DEG};
+use crate::w16_11_procrustes::spec::{PARAMS, SPEC, TRIED, TURN, WHOLE_TURN_DEG};
 
 /// Names of the panels.
 pub mod panel {
@@ -51,7 +52,7 @@ impl Default for ProcrustesTrace {
             problem: Procrustes::new(&pairs.source, &pairs.target),
             pairs,
             values,
-            played: Played::along("turn"),
+            played: Played::along(&TURN),
         }
     }
 }
@@ -84,7 +85,7 @@ impl Model for ProcrustesTrace {
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         if self.values.set(SPEC.id, id, value)? == Changed::Yes
-            && !["turn", "tried", "speed", MORE.id].contains(&id)
+            && ![TURN.id, TRIED.id, SPEED.id, MORE.id].contains(&id)
         {
             self.follow();
         }

@@ -14,13 +14,14 @@ use kit::model::{
 };
 use kit::param::MORE;
 use kit::param::ParamError;
+use kit::playback::SPEED;
 use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 use pr_geom::SE2;
 
-use crate::w16_12_jacobians::spec::{MOST_STEPS, PARAMS, SPEC, STEPS};
+use crate::w16_12_jacobians::spec::{CURVE, MOST_STEPS, PARAMS, SPEC, STEPS};
 
 /// Names of the panels.
 pub mod panel {
@@ -73,7 +74,7 @@ impl Default for WrongJacobians {
         Self {
             solved: Solved::new(&values),
             values,
-            played: Played::along("steps"),
+            played: Played::along(&STEPS),
         }
     }
 }
@@ -107,7 +108,7 @@ impl Model for WrongJacobians {
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         if self.values.set(SPEC.id, id, value)? == Changed::Yes
-            && !["steps", "curve", "speed", MORE.id].contains(&id)
+            && ![STEPS.id, CURVE.id, SPEED.id, MORE.id].contains(&id)
         {
             self.solved = Solved::new(&self.values);
         }

@@ -14,12 +14,13 @@ use kit::model::{
 };
 use kit::param::MORE;
 use kit::param::ParamError;
+use kit::playback::SPEED;
 use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
-use crate::w16_5_pose_graph_toy::spec::{PARAMS, SPEC};
+use crate::w16_5_pose_graph_toy::spec::{PARAMS, SPEC, STEPS};
 use course::{Course, Moment};
 
 /// Names of the panels.
@@ -49,7 +50,7 @@ impl Default for PoseGraphToy {
         Self {
             course: Course::new(settings::graph(&values)),
             values,
-            played: Played::along("steps"),
+            played: Played::along(&STEPS),
         }
     }
 }
@@ -80,7 +81,7 @@ impl Model for PoseGraphToy {
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         if self.values.set(SPEC.id, id, value)? == Changed::Yes
-            && !["steps", "speed", MORE.id].contains(&id)
+            && ![STEPS.id, SPEED.id, MORE.id].contains(&id)
         {
             self.solve();
         }

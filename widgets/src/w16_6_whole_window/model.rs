@@ -15,6 +15,7 @@ use kit::model::{
 };
 use kit::param::MORE;
 use kit::param::ParamError;
+use kit::playback::SPEED;
 use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::{PLAY, STEP, WidgetSpec};
@@ -63,7 +64,7 @@ impl Default for WholeWindow {
         let mut workspace = IcpWorkspace::new();
         Self {
             hunt: Hunt::new(&scene, settings::config(&values), &mut workspace),
-            played: Played::along("progress"),
+            played: Played::along(&PROGRESS),
             values,
             scene,
             workspace,
@@ -153,7 +154,7 @@ impl Model for WholeWindow {
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         if self.values.set(SPEC.id, id, value)? == Changed::No
-            || ["progress", "speed", MORE.id].contains(&id)
+            || [PROGRESS.id, SPEED.id, MORE.id].contains(&id)
         {
             return Ok(());
         }

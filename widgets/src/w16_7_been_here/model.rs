@@ -59,7 +59,7 @@ impl Default for BeenHere {
         let config = settings::config(&values);
         Self {
             work: Some(Work::new(&config)),
-            played: Played::along("new"),
+            played: Played::along(&NEWEST),
             config,
             values,
             places: None,

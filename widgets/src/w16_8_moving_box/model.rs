@@ -13,12 +13,13 @@ use kit::model::{
 };
 use kit::param::MORE;
 use kit::param::ParamError;
+use kit::playback::SPEED;
 use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 
-use crate::w16_8_moving_box::spec::{MOST_SHARE, PARAMS, SHARE, SPEC};
+use crate::w16_8_moving_box::spec::{ITERATION, MOST_SHARE, PARAMS, SHARE, SPEC};
 use curves::Curves;
 
 /// Names of the panels.
@@ -59,7 +60,7 @@ impl Default for MovingBox {
         Self {
             runs: register(&scene, &methods, &mut workspace),
             curves: Curves::new(methods, config.moved_m),
-            played: Played::along("iteration"),
+            played: Played::along(&ITERATION),
             values,
             workspace,
             scene,
@@ -117,7 +118,7 @@ impl Model for MovingBox {
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         if self.values.set(SPEC.id, id, value)? == Changed::Yes
-            && !["iteration", "speed", MORE.id].contains(&id)
+            && ![ITERATION.id, SPEED.id, MORE.id].contains(&id)
         {
             self.follow();
         }

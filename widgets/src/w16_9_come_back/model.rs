@@ -14,13 +14,16 @@ use kit::model::{
 };
 use kit::param::MORE;
 use kit::param::ParamError;
+use kit::playback::SPEED;
 use kit::played::{Played, Pressed};
 use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::{Changed, Values};
 use pr_geom::SE2;
 
-use crate::w16_9_come_back::spec::{HEADING, MOST_MOMENTS, PARAMS, PLAN_M, SPEC, START_X, START_Y};
+use crate::w16_9_come_back::spec::{
+    HEADING, MOMENT, MOST_MOMENTS, PARAMS, PLAN_M, SPEC, START_X, START_Y,
+};
 use known::{Known, Work};
 
 /// Names of the panels.
@@ -52,7 +55,7 @@ impl Default for ComeBack {
         let values = Values::defaults(PARAMS);
         Self {
             work: Some(Work::map(&values)),
-            played: Played::along("moment"),
+            played: Played::along(&MOMENT),
             known: None,
             morning: None,
             values,
@@ -130,7 +133,7 @@ impl Model for ComeBack {
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
         let is_changed = self.values.set(SPEC.id, id, value)? == Changed::Yes;
-        if is_changed && !["moment", "speed", MORE.id].contains(&id) {
+        if is_changed && ![MOMENT.id, SPEED.id, MORE.id].contains(&id) {
             self.follow();
         }
         Ok(())
