@@ -13,12 +13,17 @@ fn root() -> PathBuf {
 
 /// The manifests of all packages with their folders.
 fn packages() -> Vec<(PathBuf, String)> {
-    let mut found: Vec<PathBuf> = ["web", "web/robot", "tests", "tests/bench", "tests/doors"]
-        .map(|folder| root().join(folder))
-        .into();
-    for folder in ["crates", "widgets"] {
-        found.extend(entries(&root().join(folder)));
-    }
+    let mut found = entries(&root().join("crates"));
+    let others = [
+        "widgets",
+        "widgets/kit",
+        "web",
+        "web/robot",
+        "tests",
+        "tests/bench",
+        "tests/doors",
+    ];
+    found.extend(others.map(|folder| root().join(folder)));
     found
         .into_iter()
         .filter_map(|folder| {
@@ -125,10 +130,7 @@ fn every_test_in_the_sources_is_compiled() {
         }
         seen += 1;
     }
-    assert!(
-        seen >= 11,
-        "only {seen} packages have no tests in their sources"
-    );
+    assert!(seen >= 1, "no package has `test = false`");
     let manifest = "[lib]\nbench = false\n\n[[bin]]\ntest = false\n";
     assert!(!section(manifest, "[lib]").contains("test = false"));
 }
