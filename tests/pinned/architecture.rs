@@ -97,7 +97,10 @@ const CORE: [(&str, &[&str]); 11] = [
     ("pr_optim", &["pr_geom"]),
     // Neither the simulator nor the lab: the estimator does not know the truth.
     ("ch16_slam2d", &["pr_geom", "pr_optim"]),
-    ("incremental_mapping", &["pr_geom", "pr_grid", "ch16_slam2d"]),
+    (
+        "incremental_mapping",
+        &["pr_geom", "pr_grid", "ch16_slam2d"],
+    ),
     (
         "ch16_lab",
         &[

@@ -203,12 +203,7 @@ fn curve([right, wrong]: [usize; 2], [gate_right, gate_wrong]: [usize; 2]) -> Pa
         x: Axis::new("false ones taken", -0.5, most),
         y: Axis::new("right ones taken", -0.5, most),
         layers: vec![
-            Layer::Line {
-                points: points.collect(),
-                stroke: Stroke::Dotted,
-                tone: Tone::Ink,
-                width_px: 2.0,
-            },
+            Layer::line(points.collect(), Stroke::Dotted, Tone::Ink, 2.0),
             Layer::points(
                 vec![spot([gate_right, gate_wrong])],
                 Mark::Plus,

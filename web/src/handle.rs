@@ -7,21 +7,19 @@ use kit::model::{Motion, finish_work};
 use kit::outside::Delivery;
 use kit::palette::Theme;
 use kit::param::{ParamError, ParamSpec};
-use kit::shell::Shell;
 use kit::zoom::Look;
-use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
 
 use crate::app::{Shared, WidgetApp, apply_theme, theme_of, web_options};
-use crate::{app, registry, state};
+use widgets::registry;
+
+use crate::{app, state};
 
 /// A widget, running on a canvas or not.
 #[wasm_bindgen]
 pub struct Widget {
     shared: Rc<Shared>,
     runner: eframe::WebRunner,
-    /// The values that the host knows of.
-    told: RefCell<Vec<f64>>,
     /// Lays out what is not drawn.
     measuring: OnceCell<egui::Context>,
 }
@@ -34,8 +32,7 @@ impl Widget {
     /// Where there is no such widget.
     #[wasm_bindgen(constructor)]
     pub fn new(name: &str) -> Result<Self, JsError> {
-        let shell = registry::make(name).ok_or_else(|| JsError::new(&registry::unknown(name)))?;
-        let told = current_values(&shell);
+        let shell = registry::find(name).map_err(|problem| JsError::new(&problem))?();
         let shared = Shared {
             shell: RefCell::new(shell),
             ctx: RefCell::new(None),
@@ -48,7 +45,6 @@ impl Widget {
         Ok(Self {
             shared: Rc::new(shared),
             runner: eframe::WebRunner::new(),
-            told: RefCell::new(told),
             measuring: OnceCell::new(),
         })
     }
@@ -158,22 +154,6 @@ impl Widget {
     /// Every value as JSON, each as a link writes it.
     pub fn values(&self) -> String {
         state::values(self.shared.shell.borrow().model()).to_string()
-    }
-
-    /// The parameters that changed since the last call: `[["heading", "60"], …]`.
-    #[wasm_bindgen(js_name = takeChanges)]
-    pub fn take_changes(&self) -> String {
-        let shell = self.shared.shell.borrow();
-        let now = current_values(&shell);
-        let told = self.told.replace(now);
-        let values = shell.model().values();
-        let changed: Vec<_> = values
-            .iter()
-            .zip(&told)
-            .filter(|((_, value), old)| value.to_bits() != old.to_bits())
-            .map(|((spec, _), _)| json!([spec.id, values.to_text(spec.id)]))
-            .collect();
-        Value::Array(changed).to_string()
     }
 
     /// The result as JSON: standing, verdict, sentence, facts.
@@ -351,13 +331,4 @@ impl Widget {
         let model = shell.model();
         model.values().find_for(model.spec().id, id)
     }
-}
-
-fn current_values(shell: &Shell) -> Vec<f64> {
-    shell
-        .model()
-        .values()
-        .iter()
-        .map(|(_, value)| value)
-        .collect()
 }

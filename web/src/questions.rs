@@ -7,12 +7,14 @@ use wasm_bindgen::prelude::*;
 
 use crate::app::theme_of;
 use crate::outcomes::Outcomes;
-use crate::{candidates, registry, schema, sketches, state, story};
+use widgets::registry;
+
+use crate::{candidates, schema, sketches, state, story};
 
 /// The schema of every widget, a JSON array.
 #[wasm_bindgen(js_name = widgetSchemas)]
 pub fn widget_schemas() -> String {
-    let widgets = registry::WIDGETS.map(|(_, maker)| schema::widget(maker().model()));
+    let widgets = registry::MODELS.map(|model| schema::widget(model().as_ref()));
     Value::from(widgets.to_vec()).to_string()
 }
 
@@ -22,9 +24,8 @@ pub fn widget_schemas() -> String {
 /// Where there is no such widget.
 #[wasm_bindgen(js_name = afterEachPreset)]
 pub fn after_each_preset(name: &str) -> Result<String, JsError> {
-    let found = registry::WIDGETS.iter().find(|(known, _)| *known == name);
-    let (_, maker) = found.ok_or_else(|| unknown_widget(name))?;
-    Ok(state::after_each_preset(*maker))
+    let maker = registry::find(name).map_err(|problem| JsError::new(&problem))?;
+    Ok(state::after_each_preset(maker))
 }
 
 /// The digest of a lap's poses and metrics, 16 hexadecimal digits as `slam2d lap` prints it; with
@@ -105,7 +106,7 @@ impl Laps {
 /// Where there is no such widget or parameter.
 #[wasm_bindgen(js_name = parseParam)]
 pub fn parse_param(name: &str, id: &str, text: &str) -> Result<String, JsError> {
-    let widget = registry::spec(name).ok_or_else(|| unknown_widget(name))?;
+    let widget = registry::spec(name).ok_or_else(|| JsError::new(&registry::unknown(name)))?;
     let spec = widget
         .params
         .iter()
@@ -117,8 +118,4 @@ pub fn parse_param(name: &str, id: &str, text: &str) -> Result<String, JsError> 
         Err(problem) => json!([false, problem.to_string()]),
     };
     Ok(answer.to_string())
-}
-
-fn unknown_widget(name: &str) -> JsError {
-    JsError::new(&registry::unknown(name))
 }

@@ -28,7 +28,7 @@ pub fn widget(model: &dyn Model) -> Value {
         "title": spec.title,
         "misconception": spec.misconception,
         "notice": spec.notice,
-        "params": spec.params.iter().map(param).collect::<Vec<_>>(),
+        "params": spec.params.iter().map(|spec| param(spec)).collect::<Vec<_>>(),
         "buttons": buttons.collect::<Vec<_>>(),
         "presets": presets.collect::<Vec<_>>(),
         "keys": keys.collect::<Vec<_>>(),
@@ -74,8 +74,8 @@ fn param(spec: &ParamSpec) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::registry::WIDGETS;
     use std::collections::HashSet;
+    use widgets::registry::{MODELS, SPECS};
 
     /// Names that an HTML element already has: an attribute or property of that name would break it.
     const TAKEN: [&str; 24] = [
@@ -107,9 +107,9 @@ mod tests {
 
     #[test]
     fn every_name_can_be_an_attribute_and_is_free() {
-        for (name, maker) in WIDGETS {
-            let mut seen = HashSet::new();
-            for param in maker().model().spec().params {
+        for spec in SPECS {
+            let (name, mut seen) = (spec.id, HashSet::new());
+            for param in spec.params {
                 let id = param.id;
                 let fits = id.starts_with(|c: char| c.is_ascii_lowercase())
                     && id.chars().all(|c| {
@@ -124,9 +124,9 @@ mod tests {
 
     #[test]
     fn every_control_says_what_it_does() {
-        for (name, maker) in WIDGETS {
-            let shell = maker();
-            let schema = widget(shell.model());
+        for make in MODELS {
+            let schema = widget(make().as_ref());
+            let name = schema["id"].as_str().unwrap();
             for list in ["params", "buttons", "presets"] {
                 for item in schema[list].as_array().unwrap() {
                     for word in ["id", "label", "help"] {

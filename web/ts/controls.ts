@@ -10,6 +10,8 @@ import { toLabel } from './values';
 export interface ControlHost {
   /** Returns what was wrong. */
   set(id: string, text: string): string | undefined;
+  /** The value that the widget has. */
+  text(id: string): string;
   press(id: string): void;
   /** Ends what decides on how long the run is, and shows it. */
   finishRun(): void;
@@ -24,7 +26,6 @@ interface ParamControl {
 export class Controls {
   readonly element: HTMLElement;
   readonly #params = new Map<string, ParamControl>();
-  readonly #texts = new Map<string, string>();
   readonly #ranges = new Map<string, HTMLInputElement>();
   readonly #buttons = new Map<string, HTMLButtonElement>();
   readonly #host: ControlHost;
@@ -65,10 +66,7 @@ export class Controls {
 
   /** Shows values that changed elsewhere. */
   show(values: Iterable<[string, string]>): void {
-    for (const [id, text] of values) {
-      this.#texts.set(id, text);
-      this.#params.get(id)?.show(text);
-    }
+    for (const [id, text] of values) this.#params.get(id)?.show(text);
   }
 
   /** Shows how long the run is and whether it plays. */
@@ -80,7 +78,7 @@ export class Controls {
     if (range === undefined) return;
     range.max = String(timeline.last);
     // A run can be shorter than the moment that was asked for: it shows its end.
-    const asked = Number(this.#texts.get(timeline.param));
+    const asked = Number(this.#host.text(timeline.param));
     this.#params.get(timeline.param)?.show(String(Math.min(asked, timeline.last)));
   }
 
@@ -199,7 +197,7 @@ export class Controls {
     field.addEventListener('blur', () => {
       if (!isBegun) return;
       isBegun = false;
-      show(this.#texts.get(id) ?? field.value);
+      show(this.#host.text(id));
     });
     return show;
   }

@@ -293,6 +293,7 @@ export class SlamWidget extends HTMLElement {
     }
     this.#controls = new Controls(spec, {
       set: (id, text) => this.#tryToSet(id, text),
+      text: (id) => this.#state?.text(id) ?? '',
       press: (id) => void this.press(id).catch((error: unknown) => this.#pressFailed(error)),
       finishRun: () => {
         this.#settle();
@@ -370,7 +371,7 @@ export class SlamWidget extends HTMLElement {
   /** Takes over what changed in the widget: pointer, playback, presets. */
   #sync(): void {
     this.#carryOrders();
-    const changes = this.#takeChanges();
+    const changes = this.#changes();
     if (changes.length === 0) return;
     const timeline = this.#shownTimeline();
     if (timeline?.playing === true) {
@@ -381,8 +382,11 @@ export class SlamWidget extends HTMLElement {
     this.#told(changes);
   }
 
-  #takeChanges(): [string, string][] {
-    return this.#life.ask((_, instance) => instance.takeChanges()) ?? [];
+  /** What the widget holds and the element does not know yet. */
+  #changes(): [string, string][] {
+    const values = this.#life.ask((_, instance) => instance.values()) ?? {};
+    const known = [...(this.#state?.texts ?? [])];
+    return known.map(([id, text]): [string, string] => [id, values[id] ?? text]).filter(([id, text]) => this.#state?.text(id) !== text);
   }
 
   /** What the widget asks of its host: a file, its mapping, a file to save. */
@@ -420,7 +424,7 @@ export class SlamWidget extends HTMLElement {
 
   #deliver(deliveries: readonly Delivery[]): void {
     this.#life.ask((widget) => deliveries.forEach((delivery) => hand(widget, delivery)));
-    this.#told(this.#takeChanges());
+    this.#told(this.#changes());
     this.#carryOrders();
     this.#life.wake();
   }
@@ -434,7 +438,7 @@ export class SlamWidget extends HTMLElement {
       return;
     }
     this.#life.ask(deed);
-    this.#told(this.#takeChanges());
+    this.#told(this.#changes());
     this.#carryOrders();
     this.#life.wake();
   }
@@ -490,7 +494,7 @@ export class SlamWidget extends HTMLElement {
     if (problem !== undefined) return problem;
     // What was found for the old values is no result of these.
     if (kept === undefined) this.#lastOutcome = undefined;
-    this.#told([...new Map([[id, kept ?? parsed.text], ...this.#takeChanges()])]);
+    this.#told([...new Map([[id, kept ?? parsed.text], ...this.#changes()])]);
     this.#carryOrders();
     this.#life.wake();
     return undefined;

@@ -109,8 +109,8 @@ export class Instance {
     return JSON.parse(this.use((widget) => widget.tables())) as CsvFile[];
   }
 
-  /** Parameters that changed since the last call, as `[id, text]`. */
-  takeChanges(): [string, string][] {
-    return JSON.parse(this.use((widget) => widget.takeChanges())) as [string, string][];
+  /** Every value as a link writes it. */
+  values(): Record<string, string> {
+    return JSON.parse(this.use((widget) => widget.values())) as Record<string, string>;
   }
 }

@@ -240,7 +240,6 @@ export class Life implements Visibility, Drawer {
     }
     this.#instance = instance;
     instance.use((widget) => this.#host.prepare(widget));
-    instance.takeChanges();
     return instance;
   }
 

@@ -49,32 +49,32 @@ pub fn workloads() -> Vec<Workload> {
         frame(
             "frame-w16.1",
             "a frame of w16.1 while its iterations play",
-            || Frames::of(w16_1_basin_explorer::widget(), "iteration", [3.0, 4.0]),
+            || Frames::of(widget("w16.1"), "iteration", [3.0, 4.0]),
         ),
         frame(
             "frame-w16.2",
             "a frame of w16.2 while its timeline is dragged",
-            || Frames::of(w16_2_full_lap::widget(), "t", [100.0, 101.0]),
+            || Frames::of(widget("w16.2"), "t", [100.0, 101.0]),
         ),
         frame(
             "frame-w16.3",
             "a frame of w16.3 while its crosshair is dragged",
-            || Frames::of(w16_3_cost_terraces::widget(), "probe-x", [0.3, 0.31]),
+            || Frames::of(widget("w16.3"), "probe-x", [0.3, 0.31]),
         ),
         frame(
             "frame-w16.4",
             "a frame of w16.4 while its timeline is dragged between two keyframes",
-            || Frames::of(w16_4_control_room::widget(), "t", [100.0, 101.0]),
+            || Frames::of(widget("w16.4"), "t", [100.0, 101.0]),
         ),
         frame(
             "frame-w16.4-grid",
             "a frame of w16.4 that takes a keyframe in or out, and so draws its grid again",
-            || Frames::of(w16_4_control_room::widget(), "t", KEYFRAME_TICKS),
+            || Frames::of(widget("w16.4"), "t", KEYFRAME_TICKS),
         ),
         drag(
             "frame-w16.5",
             "a frame of w16.5 while a spring is made stiffer, and the graph solved",
-            || Frames::of(w16_5_pose_graph_toy::widget(), "stiffness", [1.0, 2.0]),
+            || Frames::of(widget("w16.5"), "stiffness", [1.0, 2.0]),
         ),
         drag(
             "frame-w16.6",
@@ -84,29 +84,33 @@ pub fn workloads() -> Vec<Workload> {
         drag(
             "frame-w16.7",
             "a frame of w16.7 while its threshold is dragged",
-            || Frames::of(w16_7_been_here::widget(), "called", [4.0, 5.0]),
+            || Frames::of(widget("w16.7"), "called", [4.0, 5.0]),
         ),
         drag(
             "frame-w16.9",
             "a frame of w16.9 while its morning is scrubbed",
-            || Frames::of(w16_9_come_back::widget(), "moment", [20.0, 21.0]),
+            || Frames::of(widget("w16.9"), "moment", [20.0, 21.0]),
         ),
         drag(
             "frame-w16.11",
             "a frame of w16.11 while its matrix turns",
-            || Frames::of(w16_11_procrustes::widget(), "turn", [40.0, 41.0]),
+            || Frames::of(widget("w16.11"), "turn", [40.0, 41.0]),
         ),
         drag(
             "frame-w16.12",
             "a frame of w16.12 while its Jacobian is made worse: four solvers to their ends",
-            || Frames::of(w16_12_jacobians::widget(), "bias", [5.0, 6.0]),
+            || Frames::of(widget("w16.12"), "bias", [5.0, 6.0]),
         ),
     ]
 }
 
+fn widget(name: &str) -> Shell {
+    widgets::registry::find(name).expect("a widget of the chapter")()
+}
+
 /// The whole window in cells of 10 cm: its searches end soon under the counter, and its picture is drawn alike.
 fn coarse_search() -> Shell {
-    let mut shell = w16_6_whole_window::widget();
+    let mut shell = widget("w16.6");
     let model = shell.model_mut();
     model.set("cell", 0.1).expect("the value is in range");
     shell

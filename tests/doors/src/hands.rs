@@ -2,10 +2,12 @@
 
 use arbitrary::{Result, Unstructured};
 use kit::model::{Activity, Model, Motion};
-use kit::scene::{Cell, Layer, Panel, Scene};
+use kit::scene::{Layer, Panel};
+
+use kit::promises::{assert_reports, assert_values};
+use widgets::registry::MODELS;
 
 use crate::numbers::any;
-use crate::widgets::MODELS;
 
 /// Most things that a case does.
 const MAX_ACTIONS: usize = 8;
@@ -26,7 +28,7 @@ pub fn door(data: &[u8]) {
         }
         assert_values(model.as_ref());
     }
-    assert_told(model.as_ref());
+    assert_reports(model.as_ref());
 }
 
 fn act(bytes: &mut Unstructured<'_>, model: &mut dyn Model) -> Result<()> {
@@ -137,69 +139,6 @@ fn point(bytes: &mut Unstructured<'_>, panel: &Panel) -> Result<[f64; 2]> {
             let (x, y) = (share(bytes)?, share(bytes)?);
             let [width, height] = bounds.size();
             Ok([bounds.min[0] + x * width, bounds.min[1] + y * height])
-        }
-    }
-}
-
-fn assert_values(model: &dyn Model) {
-    for (param, value) in model.values().iter() {
-        let checked = param.check(value).map(f64::to_bits);
-        assert_eq!(checked, Ok(value.to_bits()), "{} at {value}", param.id);
-    }
-}
-
-/// Everything that the model says of itself holds together.
-fn assert_told(model: &dyn Model) {
-    let outcome = model.outcome();
-    assert!(!outcome.sentence.is_empty() && !outcome.verdict.is_empty());
-    assert!(!outcome.sentence.contains("NaN"), "{}", outcome.sentence);
-    assert!(!model.summary().is_empty());
-    for table in model.tables() {
-        for row in &table.rows {
-            assert_eq!(row.len(), table.columns.len(), "{}", table.id);
-        }
-    }
-    if let Some(timeline) = model.timeline() {
-        assert!(timeline.last.is_finite() && timeline.last >= 0.0);
-        for mark in &timeline.marks {
-            assert!((0.0..=timeline.last).contains(&mark.at), "{}", mark.label);
-        }
-        assert!(model.values().find(timeline.param).is_some());
-    }
-    assert_drawable(&model.scene());
-}
-
-fn assert_drawable(scene: &Scene) {
-    assert!(!scene.panels.is_empty());
-    for panel in &scene.panels {
-        for axis in [&panel.x, &panel.y] {
-            let is_range = axis.min.is_finite() && axis.max.is_finite() && axis.min < axis.max;
-            assert!(is_range, "{}: {axis:?}", panel.id);
-        }
-        for layer in &panel.layers {
-            assert!(numbers_are_finite(layer), "{}: {layer:?}", panel.id);
-        }
-    }
-}
-
-/// Whether every number of a layer can be drawn. A line may be broken by what is not finite.
-fn numbers_are_finite(layer: &Layer) -> bool {
-    let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
-    match layer {
-        Layer::Points { points, .. } => finite(points.as_flattened()),
-        Layer::Line { .. } => true,
-        Layer::Segments { segments, .. } => finite(segments.as_flattened().as_flattened()),
-        Layer::Pose { pose, .. } => finite(pose),
-        Layer::Handle { at, .. } | Layer::Text { at, .. } | Layer::Label { at, .. } => finite(at),
-        Layer::Ellipse {
-            center, half_axes, ..
-        } => finite(center) && finite(half_axes.as_flattened()),
-        Layer::Raster(raster) => {
-            raster.cells.len() == raster.columns * raster.rows
-                && raster.cells.iter().all(|cell| match cell {
-                    Cell::Level(level) | Cell::Occupancy(level) => level.is_finite(),
-                    Cell::Unknown | Cell::Class(_) => true,
-                })
         }
     }
 }

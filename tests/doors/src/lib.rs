@@ -10,6 +10,7 @@ pub mod g2o;
 pub mod graphs;
 pub mod hands;
 pub mod links;
+mod listener;
 pub mod logs;
 pub mod messages;
 mod numbers;
@@ -19,7 +20,6 @@ mod sealed;
 mod sentences;
 pub mod sessions;
 mod solve;
-mod widgets;
 
 /// A door: takes any bytes, and panics where the code behind it breaks a promise.
 pub type Door = fn(&[u8]);

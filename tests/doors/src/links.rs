@@ -5,7 +5,7 @@
 use kit::param::{ParamKind, ParamSpec};
 use kit::values::Values;
 
-use crate::widgets::SPECS;
+use widgets::registry::SPECS;
 
 /// A text is taken or refused. What is taken lies in the range and reads back to the same bits.
 pub fn door(data: &[u8]) {
@@ -43,5 +43,5 @@ fn taken(widget: &'static str, param: &ParamSpec, value: f64, values: &mut Value
     assert_eq!(back.map(f64::to_bits), Ok(value.to_bits()), "{}", param.id);
     assert!(!param.to_text(value).is_empty());
     assert!(values.set(widget, param.id, value).is_ok());
-    assert_eq!(values.get(param.id).to_bits(), value.to_bits());
+    assert_eq!(values.number(param.id).to_bits(), value.to_bits());
 }

@@ -6,7 +6,8 @@
 use kit::model::Model;
 use serde_json::Value;
 
-use crate::widgets::{Listener, SPECS};
+use crate::listener::Listener;
+use widgets::registry::SPECS;
 
 /// A refused value or press changes nothing; a taken one changes what it names and nothing else.
 pub fn door(data: &[u8]) {

@@ -2,7 +2,7 @@
 
 use kit::model::Model;
 use kit::shell::Shell;
-use slam_web::registry::WIDGETS;
+use widgets::registry::SHELLS;
 
 /// One of each widget.
 pub struct Widgets(pub Vec<Shell>);
@@ -10,7 +10,7 @@ pub struct Widgets(pub Vec<Shell>);
 impl Widgets {
     /// All of them, at their defaults.
     pub fn new() -> Self {
-        Self(WIDGETS.iter().map(|(_, maker)| maker()).collect())
+        Self(SHELLS.iter().map(|make| make()).collect())
     }
 
     /// Puts a widget into a state such as `heading=40&dx=0`, from its defaults.

@@ -7,7 +7,7 @@ mod window;
 use std::process::ExitCode;
 
 use kit::shell::Shell;
-use slam_web::registry;
+use widgets::registry;
 
 fn main() -> ExitCode {
     let shell = match named(std::env::args().skip(1)) {
@@ -33,7 +33,7 @@ fn named(words: impl IntoIterator<Item = String>) -> Result<Shell, String> {
         let names = registry::names();
         return Err(format!("slam_desktop takes the name of a widget: {names}"));
     };
-    registry::make(name).ok_or_else(|| registry::unknown(name))
+    registry::find(name).map(|make| make())
 }
 
 #[cfg(test)]

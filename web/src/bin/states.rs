@@ -2,14 +2,16 @@
 //!
 //! The test in Node compares this text with what the same code says as WebAssembly.
 
-use slam_web::{registry, state};
+use slam_web::state;
+use widgets::registry;
 
 fn main() {
     let name = std::env::args().nth(1).unwrap_or_default();
-    let found = registry::WIDGETS.iter().find(|(known, _)| *known == name);
-    let Some((_, maker)) = found else {
-        eprintln!("states takes one of {}", registry::names());
-        std::process::exit(2);
-    };
-    print!("{}", state::after_each_preset(*maker));
+    match registry::find(&name) {
+        Ok(maker) => print!("{}", state::after_each_preset(maker)),
+        Err(problem) => {
+            eprintln!("{problem}");
+            std::process::exit(2);
+        }
+    }
 }

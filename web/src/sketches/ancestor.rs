@@ -179,12 +179,7 @@ fn at(error_m: f64) -> Shown {
 }
 
 fn line(points: Vec<[f64; 2]>, stroke: Stroke, tone: Tone) -> Layer {
-    Layer::Line {
-        points,
-        stroke,
-        tone,
-        width_px: 2.0,
-    }
+    Layer::line(points, stroke, tone, 2.0)
 }
 
 fn hills(place: &Place, error_m: f64, found_m: f64) -> Panel {

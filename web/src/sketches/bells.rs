@@ -120,12 +120,12 @@ fn curve(map: &NdtMap, sweep: &PointCloud) -> Panel {
         aspect: Aspect::Free,
         x: Axis::new("shift along x (m)", -FARTHEST_M, FARTHEST_M),
         y: Axis::new("score a beam", 0.0, 1.4),
-        layers: vec![Layer::Line {
-            points: points.collect(),
-            stroke: Stroke::Solid,
-            tone: Tone::Posterior,
-            width_px: 2.0,
-        }],
+        layers: vec![Layer::line(
+            points.collect(),
+            Stroke::Solid,
+            Tone::Posterior,
+            2.0,
+        )],
         legend: Vec::new(),
         color_bar: None,
     }

@@ -113,18 +113,8 @@ fn at(driven_m: f64) -> Shown {
         x: Axis::new("x (m)", -0.2, 12.2),
         y: Axis::new("y (m)", -0.2, 6.2),
         layers: vec![
-            Layer::Segments {
-                segments: walls.collect(),
-                stroke: Stroke::Solid,
-                tone: Tone::Truth,
-                width_px: 1.0,
-            },
-            Layer::Line {
-                points: WAY_M.to_vec(),
-                stroke: Stroke::Dashed,
-                tone: Tone::Truth,
-                width_px: 1.0,
-            },
+            Layer::segments(walls.collect(), Stroke::Solid, Tone::Truth, 1.0),
+            Layer::line(WAY_M.to_vec(), Stroke::Dashed, Tone::Truth, 1.0),
             Layer::points(seen.collect(), Mark::Cross, Tone::Measurement, 2.5),
             Layer::Ellipse {
                 center: [x, y],

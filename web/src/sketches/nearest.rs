@@ -224,12 +224,7 @@ fn query() -> Layer {
 }
 
 fn segments(segments: Vec<[[f64; 2]; 2]>, stroke: Stroke, tone: Tone) -> Layer {
-    Layer::Segments {
-        segments,
-        stroke,
-        tone,
-        width_px: 1.5,
-    }
+    Layer::segments(segments, stroke, tone, 1.5)
 }
 
 fn cells(grown: &Grown, compared: Vec<[f64; 2]>) -> Panel {

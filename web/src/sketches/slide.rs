@@ -110,12 +110,7 @@ fn picture(wall: &Wall, shift_m: f64) -> Panel {
         Some([[pair.source.x, pair.source.y], [foot.x, foot.y]])
     });
     let moved = pairs.iter().map(|pair| [pair.source.x, pair.source.y]);
-    let segments = |segments: Vec<_>, stroke, tone| Layer::Segments {
-        segments,
-        stroke,
-        tone,
-        width_px: 1.5,
-    };
+    let segments = |segments: Vec<_>, stroke, tone| Layer::segments(segments, stroke, tone, 1.5);
     Panel {
         id: "wall",
         title: "The sweep beside its wall".to_owned(),
@@ -148,14 +143,16 @@ fn costs(wall: &Wall, shift_m: f64) -> Panel {
     let places: Vec<f64> = (-60..=60)
         .map(|k| FARTHEST_M * f64::from(k) / 60.0)
         .collect();
-    let curve = |which: usize, stroke, tone| Layer::Line {
-        points: places
-            .iter()
-            .map(|&place| [place, wall.costs(place)[which]])
-            .collect(),
-        stroke,
-        tone,
-        width_px: 2.0,
+    let curve = |which: usize, stroke, tone| {
+        Layer::line(
+            places
+                .iter()
+                .map(|&place| [place, wall.costs(place)[which]])
+                .collect(),
+            stroke,
+            tone,
+            2.0,
+        )
     };
     let now = wall.costs(shift_m);
     Panel {

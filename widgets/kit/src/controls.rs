@@ -7,13 +7,14 @@ use crate::hot::Hot;
 use crate::model::Model;
 use crate::param::MORE;
 use crate::param::{Choice, ParamKind, ParamSpec};
+use crate::pointer::Touched;
 use crate::ticks::signed;
 
 /// Width below which a column of controls is not split in two.
 const TWO_COLUMNS: f32 = 480.0;
 
-/// Shows every parameter of the layer that has no place of its own elsewhere.
-pub fn params(ui: &mut Ui, model: &mut dyn Model, hot: &mut Hot) {
+/// Shows every parameter of the layer that has no place of its own elsewhere; says whether any was set.
+pub fn params(ui: &mut Ui, model: &mut dyn Model, hot: &mut Hot) -> Touched {
     let layer = model.layer();
     let specs: Vec<_> = model
         .values()
@@ -23,18 +24,25 @@ pub fn params(ui: &mut Ui, model: &mut dyn Model, hot: &mut Hot) {
         .filter(|(spec, _)| !matches!(spec.kind, ParamKind::Text { .. }))
         .filter(|(spec, _)| layer.has_param(spec.id))
         .collect();
-    if ui.available_width() < TWO_COLUMNS {
-        for (spec, value) in specs {
-            param(ui, model, spec, value, hot);
+    let mut touched = Touched::No;
+    let mut show = |ui: &mut Ui, (spec, value)| {
+        if param(ui, model, spec, value, hot) {
+            touched = Touched::Yes;
         }
-        return;
+    };
+    if ui.available_width() < TWO_COLUMNS {
+        for shown in specs {
+            show(ui, shown);
+        }
+        return touched;
     }
     let half = specs.len().div_ceil(2);
     ui.columns(2, |columns| {
-        for (index, (spec, value)) in specs.into_iter().enumerate() {
-            param(&mut columns[index / half], model, spec, value, hot);
+        for (index, shown) in specs.into_iter().enumerate() {
+            show(&mut columns[index / half], shown);
         }
     });
+    touched
 }
 
 /// Whether a parameter is shown by the transport bar instead.
@@ -43,7 +51,14 @@ pub fn on_transport_bar(spec: &ParamSpec) -> bool {
     matches!(spec.kind, ParamKind::Timeline { .. }) || spec.id == crate::playback::SPEED.id
 }
 
-fn param(ui: &mut Ui, model: &mut dyn Model, spec: &'static ParamSpec, value: f64, hot: &mut Hot) {
+/// Shows one parameter; says whether it was set.
+fn param(
+    ui: &mut Ui,
+    model: &mut dyn Model,
+    spec: &'static ParamSpec,
+    value: f64,
+    hot: &mut Hot,
+) -> bool {
     let new = match spec.kind {
         ParamKind::Slider { min, max, step } => slider(ui, spec, value, [min, max, step], hot),
         ParamKind::Seed { max } => seed(ui, spec, value, max, hot),
@@ -54,11 +69,9 @@ fn param(ui: &mut Ui, model: &mut dyn Model, spec: &'static ParamSpec, value: f6
         ParamKind::Switch => switch(ui, spec, value, hot),
         ParamKind::Timeline { .. } | ParamKind::Text { .. } => None,
     };
-    if let Some(new) = new {
-        // egui keeps to the range; where rounding leaves it, the old value stands.
-        let _ = model.set(spec.id, new);
-    }
     ui.add_space(2.0);
+    // egui keeps to the range; where rounding leaves it, the old value stands.
+    new.is_some_and(|new| model.set(spec.id, new).is_ok())
 }
 
 fn slider(

@@ -1,7 +1,7 @@
 //! What the widgets share.
 //!
 //! The half without egui is what a widget's `model.rs` speaks: [`param`], [`values`], [`spec`], [`model`],
-//! [`scene`], [`chart`], [`counted`], [`layers`], [`outside`], [`playback`], [`played`], [`run`], [`ticks`],
+//! [`scene`], [`chart`], [`counted`], [`layers`], [`outside`], [`playback`], [`played`], [`promises`], [`run`], [`ticks`],
 //! [`palette`]. Nothing in it may use the other half: the models are tested headless.
 //!
 //! The other half draws, and is compiled with the feature `view`. [`draw`] puts a scene on any
@@ -18,6 +18,7 @@ pub mod palette;
 pub mod param;
 pub mod playback;
 pub mod played;
+pub mod promises;
 pub mod run;
 pub mod scene;
 pub mod spec;

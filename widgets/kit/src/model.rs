@@ -286,6 +286,40 @@ pub struct Table {
     pub place: TablePlace,
 }
 
+impl Table {
+    /// A table beside the picture.
+    #[must_use]
+    pub fn shown(
+        id: &'static str,
+        title: impl Into<String>,
+        columns: &[&str],
+        rows: Vec<Vec<String>>,
+    ) -> Self {
+        let columns = columns.iter().map(|&head| head.to_owned());
+        Self {
+            id,
+            title: title.into(),
+            columns: columns.collect(),
+            rows,
+            place: TablePlace::Shown,
+        }
+    }
+
+    /// A table for the export alone.
+    #[must_use]
+    pub fn exported(
+        id: &'static str,
+        title: impl Into<String>,
+        columns: &[&str],
+        rows: Vec<Vec<String>>,
+    ) -> Self {
+        Self {
+            place: TablePlace::ExportOnly,
+            ..Self::shown(id, title, columns, rows)
+        }
+    }
+}
+
 /// Where a table stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TablePlace {

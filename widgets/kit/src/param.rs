@@ -1,9 +1,13 @@
 //! Parameters: declared once, and from that one list come the sliders, the link form, the
 //! JavaScript interface and the tables of the docs.
 //!
-//! Every value is an `f64`: a choice is the index of its option, a switch is 0 or 1, a seed is a
-//! whole number below 2³². A link writes choices and switches by name. A text is kept beside its
-//! value, which is a whole number that tells texts apart.
+//! A widget declares each as a [`Param`] or a [`OneOf`], which know the type of its value: a model
+//! reads `values.get(&VARIANT)` and gets an `IcpVariant`. What goes over a list without knowing
+//! types, such as the controls, sees [`ParamSpec`] and numbers: the index of an option, 0 or 1 of a
+//! switch. A link writes choices and switches by name.
+
+use core::marker::PhantomData;
+use core::ops::Deref;
 
 use thiserror::Error;
 
@@ -14,6 +18,14 @@ pub struct Choice {
     pub id: &'static str,
     /// Name on screen: `point to plane`.
     pub label: &'static str,
+}
+
+impl Choice {
+    /// An option by its name in links and its name on screen.
+    #[must_use]
+    pub const fn new(id: &'static str, label: &'static str) -> Self {
+        Self { id, label }
+    }
 }
 
 /// How a parameter is shown, and which values it takes.
@@ -70,15 +82,309 @@ pub struct ParamSpec {
     pub help: &'static str,
 }
 
+/// A declaration that knows the type of its value: [`Param`] or [`OneOf`].
+pub trait Typed {
+    /// What a model reads.
+    type Value;
+
+    /// The declaration as the list has it.
+    fn spec(&self) -> &ParamSpec;
+
+    /// The value that a number of the list stands for.
+    fn read(&self, number: f64) -> Self::Value;
+
+    /// The number that stands for a value.
+    fn number(&self, value: Self::Value) -> f64;
+}
+
+/// What the value of a [`Param`] may be.
+pub trait Number: Copy {
+    /// The value that a number of the list stands for.
+    fn read(number: f64) -> Self;
+
+    /// The number that stands for it.
+    fn number(self) -> f64;
+}
+
+impl Number for f64 {
+    fn read(number: f64) -> Self {
+        number
+    }
+
+    fn number(self) -> f64 {
+        self
+    }
+}
+
+impl Number for usize {
+    fn read(number: f64) -> Self {
+        number as Self
+    }
+
+    fn number(self) -> f64 {
+        self as f64
+    }
+}
+
+impl Number for u32 {
+    fn read(number: f64) -> Self {
+        number as Self
+    }
+
+    fn number(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+impl Number for bool {
+    fn read(number: f64) -> Self {
+        number != 0.0
+    }
+
+    fn number(self) -> f64 {
+        f64::from(u8::from(self))
+    }
+}
+
+/// A parameter whose value is a number, whole or not, or a switch.
+#[derive(Clone, Copy, Debug)]
+pub struct Param<T> {
+    /// The declaration as the list has it.
+    pub spec: ParamSpec,
+    value: PhantomData<T>,
+}
+
+impl<T> Param<T> {
+    const fn new(id: &'static str, label: &'static str, kind: ParamKind) -> Self {
+        let spec = ParamSpec {
+            id,
+            label,
+            unit: "",
+            kind,
+            default: 0.0,
+            help: "",
+        };
+        Self {
+            spec,
+            value: PhantomData,
+        }
+    }
+
+    /// A number between both ends, moved in steps.
+    #[must_use]
+    pub const fn slider(
+        id: &'static str,
+        label: &'static str,
+        [min, max]: [f64; 2],
+        step: f64,
+    ) -> Self {
+        Self::new(id, label, ParamKind::Slider { min, max, step })
+    }
+
+    /// A place on the widget's timeline.
+    #[must_use]
+    pub const fn timeline(id: &'static str, label: &'static str, max: f64) -> Self {
+        Self::new(id, label, ParamKind::Timeline { max })
+    }
+
+    /// A whole number that is typed.
+    #[must_use]
+    pub const fn typed(id: &'static str, label: &'static str, max: f64) -> Self {
+        Self::new(id, label, ParamKind::Seed { max })
+    }
+
+    /// With a unit.
+    #[must_use]
+    pub const fn unit(mut self, unit: &'static str) -> Self {
+        self.spec.unit = unit;
+        self
+    }
+
+    /// With another default than 0.
+    #[must_use]
+    pub const fn default(mut self, default: f64) -> Self {
+        self.spec.default = default;
+        self
+    }
+
+    /// With one sentence on what it does.
+    #[must_use]
+    pub const fn help(mut self, help: &'static str) -> Self {
+        self.spec.help = help;
+        self
+    }
+}
+
+impl Param<u32> {
+    /// A seed of the core's generator.
+    #[must_use]
+    pub const fn seed(label: &'static str, default: u32) -> Self {
+        Self::new("seed", label, ParamKind::SEED).default(default as f64)
+    }
+
+    /// The value for a preset.
+    #[must_use]
+    pub const fn to(&self, value: u32) -> (&'static str, f64) {
+        (self.spec.id, value as f64)
+    }
+}
+
+impl Param<usize> {
+    /// The value for a preset.
+    #[must_use]
+    pub const fn to(&self, value: usize) -> (&'static str, f64) {
+        (self.spec.id, value as f64)
+    }
+}
+
+impl Param<f64> {
+    /// The value for a preset.
+    #[must_use]
+    pub const fn to(&self, value: f64) -> (&'static str, f64) {
+        (self.spec.id, value)
+    }
+}
+
+impl Param<bool> {
+    /// A switch that is off.
+    #[must_use]
+    pub const fn switch(id: &'static str, label: &'static str) -> Self {
+        Self::new(id, label, ParamKind::Switch)
+    }
+
+    /// A switch that is on at the start.
+    #[must_use]
+    pub const fn on(self) -> Self {
+        self.default(1.0)
+    }
+
+    /// The value for a preset.
+    #[must_use]
+    pub const fn to(&self, value: bool) -> (&'static str, f64) {
+        (self.spec.id, value as u8 as f64)
+    }
+}
+
+impl<T: Number> Typed for Param<T> {
+    type Value = T;
+
+    fn spec(&self) -> &ParamSpec {
+        &self.spec
+    }
+
+    fn read(&self, number: f64) -> T {
+        T::read(number)
+    }
+
+    fn number(&self, value: T) -> f64 {
+        value.number()
+    }
+}
+
+impl<T> Deref for Param<T> {
+    type Target = ParamSpec;
+
+    fn deref(&self) -> &ParamSpec {
+        &self.spec
+    }
+}
+
+/// A parameter whose value is one of a few.
+#[derive(Clone, Copy, Debug)]
+pub struct OneOf<T: 'static> {
+    /// The declaration as the list has it.
+    pub spec: ParamSpec,
+    values: &'static [T],
+}
+
+impl<T> OneOf<T> {
+    /// A choice between options that stand for these values, in the same order; the first is the default.
+    ///
+    /// # Panics
+    /// If their numbers differ: in a `static` the compiler says so.
+    #[must_use]
+    pub const fn new(
+        id: &'static str,
+        label: &'static str,
+        options: &'static [Choice],
+        values: &'static [T],
+    ) -> Self {
+        assert!(options.len() == values.len(), "an option without a value");
+        let spec = Param::<T>::new(id, label, ParamKind::Choice { options }).spec;
+        Self { spec, values }
+    }
+
+    /// With another default than the first option.
+    #[must_use]
+    pub const fn default(mut self, option: &str) -> Self {
+        self.spec.default = self.to(option).1;
+        self
+    }
+
+    /// With one sentence on what it does.
+    #[must_use]
+    pub const fn help(mut self, help: &'static str) -> Self {
+        self.spec.help = help;
+        self
+    }
+
+    /// The value for a preset, by its option.
+    ///
+    /// # Panics
+    /// If there is no such option: in a `const` the compiler says so.
+    #[must_use]
+    pub const fn to(&self, option: &str) -> (&'static str, f64) {
+        let ParamKind::Choice { options } = self.spec.kind else {
+            panic!("made by `new`");
+        };
+        let mut index = 0;
+        while index < options.len() {
+            if is_same(options[index].id.as_bytes(), option.as_bytes()) {
+                return (self.spec.id, index as f64);
+            }
+            index += 1;
+        }
+        panic!("no such option");
+    }
+}
+
+/// `a == b`, for constants.
+const fn is_same(a: &[u8], b: &[u8]) -> bool {
+    let mut index = 0;
+    while index < a.len() && index < b.len() && a[index] == b[index] {
+        index += 1;
+    }
+    index == a.len() && index == b.len()
+}
+
+impl<T: Copy + PartialEq> Typed for OneOf<T> {
+    type Value = T;
+
+    fn spec(&self) -> &ParamSpec {
+        &self.spec
+    }
+
+    fn read(&self, number: f64) -> T {
+        self.values[number as usize]
+    }
+
+    fn number(&self, value: T) -> f64 {
+        let index = self.values.iter().position(|known| *known == value);
+        index.expect("a value of the options") as f64
+    }
+}
+
+impl<T> Deref for OneOf<T> {
+    type Target = ParamSpec;
+
+    fn deref(&self) -> &ParamSpec {
+        &self.spec
+    }
+}
+
 /// Whether everything is shown. A widget with layers lists it last.
-pub const MORE: ParamSpec = ParamSpec {
-    id: "more",
-    label: "more",
-    unit: "",
-    kind: ParamKind::Switch,
-    default: 0.0,
-    help: "Shows all settings, presets, numbers, tables and plots.",
-};
+pub static MORE: Param<bool> =
+    Param::switch("more", "more").help("Shows all settings, presets, numbers, tables and plots.");
 
 /// Why a value was refused. The old value stands.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -170,9 +476,6 @@ impl ParamSpec {
     /// # Errors
     /// [`ParamError::OutOfRange`] where the value is not a number of the range.
     pub fn check(&self, value: f64) -> Result<f64, ParamError> {
-        if matches!(self.kind, ParamKind::Text { .. }) && is_fingerprint(value) {
-            return Ok(value);
-        }
         let (min, max) = self.range();
         // A sum of steps may end a few last bits beyond the range.
         let slack = 1e-6 * self.step();
@@ -216,14 +519,14 @@ impl ParamSpec {
                 .get(value as usize)
                 .map_or_else(|| value.to_string(), |choice| choice.id.to_owned()),
             ParamKind::Switch => if value == 0.0 { "off" } else { "on" }.to_owned(),
-            // The number tells texts apart, but not what they are: see `Values::to_text`.
+            // No number is a text: see `Values::to_text`.
             ParamKind::Text { .. } => String::new(),
             // Display of an f64 is the shortest text that reads back to the same bits.
             _ => format!("{value}"),
         }
     }
 
-    /// Reads what [`ParamSpec::to_text`] writes, checked against the range.
+    /// Reads what [`ParamSpec::to_text`] writes, checked against the range; of a text that can be kept, 0.
     ///
     /// # Errors
     /// [`ParamError::Unreadable`] or [`ParamError::OutOfRange`], each naming what would be right.
@@ -254,7 +557,7 @@ impl ParamSpec {
                     let expected = format!("at most {most} letters, digits, - and _");
                     return Err(unreadable(expected));
                 }
-                Ok(fingerprint(text))
+                Ok(0.0)
             }
             _ => {
                 let value = text
@@ -264,24 +567,6 @@ impl ParamSpec {
             }
         }
     }
-}
-
-/// The number that stands for a text: 0 for none, else FNV-1a, folded to what an `f64` holds.
-fn fingerprint(text: &str) -> f64 {
-    if text.is_empty() {
-        return 0.0;
-    }
-    let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    });
-    ((hash >> 12 ^ hash) % MOST_FINGERPRINT + 1) as f64
-}
-
-/// Below 2⁵³ every whole number is an `f64`.
-const MOST_FINGERPRINT: u64 = 1 << 52;
-
-fn is_fingerprint(value: f64) -> bool {
-    (0.0..=MOST_FINGERPRINT as f64).contains(&value) && value.fract() == 0.0
 }
 
 /// Most characters of a text from outside that a message repeats.
@@ -317,8 +602,8 @@ pub fn printable(text: &str) -> String {
 pub(crate) mod tests {
     use super::*;
 
-    pub(crate) const SPECS: &[ParamSpec] = &[
-        ParamSpec {
+    pub(crate) const SPECS: &[&ParamSpec] = &[
+        &ParamSpec {
             id: "heading",
             label: "heading error",
             unit: "°",
@@ -330,7 +615,7 @@ pub(crate) mod tests {
             default: 25.0,
             help: "",
         },
-        ParamSpec {
+        &ParamSpec {
             id: "variant",
             label: "variant",
             unit: "",

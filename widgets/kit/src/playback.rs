@@ -3,47 +3,24 @@
 //! Reduced motion is handled here, once: under it a run never plays, its end shows at once.
 
 use crate::model::Motion;
-use crate::param::{Choice, ParamKind, ParamSpec};
+use crate::param::{Choice, OneOf};
 use crate::spec::{PLAY, RESET, STEP};
 
-/// The speed of the playback, a parameter that every widget with a timeline lists.
-pub const SPEED: ParamSpec = ParamSpec {
-    id: "speed",
-    label: "speed",
-    unit: "",
-    kind: ParamKind::Choice {
-        options: &[
-            Choice {
-                id: "quarter",
-                label: "×¼",
-            },
-            Choice {
-                id: "half",
-                label: "×½",
-            },
-            Choice {
-                id: "normal",
-                label: "×1",
-            },
-            Choice {
-                id: "double",
-                label: "×2",
-            },
-            Choice {
-                id: "fourfold",
-                label: "×4",
-            },
-        ],
-    },
-    default: 2.0,
-    help: "How fast the run plays.",
-};
-
-/// The factor that a value of [`SPEED`] stands for.
-#[must_use]
-pub fn speed_factor(value: f64) -> f64 {
-    [0.25, 0.5, 1.0, 2.0, 4.0][(value as usize).min(4)]
-}
+/// The speed of the playback, as a factor: a parameter that every widget with a timeline lists.
+pub static SPEED: OneOf<f64> = OneOf::new(
+    "speed",
+    "speed",
+    &[
+        Choice::new("quarter", "×¼"),
+        Choice::new("half", "×½"),
+        Choice::new("normal", "×1"),
+        Choice::new("double", "×2"),
+        Choice::new("fourfold", "×4"),
+    ],
+    &[0.25, 0.5, 1.0, 2.0, 4.0],
+)
+.default("normal")
+.help("How fast the run plays.");
 
 /// A playback: whether it runs, and the part of a step that has gone by.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

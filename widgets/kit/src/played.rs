@@ -2,7 +2,8 @@
 //! widget that shows one.
 
 use crate::model::{Activity, Motion, Timeline, TimelineMark};
-use crate::playback::{Playback, SPEED, speed_factor};
+use crate::param::Param;
+use crate::playback::{Playback, SPEED};
 use crate::spec::DEFAULTS;
 use crate::values::Values;
 
@@ -12,7 +13,7 @@ use crate::values::Values;
 /// place is asked for in each call, since most settings change it.
 #[derive(Clone, Copy, Debug)]
 pub struct Played {
-    param: &'static str,
+    param: &'static Param<f64>,
     playback: Playback,
 }
 
@@ -30,7 +31,7 @@ pub enum Pressed {
 impl Played {
     /// A run at rest along that parameter.
     #[must_use]
-    pub fn along(param: &'static str) -> Self {
+    pub fn along(param: &'static Param<f64>) -> Self {
         Self {
             param,
             playback: Playback::default(),
@@ -64,7 +65,7 @@ impl Played {
     pub fn press(&mut self, values: &mut Values, button: &str, last: f64) -> Pressed {
         let here = self.place(values, last);
         if let Some(position) = self.playback.press(button, here, last) {
-            values.store(self.param, position);
+            values.put(self.param, position);
             return Pressed::Transport;
         }
         if button != DEFAULTS.id {
@@ -86,17 +87,17 @@ impl Played {
         if !self.is_playing() {
             return Activity::Idle;
         }
-        let rate = steps_per_s * speed_factor(values.get(SPEED.id));
+        let rate = steps_per_s * values.get(&SPEED);
         let here = self.place(values, last);
         let next = self.playback.advance(here, last, elapsed_s, rate);
-        values.store(self.param, next);
+        values.put(self.param, next);
         Activity::Busy
     }
 
     /// Sets how much may move by itself: a run that plays is at its end at once where nothing may.
     pub fn set_motion(&mut self, values: &mut Values, motion: Motion, last: f64) {
         if let Some(end) = self.playback.set_motion(motion, last) {
-            values.store(self.param, end);
+            values.put(self.param, end);
         }
     }
 
@@ -104,7 +105,7 @@ impl Played {
     #[must_use]
     pub fn timeline(&self, last: f64, marks: Vec<TimelineMark>) -> Timeline {
         Timeline {
-            param: self.param,
+            param: self.param.id,
             last,
             playing: self.is_playing(),
             marks,
@@ -115,48 +116,40 @@ impl Played {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::param::MORE;
-    use crate::param::{ParamKind, ParamSpec};
+    use crate::param::{MORE, ParamSpec};
 
-    const STEPS: ParamSpec = ParamSpec {
-        id: "steps",
-        label: "steps",
-        unit: "",
-        kind: ParamKind::Timeline { max: 1000.0 },
-        default: 1000.0,
-        help: "Steps done.",
-    };
-    const PARAMS: &[ParamSpec] = &[STEPS, SPEED, MORE];
+    static STEPS: Param<f64> = Param::timeline("steps", "steps", 1000.0).default(1000.0);
+    const PARAMS: &[&ParamSpec] = &[&STEPS.spec, &SPEED.spec, &MORE.spec];
 
     #[test]
     fn a_place_past_the_end_is_the_end_and_play_starts_over_there() {
-        let (mut values, mut run) = (Values::defaults(PARAMS), Played::along("steps"));
+        let (mut values, mut run) = (Values::defaults(PARAMS), Played::along(&STEPS));
         assert_eq!(run.place(&values, 10.0), 10.0);
         assert_eq!(run.press(&mut values, "play", 10.0), Pressed::Transport);
-        assert_eq!((values.get("steps"), run.is_playing()), (0.0, true));
+        assert_eq!((values.get(&STEPS), run.is_playing()), (0.0, true));
         assert_eq!(run.advance(&mut values, 10.0, 0.2, 5.0), Activity::Busy);
-        assert_eq!(values.get("steps"), 1.0);
+        assert_eq!(values.get(&STEPS), 1.0);
         values.store("speed", 4.0);
         run.advance(&mut values, 10.0, 0.2, 5.0);
-        assert_eq!(values.get("steps"), 5.0, "four times as fast");
+        assert_eq!(values.get(&STEPS), 5.0, "four times as fast");
     }
 
     #[test]
     fn defaults_stop_the_run_and_leave_open_what_was_opened() {
-        let (mut values, mut run) = (Values::defaults(PARAMS), Played::along("steps"));
+        let (mut values, mut run) = (Values::defaults(PARAMS), Played::along(&STEPS));
         values.store(MORE.id, 1.0);
         run.press(&mut values, "play", 10.0);
         assert_eq!(run.press(&mut values, "defaults", 10.0), Pressed::Defaults);
-        assert_eq!((values.get("steps"), run.is_playing()), (1000.0, false));
-        assert_eq!(values.get(MORE.id), 1.0);
+        assert_eq!((values.get(&STEPS), run.is_playing()), (1000.0, false));
+        assert!(values.get(&MORE));
         assert_eq!(run.press(&mut values, "quarter-turn", 10.0), Pressed::Other);
     }
 
     #[test]
     fn a_run_that_plays_ends_at_once_when_nothing_may_move() {
-        let (mut values, mut run) = (Values::defaults(PARAMS), Played::along("steps"));
+        let (mut values, mut run) = (Values::defaults(PARAMS), Played::along(&STEPS));
         run.press(&mut values, "play", 10.0);
         run.set_motion(&mut values, Motion::Reduced, 10.0);
-        assert_eq!((values.get("steps"), run.is_playing()), (10.0, false));
+        assert_eq!((values.get(&STEPS), run.is_playing()), (10.0, false));
     }
 }

@@ -190,6 +190,33 @@ impl Layer {
         }
     }
 
+    /// A line through points.
+    #[must_use]
+    pub fn line(points: Vec<[f64; 2]>, stroke: Stroke, tone: Tone, width_px: f32) -> Self {
+        Self::Line {
+            points,
+            stroke,
+            tone,
+            width_px,
+        }
+    }
+
+    /// Lines between pairs of points.
+    #[must_use]
+    pub fn segments(
+        segments: Vec<[[f64; 2]; 2]>,
+        stroke: Stroke,
+        tone: Tone,
+        width_px: f32,
+    ) -> Self {
+        Self::Segments {
+            segments,
+            stroke,
+            tone,
+            width_px,
+        }
+    }
+
     /// [`Layer::Label`] in ink.
     #[must_use]
     pub fn label(at: [f64; 2], text: String, clear_px: f32) -> Self {

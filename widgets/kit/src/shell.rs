@@ -18,7 +18,6 @@ use crate::style;
 use crate::surface::PxRect;
 use crate::svg::picture_svg;
 use crate::transform::Transform;
-use crate::values::Values;
 use crate::view::View;
 use crate::zoom::Look;
 use room::Room;
@@ -43,15 +42,6 @@ const SHARE_AT_REST: f32 = 1.0 / 3.0;
 /// However slow drawing is, the reader is not kept waiting longer than this.
 const MOST_WORK: Duration = Duration::from_millis(100);
 
-/// A parameter that the pointer changed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Change {
-    /// The parameter.
-    pub id: &'static str,
-    /// Its new value.
-    pub value: f64,
-}
-
 /// A widget on egui: model and view, and what a frame leaves for the next.
 pub struct Shell {
     model: Box<dyn Model>,
@@ -72,7 +62,6 @@ pub struct Shell {
     panels: Vec<(&'static str, Transform)>,
     textures: Textures,
     hot: Hot,
-    changes: Vec<Change>,
     content_height: f32,
     room: Room,
 }
@@ -125,7 +114,6 @@ impl Shell {
             panels: Vec::new(),
             textures: Textures::default(),
             hot: Hot::default(),
-            changes: Vec::new(),
             content_height: 0.0,
             room: Room::default(),
         }
@@ -228,11 +216,6 @@ impl Shell {
         self.touch();
     }
 
-    /// Parameters changed by the pointer since the last call.
-    pub fn take_changes(&mut self) -> Vec<Change> {
-        core::mem::take(&mut self.changes)
-    }
-
     /// The static picture of the widget as it is now.
     #[must_use]
     pub fn picture_svg(&self, width_px: f32, theme: Theme) -> String {
@@ -320,9 +303,7 @@ impl Shell {
         let room = Rect::from_min_size(pos2(at[0], at[1]), vec2(width, f32::INFINITY));
         let mut child = ui.new_child(UiBuilder::new().max_rect(room));
         child.set_max_width(width);
-        let before = self.model.values().clone();
         contents(self, &mut child);
-        self.note_changes(&before);
         let height = child.min_rect().height();
         if height > 0.0 {
             at[1] + height + GAP
@@ -371,19 +352,6 @@ impl Shell {
         self.changed = true;
         if self.moving == Moving::No {
             self.moving = Moving::Perhaps;
-        }
-    }
-
-    fn note_changes(&mut self, before: &Values) {
-        let changes: Vec<_> = before
-            .iter()
-            .zip(self.model.values().iter())
-            .filter(|((_, old), (_, new))| old.to_bits() != new.to_bits())
-            .map(|(_, (spec, value))| Change { id: spec.id, value })
-            .collect();
-        if !changes.is_empty() {
-            self.touch();
-            self.changes.extend(changes);
         }
     }
 

@@ -17,7 +17,7 @@ pub struct WidgetSpec {
     /// What it shows until the reader asks for more.
     pub opening: Opening,
     /// The parameters, in the order of their controls.
-    pub params: &'static [ParamSpec],
+    pub params: &'static [&'static ParamSpec],
     /// The buttons, in their order: transport first.
     pub buttons: &'static [ButtonSpec],
     /// "What to try": buttons that set the state.

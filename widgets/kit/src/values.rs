@@ -1,24 +1,47 @@
 //! The values that the parameters of a widget have.
 
-use crate::param::{MORE, ParamError, ParamKind, ParamSpec, printable};
+use crate::param::{MORE, ParamError, ParamKind, ParamSpec, Typed, printable};
 
 /// The current value of every parameter of a list, in its order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Values {
-    specs: &'static [ParamSpec],
-    values: Vec<f64>,
-    /// Of the same index; empty where the parameter is no text.
-    texts: Vec<String>,
+    specs: &'static [&'static ParamSpec],
+    values: Vec<Value>,
+}
+
+/// What one parameter has.
+#[derive(Clone, Debug, PartialEq)]
+enum Value {
+    /// A number, the index of an option, or 0 or 1 of a switch.
+    Number(f64),
+    /// A text.
+    Text(String),
+}
+
+impl Value {
+    fn default_of(spec: &ParamSpec) -> Self {
+        match spec.kind {
+            ParamKind::Text { .. } => Self::Text(String::new()),
+            _ => Self::Number(spec.default),
+        }
+    }
+
+    /// A text has no number but 0.
+    fn number(&self) -> f64 {
+        match self {
+            Self::Number(number) => *number,
+            Self::Text(_) => 0.0,
+        }
+    }
 }
 
 impl Values {
     /// Every parameter at its default.
     #[must_use]
-    pub fn defaults(specs: &'static [ParamSpec]) -> Self {
+    pub fn defaults(specs: &'static [&'static ParamSpec]) -> Self {
         Self {
             specs,
-            values: specs.iter().map(|spec| spec.default).collect(),
-            texts: vec![String::new(); specs.len()],
+            values: specs.iter().map(|spec| Value::default_of(spec)).collect(),
         }
     }
 
@@ -27,23 +50,22 @@ impl Values {
     pub fn reset(&mut self) {
         for (spec, value) in self.specs.iter().zip(&mut self.values) {
             if spec.id != MORE.id {
-                *value = spec.default;
+                *value = Value::default_of(spec);
             }
         }
-        self.texts.fill(String::new());
     }
 
     /// The list these values belong to.
     #[must_use]
-    pub fn specs(&self) -> &'static [ParamSpec] {
+    pub fn specs(&self) -> &'static [&'static ParamSpec] {
         self.specs
     }
 
     /// The parameter of that name with its value.
     #[must_use]
     pub fn find(&self, id: &str) -> Option<(&'static ParamSpec, f64)> {
-        let index = self.specs.iter().position(|spec| spec.id == id)?;
-        Some((&self.specs[index], self.values[index]))
+        let index = self.index(id)?;
+        Some((self.specs[index], self.values[index].number()))
     }
 
     /// The parameter of that name with its value, or words that name what there is.
@@ -67,12 +89,25 @@ impl Values {
         }
     }
 
+    fn index(&self, id: &str) -> Option<usize> {
+        self.specs.iter().position(|spec| spec.id == id)
+    }
+
     /// The value of a parameter that the widget itself declares.
+    ///
+    /// # Panics
+    /// Where the list lacks it: a bug of the widget.
+    #[must_use]
+    pub fn get<P: Typed>(&self, param: &P) -> P::Value {
+        param.read(self.number(param.spec().id))
+    }
+
+    /// The number that stands for the value of the parameter of that name.
     ///
     /// # Panics
     /// Where the list has no such name: a bug of the widget.
     #[must_use]
-    pub fn get(&self, id: &str) -> f64 {
+    pub fn number(&self, id: &str) -> f64 {
         match self.find(id) {
             Some((_, value)) => value,
             None => panic!("no parameter `{id}` in the list"),
@@ -89,31 +124,40 @@ impl Values {
         id: &str,
         value: f64,
     ) -> Result<Changed, ParamError> {
-        let Some(index) = self.specs.iter().position(|spec| spec.id == id) else {
+        let Some(index) = self.index(id) else {
             return Err(self.unknown(widget, id));
         };
-        let spec = &self.specs[index];
-        let value = spec.check(value)?;
-        if value.to_bits() == self.values[index].to_bits() {
-            return Ok(Changed::No);
-        }
-        if matches!(spec.kind, ParamKind::Text { .. }) {
-            // A number can only take a text away.
-            if value != 0.0 {
-                return Err(ParamError::OutOfRange {
-                    id: spec.id,
-                    value,
-                    min: 0.0,
-                    max: 0.0,
-                });
-            }
-            self.texts[index].clear();
+        let spec = self.specs[index];
+        let value = match (spec.kind, spec.check(value)?) {
+            // The range of a text is 0, which takes it away.
+            (ParamKind::Text { .. }, _) => Value::Text(String::new()),
+            (_, number) => Value::Number(number),
+        };
+        Ok(self.keep(index, value))
+    }
+
+    fn keep(&mut self, index: usize, value: Value) -> Changed {
+        let is_same = match (&self.values[index], &value) {
+            // −0 is another number: a link writes it.
+            (Value::Number(old), Value::Number(new)) => old.to_bits() == new.to_bits(),
+            (old, new) => old == new,
+        };
+        if is_same {
+            return Changed::No;
         }
         self.values[index] = value;
-        Ok(Changed::Yes)
+        Changed::Yes
     }
 
     /// Keeps a value of the widget's own, that lies in its range by construction.
+    ///
+    /// # Panics
+    /// Where the list refuses it: a bug of the widget.
+    pub fn put<P: Typed>(&mut self, param: &P, value: P::Value) -> Changed {
+        self.store(param.spec().id, param.number(value))
+    }
+
+    /// [`Values::put`] by the parameter's name and the number that stands for the value.
     ///
     /// # Panics
     /// Where the list refuses it: a bug of the widget.
@@ -134,20 +178,14 @@ impl Values {
         id: &str,
         text: &str,
     ) -> Result<Changed, ParamError> {
-        let Some(index) = self.specs.iter().position(|spec| spec.id == id) else {
+        let Some(index) = self.index(id) else {
             return Err(self.unknown(widget, id));
         };
-        let value = self.specs[index].parse(text)?;
-        if !matches!(self.specs[index].kind, ParamKind::Text { .. }) {
-            return self.set(widget, id, value);
-        }
-        let text = text.trim();
-        if self.texts[index] == text {
-            return Ok(Changed::No);
-        }
-        text.clone_into(&mut self.texts[index]);
-        self.values[index] = value;
-        Ok(Changed::Yes)
+        let value = match (self.specs[index].kind, self.specs[index].parse(text)?) {
+            (ParamKind::Text { .. }, _) => Value::Text(text.trim().to_owned()),
+            (_, number) => Value::Number(number),
+        };
+        Ok(self.keep(index, value))
     }
 
     /// The value of a parameter as a link writes it.
@@ -156,19 +194,19 @@ impl Values {
     /// Where the list has no such parameter: a bug of the widget.
     #[must_use]
     pub fn to_text(&self, id: &str) -> String {
-        let index = self.specs.iter().position(|spec| spec.id == id);
-        let Some(index) = index else {
+        let Some(index) = self.index(id) else {
             panic!("no parameter `{id}` in the list");
         };
-        match self.specs[index].kind {
-            ParamKind::Text { .. } => self.texts[index].clone(),
-            _ => self.specs[index].to_text(self.values[index]),
+        match &self.values[index] {
+            Value::Text(text) => text.clone(),
+            Value::Number(number) => self.specs[index].to_text(*number),
         }
     }
 
     /// Every parameter with its value, in the list's order.
     pub fn iter(&self) -> impl Iterator<Item = (&'static ParamSpec, f64)> {
-        self.specs.iter().zip(self.values.iter().copied())
+        let numbers = self.values.iter().map(Value::number);
+        self.specs.iter().copied().zip(numbers)
     }
 }
 
@@ -203,8 +241,8 @@ mod tests {
     }
 
     #[test]
-    fn a_text_is_kept_beside_a_number_that_tells_texts_apart() {
-        const TEXTS: &[ParamSpec] = &[ParamSpec {
+    fn a_text_is_kept_as_it_is_and_taken_away_by_a_number() {
+        const TEXTS: &[&ParamSpec] = &[&ParamSpec {
             id: "flat",
             label: "flat",
             unit: "",
@@ -226,7 +264,7 @@ mod tests {
         assert!(values.set("w", "flat", 1.0).is_err());
         assert_eq!(values, before);
         assert_eq!(values.set_text("w", "flat", "Aa0-A"), Ok(Changed::Yes));
-        assert_ne!(values.get("flat"), before.get("flat"));
+        assert_ne!(values, before);
         assert_eq!(values.set("w", "flat", 0.0), Ok(Changed::Yes));
         assert_eq!(values, Values::defaults(TEXTS));
     }

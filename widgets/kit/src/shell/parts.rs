@@ -62,7 +62,9 @@ impl Shell {
 
     /// The controls, with "defaults" below them.
     pub(super) fn controls(&mut self, ui: &mut Ui) {
-        controls::params(ui, self.model.as_mut(), &mut self.hot);
+        if controls::params(ui, self.model.as_mut(), &mut self.hot) == Touched::Yes {
+            self.touch();
+        }
         let layer = self.model.layer();
         let defaults = self
             .model

@@ -90,7 +90,6 @@ impl Shell {
     ) -> f32 {
         let mut measure = EguiMeasure(ui.painter().clone());
         let (placed, height) = view::place(&self.shown.scene, rows, width, &mut measure);
-        let before = self.model.values().clone();
         let mut touched = false;
         for placed in placed {
             let origin = [at[0] + placed.origin[0], at[1] + placed.origin[1]];
@@ -120,7 +119,6 @@ impl Shell {
         if touched {
             self.touch();
         }
-        self.note_changes(&before);
         if height > 0.0 {
             at[1] + height + GAP
         } else {

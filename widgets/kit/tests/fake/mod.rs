@@ -6,7 +6,7 @@ use kit::model::{
     unknown_button,
 };
 use kit::param::{Choice, MORE, ParamError, ParamKind, ParamSpec};
-use kit::playback::{Playback, SPEED, speed_factor};
+use kit::playback::{Playback, SPEED};
 use kit::scene::{
     Aspect, Axis, Bounds, Cell, ColorBar, Layer, LegendEntry, Mark, Panel, Raster, Scene, Stroke,
     Tone, Weight,
@@ -14,8 +14,8 @@ use kit::scene::{
 use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 use kit::values::{Changed, Values};
 
-const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
+const PARAMS: &[&ParamSpec] = &[
+    &ParamSpec {
         id: "x",
         label: "place along x",
         unit: "m",
@@ -27,7 +27,7 @@ const PARAMS: &[ParamSpec] = &[
         default: 1.0,
         help: "Where the thing stands.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "kind",
         label: "kind",
         unit: "",
@@ -46,7 +46,7 @@ const PARAMS: &[ParamSpec] = &[
         default: 0.0,
         help: "Which of two.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "ghost",
         label: "show the ghost",
         unit: "",
@@ -54,7 +54,7 @@ const PARAMS: &[ParamSpec] = &[
         default: 1.0,
         help: "Whether the ghost shows.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "seed",
         label: "seed",
         unit: "",
@@ -64,7 +64,7 @@ const PARAMS: &[ParamSpec] = &[
         default: 7.0,
         help: "Where the numbers start.",
     },
-    ParamSpec {
+    &ParamSpec {
         id: "time",
         label: "tick",
         unit: "",
@@ -72,11 +72,11 @@ const PARAMS: &[ParamSpec] = &[
         default: 0.0,
         help: "Which tick is shown.",
     },
-    SPEED,
+    &SPEED.spec,
     // Everything is shown, as without layers, until a test asks for less.
-    ParamSpec {
+    &ParamSpec {
         default: 1.0,
-        ..MORE
+        ..MORE.spec
     },
 ];
 
@@ -138,7 +138,7 @@ impl Model for Fake {
     }
 
     fn press(&mut self, id: &str) -> Result<(), ParamError> {
-        let time = self.values.get("time");
+        let time = self.values.number("time");
         match id {
             "play" => {
                 let time = self.playback.toggle(time, 20.0);
@@ -160,10 +160,10 @@ impl Model for Fake {
         if !self.playback.is_playing() {
             return Activity::Idle;
         }
-        let rate = 5.0 * speed_factor(self.values.get("speed"));
+        let rate = 5.0 * self.values.get(&SPEED);
         let time = self
             .playback
-            .advance(self.values.get("time"), 20.0, elapsed_s, rate);
+            .advance(self.values.number("time"), 20.0, elapsed_s, rate);
         self.set("time", time)
             .expect("the timeline takes its own positions");
         Activity::Busy
@@ -178,7 +178,7 @@ impl Model for Fake {
     }
 
     fn scene(&self) -> Scene {
-        let x = self.values.get("x");
+        let x = self.values.number("x");
         let cells: Vec<Cell> = (0..100)
             .map(|k| {
                 if k / 10 < self.filled {
@@ -294,11 +294,11 @@ impl Model for Fake {
         Outcome {
             standing: Standing::Good,
             verdict: "in place".to_owned(),
-            sentence: format!("The thing stands at {:.1} m.", self.values.get("x")),
+            sentence: format!("The thing stands at {:.1} m.", self.values.number("x")),
             facts: vec![Fact {
                 id: "x_m",
                 label: "place",
-                value: self.values.get("x"),
+                value: self.values.number("x"),
                 unit: "m",
                 decimals: 2,
             }],
@@ -329,14 +329,14 @@ impl Model for Fake {
             columns: vec!["place".to_owned(), "x (m)".to_owned()],
             rows: vec![vec![
                 "thing".to_owned(),
-                format!("{:.2}", self.values.get("x")),
+                format!("{:.2}", self.values.number("x")),
             ]],
             place: TablePlace::Shown,
         }]
     }
 
     fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
-        let offset = [at[0] - self.values.get("x"), at[1] - 1.0];
+        let offset = [at[0] - self.values.number("x"), at[1] - 1.0];
         let near = panel == "map" && (0..2).all(|i| offset[i].abs() <= reach[i]);
         near.then_some(Handle {
             panel: "map",

@@ -1,0 +1,75 @@
+//! What every model keeps at any time: for the tests that go through all widgets, and for the fuzzer.
+
+use crate::model::Model;
+use crate::scene::{Cell, Layer, Scene};
+
+/// Every value lies in the range of its parameter.
+///
+/// # Panics
+/// If one does not.
+pub fn assert_values(model: &dyn Model) {
+    for (param, value) in model.values().iter() {
+        let checked = param.check(value).map(f64::to_bits);
+        assert_eq!(checked, Ok(value.to_bits()), "{} at {value}", param.id);
+    }
+}
+
+/// Words, tables, timeline and picture hold together, and their numbers can be drawn.
+///
+/// # Panics
+/// If they do not.
+pub fn assert_reports(model: &dyn Model) {
+    let outcome = model.outcome();
+    assert!(!outcome.sentence.is_empty() && !outcome.verdict.is_empty());
+    assert!(!outcome.sentence.contains("NaN"), "{}", outcome.sentence);
+    let summary = model.summary();
+    assert!(!summary.is_empty() && !summary.contains("NaN"), "{summary}");
+    for table in model.tables() {
+        for row in &table.rows {
+            assert_eq!(row.len(), table.columns.len(), "{}", table.id);
+        }
+    }
+    if let Some(timeline) = model.timeline() {
+        assert!(timeline.last.is_finite() && timeline.last >= 0.0);
+        for mark in &timeline.marks {
+            assert!((0.0..=timeline.last).contains(&mark.at), "{}", mark.label);
+        }
+        assert!(model.values().find(timeline.param).is_some());
+    }
+    assert_drawable(&model.scene());
+}
+
+fn assert_drawable(scene: &Scene) {
+    assert!(!scene.panels.is_empty());
+    for panel in &scene.panels {
+        for axis in [&panel.x, &panel.y] {
+            let is_range = axis.min.is_finite() && axis.max.is_finite() && axis.min < axis.max;
+            assert!(is_range, "{}: {axis:?}", panel.id);
+        }
+        for layer in &panel.layers {
+            assert!(numbers_are_finite(layer), "{}: {layer:?}", panel.id);
+        }
+    }
+}
+
+/// Whether every number of a layer can be drawn. A line may be broken by what is not finite.
+fn numbers_are_finite(layer: &Layer) -> bool {
+    let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
+    match layer {
+        Layer::Points { points, .. } => finite(points.as_flattened()),
+        Layer::Line { .. } => true,
+        Layer::Segments { segments, .. } => finite(segments.as_flattened().as_flattened()),
+        Layer::Pose { pose, .. } => finite(pose),
+        Layer::Handle { at, .. } | Layer::Text { at, .. } | Layer::Label { at, .. } => finite(at),
+        Layer::Ellipse {
+            center, half_axes, ..
+        } => finite(center) && finite(half_axes.as_flattened()),
+        Layer::Raster(raster) => {
+            raster.cells.len() == raster.columns * raster.rows
+                && raster.cells.iter().all(|cell| match cell {
+                    Cell::Level(level) | Cell::Occupancy(level) => level.is_finite(),
+                    Cell::Unknown | Cell::Class(_) => true,
+                })
+        }
+    }
+}

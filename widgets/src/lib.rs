@@ -1,0 +1,19 @@
+//! The widgets of the chapter, a module each, and the one [`registry`] that lists them.
+//!
+//! Each module has the same parts: `spec` holds the words and the parameters, `model` every rule and
+//! no pixel, `view` every pixel and no rule.
+
+pub mod registry;
+
+pub mod w16_10_own_robot;
+pub mod w16_11_procrustes;
+pub mod w16_12_jacobians;
+pub mod w16_1_basin_explorer;
+pub mod w16_2_full_lap;
+pub mod w16_3_cost_terraces;
+pub mod w16_4_control_room;
+pub mod w16_5_pose_graph_toy;
+pub mod w16_6_whole_window;
+pub mod w16_7_been_here;
+pub mod w16_8_moving_box;
+pub mod w16_9_come_back;

@@ -1,0 +1,70 @@
+//! Every widget there is, in the order of the chapter.
+
+use kit::model::Model;
+#[cfg(feature = "view")]
+use kit::shell::Shell;
+use kit::spec::WidgetSpec;
+
+macro_rules! widgets {
+    ($($module:ident: $model:ident, $view:ident;)*) => {
+        /// What never changes about each widget. A program that reads this list alone holds no estimator.
+        pub const SPECS: [&WidgetSpec; [$(stringify!($module)),*].len()] =
+            [$(&crate::$module::spec::SPEC),*];
+
+        /// How the model of each widget is made, in the order of [`SPECS`].
+        pub const MODELS: [fn() -> Box<dyn Model>; SPECS.len()] =
+            [$(|| Box::new(crate::$module::model::$model::default())),*];
+
+        /// How each widget is made, ready to be drawn, in the order of [`SPECS`].
+        #[cfg(feature = "view")]
+        pub const SHELLS: [fn() -> Shell; SPECS.len()] = [$(|| {
+            let model = crate::$module::model::$model::default();
+            Shell::new(Box::new(model), Box::new(crate::$module::view::$view))
+        }),*];
+    };
+}
+
+widgets! {
+    w16_1_basin_explorer: BasinExplorer, BasinView;
+    w16_2_full_lap: FullLap, FullLapView;
+    w16_3_cost_terraces: CostTerraces, TerracesView;
+    w16_4_control_room: ControlRoom, ControlRoomView;
+    w16_5_pose_graph_toy: PoseGraphToy, ToyView;
+    w16_6_whole_window: WholeWindow, WindowView;
+    w16_7_been_here: BeenHere, PlacesView;
+    w16_8_moving_box: MovingBox, BoxView;
+    w16_9_come_back: ComeBack, ComeBackView;
+    w16_10_own_robot: OwnRobot, RobotView;
+    w16_11_procrustes: ProcrustesTrace, TraceView;
+    w16_12_jacobians: WrongJacobians, JacobiansView;
+}
+
+/// What never changes about the widget of that name, such as `w16.1`.
+#[must_use]
+pub fn spec(name: &str) -> Option<&'static WidgetSpec> {
+    SPECS.into_iter().find(|spec| spec.id == name)
+}
+
+/// How the widget of that name is made, ready to be drawn.
+///
+/// # Errors
+/// A sentence that lists the names, if no widget has this one.
+#[cfg(feature = "view")]
+pub fn find(name: &str) -> Result<fn() -> Shell, String> {
+    let index = SPECS.iter().position(|spec| spec.id == name);
+    index
+        .map(|index| SHELLS[index])
+        .ok_or_else(|| unknown(name))
+}
+
+/// The names, for messages: `w16.1, w16.2, …`.
+#[must_use]
+pub fn names() -> String {
+    SPECS.map(|spec| spec.id).join(", ")
+}
+
+/// The error message for a name that no widget has.
+#[must_use]
+pub fn unknown(name: &str) -> String {
+    format!("there is no widget `{name}`; there are {}", names())
+}

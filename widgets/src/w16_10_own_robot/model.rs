@@ -1,0 +1,335 @@
+//! The state of the widget: what the worker has told of a log, and how the reader looks at it.
+
+mod buttons;
+mod hands;
+mod picture;
+pub mod robot;
+mod settings;
+mod tables;
+pub mod whereabouts;
+mod words;
+
+use kit::model::{
+    Activity, Handle, Model, Motion, Outcome, Standing, Table, TablePlace, Timeline, TimelineMark,
+    press_preset,
+};
+use kit::outside::Delivery;
+use kit::param::ParamError;
+use kit::playback::{Playback, SPEED};
+use kit::scene::Scene;
+use kit::spec::{DEFAULTS, WidgetSpec};
+use kit::values::{Changed, Values};
+
+use crate::w16_10_own_robot::spec::{KEYS, MOST_KEYFRAMES, MOST_SCANS, PARAMS, SPEC};
+use robot::{Robot, Stage};
+use whereabouts::Place;
+
+/// Names of the panels.
+pub mod panel {
+    /// The map with the way and the loops.
+    pub const MAP: &str = "map";
+    /// Share of each scan that fits.
+    pub const FIT: &str = "fit";
+    /// σ of each keyframe.
+    pub const SURE: &str = "sure";
+}
+
+/// A whole way plays in about so many seconds at normal speed.
+const PLAY_S: f64 = 12.0;
+/// More marks on a timeline are a blur.
+const MOST_MARKS: usize = 150;
+
+/// The reader's own robot.
+pub struct OwnRobot {
+    values: Values,
+    robot: Robot,
+    playback: Playback,
+    orders: Vec<String>,
+}
+
+impl Default for OwnRobot {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl OwnRobot {
+    /// No log is open.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            values: Values::defaults(PARAMS),
+            robot: Robot::default(),
+            playback: Playback::default(),
+            orders: Vec::new(),
+        }
+    }
+
+    /// What the worker has told.
+    #[must_use]
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    fn last(&self) -> usize {
+        self.robot.keyframes.len().saturating_sub(1)
+    }
+
+    /// The keyframe that is shown.
+    fn keyframe(&self) -> usize {
+        (self.values.number("keyframe") as usize).min(self.last())
+    }
+
+    /// The loop that is shown, where there is one.
+    fn link(&self) -> Option<usize> {
+        let last = self.robot.links.len().checked_sub(1)?;
+        Some((self.values.number("loop") as usize).min(last))
+    }
+
+    /// Asks for something; of two orders of a kind that replace each other only the later stands.
+    fn ask(&mut self, order: String) {
+        let kind = |order: &str| order.split(' ').next().unwrap_or_default().to_owned();
+        let replaces = ["look", "pin"].contains(&kind(&order).as_str());
+        self.orders
+            .retain(|old| !replaces || kind(old) != kind(&order));
+        self.orders.push(order);
+    }
+
+    /// Shows a keyframe, and asks for its scan.
+    fn show(&mut self, keyframe: usize) {
+        self.values.store("keyframe", keyframe as f64);
+        self.look();
+    }
+
+    fn look(&mut self) {
+        let keyframe = self.keyframe();
+        let is_there = matches!(&self.robot.scan, Some((of, _)) if *of == keyframe);
+        if self.robot.has_scans && !is_there && !self.robot.keyframes.is_empty() {
+            self.ask(format!("look {keyframe}"));
+        }
+    }
+
+    /// Where the robot of another log may be at first, in the words of an order.
+    fn start(&self) -> String {
+        let shown = self.robot.keyframes.get(self.keyframe());
+        match shown.filter(|_| self.values.number("start") == 1.0) {
+            Some(shown) => {
+                let [x, y, theta] = shown.pose;
+                format!(" {x} {y} {theta}")
+            }
+            None => String::new(),
+        }
+    }
+
+    /// The place of the other log that is shown.
+    fn place(&self) -> Option<(usize, &Place)> {
+        let places = &self.robot.whereabouts.as_ref()?.places;
+        let last = places.len().checked_sub(1)?;
+        let scan = self.values.number("scan");
+        let after = places.partition_point(|place| place.scan <= scan);
+        let shown = after.saturating_sub(1).min(last);
+        Some((shown, &places[shown]))
+    }
+
+    /// Goes to the next scan of the other log that is believed otherwise than the one before it.
+    fn go_to_change(&mut self) {
+        let Some(((here, _), whereabouts)) = self.place().zip(self.robot.whereabouts.as_ref())
+        else {
+            return;
+        };
+        let places = &whereabouts.places;
+        let is_change = |k: &usize| {
+            let before = k
+                .checked_sub(1)
+                .map(|before| places[before].belief.is_believed());
+            before != Some(places[*k].belief.is_believed())
+        };
+        let next = (here + 1..places.len()).find(is_change).unwrap_or(0);
+        let scan = places[next].scan;
+        self.values.store("scan", scan);
+    }
+
+    /// Goes to the newer keyframe of the loop that is shown.
+    fn show_link(&mut self) {
+        let link = self.link().map(|link| &self.robot.links[link]);
+        if let Some(link) = link.filter(|link| link.new < self.robot.keyframes.len()) {
+            let new = link.new;
+            self.robot.answer = words::evidence(link);
+            self.playback.pause();
+            self.show(new);
+        }
+    }
+
+    /// The keyframes to look into: of loops and ways that contradict the graph, and of scans that fit badly.
+    fn doubts(&self) -> Vec<usize> {
+        let poor = self.values.number("poor");
+        let keyframes = self.robot.keyframes.iter().enumerate();
+        let badly = keyframes.filter(|(_, keyframe)| keyframe.fit < poor);
+        let mut doubts: Vec<usize> = badly.map(|(k, _)| k).collect();
+        let last = self.last();
+        let told = self.robot.look_into.iter().copied();
+        doubts.extend(told.filter(|keyframe| *keyframe <= last));
+        doubts.sort_unstable();
+        doubts.dedup();
+        doubts
+    }
+
+    /// Says what a log is for that is dropped.
+    fn ask_drop(&mut self) {
+        let order = if self.values.number("drop") == 1.0 {
+            "drop where"
+        } else {
+            "drop map"
+        };
+        self.ask(order.to_owned());
+    }
+}
+
+impl Model for OwnRobot {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        if self.values.set(SPEC.id, id, value)? == Changed::Yes {
+            match id {
+                "keyframe" => self.look(),
+                "loop" => self.show_link(),
+                "drop" => self.ask_drop(),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        if self.press_own(id).is_some() {
+            return Ok(());
+        }
+        if id != DEFAULTS.id {
+            return press_preset(self, id);
+        }
+        self.playback.pause();
+        let dropped = self.values.number("drop");
+        self.values.reset();
+        self.robot = Robot::default();
+        self.orders.clear();
+        self.ask("close".to_owned());
+        if dropped != self.values.number("drop") {
+            self.ask_drop();
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        if !self.playback.is_playing() {
+            return Activity::Idle;
+        }
+        let last = self.last() as f64;
+        let rate = (last / PLAY_S).max(4.0) * self.values.get(&SPEED);
+        let here = self.keyframe() as f64;
+        let next = self.playback.advance(here, last, elapsed_s, rate);
+        self.values.store("keyframe", next);
+        self.look();
+        Activity::Busy
+    }
+
+    fn takes_files(&self) -> bool {
+        true
+    }
+
+    fn receive(&mut self, delivery: &Delivery<'_>) {
+        self.robot.receive(delivery);
+        if delivery.kind == "opening" {
+            self.playback.pause();
+            self.values.store("keyframe", MOST_KEYFRAMES);
+            self.values.store("loop", 0.0);
+            self.values.store("marked", 0.0);
+            self.values.store("scan", MOST_SCANS);
+        }
+        if delivery.kind == "dropped" {
+            let order = format!("locate-dropped{}", self.start());
+            self.ask(order);
+            self.values.store("scan", MOST_SCANS);
+        }
+        if delivery.kind == "stage" && self.robot.stage == Stage::Done {
+            self.look();
+        }
+    }
+
+    fn keys(&self) -> &'static [(&'static str, &'static str)] {
+        KEYS
+    }
+
+    fn take_orders(&mut self) -> Vec<String> {
+        core::mem::take(&mut self.orders)
+    }
+
+    fn scene(&self) -> Scene {
+        picture::scene(self)
+    }
+
+    fn outcome(&self) -> Outcome {
+        words::outcome(self)
+    }
+
+    fn summary(&self) -> String {
+        words::summary(self)
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        let closed = self.robot.links.iter().filter(|link| link.is_in_graph());
+        let loops = closed.map(|link| TimelineMark {
+            at: link.new as f64,
+            label: format!("loop {} to {}", link.new, link.old),
+            standing: Standing::Good,
+        });
+        let doubts = self.doubts().into_iter().map(|keyframe| TimelineMark {
+            at: keyframe as f64,
+            label: format!("look into keyframe {keyframe}"),
+            standing: Standing::Bad,
+        });
+        // Before there is a way, there is a step to stand for it.
+        let last = self.last().max(1) as f64;
+        let is_read = self.robot.is_under_way() && !self.robot.paused;
+        Some(Timeline {
+            param: "keyframe",
+            last,
+            playing: is_read || self.playback.is_playing(),
+            marks: doubts
+                .chain(loops)
+                .filter(|mark| mark.at <= last)
+                .take(MOST_MARKS)
+                .collect(),
+        })
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        tables::all(self)
+    }
+
+    fn shown_tables(&self) -> Vec<Table> {
+        let mut tables = tables::shown(self);
+        tables.retain(|table| table.place == TablePlace::Shown);
+        tables
+    }
+
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        hands::grab(self, panel, at, reach)
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        hands::drag(self, handle, at);
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        let last = self.last() as f64;
+        if let Some(end) = self.playback.set_motion(motion, last) {
+            self.values.store("keyframe", end);
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! What each button does.
+
+use kit::spec::PLAY;
+
+use super::OwnRobot;
+use super::hands::nudge;
+use super::robot::{Robot, Stage};
+use crate::w16_10_own_robot::spec::{FILES, MOST_SCANS, OPTIONS};
+
+impl OwnRobot {
+    /// What a button does here; none where the button is none of this widget's own.
+    pub(super) fn press_own(&mut self, id: &str) -> Option<()> {
+        let keyframe = self.keyframe();
+        match id {
+            "open" | "cancel" | "unpin" | "reference" => self.ask(id.to_owned()),
+            "sample" => self.begin_sample(),
+            "locate" | "locate-sample" => {
+                let order = format!("{id}{}", self.start());
+                self.ask(order);
+                self.values.store("scan", MOST_SCANS);
+            }
+            "change" => self.go_to_change(),
+            "other" => self.take_other(),
+            "doubt" => self.go_to_doubt(),
+            "previous" => self.go_to_link(false),
+            "next" => self.go_to_link(true),
+            "mark" => {
+                self.values.store("marked", keyframe as f64);
+            }
+            "turn" => {
+                if let Some(link) = self.link() {
+                    self.ask(format!("turn {link}"));
+                }
+            }
+            "add" => {
+                let marked = self.values.number("marked");
+                self.ask(format!("add {marked} {keyframe}"));
+                // What is added comes first.
+                self.values.store("loop", 0.0);
+            }
+            "west" => nudge(self, [-1.0, 0.0]),
+            "east" => nudge(self, [1.0, 0.0]),
+            "north" => nudge(self, [0.0, 1.0]),
+            "south" => nudge(self, [0.0, -1.0]),
+            "save" => {
+                let file = FILES[self.values.number("file") as usize].label;
+                self.ask(format!("save {file}"));
+            }
+            _ if id == PLAY.id => self.press_play(),
+            _ => return None,
+        }
+        Some(())
+    }
+
+    fn press_play(&mut self) {
+        match self.robot.stage {
+            Stage::Empty | Stage::Failed => self.begin_sample(),
+            _ if self.robot.is_under_way() => {
+                self.robot.paused = !self.robot.paused;
+                let order = if self.robot.paused { "pause" } else { "resume" };
+                self.ask(order.to_owned());
+            }
+            _ => {
+                let (here, last) = (self.keyframe() as f64, self.last() as f64);
+                let position = self.playback.toggle(here, last);
+                self.values.store("keyframe", position);
+                self.look();
+            }
+        }
+    }
+
+    fn begin_sample(&mut self) {
+        self.ask("sample".to_owned());
+        self.robot = Robot::opening("the sample");
+        self.playback.pause();
+    }
+
+    /// Asks for the next topic or frame that the recording offers for the option that is chosen.
+    fn take_other(&mut self) {
+        let option = OPTIONS[self.values.number("option") as usize].id;
+        let offer = self
+            .robot
+            .offers
+            .iter()
+            .find(|offer| offer.option == option);
+        let other = offer.and_then(|offer| {
+            let here = offer.names.iter().position(|name| *name == offer.taken);
+            let next = here.map_or(0, |here| (here + 1) % offer.names.len());
+            offer.names.get(next).filter(|name| **name != offer.taken)
+        });
+        match other {
+            Some(name) => self.ask(format!("option {option} {name}")),
+            None => {
+                self.robot.answer = "The recording offers nothing else to take here.".to_owned();
+            }
+        }
+    }
+
+    /// The loop after or before the one that is shown.
+    fn go_to_link(&mut self, forward: bool) {
+        let Some(here) = self.link() else {
+            return;
+        };
+        let last = self.robot.links.len() - 1;
+        let next = match (forward, here) {
+            (true, here) if here == last => 0,
+            (true, here) => here + 1,
+            (false, 0) => last,
+            (false, here) => here - 1,
+        };
+        self.values.store("loop", next as f64);
+        self.show_link();
+    }
+
+    fn go_to_doubt(&mut self) {
+        let here = self.keyframe();
+        let doubts = self.doubts();
+        let next = doubts.iter().find(|&&keyframe| keyframe > here);
+        if let Some(&next) = next.or(doubts.first()) {
+            self.playback.pause();
+            self.show(next);
+        }
+    }
+}

@@ -1,0 +1,315 @@
+//! The panels: the map with the way and the loops, and what is known of each keyframe.
+
+mod charts;
+mod visitor;
+
+use kit::scene::{
+    Aspect, Axis, Bounds, ColorBar, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
+use pr_geom::{math, sort_numbers};
+
+use super::robot::{Robot, Stage};
+use super::settings::{Colour, shows};
+use super::{OwnRobot, panel};
+use charts::{fit, sure};
+use visitor::whereabouts;
+
+/// What is seen before there is a map, m.
+const EMPTY: Bounds = Bounds {
+    min: [0.0, 0.0],
+    max: [15.0, 10.0],
+};
+/// Width of the map over its height, whatever was seen: what stands below it stays where it is.
+const RATIO: f64 = 1.5;
+/// Space around what was seen, m.
+const MARGIN_M: f64 = 0.5;
+/// Colours along the way.
+const SHADES: usize = 24;
+/// What belongs to the robot of another log.
+const OTHER: Tone = Tone::Class(2);
+/// Values above this share of all are drawn like it: one that is far off would hide the others.
+const MOST_OF_ALL: f64 = 0.98;
+
+/// The whole picture.
+pub fn scene(robot: &OwnRobot) -> Scene {
+    Scene {
+        panels: vec![map(robot), fit(robot), sure(robot)],
+    }
+}
+
+fn map(own: &OwnRobot) -> Panel {
+    let robot = &own.robot;
+    let bounds = bounds(robot);
+    let mut layers: Vec<Layer> = robot.map.iter().cloned().map(Layer::Raster).collect();
+    let mut color_bar = None;
+    if robot.keyframes.is_empty() {
+        layers.extend(invitation(robot));
+    } else {
+        layers.extend(links(own));
+        let (shades, bar) = way(own);
+        layers.extend(shades);
+        color_bar = bar;
+        layers.extend(here(own));
+        layers.extend(whereabouts(own));
+    }
+    Panel {
+        id: panel::MAP,
+        title: match robot.stage {
+            Stage::Empty => "Your map".to_owned(),
+            _ => format!("Map of {}", short(&robot.name)),
+        },
+        weight: Weight::Main,
+        aspect: Aspect::Equal,
+        x: Axis::new("x (m)", bounds.min[0], bounds.max[0]),
+        y: Axis::new("y (m)", bounds.min[1], bounds.max[1]),
+        layers,
+        legend: legend(own),
+        color_bar,
+    }
+}
+
+/// A name that fits over a narrow picture.
+fn short(name: &str) -> String {
+    if name.chars().count() <= 28 {
+        return name.to_owned();
+    }
+    let start: String = name.chars().take(27).collect();
+    format!("{start}…")
+}
+
+fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
+    let mut legend = Vec::new();
+    if own.robot.keyframes.is_empty() {
+        return legend;
+    }
+    let posterior = LegendEntry::mark("keyframe shown", Tone::Posterior, Mark::Square);
+    legend.push(posterior);
+    if own.robot.has_scans {
+        legend.push(LegendEntry::mark(
+            "its scan",
+            Tone::Measurement,
+            Mark::Cross,
+        ));
+    }
+    if own.robot.links.iter().any(|link| shows(&own.values, link)) {
+        legend.push(LegendEntry::line("loop", Tone::Revisit, Stroke::Solid));
+    }
+    if own.values.number("links") == 2.0 && own.robot.links.iter().any(|link| !link.is_in_graph()) {
+        legend.push(LegendEntry::line("refused", Tone::Truth, Stroke::Dotted));
+    }
+    if own.link().is_some() {
+        let chosen = LegendEntry::line("loop of the list", Tone::Prediction, Stroke::Solid);
+        legend.push(chosen);
+    }
+    if own.place().is_some() {
+        let way = LegendEntry::line("the other log, believed", OTHER, Stroke::Solid);
+        let doubted = LegendEntry::line("doubtful", OTHER, Stroke::Dotted);
+        legend.extend([way, doubted]);
+    }
+    if !own.doubts().is_empty() {
+        legend.push(LegendEntry::mark("look into", Tone::Prior, Mark::Circle));
+    }
+    legend
+}
+
+/// All that was seen, in whole metres, so that a map that grows moves the axes seldom.
+fn bounds(robot: &Robot) -> Bounds {
+    let mut bounds = Bounds {
+        min: [f64::INFINITY; 2],
+        max: [f64::NEG_INFINITY; 2],
+    };
+    let corners = robot.map.iter();
+    let corners = corners.flat_map(|map| [map.bounds.min, map.bounds.max]);
+    let places = robot.keyframes.iter().map(|k| [k.pose[0], k.pose[1]]);
+    for at in corners.chain(places) {
+        for (i, at) in at.into_iter().enumerate() {
+            if at.is_finite() {
+                bounds.min[i] = bounds.min[i].min(at);
+                bounds.max[i] = bounds.max[i].max(at);
+            }
+        }
+    }
+    if !bounds.size().iter().all(|size| size.is_finite()) {
+        return EMPTY;
+    }
+    let low = bounds.min.map(|low| (low - MARGIN_M).floor());
+    let high = bounds.max.map(|high| (high + MARGIN_M).ceil());
+    let height = math::max(high[1] - low[1], (high[0] - low[0]) / RATIO);
+    let middle = [0, 1].map(|i| 0.5 * (low[i] + high[i]));
+    let half = [0.5 * RATIO * height, 0.5 * height];
+    Bounds {
+        min: core::array::from_fn(|i| middle[i] - half[i]),
+        max: core::array::from_fn(|i| middle[i] + half[i]),
+    }
+}
+
+/// Words where there is no map yet.
+fn invitation(robot: &Robot) -> Vec<Layer> {
+    let lines: &[&str] = match robot.stage {
+        Stage::Empty => &[
+            "Drop a log of your robot here,",
+            "open one, or press Play",
+            "to map the sample.",
+            "It stays in this browser.",
+        ],
+        Stage::Failed => &["Nothing to map in this file."],
+        _ => &["The log is read."],
+    };
+    let middle = EMPTY.middle();
+    let place = |row: usize| {
+        let below = row as f64 - 0.5 * (lines.len() as f64 - 1.0);
+        [middle[0], middle[1] - 1.1 * below]
+    };
+    let words = lines.iter().enumerate().map(|(row, text)| Layer::Text {
+        at: place(row),
+        text: (*text).to_owned(),
+        tone: Tone::Ink,
+    });
+    words.collect()
+}
+
+fn at(robot: &Robot, keyframe: usize) -> Option<[f64; 2]> {
+    let pose = robot.keyframes.get(keyframe)?.pose;
+    Some([pose[0], pose[1]])
+}
+
+fn links(own: &OwnRobot) -> Vec<Layer> {
+    let robot = &own.robot;
+    let chosen = own.link();
+    let segments = |is_in_graph: bool| {
+        let links = robot.links.iter().filter(|link| shows(&own.values, link));
+        let links = links.filter(|link| link.is_in_graph() == is_in_graph);
+        links
+            .filter_map(|link| Some([at(robot, link.new)?, at(robot, link.old)?]))
+            .collect()
+    };
+    let mut layers = vec![
+        Layer::Segments {
+            segments: segments(false),
+            stroke: Stroke::Dotted,
+            tone: Tone::Truth,
+            width_px: 1.25,
+        },
+        Layer::Segments {
+            segments: segments(true),
+            stroke: Stroke::Solid,
+            tone: Tone::Revisit,
+            width_px: 1.25,
+        },
+    ];
+    let ends = chosen.and_then(|link| {
+        let link = &robot.links[link];
+        Some([at(robot, link.new)?, at(robot, link.old)?])
+    });
+    if let Some(ends) = ends {
+        layers.push(Layer::Segments {
+            segments: vec![ends],
+            stroke: Stroke::Solid,
+            tone: Tone::Prediction,
+            width_px: 3.0,
+        });
+        let ends = Layer::points(ends.to_vec(), Mark::Triangle, Tone::Prediction, 4.0);
+        layers.push(ends);
+    }
+    layers
+}
+
+/// The way in its colours over a line of ink, and what the colours mean.
+fn way(own: &OwnRobot) -> (Vec<Layer>, Option<ColorBar>) {
+    let robot = &own.robot;
+    let colour = Colour::of(&own.values);
+    let values = colour.values(robot);
+    let mut known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    sort_numbers(&mut known);
+    let places: Vec<[f64; 2]> = robot
+        .keyframes
+        .iter()
+        .map(|k| [k.pose[0], k.pose[1]])
+        .collect();
+    let ink = Layer::Line {
+        points: places.clone(),
+        stroke: Stroke::Solid,
+        tone: Tone::Ink,
+        width_px: 4.0,
+    };
+    let Some(&least) = known.first() else {
+        return (vec![ink], None);
+    };
+    let most = match colour {
+        Colour::Time => known[known.len() - 1],
+        Colour::Fit => 1.0,
+        _ => known[((known.len() - 1) as f64 * MOST_OF_ALL).round() as usize],
+    };
+    let least = match colour {
+        Colour::Fit | Colour::Sigma | Colour::Error => 0.0,
+        Colour::Time => least,
+    };
+    let span = if most > least { most - least } else { 1.0 };
+    let mut shades: Vec<Vec<[[f64; 2]; 2]>> = vec![Vec::new(); SHADES];
+    for (ends, value) in places.windows(2).zip(&values[1..]) {
+        if value.is_finite() {
+            let level = ((value - least) / span).clamp(0.0, 1.0);
+            let shade = (level * (SHADES - 1) as f64).round() as usize;
+            shades[shade].push([ends[0], ends[1]]);
+        }
+    }
+    let mut layers = vec![ink];
+    for (shade, segments) in shades.into_iter().enumerate() {
+        if !segments.is_empty() {
+            layers.push(Layer::Segments {
+                segments,
+                stroke: Stroke::Solid,
+                tone: Tone::Level((255 * shade / (SHADES - 1)) as u8),
+                width_px: 2.5,
+            });
+        }
+    }
+    let bar = ColorBar {
+        label: colour.label().to_owned(),
+        min: least,
+        max: least + span,
+    };
+    (layers, Some(bar))
+}
+
+/// The keyframe that is shown with its scan, the marked one, and those to look into.
+fn here(own: &OwnRobot) -> Vec<Layer> {
+    let robot = &own.robot;
+    let shown = own.keyframe();
+    let mut layers = Vec::new();
+    let doubts = own.doubts();
+    let doubts: Vec<_> = doubts.iter().filter_map(|&k| at(robot, k)).collect();
+    if !doubts.is_empty() {
+        layers.push(Layer::points(doubts, Mark::Circle, Tone::Prior, 6.0));
+    }
+    let pose = robot.keyframes[shown].pose;
+    if let Some((of, points)) = &robot.scan
+        && *of == shown
+    {
+        let (sin, cos) = math::sin_cos(pose[2]);
+        let placed = points
+            .iter()
+            .map(|[x, y]| [pose[0] + cos * x - sin * y, pose[1] + sin * x + cos * y]);
+        layers.push(Layer::points(
+            placed.collect(),
+            Mark::Cross,
+            Tone::Measurement,
+            2.5,
+        ));
+    }
+    let marked = own.values.number("marked") as usize;
+    if marked > 0
+        && let Some(at) = at(robot, marked)
+    {
+        layers.push(Layer::points(vec![at], Mark::Plus, Tone::Ink, 8.0));
+    }
+    if robot.stage == Stage::Done {
+        layers.push(Layer::Handle {
+            at: [pose[0], pose[1]],
+            tone: Tone::Posterior,
+            label: "drag this keyframe",
+        });
+    }
+    layers.push(Layer::pose(pose, Mark::Square, Tone::Posterior, 4.0));
+    layers
+}

@@ -1,0 +1,54 @@
+//! The robot of another log on the map.
+
+use kit::scene::{Layer, Mark, Stroke};
+use pr_geom::math;
+
+use super::OTHER;
+use crate::w16_10_own_robot::model::OwnRobot;
+
+/// Standard deviations that its ellipse shows.
+const SIGMAS: f64 = 3.0;
+
+/// The way of the other log's robot, and how well the place that is shown is known.
+pub fn whereabouts(own: &OwnRobot) -> Vec<Layer> {
+    let Some(((_, shown), told)) = own.place().zip(own.robot.whereabouts.as_ref()) else {
+        return Vec::new();
+    };
+    let line = |is_believed: bool, stroke, width_px| {
+        let places = told.places.iter().map(|place| {
+            if place.belief.is_believed() == is_believed {
+                [place.pose[0], place.pose[1]]
+            } else {
+                [f64::NAN; 2]
+            }
+        });
+        Layer::Line {
+            points: places.collect(),
+            stroke,
+            tone: OTHER,
+            width_px,
+        }
+    };
+    let mut layers = vec![
+        line(true, Stroke::Solid, 3.0),
+        line(false, Stroke::Dotted, 2.0),
+    ];
+    if !shown.pose.iter().all(|value| value.is_finite()) {
+        return layers;
+    }
+    let [long, short, heading] = shown.ellipse;
+    if (long + short + heading).is_finite() {
+        let (sin, cos) = math::sin_cos(heading);
+        layers.push(Layer::Ellipse {
+            center: [shown.pose[0], shown.pose[1]],
+            half_axes: [
+                [SIGMAS * long * cos, SIGMAS * long * sin],
+                [-SIGMAS * short * sin, SIGMAS * short * cos],
+            ],
+            stroke: Stroke::Solid,
+            tone: OTHER,
+        });
+    }
+    layers.push(Layer::pose(shown.pose, Mark::Triangle, OTHER, 6.0));
+    layers
+}

@@ -1,0 +1,323 @@
+//! The widget's words and its one list of parameters.
+
+use kit::layers::Opening;
+use kit::param::{Choice, MORE, ParamKind, ParamSpec};
+use kit::playback::SPEED;
+use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, WidgetSpec};
+
+/// More keyframes than any log has, and past the end of every timeline.
+pub const MOST_KEYFRAMES: f64 = 999_999.0;
+
+/// More scans than any log has.
+pub const MOST_SCANS: f64 = 99_999_999.0;
+
+/// The options of recordings, named as on the command line.
+pub const OPTIONS: &[Choice] = &[
+    choice("scan-topic", "scan topic"),
+    choice("odom-topic", "odometry topic"),
+    choice("odom-frame", "odometry frame"),
+    choice("body-frame", "body frame"),
+];
+
+/// The files that can be saved, by the index of `save`.
+pub const FILES: &[Choice] = &[
+    choice("map-pgm", "map.pgm"),
+    choice("map-yaml", "map.yaml"),
+    choice("map-png", "map.png"),
+    choice("trajectory", "trajectory.tum"),
+    choice("graph", "graph.g2o"),
+    choice("report", "report.html"),
+    choice("session", "session.slam2d"),
+    choice("where", "where.tum"),
+];
+
+const fn choice(id: &'static str, label: &'static str) -> Choice {
+    Choice { id, label }
+}
+
+/// What the reader can change.
+pub const PARAMS: &[&ParamSpec] = &[
+    &ParamSpec {
+        id: "colour",
+        label: "colour the way by",
+        unit: "",
+        kind: ParamKind::Choice {
+            options: &[
+                choice("time", "time"),
+                choice("fit", "fit"),
+                choice("sigma", "σ"),
+                choice("error", "error"),
+            ],
+        },
+        default: 0.0,
+        help: "Time, the share of each scan that fits, the standard deviation by the graph, or the error against a reference that you give.",
+    },
+    &ParamSpec {
+        id: "links",
+        label: "show loops",
+        unit: "",
+        kind: ParamKind::Choice {
+            options: &[
+                choice("none", "none"),
+                choice("closed", "closed"),
+                choice("all", "all"),
+            ],
+        },
+        default: 1.0,
+        help: "Which loops stand on the map: none, those of the graph, or the refused ones as well.",
+    },
+    &ParamSpec {
+        id: "loop",
+        label: "loop of the list",
+        unit: "",
+        kind: ParamKind::Seed {
+            max: MOST_KEYFRAMES,
+        },
+        default: 0.0,
+        help: "The loop whose evidence is shown; 0 is the one that the graph believes least.",
+    },
+    &ParamSpec {
+        id: "marked",
+        label: "marked keyframe",
+        unit: "",
+        kind: ParamKind::Seed {
+            max: MOST_KEYFRAMES,
+        },
+        default: 0.0,
+        help: "One end of a loop that you add; the other is the keyframe that is shown.",
+    },
+    &ParamSpec {
+        id: "poor",
+        label: "look into scans that fit less than",
+        unit: "",
+        kind: ParamKind::Slider {
+            min: 0.0,
+            max: 1.0,
+            step: 0.05,
+        },
+        default: 0.5,
+        help: "Keyframes of whose scan a smaller share fits are ringed on the map, and “Next doubt” stops there.",
+    },
+    &ParamSpec {
+        id: "file",
+        label: "file to save",
+        unit: "",
+        kind: ParamKind::Choice { options: FILES },
+        default: 0.0,
+        help: "Map for Nav2, trajectory as TUM, graph as g2o, a report with pictures, the session with all of it to go on with, or where the robot of another log was.",
+    },
+    &ParamSpec {
+        id: "start",
+        label: "look for the robot",
+        unit: "",
+        kind: ParamKind::Choice {
+            options: &[
+                choice("anywhere", "anywhere"),
+                choice("here", "at the keyframe shown"),
+            ],
+        },
+        default: 0.0,
+        help: "Where the other log begins on this map: anywhere, or within 1.5 m of the keyframe that is shown and turned by at most 34° against it.",
+    },
+    &ParamSpec {
+        id: "scan",
+        label: "scan of the other log",
+        unit: "",
+        kind: ParamKind::Seed { max: MOST_SCANS },
+        default: MOST_SCANS,
+        help: "The scan of the other log whose place is shown; past the end, the last one.",
+    },
+    &ParamSpec {
+        id: "drop",
+        label: "a log that you drop",
+        unit: "",
+        kind: ParamKind::Choice {
+            options: &[
+                choice("map", "becomes the map"),
+                choice("where", "is looked for on it"),
+            ],
+        },
+        default: 0.0,
+        help: "Whether a dropped log is mapped, or its robot is looked for on the map that is there.",
+    },
+    &ParamSpec {
+        id: "option",
+        label: "of a recording",
+        unit: "",
+        kind: ParamKind::Choice { options: OPTIONS },
+        default: 0.0,
+        help: "What “Take another” changes where a recording has several: the topic of the scans or of the odometry, its frame, or the frame of the body.",
+    },
+    &ParamSpec {
+        id: "keyframe",
+        label: "keyframe",
+        unit: "",
+        kind: ParamKind::Timeline {
+            max: MOST_KEYFRAMES,
+        },
+        default: MOST_KEYFRAMES,
+        help: "The keyframe whose scan lies over the map.",
+    },
+    &SPEED.spec,
+    &MORE.spec,
+];
+
+const fn button(id: &'static str, label: &'static str, help: &'static str) -> ButtonSpec {
+    ButtonSpec { id, label, help }
+}
+
+/// Keys of the buttons that move a keyframe.
+pub const KEYS: &[(&str, &str)] = &[
+    ("ArrowLeft", "west"),
+    ("ArrowRight", "east"),
+    ("ArrowUp", "north"),
+    ("ArrowDown", "south"),
+];
+
+/// What never changes.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.10",
+    title: "Your own robot",
+    misconception: "A map that looks right is not yet right: ask every loop for its evidence.",
+    notice: &[
+        "The log stays in your browser. It is read there, and nothing of it is sent anywhere.",
+        "Loops stand in the order of doubt: first those that the rest of the graph contradicts most. Refuse one, and the graph answers at once.",
+        "A scan that fits badly is a place to look at: glass, people, or a pose that is wrong.",
+        "A graph that is sure of itself may be wrong. Only a reference from outside tells the error.",
+    ],
+    opening: Opening {
+        panels: &["map"],
+        params: &["colour"],
+        buttons: &["open", "play", "sample", "cancel"],
+    },
+    params: PARAMS,
+    buttons: &[
+        button(
+            "open",
+            "Open a log…",
+            "Opens a log of CARMEN, ROS 1 or ROS 2, a saved session, or a pose graph; you can drop it on the picture as well. It stays in this browser.",
+        ),
+        ButtonSpec {
+            help: "Maps the sample where no log is open, holds a log that is read and goes on, and plays the way of one that is mapped.",
+            ..PLAY
+        },
+        button(
+            "sample",
+            "The sample",
+            "Maps a log of the simulator's ring of corridors, and grades it against the truth.",
+        ),
+        button("cancel", "Stop", "Stops reading, and keeps what was read."),
+        button(
+            "doubt",
+            "Next doubt",
+            "Goes to the next keyframe whose registration or loop should be looked into.",
+        ),
+        button(
+            "previous",
+            "Loop before",
+            "Shows the loop before in the list.",
+        ),
+        button("next", "Next loop", "Shows the next loop of the list."),
+        button(
+            "turn",
+            "Refuse or close",
+            "Takes the loop that is shown out of the graph, or puts it in; the graph is solved at once.",
+        ),
+        button(
+            "mark",
+            "Mark",
+            "Marks the keyframe that is shown, as one end of a loop.",
+        ),
+        button(
+            "add",
+            "Close with mark",
+            "Registers the keyframe that is shown on the place of the marked one, and closes the loop if it passes its tests.",
+        ),
+        button(
+            "west",
+            "Left",
+            "Moves the keyframe that is shown 5 cm to the left; also the arrow key.",
+        ),
+        button(
+            "east",
+            "Right",
+            "Moves the keyframe that is shown 5 cm to the right; also the arrow key.",
+        ),
+        button(
+            "north",
+            "Up",
+            "Moves the keyframe that is shown 5 cm up; also the arrow key.",
+        ),
+        button(
+            "south",
+            "Down",
+            "Moves the keyframe that is shown 5 cm down; also the arrow key.",
+        ),
+        button(
+            "unpin",
+            "Let go",
+            "Lets go of the keyframes that you moved.",
+        ),
+        button(
+            "reference",
+            "Grade…",
+            "Opens a file of relations or of true poses, and compares the way with it.",
+        ),
+        button(
+            "locate",
+            "Where am I?…",
+            "Opens another log of the same place, and looks for its robot on this map.",
+        ),
+        button(
+            "locate-sample",
+            "Another day",
+            "Looks for the robot of the sample’s other day on this map: it is switched on half way round.",
+        ),
+        button(
+            "change",
+            "Next verdict",
+            "Goes to the next scan of the other log where the robot is found or lost.",
+        ),
+        button(
+            "other",
+            "Take another",
+            "Maps the recording anew with the next topic or frame of those that it has.",
+        ),
+        button("save", "Save", "Saves the file that is chosen."),
+        ButtonSpec {
+            label: "Start over",
+            help: "Closes the log, and puts every setting back to where it started.",
+            ..DEFAULTS
+        },
+    ],
+    presets: &[
+        Preset {
+            id: "sure",
+            label: "How sure is the graph?",
+            help: "The sample, coloured by the standard deviation of each keyframe: it grows away from the start, and loops hold it down.",
+            set: &[("colour", 2.0)],
+            then: &["sample"],
+        },
+        Preset {
+            id: "error",
+            label: "How wrong is it?",
+            help: "The sample, coloured by its error against the truth, which comes with it.",
+            set: &[("colour", 3.0)],
+            then: &["sample"],
+        },
+        Preset {
+            id: "where",
+            label: "Where am I, another day?",
+            help: "The sample, and on its map the robot of another day, which is switched on half way round and looks for itself.",
+            set: &[],
+            then: &["sample", "locate-sample"],
+        },
+        Preset {
+            id: "evidence",
+            label: "All loops that were looked at",
+            help: "The sample with the loops that its tests turned away as well.",
+            set: &[("links", 2.0)],
+            then: &["sample"],
+        },
+    ],
+};

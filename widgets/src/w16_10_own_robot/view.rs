@@ -1,0 +1,28 @@
+//! Where the panels stand: the map as large as it may be, the keyframes' plots below.
+
+use kit::layout::PlotHeight;
+use kit::scene::Scene;
+use kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot, View};
+
+use crate::w16_10_own_robot::model::panel;
+
+/// The widget's arrangement.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RobotView;
+
+impl View for RobotView {
+    fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
+        let slot = |panel, height| Slot { panel, height };
+        let map = slot(panel::MAP, PlotHeight::Natural { most: 620.0 });
+        let plots = [panel::FIT, panel::SURE].map(|id| slot(id, PlotHeight::Fixed(130.0)));
+        let below = if width < SIDE_BY_SIDE {
+            plots.iter().map(|plot| Row::of(&[*plot])).collect()
+        } else {
+            vec![Row::of(&plots)]
+        };
+        Arrangement {
+            stage: vec![Row::of(&[map])],
+            below,
+        }
+    }
+}

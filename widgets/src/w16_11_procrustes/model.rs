@@ -1,0 +1,155 @@
+//! The state: which pairs there are, and which orthogonal matrix is tried on them.
+
+mod hands;
+mod picture;
+mod settings;
+mod tables;
+mod words;
+
+use ch16_lab::procrustes::{Handedness, Pairs, Procrustes};
+use kit::model::{
+    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
+};
+use kit::param::MORE;
+use kit::param::ParamError;
+use kit::playback::SPEED;
+use kit::played::{Played, Pressed};
+use kit::scene::Scene;
+use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
+
+use crate::w16_11_procrustes::spec::{PARAMS, SPEC, TRIED, TURN, WHOLE_TURN_DEG};
+
+/// Names of the panels.
+pub mod panel {
+    /// Both sets of points, the source as the matrix moves it.
+    pub const POINTS: &str = "points";
+    /// The trace over the angle.
+    pub const TRACE: &str = "trace";
+    /// A map moved by the best turn.
+    pub const MAP_TURN: &str = "map-turn";
+    /// The same map moved by the best orthogonal matrix.
+    pub const MAP_UNCHECKED: &str = "map-unchecked";
+}
+
+/// Degrees a second at normal speed.
+const STEPS_PER_S: f64 = 60.0;
+
+/// The trace over all orthogonal matrices, without its picture.
+pub struct ProcrustesTrace {
+    values: Values,
+    pairs: Pairs,
+    problem: Procrustes,
+    played: Played,
+}
+
+impl Default for ProcrustesTrace {
+    /// Four corners, seen twice.
+    fn default() -> Self {
+        let values = Values::defaults(PARAMS);
+        let pairs = settings::pairs(&values);
+        Self {
+            problem: Procrustes::new(&pairs.source, &pairs.target),
+            pairs,
+            values,
+            played: Played::along(&TURN),
+        }
+    }
+}
+
+impl ProcrustesTrace {
+    fn follow(&mut self) {
+        self.pairs = settings::pairs(&self.values);
+        self.problem = Procrustes::new(&self.pairs.source, &self.pairs.target);
+    }
+
+    /// The kind of matrices that are tried.
+    fn tried(&self) -> Handedness {
+        settings::tried(&self.values)
+    }
+
+    /// The angle that is tried, rad.
+    fn theta_rad(&self) -> f64 {
+        self.values.get(&TURN).to_radians()
+    }
+}
+
+impl Model for ProcrustesTrace {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        if self.values.set(SPEC.id, id, value)? == Changed::Yes
+            && ![TURN.id, TRIED.id, SPEED.id, MORE.id].contains(&id)
+        {
+            self.follow();
+        }
+        Ok(())
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        let last = WHOLE_TURN_DEG;
+        match self.played.press(&mut self.values, id, last) {
+            Pressed::Transport => {}
+            Pressed::Defaults => self.follow(),
+            Pressed::Other => return press_preset(self, id),
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        let last = WHOLE_TURN_DEG;
+        self.played
+            .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
+    }
+
+    fn scene(&self) -> Scene {
+        picture::scene(self)
+    }
+
+    fn outcome(&self) -> Outcome {
+        words::outcome(self)
+    }
+
+    fn summary(&self) -> String {
+        words::summary(self)
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        let mark = |kind: Handedness| TimelineMark {
+            at: words::whole_degrees(self.problem.best(kind).theta_rad),
+            label: format!("top of the {}", words::plural(kind)),
+            standing: words::standing_of(&self.problem, kind),
+        };
+        Some(
+            self.played
+                .timeline(WHOLE_TURN_DEG, vec![mark(self.tried())]),
+        )
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        tables::all(self)
+    }
+
+    fn shown_tables(&self) -> Vec<Table> {
+        vec![tables::matrices(self)]
+    }
+
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        hands::grab(self, panel, at, reach)
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        hands::drag(self, handle, at);
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        let last = WHOLE_TURN_DEG;
+        self.played.set_motion(&mut self.values, motion, last);
+    }
+}

@@ -1,0 +1,227 @@
+//! The panels: the points, the trace over the angle, and a map under the two answers.
+
+use ch16_lab::procrustes::Handedness;
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
+use pr_geom::{Point2, math};
+use pr_sim::World;
+
+use super::words::whole_degrees;
+use super::{ProcrustesTrace, panel};
+use crate::w16_11_procrustes::spec::{TURN, WHOLE_TURN_DEG};
+
+/// The points are shown to at least so far from the middle of the target, m.
+const LEAST_REACH_M: f64 = 2.4;
+/// Degrees between two points of a curve.
+const CURVE_STEP_DEG: u32 = 4;
+
+pub fn scene(trace: &ProcrustesTrace) -> Scene {
+    let best = trace.problem.best(Handedness::Turn);
+    let (kind, unchecked) = trace.problem.unchecked();
+    Scene {
+        panels: vec![
+            points(trace),
+            curves(trace),
+            map(
+                panel::MAP_TURN,
+                "By svd_align",
+                Handedness::Turn,
+                best.theta_rad,
+            ),
+            map(panel::MAP_UNCHECKED, "Unchecked", kind, unchecked.theta_rad),
+        ],
+    }
+}
+
+fn tone(kind: Handedness) -> Tone {
+    match kind {
+        Handedness::Turn => Tone::Posterior,
+        Handedness::Mirror => Tone::Prediction,
+    }
+}
+
+fn mark(kind: Handedness) -> Mark {
+    match kind {
+        Handedness::Turn => Mark::Square,
+        Handedness::Mirror => Mark::Triangle,
+    }
+}
+
+fn points(trace: &ProcrustesTrace) -> Panel {
+    let (problem, kind) = (&trace.problem, trace.tried());
+    let moved: Vec<[f64; 2]> = (trace.pairs.source.iter())
+        .map(|p| {
+            let moved = problem.moved(kind, trace.theta_rad(), *p);
+            [moved.x, moved.y]
+        })
+        .collect();
+    let target: Vec<[f64; 2]> = trace.pairs.target.iter().map(|q| [q.x, q.y]).collect();
+    let line = |points: &[[f64; 2]], stroke, tone, width_px| {
+        Layer::line(points.to_vec(), stroke, tone, width_px)
+    };
+    let pairs = moved.iter().zip(&target).map(|(p, q)| [*p, *q]);
+    let mut layers = vec![
+        Layer::segments(pairs.collect(), Stroke::Dotted, Tone::Ink, 1.25),
+        line(&target, Stroke::Solid, Tone::Measurement, 1.25),
+        line(&moved, Stroke::Solid, tone(kind), 1.75),
+        Layer::points(moved.clone(), mark(kind), tone(kind), 4.5),
+    ];
+    layers.extend(target.iter().map(|at| Layer::Handle {
+        at: *at,
+        tone: Tone::Measurement,
+        label: "drag the point of the target",
+    }));
+    layers.extend(
+        (target.iter().enumerate()).map(|(k, at)| Layer::label(*at, (k + 1).to_string(), 9.0)),
+    );
+    // In halves of a metre, so that a drag moves the axes seldom.
+    let mean = problem.target_mean;
+    let middle = [mean.x, mean.y].map(|value| (2.0 * value).round() / 2.0);
+    let far = |at: &[f64; 2]| math::norm2(at[0] - middle[0], at[1] - middle[1]) + 0.4;
+    let reach = (target.iter().chain(&moved).map(far)).fold(LEAST_REACH_M, math::max);
+    let reach = (2.0 * reach).ceil() / 2.0;
+    let axis = |i: usize, label: &str| Axis::new(label, middle[i] - reach, middle[i] + reach);
+    Panel {
+        id: panel::POINTS,
+        title: format!(
+            "At {:.0}°: trace {:.2} m²",
+            trace.values.get(&TURN),
+            problem.trace_m2(kind, trace.theta_rad())
+        ),
+        weight: Weight::Main,
+        aspect: Aspect::Equal,
+        x: axis(0, "x (m)"),
+        y: axis(1, "y (m)"),
+        layers,
+        legend: vec![
+            LegendEntry::mark("target, to be dragged", Tone::Measurement, Mark::Circle),
+            match kind {
+                Handedness::Turn => LegendEntry::mark("source, turned", tone(kind), mark(kind)),
+                Handedness::Mirror => {
+                    LegendEntry::mark("source, mirrored and turned", tone(kind), mark(kind))
+                }
+            },
+        ],
+        color_bar: None,
+    }
+}
+
+fn curves(trace: &ProcrustesTrace) -> Panel {
+    let problem = &trace.problem;
+    let [first, second] = problem.singular_values_m2();
+    let top = if first + second > 0.0 {
+        1.15 * (first + second)
+    } else {
+        1.0
+    };
+    let level = |height: f64, tone| {
+        Layer::line(
+            vec![[0.0, height], [WHOLE_TURN_DEG, height]],
+            Stroke::Dotted,
+            tone,
+            1.5,
+        )
+    };
+    let turn = trace.values.get(&TURN);
+    let mut layers = vec![
+        Layer::line(
+            vec![[turn, -top], [turn, top]],
+            Stroke::Solid,
+            Tone::Faint,
+            2.5,
+        ),
+        level(first + second, Tone::Ink),
+        level(first - second, Tone::Faint),
+    ];
+    for kind in Handedness::ALL {
+        let at = |degrees: u32| {
+            let degrees = f64::from(degrees);
+            [degrees, problem.trace_m2(kind, degrees.to_radians())]
+        };
+        layers.push(Layer::line(
+            (0..=WHOLE_TURN_DEG as u32)
+                .step_by(CURVE_STEP_DEG as usize)
+                .map(at)
+                .collect(),
+            Stroke::Solid,
+            tone(kind),
+            if kind == trace.tried() { 2.5 } else { 1.25 },
+        ));
+        let best = problem.best(kind);
+        let place = vec![[whole_degrees(best.theta_rad), best.trace_m2]];
+        layers.push(Layer::points(place, mark(kind), tone(kind), 4.5));
+    }
+    let here = problem.trace_m2(trace.tried(), trace.theta_rad());
+    layers.push(Layer::points(
+        vec![[turn, here]],
+        Mark::Circle,
+        Tone::Ink,
+        5.0,
+    ));
+    Panel {
+        id: panel::TRACE,
+        title: "The trace over the angle".to_owned(),
+        weight: Weight::Half,
+        aspect: Aspect::Free,
+        x: Axis::new("angle tried (°)", 0.0, WHOLE_TURN_DEG),
+        y: Axis::new("tr(M H) (m²)", -top, top),
+        layers,
+        legend: vec![
+            LegendEntry::marked_line(
+                "turns",
+                tone(Handedness::Turn),
+                mark(Handedness::Turn),
+                Stroke::Solid,
+            ),
+            LegendEntry::marked_line(
+                "mirror images",
+                tone(Handedness::Mirror),
+                mark(Handedness::Mirror),
+                Stroke::Solid,
+            ),
+            LegendEntry::line("s₁ + s₂", Tone::Ink, Stroke::Dotted),
+            LegendEntry::line("s₁ − s₂", Tone::Faint, Stroke::Dotted),
+        ],
+        color_bar: None,
+    }
+}
+
+/// The flat's walls under a matrix, about its middle.
+fn map(id: &'static str, by: &str, kind: Handedness, theta_rad: f64) -> Panel {
+    let world = World::apartment();
+    let bounds = world.bounds();
+    let middle = bounds.min + 0.5 * (bounds.max - bounds.min);
+    let matrix = kind.matrix(theta_rad);
+    let put = |p: Point2<f64>| {
+        let moved = matrix * (p - middle);
+        [moved.x, moved.y]
+    };
+    let walls = world.walls().iter();
+    let mut layers = vec![Layer::segments(
+        walls.map(|wall| [put(wall.start), put(wall.end)]).collect(),
+        Stroke::Solid,
+        tone(kind),
+        1.75,
+    )];
+    layers.extend(World::apartment_rooms().map(|room| Layer::Text {
+        at: put(room.bounds.min + 0.5 * (room.bounds.max - room.bounds.min)),
+        text: room.name.to_owned(),
+        tone: Tone::Ink,
+    }));
+    // Half of the flat's diagonal, whatever the angle.
+    let half = 7.6;
+    let how = match kind {
+        Handedness::Turn => "det +1",
+        Handedness::Mirror => "det −1, mirrored",
+    };
+    Panel {
+        id,
+        title: format!("{by}: {how}"),
+        weight: Weight::Half,
+        aspect: Aspect::Equal,
+        x: Axis::new("x (m)", -half, half),
+        y: Axis::new("y (m)", -half, half),
+        layers,
+        legend: Vec::new(),
+        color_bar: None,
+    }
+}

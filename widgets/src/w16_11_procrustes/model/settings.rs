@@ -1,0 +1,31 @@
+//! What the values of the parameter list mean to the core.
+
+use ch16_lab::procrustes::{Handedness, Pairs, Shape};
+use kit::values::Values;
+
+use crate::w16_11_procrustes::spec::{MOVED, SEED, SHAPE, TRIED};
+
+/// What is seen twice.
+pub fn shape(values: &Values) -> Shape {
+    values.get(&SHAPE)
+}
+
+/// The pairs as they were seen.
+pub fn seen(values: &Values) -> Pairs {
+    Pairs::seen(shape(values), values.get(&SEED))
+}
+
+/// The pairs with the points of the target where the reader has put them.
+pub fn pairs(values: &Values) -> Pairs {
+    let mut pairs = seen(values);
+    for (point, [x, y]) in pairs.target.iter_mut().zip(&MOVED) {
+        point.x += values.get(x);
+        point.y += values.get(y);
+    }
+    pairs
+}
+
+/// The kind of matrices that are tried.
+pub fn tried(values: &Values) -> Handedness {
+    values.get(&TRIED)
+}

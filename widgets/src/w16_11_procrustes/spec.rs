@@ -1,0 +1,149 @@
+//! The widget's words and its one list of parameters.
+
+use ch16_lab::procrustes::{Handedness, Shape};
+use kit::layers::Opening;
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use kit::playback::SPEED;
+use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+
+/// Pairs of the largest scene.
+pub const MOST_PAIRS: usize = 5;
+
+/// A point of the target is dragged at most so far, m.
+pub const REACH_M: f64 = 3.0;
+
+/// A whole turn, °.
+pub const WHOLE_TURN_DEG: f64 = 360.0;
+
+pub(super) static SHAPE: OneOf<Shape> = OneOf::new(
+    "shape",
+    "what is seen twice",
+    &[
+        Choice::new("corners", "four corners"),
+        Choice::new("two", "two points"),
+        Choice::new("wall", "a bare wall"),
+        Choice::new("upside-down", "corners, upside down"),
+    ],
+    &[Shape::Corners, Shape::Two, Shape::Wall, Shape::UpsideDown],
+)
+.help("Points of two sweeps in pairs; the last is what a sensor sees that hangs upside down the second time.");
+
+pub(super) static TRIED: OneOf<Handedness> = OneOf::new(
+    "tried",
+    "matrices tried",
+    &[
+        Choice::new("turns", "turns"),
+        Choice::new("mirrors", "mirror images"),
+    ],
+    &[Handedness::Turn, Handedness::Mirror],
+)
+.help("The source is moved by turns, or mirrored first and turned then: together these are all orthogonal matrices.");
+
+pub(super) static SEED: Param<u32> = Param::seed("seed of the noise", 1)
+    .help("Where the range noise of both sweeps starts, 12 mm along each axis.");
+
+pub(super) static TURN: Param<f64> = Param::timeline("turn", "angle tried", WHOLE_TURN_DEG)
+    .unit("°")
+    .help("By how much the source is turned, after the mirror where there is one.");
+
+/// The parameters that move the points of the target: along x and along y.
+pub(super) static MOVED: [[Param<f64>; 2]; MOST_PAIRS] = [
+    [
+        moved("x1", "target 1: moved in x"),
+        moved("y1", "target 1: moved in y"),
+    ],
+    [
+        moved("x2", "target 2: moved in x"),
+        moved("y2", "target 2: moved in y"),
+    ],
+    [
+        moved("x3", "target 3: moved in x"),
+        moved("y3", "target 3: moved in y"),
+    ],
+    [
+        moved("x4", "target 4: moved in x"),
+        moved("y4", "target 4: moved in y"),
+    ],
+    [
+        moved("x5", "target 5: moved in x"),
+        moved("y5", "target 5: moved in y"),
+    ],
+];
+
+/// What the reader can change.
+pub const PARAMS: &[&ParamSpec] = &[
+    &SHAPE.spec,
+    &TRIED.spec,
+    &SEED.spec,
+    &MOVED[0][0].spec,
+    &MOVED[0][1].spec,
+    &MOVED[1][0].spec,
+    &MOVED[1][1].spec,
+    &MOVED[2][0].spec,
+    &MOVED[2][1].spec,
+    &MOVED[3][0].spec,
+    &MOVED[3][1].spec,
+    &MOVED[4][0].spec,
+    &MOVED[4][1].spec,
+    &TURN.spec,
+    &SPEED.spec,
+    &MORE.spec,
+];
+
+const fn moved(id: &'static str, label: &'static str) -> Param<f64> {
+    Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
+        .unit("m")
+        .help(
+            "How far the point is dragged from where it was seen; only points of the scene count.",
+        )
+}
+
+/// What never changes.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.11",
+    title: "Turn or mirror image",
+    misconception: "A decomposition knows nothing of left and right: the best orthogonal matrix may be a mirror image, and no robot moves like that.",
+    notice: &[
+        "Over a whole turn the trace is one sinusoid: it has one top, and the alignment knows its place in closed form.",
+        "Mirror images have a sinusoid of their own. The higher top of the two is the sum of the singular values, and nothing passes it.",
+        "On two points, and on a straight line, both tops are equally high. Along a bare wall noise decides between them.",
+        "A mirrored map fits its points as well as any. It has its doors on the wrong side.",
+    ],
+    opening: Opening {
+        panels: &["points", "trace", "map-turn", "map-unchecked"],
+        params: &["shape"],
+        buttons: &["play"],
+    },
+    params: PARAMS,
+    buttons: &[PLAY, STEP, RESET, DEFAULTS],
+    presets: &[
+        Preset {
+            id: "corners",
+            label: "Turn four corners",
+            help: "The trace climbs to its bound at one angle, and falls again: the mirror images stay far below.",
+            set: &[],
+            then: &["play"],
+        },
+        Preset {
+            id: "two-points",
+            label: "Two points only",
+            help: "Turn and mirror image reach the same bound: two points cannot tell left from right.",
+            set: &[SHAPE.to("two")],
+            then: &["play"],
+        },
+        Preset {
+            id: "bare-wall",
+            label: "A bare wall",
+            help: "The wall fixes the line, and noise decides the side: here the mirror image fits a little better.",
+            set: &[SHAPE.to("wall"), SEED.to(2), TRIED.to("mirrors")],
+            then: &["play"],
+        },
+        Preset {
+            id: "upside-down",
+            label: "Hang the sensor upside down",
+            help: "A mirror image fits without a rest, and hides the mistake. The best turn leaves a cost that shows it.",
+            set: &[SHAPE.to("upside-down"), TRIED.to("mirrors")],
+            then: &["play"],
+        },
+    ],
+};

@@ -1,0 +1,185 @@
+//! The state: one graph, and the ways of four solvers from its start.
+//!
+//! All of it is computed at once: a graph of eight poses takes microseconds a step.
+
+mod picture;
+mod settings;
+mod tables;
+mod words;
+
+use ch16_lab::jacobians::{Descent, Moment, descend, optimum, ring};
+use kit::chart::{dragged_to, grab_now};
+use kit::model::{
+    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
+};
+use kit::param::MORE;
+use kit::param::ParamError;
+use kit::playback::SPEED;
+use kit::played::{Played, Pressed};
+use kit::scene::Scene;
+use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
+use pr_geom::SE2;
+
+use crate::w16_12_jacobians::spec::{CURVE, MOST_STEPS, PARAMS, SPEC, STEPS};
+
+/// Names of the panels.
+pub mod panel {
+    /// The graph as each solver has it, in the order of [`NAMES`](super::NAMES).
+    pub const MAPS: [&str; 4] = ["exact", "approximate", "jacobian", "residual"];
+    /// Distance to the optimum over the steps.
+    pub const CURVE: &str = "curve";
+}
+
+/// What the four solvers are called.
+pub const NAMES: [&str; 4] = ["exact", "approximate", "wrong Jacobian", "wrong residual"];
+
+/// Steps a second at normal speed.
+const STEPS_PER_S: f64 = 3.0;
+
+/// One graph and its four solvers, without a picture.
+pub struct WrongJacobians {
+    values: Values,
+    solved: Solved,
+    played: Played,
+}
+
+/// What is computed from the settings.
+struct Solved {
+    /// The poses at the minimum of χ².
+    optimum: Vec<SE2>,
+    /// χ² there.
+    least_chi2: f64,
+    /// The way of each solver.
+    runs: [Descent; 4],
+}
+
+impl Solved {
+    fn new(values: &Values) -> Self {
+        let graph = ring(&settings::ring(values));
+        let (optimum, least_chi2) = optimum(&graph);
+        Self {
+            runs: settings::recipes(values)
+                .map(|recipe| descend(&graph, recipe, &optimum, MOST_STEPS)),
+            optimum,
+            least_chi2,
+        }
+    }
+}
+
+impl Default for WrongJacobians {
+    /// A ring that contradicts itself by 6° an edge, at the end of all four.
+    fn default() -> Self {
+        let values = Values::defaults(PARAMS);
+        Self {
+            solved: Solved::new(&values),
+            values,
+            played: Played::along(&STEPS),
+        }
+    }
+}
+
+impl WrongJacobians {
+    /// Steps of the longest way.
+    fn last(&self) -> usize {
+        let lasts = self.solved.runs.iter().map(Descent::steps);
+        lasts.max().unwrap_or_default()
+    }
+
+    fn step(&self) -> usize {
+        self.played.place(&self.values, self.last() as f64) as usize
+    }
+
+    /// A solver's graph at the step that is shown; past its end it rests.
+    fn shown(&self, solver: usize) -> &Moment {
+        let run = &self.solved.runs[solver];
+        &run.moments[self.step().min(run.steps())]
+    }
+}
+
+impl Model for WrongJacobians {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        if self.values.set(SPEC.id, id, value)? == Changed::Yes
+            && ![STEPS.id, CURVE.id, SPEED.id, MORE.id].contains(&id)
+        {
+            self.solved = Solved::new(&self.values);
+        }
+        Ok(())
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        let last = self.last() as f64;
+        match self.played.press(&mut self.values, id, last) {
+            Pressed::Transport => {}
+            Pressed::Defaults => self.solved = Solved::new(&self.values),
+            Pressed::Other => return press_preset(self, id),
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        let last = self.last() as f64;
+        self.played
+            .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
+    }
+
+    fn scene(&self) -> Scene {
+        picture::scene(self)
+    }
+
+    fn outcome(&self) -> Outcome {
+        words::outcome(self)
+    }
+
+    fn summary(&self) -> String {
+        words::summary(self)
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        let marks = self.solved.runs.iter().enumerate();
+        Some(
+            self.played.timeline(
+                self.last() as f64,
+                marks
+                    .map(|(solver, run)| TimelineMark {
+                        at: run.steps() as f64,
+                        label: format!("{} ends", NAMES[solver]),
+                        standing: words::standing_of(self, solver),
+                    })
+                    .collect(),
+            ),
+        )
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        tables::all(self)
+    }
+
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        if panel != panel::CURVE {
+            return None;
+        }
+        grab_now(panel::CURVE, self.step() as f64, at, reach)
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        if at[0].is_finite() {
+            self.played.pause();
+            self.values
+                .put(&STEPS, dragged_to(handle, at).min(self.last() as f64));
+        }
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        let last = self.last() as f64;
+        self.played.set_motion(&mut self.values, motion, last);
+    }
+}

@@ -1,0 +1,162 @@
+//! The panels: the graph as each solver has it, and the distance to the optimum over the steps.
+
+use ch16_lab::jacobians::Moment;
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
+use pr_geom::{SE2, math};
+
+use super::{NAMES, WrongJacobians, panel};
+
+use crate::w16_12_jacobians::spec::{CURVE, Curve};
+
+/// Tones and marks of the solvers.
+const TONES: [Tone; 4] = [
+    Tone::Posterior,
+    Tone::Prior,
+    Tone::Prediction,
+    Tone::Measurement,
+];
+const MARKS: [Mark; 4] = [Mark::Square, Mark::Circle, Mark::Triangle, Mark::Cross];
+/// Room around the poses, m.
+const MARGIN_M: f64 = 0.4;
+/// The curves end at this power of ten: what is less is rounding.
+const LOWEST_POWER: f64 = -9.0;
+
+pub fn scene(widget: &WrongJacobians) -> Scene {
+    let mut panels: Vec<Panel> = (0..NAMES.len()).map(|k| map(widget, k)).collect();
+    panels.push(curve(widget));
+    Scene { panels }
+}
+
+fn places(poses: &[SE2]) -> Vec<[f64; 2]> {
+    poses.iter().map(|pose| [pose.x(), pose.y()]).collect()
+}
+
+/// Around the start and the optimum, the same for all four, so that nothing jumps while it plays.
+fn axes(widget: &WrongJacobians) -> [Axis; 2] {
+    let start = &widget.solved.runs[0].moments[0].poses;
+    let poses = || start.iter().chain(&widget.solved.optimum);
+    let span = |of: fn(&SE2) -> f64| {
+        let low = poses().map(of).fold(f64::INFINITY, math::min) - MARGIN_M;
+        let high = poses().map(of).fold(f64::NEG_INFINITY, math::max) + MARGIN_M;
+        [low, high]
+    };
+    let spans = [span(SE2::x), span(SE2::y)];
+    let half = 0.5
+        * spans
+            .iter()
+            .map(|[low, high]| high - low)
+            .fold(0.0, math::max);
+    // In halves of a metre, so that a drag of a slider moves the axes seldom.
+    let axis = |[low, high]: [f64; 2], label| {
+        let middle = 0.5 * (low + high);
+        Axis::new(
+            label,
+            (2.0 * (middle - half)).floor() / 2.0,
+            (2.0 * (middle + half)).ceil() / 2.0,
+        )
+    };
+    [axis(spans[0], "x (m)"), axis(spans[1], "y (m)")]
+}
+
+fn map(widget: &WrongJacobians, solver: usize) -> Panel {
+    let shown = widget.shown(solver);
+    let now = places(&shown.poses);
+    let best = places(&widget.solved.optimum);
+    let [x, y] = axes(widget);
+    let line =
+        |points: Vec<[f64; 2]>, stroke, tone, width_px| Layer::line(points, stroke, tone, width_px);
+    let ends = now.first().zip(now.last());
+    let layers = vec![
+        line(best, Stroke::Dotted, Tone::Ink, 1.5),
+        Layer::segments(
+            ends.map(|(first, last)| [*first, *last])
+                .into_iter()
+                .collect(),
+            Stroke::Solid,
+            Tone::Faint,
+            1.5,
+        ),
+        line(now.clone(), Stroke::Solid, TONES[solver], 1.5),
+        Layer::points(now, MARKS[solver], TONES[solver], 3.5),
+    ];
+    Panel {
+        id: panel::MAPS[solver],
+        title: format!("{}: {:.3} m", capital(NAMES[solver]), shown.off_m),
+        weight: Weight::Main,
+        aspect: Aspect::Equal,
+        x,
+        y,
+        layers,
+        legend: Vec::new(),
+        color_bar: None,
+    }
+}
+
+fn capital(name: &str) -> String {
+    let mut letters = name.chars();
+    let first = letters.next().into_iter().flat_map(char::to_uppercase);
+    first.chain(letters).collect()
+}
+
+/// Powers of ten over the steps: a factor a step is a straight line.
+fn curve(widget: &WrongJacobians) -> Panel {
+    let is_distance = widget.values.get(&CURVE) == Curve::Distance;
+    let best_chi2 = widget.solved.least_chi2;
+    let of = |moment: &Moment| {
+        let value = if is_distance {
+            moment.off_m
+        } else {
+            moment.chi2 - best_chi2
+        };
+        // Nothing and rounding lie on the floor.
+        let floor = math::exp(LOWEST_POWER * core::f64::consts::LN_10);
+        math::ln(math::max(value, floor)) / core::f64::consts::LN_10
+    };
+    let lines = widget.solved.runs.each_ref().map(|run| {
+        let moments = run.moments.iter().enumerate();
+        let points = moments.map(|(step, moment)| [step as f64, of(moment)]);
+        points.collect::<Vec<_>>()
+    });
+    let highest = lines.iter().flatten().map(|at| at[1]).fold(0.0, math::max);
+    let top = highest.ceil() + 0.5;
+    let low = LOWEST_POWER - 0.5;
+    let now = widget.step() as f64;
+    let mut layers = vec![Layer::line(
+        vec![[now, low], [now, top]],
+        Stroke::Solid,
+        Tone::Faint,
+        2.5,
+    )];
+    for (solver, line) in lines.into_iter().enumerate() {
+        layers.push(Layer::points(
+            line.clone(),
+            MARKS[solver],
+            TONES[solver],
+            2.5,
+        ));
+        layers.push(Layer::line(line, Stroke::Solid, TONES[solver], 1.75));
+    }
+    let [title, label] = if is_distance {
+        [
+            "Distance to the optimum",
+            "power of ten of the distance (m)",
+        ]
+    } else {
+        ["χ² above the optimum", "power of ten of χ² above it"]
+    };
+    let mut legend: Vec<_> = (0..NAMES.len())
+        .map(|k| LegendEntry::marked_line(NAMES[k], TONES[k], MARKS[k], Stroke::Solid))
+        .collect();
+    legend.push(LegendEntry::line("optimum", Tone::Ink, Stroke::Dotted));
+    Panel {
+        id: panel::CURVE,
+        title: title.to_owned(),
+        weight: Weight::Half,
+        aspect: Aspect::Free,
+        x: Axis::new("step", 0.0, widget.last().max(1) as f64),
+        y: Axis::new(label, low, top),
+        layers,
+        legend,
+        color_bar: None,
+    }
+}

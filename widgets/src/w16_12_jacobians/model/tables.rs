@@ -1,0 +1,47 @@
+//! The tables: the four ends beside the picture, every step for the export.
+
+use kit::model::Table;
+
+use super::{NAMES, WrongJacobians};
+
+/// All tables, the shown one first.
+pub fn all(widget: &WrongJacobians) -> Vec<Table> {
+    vec![ends(widget), every_step(widget)]
+}
+
+fn ends(widget: &WrongJacobians) -> Table {
+    let rows = widget.solved.runs.iter().zip(NAMES).map(|(run, name)| {
+        vec![
+            name.to_owned(),
+            run.steps().to_string(),
+            format!("{:.4}", run.end().off_m),
+            format!("{:.2}", run.end().chi2),
+        ]
+    });
+    Table::shown(
+        "ends",
+        "The four ends",
+        &["solver", "steps", "off (m)", "χ²"],
+        rows.collect(),
+    )
+}
+
+fn every_step(widget: &WrongJacobians) -> Table {
+    let runs = widget.solved.runs.iter().zip(NAMES);
+    let rows = runs.flat_map(|(run, name)| {
+        run.moments.iter().enumerate().map(move |(step, moment)| {
+            vec![
+                name.to_owned(),
+                step.to_string(),
+                moment.off_m.to_string(),
+                moment.chi2.to_string(),
+            ]
+        })
+    });
+    Table::exported(
+        "steps",
+        "Every step",
+        &["solver", "step", "off (m)", "χ²"],
+        rows.collect(),
+    )
+}

@@ -1,0 +1,124 @@
+//! The widget's words and its one list of parameters.
+
+use ch16_lab::jacobians::WrongJacobian;
+use kit::layers::Opening;
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use kit::playback::SPEED;
+use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+
+/// Steps at which a descent ends in any case.
+pub const MOST_STEPS: usize = 40;
+
+/// What the curves show over the steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curve {
+    /// How far the farthest pose is from the optimum.
+    Distance,
+    /// How far χ² is above its minimum.
+    Chi2,
+}
+
+pub(super) static BIAS: Param<f64> =
+    Param::slider("bias", "each edge turns too little by", [0.0, 10.0], 0.5)
+        .unit("°")
+        .default(6.0)
+        .help("How far odometry contradicts the loop: at 0 all measurements agree.");
+
+pub(super) static WRONG: OneOf<WrongJacobian> = OneOf::new(
+    "wrong",
+    "the wrong Jacobian is",
+    &[
+        Choice::new("twice", "twice too long"),
+        Choice::new("left", "left for right"),
+    ],
+    &[WrongJacobian::TwiceTooLong, WrongJacobian::LeftForRight],
+)
+.help("Twice the exact one, or that of a perturbation on the other side of the pose.");
+
+pub(super) static SCATTER: Param<f64> =
+    Param::slider("scatter", "start thrown off by", [0.0, 0.3], 0.05)
+        .unit("m, rad")
+        .default(0.2)
+        .help(
+            "Standard deviation by which each pose is thrown off odometry before the first step.",
+        );
+
+pub(super) static SEED: Param<u32> =
+    Param::seed("seed of the throw", 1).help("Where the random numbers of the throw start.");
+
+pub(super) static CURVE: OneOf<Curve> = OneOf::new(
+    "curve",
+    "curves show",
+    &[
+        Choice::new("distance", "distance to the optimum"),
+        Choice::new("chi2", "χ² above the optimum"),
+    ],
+    &[Curve::Distance, Curve::Chi2],
+)
+.help("How far the farthest pose is from its place at the optimum, or by how much χ² is above its minimum.");
+
+pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MOST_STEPS as f64)
+    .default(MOST_STEPS as f64)
+    .help("How many steps each solver has done; past its last one it rests.");
+
+/// What the reader can change.
+pub const PARAMS: &[&ParamSpec] = &[
+    &BIAS.spec,
+    &WRONG.spec,
+    &SCATTER.spec,
+    &SEED.spec,
+    &CURVE.spec,
+    &STEPS.spec,
+    &SPEED.spec,
+    &MORE.spec,
+];
+
+/// What never changes.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.12",
+    title: "Wrong Jacobians, wrong residual",
+    misconception: "An approximate Jacobian costs steps, and where residuals remain moves the answer to second order. A wrong residual moves it to first order, and converges as if all were well.",
+    notice: &[
+        "With the exact Jacobian each step takes the distance down by some two powers of ten, until only rounding is left.",
+        "The Jacobian that is twice too long goes half the way each time, and still ends at the optimum.",
+        "The approximate one ends beside it by the square of the contradiction: a centimetre, where the wrong residual is two decimetres off.",
+        "Without a contradiction all four end at the same place. A test on clean data does not find a wrong residual.",
+    ],
+    opening: Opening {
+        panels: &["exact", "approximate", "jacobian", "residual", "curve"],
+        params: &["bias"],
+        buttons: &["play"],
+    },
+    params: PARAMS,
+    buttons: &[PLAY, STEP, RESET, DEFAULTS],
+    presets: &[
+        Preset {
+            id: "four",
+            label: "Solve it in four ways",
+            help: "Three end alike, after few steps or many; the wrong residual is among the quick ones, and ends elsewhere.",
+            set: &[STEPS.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "agree",
+            label: "Let all measurements agree",
+            help: "Nothing is left at the end, so nothing shows: even the wrong residual ends right.",
+            set: &[BIAS.to(0.0), STEPS.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "left",
+            label: "Left for right",
+            help: "A Jacobian of the wrong side is right where nothing is left: it ends a millimetre or two beside the optimum.",
+            set: &[WRONG.to("left"), STEPS.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "half",
+            label: "Half the contradiction",
+            help: "The wrong residual is off by half as much, the approximate Jacobian by a quarter.",
+            set: &[BIAS.to(3.0), STEPS.to(0.0)],
+            then: &["play"],
+        },
+    ],
+};

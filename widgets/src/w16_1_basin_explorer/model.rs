@@ -1,0 +1,332 @@
+//! The state of the basin explorer and every rule that changes it.
+
+mod basins;
+mod edge;
+mod hands;
+mod letters;
+mod paths;
+mod picture;
+mod settings;
+mod tables;
+mod words;
+
+use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart};
+use ch16_slam2d::icp::{IcpTrace, IcpWorkspace, Pair, correspondences};
+use kit::layers::Layer;
+use kit::model::{
+    Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
+};
+use kit::param::{MORE, ParamError};
+use kit::playback::Playback;
+use kit::playback::SPEED;
+use kit::scene::Scene;
+use kit::spec::{DEFAULTS, WidgetSpec};
+use kit::values::{Changed, Values};
+
+use crate::w16_1_basin_explorer::spec::{DX, DY, EDGE, HEADING, Phase};
+use crate::w16_1_basin_explorer::spec::{EDGES, ITERATION, OFFSET_SPAN_M, PARAMS, SPEC, SWEEP};
+use basins::Basins;
+use edge::Edges;
+use paths::Paths;
+use settings::{config, other_variant, start, variant};
+
+/// Names of the panels.
+pub mod panel {
+    /// The two sweeps.
+    pub const SWEEPS: &str = "sweeps";
+    /// The basin map of point-to-point.
+    pub const POINT: &str = "basin-point-to-point";
+    /// The basin map of point-to-plane.
+    pub const PLANE: &str = "basin-point-to-plane";
+    /// rmse and error over the iterations.
+    pub const CURVE: &str = "rmse";
+}
+
+/// The parameters that say where a run starts.
+const START: [&str; 3] = ["heading", "dx", "dy"];
+
+/// Iterations a second at normal speed.
+const STEPS_PER_S: f64 = 6.0;
+
+/// The basin explorer without its picture.
+pub struct BasinExplorer {
+    values: Values,
+    playback: Playback,
+    scene: BasinScene,
+    workspace: IcpWorkspace,
+    run: Run,
+    /// The other variant from the same start, to compare.
+    other: BasinOutcome,
+    basins: Basins,
+    /// Ways of other starts over the map of the variant that is chosen.
+    paths: Paths,
+    /// Where the right basin ends along pure rotations, for whom it is asked.
+    edges: Edges,
+    preview: Preview,
+}
+
+/// Whether the end of the run is shown before it is played.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Preview {
+    /// It is for the reader to find out.
+    Hidden,
+    /// The reader moves the start, and sees where it leads.
+    Shown,
+}
+
+/// One registration: how it went, and how it ended.
+struct Run {
+    trace: Vec<IcpTrace>,
+    outcome: BasinOutcome,
+}
+
+impl Default for BasinExplorer {
+    /// The widget with every setting at its default.
+    fn default() -> Self {
+        let values = Values::defaults(PARAMS);
+        let scene = settings::scene(&values);
+        let mut workspace = IcpWorkspace::new();
+        let config = config(&values, variant(&values));
+        let outcome = scene.register_from(&start(&values), &config, &mut workspace);
+        let basins = Basins::new(&values);
+        let mut explorer = Self {
+            paths: Paths::new(&values),
+            edges: Edges::new(&values),
+            preview: Preview::Hidden,
+            run: Run {
+                trace: workspace.trace().to_vec(),
+                outcome,
+            },
+            other: outcome,
+            playback: Playback::default(),
+            values,
+            scene,
+            workspace,
+            basins,
+        };
+        explorer.register();
+        explorer
+    }
+}
+
+impl BasinExplorer {
+    /// Registers from the current start, in both variants.
+    fn register(&mut self) {
+        let start = start(&self.values);
+        let variant = variant(&self.values);
+        let mut run = |variant| {
+            let config = config(&self.values, variant);
+            self.scene
+                .register_from(&start, &config, &mut self.workspace)
+        };
+        self.other = run(other_variant(variant));
+        self.run.outcome = run(variant);
+        self.run.trace.clear();
+        self.run.trace.extend_from_slice(self.workspace.trace());
+    }
+
+    /// Last iteration of the run.
+    fn last(&self) -> usize {
+        self.run.trace.len() - 1
+    }
+
+    /// The iteration that is shown.
+    fn iteration(&self) -> usize {
+        (self.values.get(&ITERATION) as usize).min(self.last())
+    }
+
+    /// The state at the iteration that is shown.
+    fn shown(&self) -> &IcpTrace {
+        &self.run.trace[self.iteration()]
+    }
+
+    /// Whether the end of the run is shown ahead of it: while the reader looks for a start.
+    fn previews_end(&self) -> bool {
+        self.preview == Preview::Shown && self.iteration() < self.last()
+    }
+
+    /// The pairs at the iteration that is shown.
+    fn pairs(&self) -> Vec<Pair> {
+        let config = config(&self.values, variant(&self.values));
+        correspondences(
+            self.scene.source(),
+            self.scene.map(),
+            self.shown().pose,
+            &config,
+        )
+    }
+
+    /// Makes a pose the new start and shows it, rounded so that links stay short.
+    fn start_at(&mut self, start: BasinStart) {
+        let rounded = |value: f64, per_unit: f64| (value * per_unit).round() / per_unit;
+        let heading_deg = rounded(start.heading_deg, 10.0);
+        let offset = |value: f64| rounded(value, 100.0).clamp(-OFFSET_SPAN_M, OFFSET_SPAN_M);
+        self.playback.pause();
+        let values = &mut self.values;
+        values.put(&HEADING, heading_deg.clamp(-180.0, 180.0));
+        values.put(&DX, offset(start.dx_m));
+        values.put(&DY, offset(start.dy_m));
+        values.put(&ITERATION, 0.0);
+        self.register();
+        self.follow();
+        self.preview = Preview::Shown;
+    }
+
+    /// Maps and ways of other starts belong to the settings.
+    fn follow(&mut self) {
+        self.basins.follow(&self.values);
+        self.paths.follow(&self.values);
+        self.edges.follow(&self.values);
+    }
+}
+
+impl Model for BasinExplorer {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn layer(&self) -> Layer {
+        let opening = match self.values.get(&EDGE) {
+            Phase::Off => SPEC.opening,
+            Phase::Marking | Phase::Swept => edge::OPENING,
+        };
+        Layer::of(opening, &self.values)
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        if self.values.set(SPEC.id, id, value)? == Changed::No {
+            return Ok(());
+        }
+        match id {
+            "iteration" | "speed" | "more" | "edge" => {}
+            _ if EDGES.iter().any(|edge| edge.id == id) => {}
+            "seed" | "scene" => {
+                self.scene = settings::scene(&self.values);
+                self.basins.restart(&self.values);
+                self.paths.restart(&self.values);
+                self.edges = Edges::new(&self.values);
+                self.register();
+            }
+            _ => {
+                if START.contains(&id) {
+                    self.preview = Preview::Shown;
+                }
+                self.register();
+                self.follow();
+            }
+        }
+        Ok(())
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        let (here, last) = (self.iteration() as f64, self.last() as f64);
+        if let Some(position) = self.playback.press(id, here, last) {
+            self.preview = Preview::Hidden;
+            self.values.put(&ITERATION, position);
+            return Ok(());
+        }
+        if id == SWEEP.id {
+            self.values.put(&EDGE, Phase::Swept);
+        } else if id != DEFAULTS.id {
+            press_preset(self, id)?;
+        } else {
+            self.playback.pause();
+            for spec in PARAMS.iter().filter(|spec| spec.id != MORE.id) {
+                self.set(spec.id, spec.default)?;
+            }
+        }
+        self.preview = Preview::Hidden;
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        if !self.playback.is_playing() {
+            return Activity::Idle;
+        }
+        let rate = STEPS_PER_S * self.values.get(&SPEED);
+        let (here, last) = (self.iteration() as f64, self.last() as f64);
+        let next = self.playback.advance(here, last, elapsed_s, rate);
+        self.values.put(&ITERATION, next);
+        Activity::Busy
+    }
+
+    fn work(&mut self) -> Activity {
+        if self.values.get(&EDGE) == Phase::Swept
+            && self.edges.work(&self.scene, &mut self.workspace) == Activity::Busy
+        {
+            return Activity::Busy;
+        }
+        if self.paths.work(&self.scene, &mut self.workspace) == Activity::Busy {
+            return Activity::Busy;
+        }
+        self.basins.work(&self.scene, &mut self.workspace)
+    }
+
+    fn settle(&mut self) -> Activity {
+        let mut done = Activity::Idle;
+        while self.values.get(&EDGE) == Phase::Swept
+            && self.edges.work(&self.scene, &mut self.workspace) == Activity::Busy
+        {
+            done = Activity::Busy;
+        }
+        done
+    }
+
+    fn scene(&self) -> Scene {
+        picture::scene(self)
+    }
+
+    fn outcome(&self) -> Outcome {
+        words::outcome(self)
+    }
+
+    fn summary(&self) -> String {
+        words::summary(self)
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        let last = self.last() as f64;
+        let minimum = self.run.outcome.ending;
+        let standing = words::standing(minimum);
+        let name = minimum.name();
+        Some(Timeline {
+            param: "iteration",
+            last,
+            playing: self.playback.is_playing(),
+            marks: vec![TimelineMark {
+                at: last,
+                label: match standing {
+                    Standing::Good => format!("ends in the {name}"),
+                    _ => format!("ends wrong: {name}"),
+                },
+                standing,
+            }],
+        })
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        tables::all(self)
+    }
+
+    fn shown_tables(&self) -> Vec<Table> {
+        tables::shown(self)
+    }
+
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        hands::grab(self, panel, at, reach)
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        hands::drag(self, handle, at);
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        if let Some(end) = self.playback.set_motion(motion, self.last() as f64) {
+            self.values.put(&ITERATION, end);
+        }
+    }
+}

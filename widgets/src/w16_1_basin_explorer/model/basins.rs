@@ -1,0 +1,210 @@
+//! The two basin maps: filled piece by piece, given out as rasters with letters.
+
+use std::cell::OnceCell;
+use std::sync::Arc;
+
+use ch16_lab::basin::{BasinMap, BasinMapAxes, BasinScene, BasinStart, Minimum, OffsetAxis};
+use ch16_slam2d::icp::{IcpVariant, IcpWorkspace};
+use kit::model::Activity;
+use kit::scene::{Bounds, Cell, Raster};
+use kit::values::Values;
+
+use super::letters::{Room, rooms, spread};
+use super::settings::{axis, config, start};
+use crate::w16_1_basin_explorer::spec::OFFSET_SPAN_M;
+
+/// Registrations in one piece of work: some tenths of a millisecond.
+const REGISTRATIONS_PER_PIECE: usize = 3;
+/// Headings, 3° apart.
+pub const COLUMNS: usize = 121;
+/// Offsets, 7.5 cm apart.
+pub const ROWS: usize = 41;
+
+/// Both basin maps for the current settings: point-to-point, then point-to-plane.
+pub struct Basins {
+    maps: [BasinMap; 2],
+    revision: u64,
+    drawn: [Drawn; 2],
+}
+
+/// What a picture needs of one map, made when it is first asked for.
+#[derive(Default)]
+struct Drawn {
+    cells: OnceCell<Arc<[Cell]>>,
+    rooms: OnceCell<Vec<Room<Minimum>>>,
+}
+
+impl Basins {
+    /// Empty maps for these settings.
+    pub fn new(values: &Values) -> Self {
+        Self {
+            maps: empty_maps(values),
+            revision: 0,
+            drawn: Default::default(),
+        }
+    }
+
+    /// Empties the maps, because the sweeps changed.
+    pub fn restart(&mut self, values: &Values) {
+        self.maps = empty_maps(values);
+        self.changed();
+    }
+
+    /// Empties the maps where their settings changed; otherwise keeps what is filled.
+    pub fn follow(&mut self, values: &Values) {
+        let fresh = empty_maps(values);
+        let differs = |(old, new): (&BasinMap, &BasinMap)| {
+            old.axes() != new.axes() || old.config() != new.config()
+        };
+        // Both maps have the same axes and settings but for the variant.
+        if self.maps.iter().zip(&fresh).any(differs) {
+            self.maps = fresh;
+            self.changed();
+        }
+    }
+
+    /// Fills some cells of the map that is less far.
+    pub fn work(&mut self, scene: &BasinScene, workspace: &mut IcpWorkspace) -> Activity {
+        let [point, plane] = &mut self.maps;
+        let behind = if plane.progress() < point.progress() {
+            plane
+        } else {
+            point
+        };
+        if behind.is_complete() {
+            return Activity::Idle;
+        }
+        behind.advance(scene, workspace, REGISTRATIONS_PER_PIECE);
+        self.changed();
+        Activity::Busy
+    }
+
+    /// What was drawn of the maps no longer holds.
+    fn changed(&mut self) {
+        self.revision += 1;
+        self.drawn = Default::default();
+    }
+
+    /// The map of a variant.
+    pub fn map(&self, variant: IcpVariant) -> &BasinMap {
+        &self.maps[place(variant)]
+    }
+
+    /// The picture of a variant's map.
+    pub fn raster(&self, variant: IcpVariant) -> Raster {
+        let draw = || {
+            let cells = minima(self.map(variant)).map(|minimum| match minimum {
+                Some(minimum) => Cell::Class(class(minimum)),
+                None => Cell::Unknown,
+            });
+            cells.collect()
+        };
+        let cells: &Arc<[Cell]> = self.drawn[place(variant)].cells.get_or_init(draw);
+        // The cells' middles lie on the grid, so the picture is half a cell larger all round.
+        let half = [
+            180.0 / (COLUMNS - 1) as f64,
+            OFFSET_SPAN_M / (ROWS - 1) as f64,
+        ];
+        let reach = [180.0 + half[0], OFFSET_SPAN_M + half[1]];
+        Raster {
+            bounds: Bounds {
+                min: reach.map(|value| -value),
+                max: reach,
+            },
+            columns: COLUMNS,
+            rows: ROWS,
+            cells: Arc::clone(cells),
+            revision: self.revision,
+        }
+    }
+
+    /// Where letters stand on a variant's map: heading in degrees, offset in metres.
+    pub fn letters(&self, variant: IcpVariant, values: &Values) -> Vec<([f64; 2], Minimum)> {
+        let map = self.map(variant);
+        let find = || rooms(&minima(map).collect::<Vec<_>>(), COLUMNS);
+        let rooms = self.drawn[place(variant)].rooms.get_or_init(find);
+        let marked = map.axes().position(&start(values));
+        spread(rooms, marked)
+            .into_iter()
+            .map(|room| {
+                let start = map.axes().start(room.column, room.row);
+                let spot = [start.heading_deg, offset(map.axes().axis, &start)];
+                (spot, room.class)
+            })
+            .collect()
+    }
+}
+
+/// Place of a variant in the pairs.
+fn place(variant: IcpVariant) -> usize {
+    match variant {
+        IcpVariant::PointToPoint => 0,
+        IcpVariant::PointToPlane => 1,
+    }
+}
+
+/// The start at a spot of a basin map; the other offset stays as it is.
+pub fn start_at(values: &Values, [heading_deg, offset_m]: [f64; 2]) -> BasinStart {
+    let mut at = start(values);
+    at.heading_deg = heading_deg.clamp(-180.0, 180.0);
+    match axis(values) {
+        OffsetAxis::Dx => at.dx_m = offset_m,
+        OffsetAxis::Dy => at.dy_m = offset_m,
+    }
+    at
+}
+
+/// Where a start lies on the basin maps.
+pub fn spot_of(values: &Values) -> [f64; 2] {
+    let at = start(values);
+    [at.heading_deg, offset(axis(values), &at)]
+}
+
+/// Number of a minimum's colour.
+pub fn class(minimum: Minimum) -> u8 {
+    match minimum {
+        Minimum::Right => 0,
+        Minimum::QuarterTurn | Minimum::OnePost => 1,
+        Minimum::HalfTurn | Minimum::MorePosts => 2,
+        // Both are no minimum of the room's shape; their letters tell them apart.
+        Minimum::WrongHeading | Minimum::Other => 3,
+    }
+}
+
+fn minima(map: &BasinMap) -> impl Iterator<Item = Option<Minimum>> + '_ {
+    (0..ROWS).flat_map(move |row| (0..COLUMNS).map(move |column| map.shown(column, row)))
+}
+
+/// Where a start lies on a map of Δx, or of Δy.
+pub fn start_spot(start: &BasinStart, along_y: bool) -> [f64; 2] {
+    let axis = if along_y {
+        OffsetAxis::Dy
+    } else {
+        OffsetAxis::Dx
+    };
+    [start.heading_deg, offset(axis, start)]
+}
+
+fn offset(axis: OffsetAxis, start: &BasinStart) -> f64 {
+    match axis {
+        OffsetAxis::Dx => start.dx_m,
+        OffsetAxis::Dy => start.dy_m,
+    }
+}
+
+fn empty_maps(values: &Values) -> [BasinMap; 2] {
+    let axis = axis(values);
+    let other = start(values);
+    let axes = BasinMapAxes {
+        columns: COLUMNS,
+        rows: ROWS,
+        offset_span_m: OFFSET_SPAN_M,
+        axis,
+        other_offset_m: match axis {
+            OffsetAxis::Dx => other.dy_m,
+            OffsetAxis::Dy => other.dx_m,
+        },
+    };
+    [IcpVariant::PointToPoint, IcpVariant::PointToPlane]
+        .map(|variant| BasinMap::new(axes, config(values, variant)))
+}

@@ -1,0 +1,406 @@
+//! The panels: the two sweeps, the two basin maps, the curve over the iterations.
+
+use ch16_lab::basin::{BasinPlace, Minimum, OffsetAxis};
+use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::icp::{IcpVariant, Pair};
+use kit::chart::{Series, TimeChart};
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
+use pr_geom::{Point2, SE2};
+
+use super::basins::{class, spot_of, start_spot};
+use super::edge;
+use super::hands::turn_handle;
+use super::paths::broken;
+use super::settings::{axis, start, variant, variant_name};
+use super::words::error_m;
+use super::{BasinExplorer, panel};
+use crate::w16_1_basin_explorer::spec::{EDGE, OFFSET_SPAN_M, Phase};
+
+/// Of so many points one leaves a trail.
+const POINTS_PER_TRAIL: usize = 11;
+
+/// Room around a basin map: a mark at its edge is shown whole, ° and m.
+const BASIN_ROOM: [f64; 2] = [12.0, 0.15];
+
+/// Neighbouring points of a sweep farther apart than this lie on different walls, or posts, m.
+const fn wall_gap_m(place: BasinPlace) -> f64 {
+    match place {
+        BasinPlace::Room => 0.6,
+        BasinPlace::Fence => 0.2,
+    }
+}
+
+pub fn scene(explorer: &BasinExplorer) -> Scene {
+    Scene {
+        panels: vec![
+            sweeps(explorer),
+            basin(explorer, panel::POINT, IcpVariant::PointToPoint),
+            basin(explorer, panel::PLANE, IcpVariant::PointToPlane),
+            curve(explorer),
+        ],
+    }
+}
+
+fn sweeps(explorer: &BasinExplorer) -> Panel {
+    let BasinExplorer { scene, .. } = explorer;
+    let shown = explorer.shown();
+    let pose = shown.pose;
+    let iteration = explorer.iteration();
+    let turn = turn_handle(explorer);
+    let links = explorer.pairs();
+    let source = scene.source().transformed(&pose);
+
+    let mut layers = vec![
+        Layer::line(
+            outline(
+                &scene.source().transformed(&scene.truth()),
+                wall_gap_m(scene.place()),
+            ),
+            Stroke::Dashed,
+            Tone::Truth,
+            1.5,
+        ),
+        points(scene.target(), Mark::Cross, Tone::Measurement, 3.0),
+    ];
+    let guess = scene.guess(&start(&explorer.values));
+    if iteration > 0 {
+        layers.push(points(
+            &scene.source().transformed(&guess),
+            Mark::Circle,
+            Tone::Prior,
+            2.0,
+        ));
+    }
+    if explorer.previews_end() {
+        layers.extend(preview(explorer));
+    }
+    layers.extend([
+        points(&source, Mark::Square, Tone::Posterior, 2.6),
+        // Above the points: a pair may be shorter than a mark is wide.
+        Layer::segments(
+            links
+                .iter()
+                .map(|pair| {
+                    [
+                        [pair.source.x, pair.source.y],
+                        [pair.target.x, pair.target.y],
+                    ]
+                })
+                .collect(),
+            Stroke::Solid,
+            Tone::Ink,
+            1.25,
+        ),
+        Layer::points(lonely(&source, &links), Mark::Circle, Tone::Prediction, 5.0),
+        sensor(SE2::identity(), Mark::Cross, Tone::Measurement),
+        sensor(scene.truth(), Mark::Plus, Tone::Truth),
+        sensor(guess, Mark::Circle, Tone::Prior),
+        Layer::segments(
+            vec![[[pose.x(), pose.y()], [turn.x, turn.y]]],
+            Stroke::Solid,
+            Tone::Posterior,
+            1.5,
+        ),
+        sensor(pose, Mark::Square, Tone::Posterior),
+        Layer::Handle {
+            at: [turn.x, turn.y],
+            tone: Tone::Posterior,
+            label: "turn the source; drag its points to move it",
+        },
+    ]);
+
+    let entry = |label: &str, tone, mark, stroke| LegendEntry {
+        label: label.to_owned(),
+        tone,
+        mark,
+        stroke,
+    };
+    Panel {
+        id: panel::SWEEPS,
+        title: format!(
+            "Iteration {iteration} of {}: {} pairs, rmse {:.3} m",
+            explorer.last(),
+            shown.pairs,
+            shown.rmse
+        ),
+        weight: Weight::Main,
+        aspect: Aspect::Equal,
+        x: Axis {
+            label: "x from the target's sensor (m)".to_owned(),
+            min: -3.2,
+            max: 3.2,
+        },
+        y: Axis {
+            label: "y (m)".to_owned(),
+            min: -2.9,
+            max: 3.3,
+        },
+        layers,
+        legend: vec![
+            entry("target", Tone::Measurement, Some(Mark::Cross), None),
+            entry("source now", Tone::Posterior, Some(Mark::Square), None),
+            entry("first guess", Tone::Prior, Some(Mark::Circle), None),
+            entry(
+                "truth: where the source belongs",
+                Tone::Truth,
+                Some(Mark::Plus),
+                Some(Stroke::Dashed),
+            ),
+            entry("pairs", Tone::Ink, None, Some(Stroke::Solid)),
+            entry(
+                "points without a pair",
+                Tone::Prediction,
+                Some(Mark::Circle),
+                None,
+            ),
+            entry(
+                "where it will end, and the way there",
+                Tone::Posterior,
+                Some(Mark::Dot),
+                Some(Stroke::Dotted),
+            ),
+            entry(
+                "ring: turns the source",
+                Tone::Posterior,
+                Some(Mark::Circle),
+                Some(Stroke::Solid),
+            ),
+        ],
+        color_bar: None,
+    }
+}
+
+/// The end of the run as a ghost, and the way of the sensor and of some points there.
+fn preview(explorer: &BasinExplorer) -> Vec<Layer> {
+    let trace = &explorer.run.trace;
+    let source = explorer.scene.source();
+    let end = explorer.run.outcome.pose;
+    let way = |of: Point2<f64>| {
+        let spots = trace.iter().map(move |state| state.pose.transform(of));
+        spots.map(|spot| [spot.x, spot.y]).collect::<Vec<_>>()
+    };
+    let sensor = Point2::new(0.0, 0.0);
+    let some = source.iter().step_by(POINTS_PER_TRAIL);
+    let trails = some
+        .chain(core::iter::once(sensor))
+        .map(|of| Layer::line(way(of), Stroke::Dotted, Tone::Posterior, 1.25));
+    let ghost = points(&source.transformed(&end), Mark::Dot, Tone::Posterior, 1.3);
+    trails
+        .chain([
+            Layer::points(way(sensor), Mark::Dot, Tone::Posterior, 2.0),
+            ghost,
+        ])
+        .collect()
+}
+
+/// The points that found no partner.
+fn lonely(source: &PointCloud, pairs: &[Pair]) -> Vec<[f64; 2]> {
+    let mut has_pair = vec![false; source.len()];
+    for pair in pairs {
+        has_pair[pair.source_index] = true;
+    }
+    let alone = source.iter().zip(has_pair).filter(|(_, paired)| !paired);
+    alone.map(|(point, _)| [point.x, point.y]).collect()
+}
+
+/// The points of a cloud.
+fn points(cloud: &PointCloud, mark: Mark, tone: Tone, radius_px: f32) -> Layer {
+    Layer::Points {
+        points: cloud.iter().map(|p| [p.x, p.y]).collect(),
+        mark,
+        tone,
+        radius_px,
+    }
+}
+
+/// Where a sensor stands and looks.
+fn sensor(pose: SE2, mark: Mark, tone: Tone) -> Layer {
+    Layer::Pose {
+        pose: pose.to_array(),
+        mark,
+        tone,
+        radius_px: 6.0,
+    }
+}
+
+/// A sweep as lines along its walls, broken where neighbouring beams hit different ones.
+fn outline(cloud: &PointCloud, gap_m: f64) -> Vec<[f64; 2]> {
+    let mut line: Vec<[f64; 2]> = Vec::with_capacity(cloud.len() + 8);
+    for p in cloud.iter() {
+        if let Some([x, y]) = line.last()
+            && (p.x - x).abs().max((p.y - y).abs()) > gap_m
+        {
+            line.push([f64::NAN; 2]);
+        }
+        line.push([p.x, p.y]);
+    }
+    line
+}
+
+fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
+    let chosen = of == variant(&explorer.values);
+    let (name, other) = match axis(&explorer.values) {
+        OffsetAxis::Dx => (
+            "Δx (m)",
+            format!("Δy {:.2} m", start(&explorer.values).dy_m),
+        ),
+        OffsetAxis::Dy => (
+            "Δy (m)",
+            format!("Δx {:.2} m", start(&explorer.values).dx_m),
+        ),
+    };
+    let progress = explorer.basins.map(of).progress();
+    let state = if progress < 1.0 {
+        format!(", {:.0} % done", 100.0 * progress)
+    } else {
+        String::new()
+    };
+    let mut layers = Vec::new();
+    let covered = explorer.values.get(&EDGE) == Phase::Marking;
+    if !covered {
+        layers.push(Layer::Raster(explorer.basins.raster(of)));
+        layers.extend(letters(explorer, of));
+    }
+    layers.extend(edge::layers(explorer, of));
+    let spot = spot_of(&explorer.values);
+    // While the maps are covered the reader looks for the edge, not for a start.
+    if chosen && !covered {
+        layers.extend(ways(explorer));
+        layers.push(Layer::Handle {
+            at: spot,
+            tone: Tone::Prior,
+            label: "the current start; press anywhere to start there",
+        });
+    } else if !covered {
+        layers.push(Layer::Points {
+            points: vec![spot],
+            mark: Mark::Plus,
+            tone: Tone::Ink,
+            radius_px: 7.0,
+        });
+    }
+    let mut legend = edge::legend(&explorer.values);
+    if !covered {
+        let minima = Minimum::of(explorer.scene.place());
+        legend.extend(minima.map(|minimum| LegendEntry {
+            label: format!("{} {}", minimum.letter(), minimum.name()),
+            tone: Tone::Class(class(minimum)),
+            mark: None,
+            stroke: None,
+        }));
+    }
+    let title = if covered {
+        format!("Where is the edge, {}?", variant_name(of))
+    } else {
+        format!("Basins, {}, {other}{state}", variant_name(of))
+    };
+    Panel {
+        id,
+        title,
+        weight: Weight::Half,
+        aspect: Aspect::Free,
+        x: Axis {
+            label: "heading error of the first guess (°)".to_owned(),
+            min: -180.0 - BASIN_ROOM[0],
+            max: 180.0 + BASIN_ROOM[0],
+        },
+        y: Axis {
+            label: name.to_owned(),
+            min: -OFFSET_SPAN_M - BASIN_ROOM[1],
+            max: OFFSET_SPAN_M + BASIN_ROOM[1],
+        },
+        layers,
+        // One legend for both maps, below the second.
+        legend: if of == IcpVariant::PointToPlane {
+            legend
+        } else {
+            Vec::new()
+        },
+        color_bar: None,
+    }
+}
+
+/// The letters of the minima over the map of a variant.
+fn letters(explorer: &BasinExplorer, of: IcpVariant) -> impl Iterator<Item = Layer> {
+    let letters = explorer.basins.letters(of, &explorer.values);
+    letters.into_iter().map(|(at, minimum)| Layer::Text {
+        at,
+        text: minimum.letter().to_string(),
+        tone: Tone::Class(class(minimum)),
+    })
+}
+
+/// The ways of other starts over the map, each with a dot where it ends, and that of the own start
+/// where its end may be seen.
+fn ways(explorer: &BasinExplorer) -> Vec<Layer> {
+    let line =
+        |points: Vec<[f64; 2]>, tone, width_px| Layer::line(points, Stroke::Solid, tone, width_px);
+    let mut layers = Vec::new();
+    for path in explorer.paths.done() {
+        let end = path.spots.last().copied().into_iter().collect();
+        layers.push(line(path.spots.clone(), Tone::Ink, 1.0));
+        layers.push(Layer::points(end, Mark::Dot, Tone::Ink, 2.5));
+    }
+    let seen = if explorer.previews_end() {
+        explorer.run.trace.len()
+    } else {
+        explorer.iteration() + 1
+    };
+    let along_y = axis(&explorer.values) == OffsetAxis::Dy;
+    let own = explorer.run.trace[..seen].iter();
+    let own = own.map(|state| start_spot(&explorer.scene.start_of(&state.pose), along_y));
+    let own = broken(own);
+    let end = own.last().copied().into_iter().collect();
+    layers.push(line(own, Tone::Posterior, 2.0));
+    layers.push(Layer::points(end, Mark::Square, Tone::Posterior, 4.0));
+    layers
+}
+
+fn curve(explorer: &BasinExplorer) -> Panel {
+    let trace = &explorer.run.trace;
+    let truth = explorer.scene.truth();
+    let rmse: Vec<f64> = trace.iter().map(|state| state.rmse).collect();
+    let error: Vec<f64> = trace
+        .iter()
+        .map(|state| error_m(&truth, &state.pose))
+        .collect();
+    let series = |label, values, tone, mark| Series {
+        label,
+        values,
+        tone,
+        mark,
+    };
+    let chart = TimeChart {
+        id: panel::CURVE,
+        title: "What the robot sees, and how far it is from the truth",
+        x_label: "iteration",
+        last: explorer.last(),
+        y_label: "m",
+        now: explorer.iteration(),
+    };
+    let mut panel = chart.panel(&[
+        series("rmse of the pairs", &rmse, Tone::Posterior, Mark::Square),
+        series("error of the position", &error, Tone::Truth, Mark::Plus),
+    ]);
+    dash_truth(&mut panel);
+    panel
+}
+
+/// Truth is dashed everywhere.
+fn dash_truth(panel: &mut Panel) {
+    for layer in &mut panel.layers {
+        if let Layer::Line {
+            tone: Tone::Truth,
+            stroke,
+            ..
+        } = layer
+        {
+            *stroke = Stroke::Dashed;
+        }
+    }
+    for entry in &mut panel.legend {
+        if entry.tone == Tone::Truth {
+            entry.stroke = Some(Stroke::Dashed);
+        }
+    }
+}

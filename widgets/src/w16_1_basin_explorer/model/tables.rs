@@ -1,0 +1,117 @@
+//! The tables: both errors from this start, and the data of every plot.
+
+use ch16_lab::basin::{BasinOutcome, Minimum};
+use ch16_slam2d::icp::IcpVariant;
+use kit::model::Table;
+use kit::ticks::signed;
+
+use super::BasinExplorer;
+use super::basins::{COLUMNS, ROWS};
+use super::settings::{other_variant, variant, variant_name};
+use super::words::error_m;
+
+/// The tables beside the picture.
+pub fn shown(explorer: &BasinExplorer) -> Vec<Table> {
+    vec![variants(explorer)]
+}
+
+/// All tables, the shown ones first.
+pub fn all(explorer: &BasinExplorer) -> Vec<Table> {
+    let mut tables = shown(explorer);
+    tables.extend([iterations(explorer), basins(explorer)]);
+    tables
+}
+
+/// The end of both variants from the same start.
+fn variants(explorer: &BasinExplorer) -> Table {
+    let chosen = variant(&explorer.values);
+    let row = |variant: IcpVariant, end: &BasinOutcome| {
+        vec![
+            variant_name(variant).to_owned(),
+            end.ending.name().to_owned(),
+            format!("{:.3}", end.error_m),
+            signed(end.error_deg, 1),
+            format!("{:.3}", end.rmse),
+            end.iterations.to_string(),
+        ]
+    };
+    let mut rows = vec![
+        row(chosen, &explorer.run.outcome),
+        row(other_variant(chosen), &explorer.other),
+    ];
+    if chosen == IcpVariant::PointToPlane {
+        rows.swap(0, 1);
+    }
+    Table::shown(
+        "variants",
+        "Both errors from this start",
+        &[
+            "error", "ends in", "off (m)", "off (°)", "rmse (m)", "steps",
+        ],
+        rows,
+    )
+}
+
+/// The way of the registration.
+fn iterations(explorer: &BasinExplorer) -> Table {
+    let truth = explorer.scene.truth();
+    let rows = explorer.run.trace.iter().enumerate().map(|(k, state)| {
+        let pose = state.pose;
+        vec![
+            k.to_string(),
+            state.pairs.to_string(),
+            state.rmse.to_string(),
+            error_m(&truth, &pose).to_string(),
+            pose.x().to_string(),
+            pose.y().to_string(),
+            pose.theta().to_string(),
+        ]
+    });
+    let head = [
+        "iteration",
+        "pairs",
+        "rmse (m)",
+        "error (m)",
+        "x (m)",
+        "y (m)",
+        "theta (rad)",
+    ];
+    Table::exported("iterations", "Every iteration", &head, rows.collect())
+}
+
+/// Both basin maps.
+fn basins(explorer: &BasinExplorer) -> Table {
+    let head = [
+        "heading (°)",
+        "Δx (m)",
+        "Δy (m)",
+        "point to point",
+        "point to plane",
+    ];
+    Table::exported(
+        "basins",
+        "The minimum reached from every start",
+        &head,
+        basin_rows(explorer),
+    )
+}
+
+/// One row a cell; a cell that is not computed yet is empty.
+fn basin_rows(explorer: &BasinExplorer) -> Vec<Vec<String>> {
+    let point = explorer.basins.map(IcpVariant::PointToPoint);
+    let plane = explorer.basins.map(IcpVariant::PointToPlane);
+    let cells = (0..ROWS).flat_map(|row| (0..COLUMNS).map(move |column| (column, row)));
+    cells
+        .map(|(column, row)| {
+            let start = point.axes().start(column, row);
+            let name = |minimum: Option<Minimum>| minimum.map_or("", Minimum::name).to_owned();
+            vec![
+                start.heading_deg.to_string(),
+                start.dx_m.to_string(),
+                start.dy_m.to_string(),
+                name(point.minimum(column, row)),
+                name(plane.minimum(column, row)),
+            ]
+        })
+        .collect()
+}

@@ -1,0 +1,251 @@
+//! The widget's words and its one list of parameters.
+
+use ch16_lab::basin::BasinScene;
+use ch16_lab::basin::{BasinPlace, OffsetAxis};
+use ch16_slam2d::icp::IcpVariant;
+use kit::layers::Opening;
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use kit::playback::SPEED;
+use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+
+/// Largest offset of a start, m.
+pub const OFFSET_SPAN_M: f64 = 1.5;
+
+/// The Huber width at which no pair is weighed down: no pair is longer than the largest τ.
+pub const HUBER_OFF_M: f64 = 1.6;
+
+/// Iterations at which a registration ends in any case.
+pub const MAX_ITERS: f64 = BasinScene::MAX_ITERS as f64;
+
+/// Sweeps the edge and compares it with the marks.
+pub const SWEEP: ButtonSpec = ButtonSpec {
+    id: "sweep",
+    label: "Sweep the edge",
+    help: "Register from every heading outwards from the truth, and compare the edge with your marks.",
+};
+
+/// How far the question is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Nobody asks.
+    Off,
+    /// The reader marks both edges; the maps are covered.
+    Marking,
+    /// The edges are swept, and all is shown.
+    Swept,
+}
+
+pub(super) static HEADING: Param<f64> =
+    Param::slider("heading", "heading error", [-180.0, 180.0], 1.0)
+        .unit("°")
+        .default(25.0)
+        .help("How far the first guess is turned away from the truth.");
+
+pub(super) static DX: Param<f64> = offset("dx", "Δx of the guess", 0.55);
+
+pub(super) static DY: Param<f64> = offset("dy", "Δy of the guess", 0.45);
+
+pub(super) static SCENE: OneOf<BasinPlace> = OneOf::new(
+    "scene",
+    "scene",
+    &[
+        Choice::new("room", "room"),
+        Choice::new("fence", "picket fence"),
+    ],
+    &[BasinPlace::Room, BasinPlace::Fence],
+)
+.help("What the two sweeps see: room A, almost a square, or a row of equal posts 0.5 m apart.");
+
+pub(super) static VARIANT: OneOf<IcpVariant> = OneOf::new(
+    "variant",
+    "error that ICP reduces",
+    &[
+        Choice::new("point-to-point", "point to point"),
+        Choice::new("point-to-plane", "point to plane"),
+    ],
+    &[IcpVariant::PointToPoint, IcpVariant::PointToPlane],
+)
+.help("Distance between paired points, or distance along the wall's normal.");
+
+pub(super) static TAU: Param<f64> = Param::slider("tau", "pairing distance τ", [0.1, 1.6], 0.05)
+    .unit("m")
+    .default(0.7)
+    .help("A point farther than this from the target has no pair.");
+
+pub(super) static TRIM: Param<f64> =
+    Param::slider("trim", "share of pairs dropped", [0.0, 0.7], 0.05).help(
+        "Trimming drops this share of the pairs in each iteration, the longest first; 0 keeps all.",
+    );
+
+pub(super) static HUBER: Param<f64> =
+    Param::slider("huber", "Huber width", [0.02, HUBER_OFF_M], 0.02)
+        .unit("m")
+        .default(HUBER_OFF_M)
+        .help("Longer pairs pull less; at 1.6 m all pairs pull alike.");
+
+pub(super) static AXIS: OneOf<OffsetAxis> = OneOf::new(
+    "axis",
+    "basin map shows heading and",
+    &[Choice::new("dx", "Δx"), Choice::new("dy", "Δy")],
+    &[OffsetAxis::Dx, OffsetAxis::Dy],
+)
+.help("The vertical axis of the basin maps; the other offset comes from its slider.");
+
+pub(super) static PATHS: Param<bool> = Param::switch("paths", "ways of other starts")
+    .help("Draws over the basin map which way starts all over it go, iteration by iteration.");
+
+pub(super) static EDGE: OneOf<Phase> = OneOf::new(
+    "edge",
+    "the basin's edge",
+    &[
+        Choice::new("off", "is not asked for"),
+        Choice::new("mark", "is for you to mark"),
+        Choice::new("swept", "is swept"),
+    ],
+    &[Phase::Off, Phase::Marking, Phase::Swept],
+)
+.help("Asks from how far a guess at the right place may be turned and still comes home; while you mark it, the maps are covered.");
+
+/// Where the reader marks the edge of the basin, for both errors.
+pub(super) static EDGES: [Param<f64>; 2] = [
+    edge("edge-p2p", "your edge, point to point"),
+    edge("edge-p2l", "your edge, point to plane"),
+];
+
+pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
+    .help("Where the range noise of both sweeps starts; 457 is the chapter's.");
+
+pub(super) static ITERATION: Param<f64> = Param::timeline("iteration", "iteration", MAX_ITERS)
+    .help("Which iteration is shown; 0 is the first guess, and past the last one is the end.");
+
+/// What the reader can change.
+pub const PARAMS: &[&ParamSpec] = &[
+    &HEADING.spec,
+    &DX.spec,
+    &DY.spec,
+    &SCENE.spec,
+    &VARIANT.spec,
+    &TAU.spec,
+    &TRIM.spec,
+    &HUBER.spec,
+    &AXIS.spec,
+    &PATHS.spec,
+    &EDGE.spec,
+    &EDGES[0].spec,
+    &EDGES[1].spec,
+    &SEED.spec,
+    &ITERATION.spec,
+    &SPEED.spec,
+    &MORE.spec,
+];
+
+const fn edge(id: &'static str, label: &'static str) -> Param<f64> {
+    Param::slider(id, label, [0.0, 180.0], 1.0)
+        .unit("°")
+        .help("Your mark of the edge, to either side of the truth; 0 is none.")
+}
+
+const fn offset(id: &'static str, label: &'static str, default: f64) -> Param<f64> {
+    Param::slider(id, label, [-OFFSET_SPAN_M, OFFSET_SPAN_M], 0.05)
+        .unit("m")
+        .default(default)
+        .help("How far the first guess is moved away from the truth.")
+}
+
+/// What never changes.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.1",
+    title: "Basin explorer",
+    misconception: "A small residual proves nothing: registration ends in the minimum whose basin \
+                    it starts in, and a false one can fit almost as well as the right one.",
+    notice: &[
+        "The room is almost square, so a quarter turn fits too: rmse 0.13 m there, 0.03 m at the truth.",
+        "Between the right basin and the quarter turn, point to point settles on a third answer.",
+        "A row of equal posts has a minimum at each spacing: bands on the map, and no residual tells them apart.",
+        "Point to plane needs fewer iterations, and its right basin is wider with no offset.",
+        "The verdict uses the truth. A robot has only rmse and pairs, and both look fine when it is wrong.",
+    ],
+    opening: Opening {
+        panels: &["sweeps", "basin-point-to-point", "basin-point-to-plane"],
+        params: &["heading"],
+        buttons: &["play"],
+    },
+    params: PARAMS,
+    buttons: &[PLAY, STEP, RESET, SWEEP, DEFAULTS],
+    presets: &[
+        Preset {
+            id: "near",
+            label: "Start 25° off",
+            help: "Inside the right basin: the sweeps come together.",
+            set: &[ITERATION.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "quarter-turn",
+            label: "Start 60° off",
+            help: "The same room: on its way to the quarter turn its iterations run out.",
+            set: &[HEADING.to(60.0), DX.to(0.0), DY.to(0.0), ITERATION.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "between",
+            label: "Start 45° off",
+            help: "Between the two basins: neither the truth nor the quarter turn.",
+            set: &[HEADING.to(45.0), DX.to(0.0), DY.to(0.0), ITERATION.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "between-plane",
+            label: "45°, point to plane",
+            help: "The same start with the other error: now it finds the truth.",
+            set: &[
+                HEADING.to(45.0),
+                DX.to(0.0),
+                DY.to(0.0),
+                VARIANT.to("point-to-plane"),
+                ITERATION.to(0.0),
+            ],
+            then: &["play"],
+        },
+        Preset {
+            id: "half-turn",
+            label: "Start upside down",
+            help: "Half a turn fits as well, and better than the quarter turn.",
+            set: &[HEADING.to(180.0), DX.to(0.0), DY.to(0.0), ITERATION.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "fence",
+            label: "Stand before a picket fence",
+            help: "Equal posts fit again after each spacing: it settles one post off, and fits as well as at home. The map has a band for each.",
+            set: &[
+                SCENE.to("fence"),
+                HEADING.to(0.0),
+                DX.to(0.4),
+                DY.to(0.0),
+                ITERATION.to(0.0),
+            ],
+            then: &["play"],
+        },
+        Preset {
+            id: "mark-edge",
+            label: "Where is the edge?",
+            help: "The maps are covered: mark on each how far a guess may be turned and still comes home, then sweep the edge.",
+            set: &[
+                HEADING.to(0.0),
+                DX.to(0.0),
+                DY.to(0.0),
+                ITERATION.to(0.0),
+                EDGE.to("mark"),
+            ],
+            then: &[],
+        },
+        Preset {
+            id: "short-sighted",
+            label: "Short-sighted τ",
+            help: "With τ of 0.2 m most points find no pair, and the cloud hardly moves.",
+            set: &[TAU.to(0.2), ITERATION.to(0.0)],
+            then: &["play"],
+        },
+    ],
+};

@@ -1,0 +1,463 @@
+//! The state of the widget: parameters, the laps they lead to, playback and animation.
+//!
+//! A parameter that changes the lap asks for a new one. It is computed in pieces, the newest that was
+//! asked for first; the old one stays until the new one is whole, and the moment shown stays.
+
+mod drawing;
+pub(super) mod flat;
+mod found;
+mod gates;
+mod graph_tools;
+mod grid;
+mod hands;
+mod moment;
+mod own;
+mod panel;
+mod pick;
+mod picture;
+mod piece;
+mod runs;
+mod settings;
+mod tables;
+mod track;
+mod transition;
+mod words;
+
+use ch16_lab::lap::{LapRecord, LoopAttempt, NewestLap, NewestStep, OwnLoopError};
+use kit::chart::{dragged_to, grab_now};
+use kit::layers::Layer;
+use kit::model::{
+    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
+};
+use kit::outside::Delivery;
+use kit::param::ParamError;
+use kit::playback::Playback;
+use kit::playback::SPEED;
+use kit::scene::Scene;
+use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
+use pr_sim::{Course, Sketch};
+
+use crate::w16_2_full_lap::spec::{EDITING, FLAT_CONTROLS, FLAT_KEYS, FUTURE, SPEC, TICK, WORLD};
+use flat::{Flat, Tool};
+use moment::Moment;
+use own::Own;
+use pick::{Part, Step};
+use runs::{Results, Runs};
+use settings::LapSettings;
+use transition::Transition;
+
+/// Ticks a second at speed 1: twice as fast as the robot.
+const TICKS_PER_S: f64 = 8.0;
+
+/// The full lap.
+pub struct FullLap {
+    values: Values,
+    /// What is shown.
+    runs: Runs,
+    /// What is being computed.
+    laps: NewestLap,
+    /// Buttons that wait for the lap they were pressed for.
+    pressed: Vec<&'static str>,
+    /// The results of the chapter's run after each tick.
+    canonical: Vec<Results>,
+    playback: Playback,
+    transition: Option<Transition>,
+    own: Own,
+    flat: Flat,
+    hovered: Option<Part>,
+}
+
+impl Default for FullLap {
+    /// The chapter's run, at its first loop.
+    ///
+    /// # Panics
+    /// Never: a lap that was asked for ends.
+    fn default() -> Self {
+        let values = Values::defaults(SPEC.params);
+        let mut laps = NewestLap::new();
+        let config = LapSettings::read(&values).config(None);
+        laps.ask(config.expect("the Apartment can be driven"));
+        let runs = Runs::new(*laps.finish().expect("a lap was asked for"));
+        Self {
+            canonical: runs.results_over_time(),
+            values,
+            runs,
+            laps,
+            pressed: Vec::new(),
+            playback: Playback::default(),
+            transition: None,
+            own: Own::default(),
+            flat: Flat::new(Sketch::of(&Course::apartment())),
+            hovered: None,
+        }
+    }
+}
+
+impl FullLap {
+    /// The moment shown: that of the lap which is shown, however late the one is that was asked for.
+    fn tick(&self) -> usize {
+        (self.values.get(&TICK) as usize).min(self.runs.ticks())
+    }
+
+    fn last(&self) -> f64 {
+        self.runs.ticks() as f64
+    }
+
+    /// Goes to a tick; where a loop was closed in it, the nodes move from old to new.
+    fn go_to(&mut self, tick: usize) {
+        let tick = (tick as f64).min(self.last());
+        self.values.put(&TICK, tick);
+        self.hovered = None;
+        self.own.refresh(&self.values, &self.runs, tick as usize);
+        // A loop of the reader's own stands already while the time goes on.
+        if self.own.tried().is_none() {
+            self.animate();
+        } else {
+            self.transition = None;
+        }
+    }
+
+    /// Where a loop was closed, the nodes move from old to new.
+    fn animate(&mut self) {
+        let attempt = self.runs.graph.attempt_at(self.tick());
+        let own = self.own.tried().map(|own| &own.attempt);
+        let closed = own.or(attempt).is_some_and(LoopAttempt::accepted);
+        self.transition =
+            (closed && self.playback.motion() == Motion::Full).then(Transition::default);
+    }
+
+    fn back_to_defaults(&mut self) {
+        let before = self.values.get(&WORLD);
+        self.values.reset();
+        if before != self.values.get(&WORLD) {
+            self.world_chosen(before);
+        }
+        self.end_stroke();
+        self.flat.follows = false;
+        self.playback.pause();
+        self.transition = None;
+        self.pressed.clear();
+        self.own.forget();
+        self.hovered = None;
+        self.recompute();
+    }
+
+    /// Asks for the lap of the settings, where it is not the one that is shown; an own flat that cannot be
+    /// driven asks for none.
+    fn recompute(&mut self) {
+        if let Some(config) = LapSettings::read(&self.values).config(self.own_course()) {
+            self.laps.ask(config);
+        }
+    }
+
+    /// Shows a lap that is whole, and does what waited for it.
+    fn show(&mut self, record: LapRecord) {
+        self.runs = Runs::new(record);
+        self.hovered = None;
+        if self.values.get(&TICK) > self.last() && !self.laps.is_running() {
+            self.go_to(self.runs.ticks());
+        }
+        if self.flat.follows && !self.laps.is_running() {
+            self.flat.follows = false;
+            self.go_to(self.runs.ticks());
+        }
+        self.own.refresh(&self.values, &self.runs, self.tick());
+        self.transition = None;
+        if !self.laps.is_running() {
+            for button in core::mem::take(&mut self.pressed) {
+                self.press_loop(button);
+            }
+        }
+    }
+
+    /// Plays on; stops for the animation of every loop on the way.
+    fn play(&mut self, elapsed_s: f64) {
+        let now = self.tick() as f64;
+        let rate = TICKS_PER_S * self.values.get(&SPEED);
+        let reached = self.playback.advance(now, self.last(), elapsed_s, rate) as usize;
+        let ahead = |attempt: &&LoopAttempt| attempt.tick > now as usize && attempt.tick < reached;
+        let stop = self.runs.graph.attempts().iter().find(ahead);
+        let target = stop.map_or(reached, |attempt| attempt.tick);
+        if target < reached && !self.playback.is_playing() {
+            // The end was in reach, but the loop comes first: play on from there.
+            self.playback.toggle(target as f64, self.last());
+        }
+        if target as f64 != now {
+            self.go_to(target);
+        }
+    }
+
+    /// The last tick of which anything tells.
+    fn seen_until(&self) -> usize {
+        if self.values.get(&FUTURE) {
+            self.runs.ticks()
+        } else {
+            self.tick()
+        }
+    }
+
+    fn moment(&self) -> Moment<'_> {
+        let share = self.transition.as_ref().map_or(1.0, Transition::share);
+        let seen_until = self.seen_until();
+        let own = self.own.tried();
+        Moment {
+            picked: Part::chosen(&self.values),
+            hovered: self.hovered,
+            tied: self.own.tied,
+            drawn: drawing::drawn(self),
+            ..Moment::new(&self.runs, self.tick(), share, seen_until, own)
+        }
+    }
+
+    fn own_refused(&self) -> Option<&OwnLoopError> {
+        self.own.made.as_ref()?.as_ref().err()
+    }
+}
+
+impl Model for FullLap {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn layer(&self) -> Layer {
+        match (
+            Layer::of(SPEC.opening, &self.values),
+            Tool::chosen(&self.values),
+        ) {
+            (Layer::First(_), Some(_)) => Layer::First(EDITING),
+            (Layer::All, None) => Layer::AllBut(FLAT_CONTROLS),
+            (layer, _) => layer,
+        }
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        if id == "flat" && value == 0.0 {
+            return self.set_flat("");
+        }
+        let before = self.values.clone();
+        if self.values.set(SPEC.id, id, value)? == Changed::No {
+            return Ok(());
+        }
+        match id {
+            // A lap under way may be longer than the one that is shown.
+            "t" if self.laps.is_running() && value > self.last() => self.refresh_own(),
+            "t" => self.go_to(self.tick()),
+            "speed" | "more" | "future" | "pick" | "number" => {}
+            "world" => self.world_chosen(before.get(&WORLD)),
+            "edit" | "piece" | "piece-number" => {
+                self.end_stroke();
+                self.flat.note = None;
+            }
+            _ if own::PARAMS.contains(&id) => {
+                self.own.keep(&before);
+                self.refresh_own();
+            }
+            _ => self.recompute(),
+        }
+        Ok(())
+    }
+
+    fn set_text(&mut self, id: &str, text: &str) -> Result<(), ParamError> {
+        if id == "flat" {
+            return self.set_flat(text);
+        }
+        let (param, _) = self.values.find_for(SPEC.id, id)?;
+        let value = param.parse(text)?;
+        self.set(id, value)
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        let now = self.tick() as f64;
+        if let Some(position) = self.playback.press(id, now, self.last()) {
+            if position != now {
+                self.go_to(position as usize);
+            }
+            return Ok(());
+        }
+        if self.press_loop(id) || self.press_flat(id) {
+            return Ok(());
+        }
+        match id {
+            "one-back" => self.look_on(Step::Back),
+            "one-on" => self.look_on(Step::On),
+            "tie" => self.press_tie(),
+            "undo" => self.undo(),
+            "defaults" => self.back_to_defaults(),
+            _ => return press_preset(self, id),
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        if let Some(transition) = &mut self.transition {
+            if transition.advance(elapsed_s) == Activity::Idle {
+                self.transition = None;
+            }
+        } else if self.playback.is_playing() {
+            self.play(elapsed_s);
+        }
+        if self.transition.is_some() || self.playback.is_playing() {
+            Activity::Busy
+        } else {
+            Activity::Idle
+        }
+    }
+
+    /// One tick of the lap that is being computed.
+    fn work(&mut self) -> Activity {
+        match self.laps.step() {
+            NewestStep::Idle => Activity::Idle,
+            NewestStep::Tick => Activity::Unseen,
+            NewestStep::Finished(record) => {
+                self.show(*record);
+                Activity::Busy
+            }
+        }
+    }
+
+    fn settle(&mut self) -> Activity {
+        let Some(record) = self.laps.finish() else {
+            return Activity::Idle;
+        };
+        self.show(*record);
+        Activity::Busy
+    }
+
+    fn scene(&self) -> Scene {
+        picture::scene(&self.moment())
+    }
+
+    fn outcome(&self) -> Outcome {
+        words::outcome(&self.moment(), self.own_refused())
+    }
+
+    fn summary(&self) -> String {
+        words::summary(&self.moment(), self.own_refused())
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        let lap = self.runs.graph.lap();
+        let mark = |attempt: &LoopAttempt| TimelineMark {
+            at: attempt.tick as f64,
+            label: lap.loop_headline(attempt),
+            standing: words::standing(lap.judge(attempt)),
+        };
+        Some(Timeline {
+            param: "t",
+            last: self.last(),
+            playing: self.playback.is_playing(),
+            marks: self
+                .runs
+                .attempts_until(self.seen_until())
+                .iter()
+                .map(mark)
+                .collect(),
+        })
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let mut tables = tables::all(&self.runs, self.seen_until(), &self.canonical);
+        tables.push(tables::edges(&self.moment()));
+        tables
+    }
+
+    fn shown_tables(&self) -> Vec<Table> {
+        tables::shown(&self.runs, self.seen_until(), &self.canonical)
+    }
+
+    /// The line at the moment shown, in every plot over time; on the map, the keyframe that is looked
+    /// at.
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        if let Some(tool) = self.tool_on(panel) {
+            return self.grab_flat(tool, at, reach);
+        }
+        if let Some(handle) = hands::grab(&self.moment(), panel, at, reach) {
+            return Some(handle);
+        }
+        let panel = *picture::OVER_TIME.iter().find(|id| **id == panel)?;
+        grab_now(panel, self.values.get(&TICK), at, reach)
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        if self.stroke(handle, at) {
+            return;
+        }
+        if handle.panel == panel::MAP {
+            let ends = hands::dragged_ends(&self.moment(), handle, at);
+            if let Some(ends) = ends.filter(|ends| !self.own.is_between(&self.values, *ends)) {
+                if self.own.drag_from(ends[0]) {
+                    self.own.keep(&self.values);
+                }
+                self.tie(ends);
+                // Under the pointer the graph follows at once.
+                self.transition = None;
+            }
+            return;
+        }
+        let tick = dragged_to(handle, at) as usize;
+        if tick != self.tick() {
+            self.go_to(tick);
+        }
+    }
+
+    fn release(&mut self) {
+        self.end_stroke();
+    }
+
+    /// What is tapped is looked at; beside everything, nothing is. A second keyframe ends a loop.
+    fn tap(&mut self, panel: &str, at: [f64; 2], reach: [f64; 2]) {
+        if let Some(tool) = self.tool_on(panel) {
+            self.tap_flat(tool, at, reach);
+            return;
+        }
+        self.own.let_go();
+        if ![panel::MAP, panel::STRAIN, panel::GATE].contains(&panel) {
+            return;
+        }
+        let part = hands::part_at(&self.moment(), panel, at, reach);
+        self.look_at(part);
+        if self.own.tied.is_some() && matches!(part, Some(Part::Keyframe(_))) {
+            self.press_tie();
+        }
+    }
+
+    fn hover(&mut self, panel: &str, at: Option<[f64; 2]>) {
+        self.own.let_go();
+        if self.tool_on(panel).is_some() {
+            self.hovered = None;
+            return;
+        }
+        self.hovered = at.and_then(|at| hands::hovered(&self.moment(), panel, at));
+    }
+
+    fn receive(&mut self, delivery: &Delivery<'_>) {
+        if delivery.kind == "text-file" {
+            self.open_flat(delivery.text, delivery.bytes);
+        }
+    }
+
+    fn keys(&self) -> &'static [(&'static str, &'static str)] {
+        FLAT_KEYS
+    }
+
+    fn take_orders(&mut self) -> Vec<String> {
+        core::mem::take(&mut self.flat.orders)
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        if let Some(end) = self.playback.set_motion(motion, self.last()) {
+            self.go_to(end as usize);
+        }
+        if motion == Motion::Reduced {
+            self.transition = None;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

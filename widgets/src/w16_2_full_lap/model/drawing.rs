@@ -1,0 +1,416 @@
+//! How the flat changes: by the pointer, by buttons, by a link and by a file.
+
+use ch16_lab::lap::BuiltInWorld;
+use kit::model::Handle;
+use kit::param::{ParamError, printable};
+use pr_sim::{Course, Sketch};
+
+use super::FullLap;
+use super::flat::{Kept, Stroke, Tool, add_wall, add_way_point, is_own, new_wall, new_way_point};
+use super::grid::snapped;
+use super::panel;
+use super::pick::Step;
+use super::picture;
+use super::piece::Piece;
+use crate::w16_2_full_lap::spec::{EDIT, FLAT, SPEC, WORLD};
+
+/// The name of the file that a flat is saved as.
+const FILE_NAME: &str = "flat.json";
+
+/// Handles of what is not there yet.
+const DRAW: &str = "draw";
+const PLACE: &str = "place";
+
+impl FullLap {
+    /// What the lap is driven through, where it is the reader's own and can be driven.
+    pub(super) fn own_course(&self) -> Option<&Course> {
+        let course = self.flat.course.as_ref().ok();
+        course.filter(|_| is_own(&self.values))
+    }
+
+    /// The value of `world` changed.
+    pub(super) fn world_chosen(&mut self, before: Option<BuiltInWorld>) {
+        let sketch = self.flat.sketch.clone();
+        self.flat.remember(Kept {
+            world: before,
+            sketch,
+        });
+        match self.values.get(&WORLD) {
+            None => self.take(self.flat.sketch.clone()),
+            Some(world) => self.leave_own(world),
+        }
+    }
+
+    /// A built-in world is chosen.
+    fn leave_own(&mut self, world: BuiltInWorld) {
+        self.values.store(FLAT.id, 0.0);
+        self.flat.become_of(Sketch::of(&world.course()));
+        self.recompute();
+    }
+
+    /// A flat as a link writes it; without one, the Apartment is what is drawn in.
+    pub(super) fn set_flat(&mut self, text: &str) -> Result<(), ParamError> {
+        let (param, _) = self.values.find_for(SPEC.id, "flat")?;
+        param.parse(text)?;
+        let text = text.trim();
+        if text == self.values.to_text("flat") || (text.is_empty() && !is_own(&self.values)) {
+            return Ok(());
+        }
+        let sketch = if text.is_empty() {
+            Sketch::of(&Course::apartment())
+        } else {
+            Sketch::from_text(text).map_err(|error| ParamError::Refused {
+                id: param.id,
+                problem: error.to_string(),
+            })?
+        };
+        self.take(sketch);
+        Ok(())
+    }
+
+    /// Another flat is the world.
+    fn take(&mut self, sketch: Sketch) {
+        let text = sketch.to_text();
+        if let Err(error) = self.values.set_text(SPEC.id, "flat", &text) {
+            panic!("a flat of our own was refused: {error}");
+        }
+        self.values.put(&WORLD, None);
+        self.flat.become_of(sketch);
+        self.recompute();
+    }
+
+    /// The same by the reader's hand: it can be taken back, and the lap is shown to its end.
+    fn draw(&mut self, sketch: Sketch) {
+        if sketch == self.flat.sketch {
+            return;
+        }
+        self.flat.remember(self.kept());
+        self.playback.pause();
+        self.flat.follows = true;
+        self.take(sketch);
+    }
+
+    fn kept(&self) -> Kept {
+        Kept {
+            world: self.values.get(&WORLD),
+            sketch: self.flat.sketch.clone(),
+        }
+    }
+
+    fn choose(&mut self, piece: Option<Piece>) {
+        Piece::put(piece, &mut self.values);
+    }
+
+    /// The chosen piece, where the flat has it.
+    pub(super) fn piece(&self) -> Option<Piece> {
+        Piece::chosen(&self.values, &self.flat.sketch)
+    }
+
+    /// Says why nothing changed.
+    fn refuse(&mut self, why: impl Into<String>) {
+        self.flat.note = Some(why.into());
+    }
+
+    /// Buttons of the flat; says whether it is one of them.
+    pub(super) fn press_flat(&mut self, id: &str) -> bool {
+        self.flat.note = None;
+        match id {
+            "edit-flat" => {
+                let is_off = Tool::chosen(&self.values).is_none();
+                self.playback.pause();
+                // With a wall in the hand: a drag draws at once.
+                self.values.put(&EDIT, is_off.then_some(Tool::Wall));
+            }
+            "piece-back" => self.step_piece(Step::Back),
+            "piece-on" => self.step_piece(Step::On),
+            "west" => self.nudge([-1, 0]),
+            "east" => self.nudge([1, 0]),
+            "north" => self.nudge([0, 1]),
+            "south" => self.nudge([0, -1]),
+            "remove" => self.remove_piece(),
+            "add-wall" => {
+                let wall = new_wall(&self.flat.sketch);
+                let mut sketch = self.flat.sketch.clone();
+                let added = add_wall(&mut sketch, wall).map(Piece::Wall);
+                self.added(sketch, added);
+            }
+            "add-way-point" => {
+                let behind = self.chosen_way_point();
+                let at = new_way_point(&self.flat.sketch, behind);
+                let mut sketch = self.flat.sketch.clone();
+                let added = add_way_point(&mut sketch, behind, at).map(Piece::WayPoint);
+                self.added(sketch, added);
+            }
+            "turn-here" => self.turn_here(),
+            "take-back" => {
+                let before = self.flat.back(self.kept());
+                self.restore(before, "nothing to take back");
+            }
+            "do-again" => {
+                let after = self.flat.again(self.kept());
+                self.restore(after, "nothing was taken back");
+            }
+            "open-flat" => self.flat.orders.push("open-text .json".to_owned()),
+            "save-flat" => {
+                let json = self.flat.sketch.to_json();
+                let order = format!("save-text {FILE_NAME}\n{json}");
+                self.flat.orders.push(order);
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    fn step_piece(&mut self, step: Step) {
+        let piece = Piece::stepped(self.piece(), step, &self.flat.sketch);
+        self.choose(piece);
+    }
+
+    fn chosen_way_point(&self) -> Option<usize> {
+        match self.piece() {
+            Some(Piece::WayPoint(index)) => Some(index),
+            _ => None,
+        }
+    }
+
+    fn nudge(&mut self, by: [i32; 2]) {
+        let Some(piece) = self.piece() else {
+            self.refuse("nothing is chosen: choose a wall, an end or a way point first");
+            return;
+        };
+        match piece.nudged(&self.flat.sketch, by) {
+            Some(sketch) => self.draw(sketch),
+            None => self.refuse("a wall needs two different ends"),
+        }
+    }
+
+    fn remove_piece(&mut self) {
+        let Some(piece) = self.piece() else {
+            self.refuse("nothing is chosen: choose a wall or a way point first");
+            return;
+        };
+        match piece.removed(&self.flat.sketch) {
+            Ok(sketch) => {
+                self.draw(sketch);
+                // The next one of its kind stands in its place.
+                let left = piece.count(&self.flat.sketch);
+                if piece.index() >= left {
+                    self.choose(Piece::stepped(None, Step::Back, &self.flat.sketch));
+                }
+            }
+            Err(why) => self.refuse(why),
+        }
+    }
+
+    fn added(&mut self, sketch: Sketch, added: Result<Piece, String>) {
+        match added {
+            Ok(piece) => {
+                self.draw(sketch);
+                self.choose(Some(piece));
+            }
+            Err(why) => self.refuse(why),
+        }
+    }
+
+    /// From the chosen way point on, places are seen again; where that was so, it no longer is.
+    fn turn_here(&mut self) {
+        let Some(index) = self.chosen_way_point() else {
+            self.refuse(
+                "no way point is chosen: choose the one from which on places are seen again",
+            );
+            return;
+        };
+        let mut sketch = self.flat.sketch.clone();
+        sketch.turn = (sketch.turn != Some(index)).then_some(index);
+        self.draw(sketch);
+    }
+
+    fn restore(&mut self, kept: Option<Kept>, otherwise: &str) {
+        let Some(Kept { world, sketch }) = kept else {
+            self.refuse(otherwise);
+            return;
+        };
+        self.flat.follows = true;
+        match world {
+            None => self.take(sketch),
+            Some(built_in) => {
+                self.values.put(&WORLD, world);
+                self.leave_own(built_in);
+            }
+        }
+    }
+
+    /// A file of the reader's.
+    pub(super) fn open_flat(&mut self, name: &str, text: &[u8]) {
+        match Sketch::from_json(text) {
+            Ok(sketch) => self.draw(sketch),
+            Err(error) => self.refuse(format!("{} cannot be driven: {error}", printable(name))),
+        }
+    }
+
+    /// What a press on the map takes hold of, with a tool in the hand.
+    pub(super) fn grab_flat(&self, tool: Tool, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        let under = self.piece_under(at, reach);
+        let new = |id| Handle {
+            panel: panel::MAP,
+            id,
+            offset: [0.0; 2],
+        };
+        match tool {
+            Tool::Move => under.map(Piece::handle),
+            Tool::Wall => Some(new(DRAW)),
+            Tool::Way => Some(match under {
+                Some(piece @ (Piece::WayPoint(_) | Piece::Start | Piece::Heading)) => {
+                    piece.handle()
+                }
+                _ => new(PLACE),
+            }),
+            Tool::Remove => None,
+        }
+    }
+
+    /// The tool in the hand over a panel.
+    pub(super) fn tool_on(&self, name: &str) -> Option<Tool> {
+        Tool::chosen(&self.values).filter(|_| name == panel::MAP)
+    }
+
+    /// What lies under the pointer; the chosen place first, where several lie on each other.
+    fn piece_under(&self, at: [f64; 2], reach: [f64; 2]) -> Option<Piece> {
+        let sketch = &self.flat.sketch;
+        let chosen = self.piece().filter(|piece| {
+            let place = piece.place(sketch);
+            let is_near = (0..2).all(|axis| (place[axis] - at[axis]).abs() <= reach[axis]);
+            is_near && !matches!(piece, Piece::Wall(_))
+        });
+        chosen.or_else(|| Piece::at(sketch, at, reach))
+    }
+
+    /// A stroke goes on, or begins; says whether the handle is one of the flat's.
+    pub(super) fn stroke(&mut self, handle: Handle, at: [f64; 2]) -> bool {
+        let held = Piece::held(handle);
+        if handle.panel != panel::MAP || (held.is_none() && ![DRAW, PLACE].contains(&handle.id)) {
+            return false;
+        }
+        if self.flat.stroke.as_ref().map(|stroke| stroke.handle) != Some(handle) {
+            self.begin_stroke(handle, at, held);
+        }
+        let Some(stroke) = &self.flat.stroke else {
+            return true;
+        };
+        let before = &stroke.before.sketch;
+        let after = match (handle.id, stroke.piece) {
+            (DRAW, _) => {
+                let [from, to] = [snapped(stroke.from), snapped(at)];
+                let mut sketch = before.clone();
+                let added = (from != to).then(|| add_wall(&mut sketch, [from, to]));
+                match added {
+                    Some(Err(why)) => return self.end_refused(&why),
+                    Some(Ok(index)) => Some((sketch, Piece::Wall(index))),
+                    None => None,
+                }
+            }
+            (PLACE, _) => {
+                let mut sketch = before.clone();
+                let behind = self.chosen_before_stroke();
+                match add_way_point(&mut sketch, behind, snapped(at)) {
+                    Err(why) => return self.end_refused(&why),
+                    Ok(index) => Some((sketch, Piece::WayPoint(index))),
+                }
+            }
+            (_, Some(piece)) => piece
+                .dragged(before, stroke.from, at)
+                .map(|sketch| (sketch, piece)),
+            (_, None) => None,
+        };
+        self.show_stroke(after);
+        true
+    }
+
+    fn begin_stroke(&mut self, handle: Handle, at: [f64; 2], held: Option<Piece>) {
+        self.flat.frame = Some(picture::map_bounds(&self.moment()));
+        self.flat.note = None;
+        // A way point goes behind the one that is chosen.
+        let piece = match handle.id {
+            PLACE => self.piece(),
+            _ => held,
+        };
+        self.flat.stroke = Some(Stroke {
+            handle,
+            from: at,
+            before: self.kept(),
+            piece,
+        });
+        if held.is_some() {
+            self.choose(held);
+        }
+    }
+
+    fn chosen_before_stroke(&self) -> Option<usize> {
+        match self.flat.stroke.as_ref()?.piece {
+            Some(Piece::WayPoint(index)) => Some(index),
+            _ => None,
+        }
+    }
+
+    fn end_refused(&mut self, why: &str) -> bool {
+        self.refuse(why);
+        true
+    }
+
+    /// What the stroke has made of the flat so far; one stroke is one change.
+    fn show_stroke(&mut self, after: Option<(Sketch, Piece)>) {
+        let Some((sketch, piece)) = after.filter(|(sketch, _)| *sketch != self.flat.sketch) else {
+            return;
+        };
+        if let Some(stroke) = &self.flat.stroke {
+            let before = stroke.before.clone();
+            self.flat.remember(before);
+        }
+        self.playback.pause();
+        self.flat.follows = true;
+        self.take(sketch);
+        self.choose(Some(piece));
+    }
+
+    /// A click or a tap with a tool in the hand.
+    pub(super) fn tap_flat(&mut self, tool: Tool, at: [f64; 2], reach: [f64; 2]) {
+        self.end_stroke();
+        let under = self.piece_under(at, reach);
+        match tool {
+            Tool::Move => self.choose(under),
+            Tool::Remove => {
+                self.choose(under);
+                self.flat.note = None;
+                self.remove_piece();
+            }
+            Tool::Wall if self.flat.note.is_none() => {
+                self.refuse("drag from one end of the wall to the other");
+            }
+            Tool::Wall | Tool::Way => {}
+        }
+    }
+
+    /// The pointer let go.
+    pub(super) fn end_stroke(&mut self) {
+        self.flat.stroke = None;
+        self.flat.frame = None;
+    }
+}
+
+/// What a flat says of itself, for the picture and the words.
+pub(super) fn drawn(lap: &FullLap) -> Option<super::moment::Drawn<'_>> {
+    let tool = Tool::chosen(&lap.values);
+    (tool.is_some() || is_own(&lap.values)).then(|| super::moment::Drawn {
+        sketch: &lap.flat.sketch,
+        tool,
+        piece: lap.piece().filter(|_| tool.is_some()),
+        problem: lap
+            .flat
+            .course
+            .as_ref()
+            .err()
+            .filter(|_| is_own(&lap.values)),
+        note: lap.flat.note.as_deref(),
+        frame: lap.flat.frame,
+    })
+}

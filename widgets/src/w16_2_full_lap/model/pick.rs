@@ -1,0 +1,60 @@
+//! What of the graph is looked at: a keyframe, an edge between two of them, or a loop.
+
+use kit::values::Values;
+
+use crate::w16_2_full_lap::spec::{NUMBER, PICK, Picked};
+
+/// Part of the graph, by the numbers of its keyframes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// A keyframe.
+    Keyframe(usize),
+    /// The edge of odometry from this keyframe to the next.
+    Edge(usize),
+    /// The loop that was tried at this keyframe.
+    Loop(usize),
+    /// The loop of the reader's own.
+    Own,
+}
+
+/// A way through the parts of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// To the part before; from the first, to the last.
+    Back,
+    /// To the next part; from the last, to the first.
+    On,
+}
+
+impl Part {
+    /// What the settings choose; none where they choose nothing.
+    pub fn chosen(values: &Values) -> Option<Self> {
+        let number = values.get(&NUMBER);
+        match values.get(&PICK) {
+            Picked::Nothing => None,
+            Picked::Keyframe => Some(Self::Keyframe(number)),
+            Picked::Edge => Some(Self::Edge(number)),
+            Picked::Loop => Some(Self::Loop(number)),
+        }
+    }
+
+    /// Makes the values choose it; the own loop is told where nothing else is looked at.
+    pub fn put(part: Option<Self>, values: &mut Values) {
+        let (picked, number) = match part {
+            Some(Self::Keyframe(number)) => (Picked::Keyframe, number),
+            Some(Self::Edge(number)) => (Picked::Edge, number),
+            Some(Self::Loop(number)) => (Picked::Loop, number),
+            Some(Self::Own) | None => (Picked::Nothing, 0),
+        };
+        values.put(&PICK, picked);
+        values.put(&NUMBER, number);
+    }
+
+    /// Its keyframe; none of the own loop, of which there is one.
+    pub fn number(self) -> Option<usize> {
+        match self {
+            Self::Keyframe(number) | Self::Edge(number) | Self::Loop(number) => Some(number),
+            Self::Own => None,
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! One loop from near, in the frame of the old node: where the graph expected the new sweep, where
+//! registration put it, and how far each gate lets the two lie apart.
+
+use ch16_lab::lap::LoopAttempt;
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use pr_geom::SE2;
+
+use crate::w16_2_full_lap::model::gates::{Gate, Gates, Region};
+use crate::w16_2_full_lap::model::moment::Moment;
+use crate::w16_2_full_lap::model::panel;
+use crate::w16_2_full_lap::model::runs::Runs;
+use crate::w16_2_full_lap::model::words::{ends, model_name};
+
+/// Half width and half height of the view, m: the corridor is 1.2 m wide.
+const HALF_VIEW_M: [f64; 2] = [2.0, 1.3];
+
+/// Room around both nodes, m; candidates of the lap always have it.
+const ROOM_M: f64 = 0.25;
+
+/// The reader's own loop, else the newest one of the lap, or words where none was tried so far.
+pub fn closeup(moment: &Moment) -> Panel {
+    let runs = moment.runs;
+    if let Some(own) = moment.own {
+        let before = runs.graph.poses_at(moment.tick);
+        let shown = LoopShown {
+            attempt: &own.attempt,
+            gates: &runs.gates_of_own(own),
+            before,
+            after: &own.poses,
+            title: format!("Your loop {} from near", ends(&own.attempt)),
+        };
+        return of_loop(runs, &shown);
+    }
+    match moment.loop_near() {
+        Some(attempt) => of_loop(
+            runs,
+            &LoopShown {
+                attempt,
+                gates: runs.gates(attempt),
+                before: runs.graph.poses_before_loop(attempt.tick),
+                after: runs.graph.poses_at(attempt.tick),
+                title: format!("Loop {} from near, tick {}", ends(attempt), attempt.tick),
+            },
+        ),
+        None => view(
+            "No loop tried so far".to_owned(),
+            [0.0, 0.0],
+            1.0,
+            vec![Layer::Text {
+                at: [0.0, 0.0],
+                text: "no loop tried so far".to_owned(),
+                tone: Tone::Ink,
+            }],
+            Vec::new(),
+        ),
+    }
+}
+
+/// A loop with the poses of all nodes before and after it.
+struct LoopShown<'a> {
+    attempt: &'a LoopAttempt,
+    gates: &'a Gates,
+    before: &'a [SE2],
+    after: &'a [SE2],
+    title: String,
+}
+
+fn of_loop(runs: &Runs, shown: &LoopShown) -> Panel {
+    let attempt = shown.attempt;
+    let loop_ = &attempt.verification;
+    let (predicted, registered) = (loop_.belief, loop_.registered);
+    let mut layers = vec![
+        Layer::points(submap(runs, shown), Mark::Dot, Tone::Prior, 1.6),
+        Layer::points(
+            runs.sweep_at(loop_.from_node, predicted).collect(),
+            Mark::Dot,
+            Tone::Prediction,
+            1.6,
+        ),
+        Layer::points(
+            runs.sweep_at(loop_.from_node, registered).collect(),
+            Mark::Cross,
+            Tone::Measurement,
+            2.4,
+        ),
+    ];
+    let gates = shown.gates;
+    let chosen = runs.loop_config().gate_model;
+    let gates = [&gates.path, &gates.exact].map(|gate| GateShown {
+        gate,
+        region: gate.region(loop_),
+        stroke: if gate.model == chosen {
+            Stroke::Solid
+        } else {
+            Stroke::Dotted
+        },
+    });
+    layers.extend(gates.iter().filter_map(GateShown::layer));
+    layers.extend([
+        pose(SE2::identity(), Mark::Circle, Tone::Prior, 7.0),
+        pose(
+            runs.graph.lap().loop_truth(attempt),
+            Mark::Plus,
+            Tone::Truth,
+            8.0,
+        ),
+        pose(predicted, Mark::Triangle, Tone::Prediction, 7.0),
+    ]);
+    if attempt.accepted() {
+        let nodes = shown.after;
+        let graph = nodes[loop_.candidate.node].between(&nodes[loop_.from_node]);
+        layers.push(pose(graph, Mark::Square, Tone::Posterior, 5.0));
+    }
+    // On top and larger: the graph ends close to what was registered.
+    layers.push(pose(registered, Mark::Cross, Tone::Measurement, 9.0));
+    // Both nodes in view: candidates lie within 2 m, the ends of an own loop may lie anywhere.
+    let middle = [0.5 * predicted.x(), 0.5 * predicted.y()];
+    let wider = (0..2).map(|i| (middle[i].abs() + ROOM_M) / HALF_VIEW_M[i]);
+    let scale = wider.fold(1.0, f64::max);
+    let legend = legend(&gates, attempt.accepted());
+    view(shown.title.clone(), middle, scale, layers, legend)
+}
+
+fn view(
+    title: String,
+    middle: [f64; 2],
+    scale: f64,
+    layers: Vec<Layer>,
+    legend: Vec<LegendEntry>,
+) -> Panel {
+    let axis = |label, i: usize| {
+        let half = scale * HALF_VIEW_M[i];
+        Axis::new(label, middle[i] - half, middle[i] + half)
+    };
+    Panel {
+        id: panel::LOOP,
+        title,
+        weight: Weight::Side,
+        aspect: Aspect::Equal,
+        x: axis("ahead of the old node (m)", 0),
+        y: axis("left of the old node (m)", 1),
+        layers,
+        legend,
+        color_bar: None,
+    }
+}
+
+/// The old sweeps as verification saw them: around the candidate, at the poses before the loop.
+fn submap(runs: &Runs, shown: &LoopShown) -> Vec<[f64; 2]> {
+    let candidate = shown.attempt.verification.candidate.node;
+    let reach = runs.loop_config().submap_half_width;
+    let nodes = shown.before;
+    let last = (candidate + reach).min(nodes.len() - 1);
+    (candidate.saturating_sub(reach)..=last)
+        .flat_map(|near| runs.sweep_at(near, nodes[candidate].between(&nodes[near])))
+        .collect()
+}
+
+/// A gate as the panel draws it: solid where it decides, dotted where it only looks on.
+struct GateShown<'a> {
+    gate: &'a Gate,
+    region: Option<Region>,
+    stroke: Stroke,
+}
+
+impl GateShown<'_> {
+    fn layer(&self) -> Option<Layer> {
+        self.region.map(|region| Layer::Ellipse {
+            center: region.center,
+            half_axes: region.half_axes,
+            stroke: self.stroke,
+            tone: Tone::Prediction,
+        })
+    }
+
+    fn entry(&self) -> LegendEntry {
+        let name = model_name(self.gate.model);
+        let chi2 = self.gate.test.chi2;
+        let label = match self.region {
+            Some(_) => format!("{name} gate, χ² {chi2:.2}"),
+            None => format!("{name} gate, χ² {chi2:.2}: no position passes"),
+        };
+        LegendEntry::line(&label, Tone::Prediction, self.stroke)
+    }
+}
+
+fn pose(pose: SE2, mark: Mark, tone: Tone, radius_px: f32) -> Layer {
+    Layer::pose(pose.to_array(), mark, tone, radius_px)
+}
+
+fn legend(gates: &[GateShown; 2], accepted: bool) -> Vec<LegendEntry> {
+    let mut legend = vec![
+        LegendEntry::mark("old node and its sweeps", Tone::Prior, Mark::Circle),
+        LegendEntry::mark("expected", Tone::Prediction, Mark::Triangle),
+        gates[0].entry(),
+        gates[1].entry(),
+        LegendEntry::mark("registered", Tone::Measurement, Mark::Cross),
+        LegendEntry::mark("truth", Tone::Truth, Mark::Plus),
+    ];
+    if accepted {
+        legend.push(LegendEntry::mark(
+            "after the loop",
+            Tone::Posterior,
+            Mark::Square,
+        ));
+    }
+    legend
+}

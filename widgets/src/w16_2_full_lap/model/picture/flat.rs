@@ -1,0 +1,110 @@
+//! What is drawn of a flat while it is edited: its walls with their ends, the start and the way.
+
+use kit::scene::{Layer, LegendEntry, Mark, Stroke, Tone};
+use pr_sim::sketch::to_m;
+
+use crate::w16_2_full_lap::model::flat::Tool;
+use crate::w16_2_full_lap::model::moment::Drawn;
+use crate::w16_2_full_lap::model::piece::Piece;
+
+/// Words keep so far from the way point that they name, in pixels.
+const CLEAR_PX: f32 = 12.0;
+
+/// The walls as they are drawn.
+pub fn walls(drawn: &Drawn) -> Vec<[[f64; 2]; 2]> {
+    let walls = drawn.sketch.walls_cm.iter();
+    walls.map(|wall| wall.map(|end| end.map(to_m))).collect()
+}
+
+/// The way as it is planned, the ends of the walls, and what is chosen.
+pub fn layers(drawn: &Drawn) -> Vec<Layer> {
+    let Drawn { sketch, tool, .. } = drawn;
+    let places: Vec<_> = core::iter::once(sketch.start_cm)
+        .chain(sketch.way_points_cm.iter().copied())
+        .map(|at| at.map(to_m))
+        .collect();
+    let [x, y] = places[0];
+    let heading = Piece::Heading.place(sketch);
+    let mut layers = vec![
+        Layer::line(places.clone(), Stroke::Dotted, Tone::Ink, 1.5),
+        Layer::segments(vec![[places[0], heading]], Stroke::Solid, Tone::Ink, 2.5),
+    ];
+    let handle = |at, label| Layer::Handle {
+        at,
+        tone: Tone::Ink,
+        label,
+    };
+    if tool.is_some() {
+        let ends = walls(drawn).into_iter().flatten().collect();
+        layers.push(Layer::points(ends, Mark::Square, Tone::Ink, 2.5));
+        layers.push(handle(heading, "turn the start"));
+        layers.push(handle([x, y], "move the start"));
+        for at in &places[1..] {
+            layers.push(handle(*at, "move the way point"));
+        }
+        layers.extend(chosen(drawn));
+    } else {
+        layers.push(Layer::points(places.clone(), Mark::Circle, Tone::Ink, 4.0));
+    }
+    for (index, at) in places.iter().enumerate() {
+        let name = match index {
+            0 => "start".to_owned(),
+            number => number.to_string(),
+        };
+        layers.push(Layer::label(*at, name, CLEAR_PX));
+    }
+    layers
+}
+
+/// What is chosen: its wall drawn wide with a handle at each end, or a ring around its place.
+fn chosen(drawn: &Drawn) -> Vec<Layer> {
+    let Some(piece) = drawn.piece else {
+        return Vec::new();
+    };
+    match piece {
+        Piece::Wall(index) | Piece::FirstEnd(index) | Piece::SecondEnd(index) => {
+            let wall = walls(drawn)[index];
+            let mut layers = vec![Layer::segments(vec![wall], Stroke::Solid, Tone::Ink, 5.0)];
+            let ends = [Piece::FirstEnd(index), Piece::SecondEnd(index)];
+            for (end, at) in ends.into_iter().zip(wall) {
+                if piece == end || matches!(piece, Piece::Wall(_)) {
+                    layers.push(Layer::Handle {
+                        at,
+                        tone: Tone::Ink,
+                        label: "move the end",
+                    });
+                }
+            }
+            layers
+        }
+        Piece::WayPoint(_) | Piece::Start | Piece::Heading => {
+            let at = piece.place(drawn.sketch);
+            vec![Layer::points(vec![at], Mark::Circle, Tone::Ink, 12.0)]
+        }
+    }
+}
+
+/// What the marks of the plan mean.
+pub fn legend() -> LegendEntry {
+    LegendEntry::marked_line(
+        "the way as planned",
+        Tone::Ink,
+        Mark::Circle,
+        Stroke::Dotted,
+    )
+}
+
+/// `Your own flat: 18 walls, 3 way points`.
+pub fn title(drawn: &Drawn) -> String {
+    let hand = match drawn.tool {
+        None => "",
+        Some(Tool::Move) => ", moving",
+        Some(Tool::Wall) => ", drawing walls",
+        Some(Tool::Way) => ", placing way points",
+        Some(Tool::Remove) => ", removing",
+    };
+    format!(
+        "The flat: {}{hand}",
+        super::super::words::flat::counts(drawn.sketch)
+    )
+}

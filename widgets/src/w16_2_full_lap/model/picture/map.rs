@@ -1,0 +1,308 @@
+//! The map panel: the world, the three estimates, the graph and its map.
+
+use ch16_lab::lap::{BuiltInWorld, LoopAttempt, OwnLoop};
+use kit::scene::{Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use pr_geom::{SE2, math};
+use pr_sim::{Wall, World};
+
+use super::look::LoopLook;
+use super::shapes::{arc, xy};
+use super::{flat, parts};
+use crate::w16_2_full_lap::model::flat::extent;
+use crate::w16_2_full_lap::model::moment::{Drawn, Moment};
+use crate::w16_2_full_lap::model::panel;
+
+/// Room around the world, m.
+const MARGIN_M: f64 = 0.4;
+
+/// The same while it is edited: so far out a stroke may lead.
+const EDIT_MARGIN_M: f64 = 1.0;
+
+/// Length of the head of an arrow, m.
+const ARROW_HEAD_M: f64 = 0.09;
+
+/// The world at a moment.
+pub fn map(moment: &Moment) -> Panel {
+    let bounds = shown_bounds(moment);
+    let mut layers = vec![walls(moment)];
+    // A lap of another world has nothing to say in this one.
+    if moment.drawn.is_none_or(|drawn| drawn.problem.is_none()) {
+        layers.extend(lap(moment));
+    }
+    if let Some(drawn) = moment.drawn.filter(is_planned) {
+        layers.extend(flat::layers(&drawn));
+    }
+    if moment.runs.place() == Some(BuiltInWorld::Apartment) && moment.drawn.is_none() {
+        layers.extend(rooms());
+    }
+    Panel {
+        id: panel::MAP,
+        title: title(moment),
+        weight: Weight::Main,
+        aspect: Aspect::Equal,
+        x: Axis::new("x (m)", bounds.min[0], bounds.max[0]),
+        y: Axis::new("y (m)", bounds.min[1], bounds.max[1]),
+        layers,
+        legend: legend(moment),
+        color_bar: None,
+    }
+}
+
+/// All that is estimated, and the truth.
+fn lap(moment: &Moment) -> Vec<Layer> {
+    let mut layers = Vec::from(map_points(moment));
+    layers.extend(paths(moment));
+    layers.extend(history(moment));
+    layers.extend(graph(moment));
+    layers.extend(robots(moment));
+    layers.extend(parts::looked_at(moment));
+    layers.extend(attempt_now(moment));
+    layers
+}
+
+/// Whether the plan is shown: while it is edited, and where nothing else can be.
+fn is_planned(drawn: &Drawn) -> bool {
+    drawn.tool.is_some() || drawn.problem.is_some()
+}
+
+/// `The Apartment after tick 92`.
+fn title(moment: &Moment) -> String {
+    if let Some(drawn) = moment.drawn.filter(is_planned) {
+        return flat::title(&drawn);
+    }
+    let mut words = moment.runs.place_label().to_owned();
+    words[..1].make_ascii_uppercase();
+    format!("{words} after tick {}", moment.tick)
+}
+
+/// The world with some room around it, and all that the estimates make of it outside of the Apartment,
+/// whose axes never move.
+pub fn shown_bounds(moment: &Moment) -> Bounds {
+    if let Some(frame) = moment.drawn.and_then(|drawn| drawn.frame) {
+        return frame;
+    }
+    let Bounds { mut min, mut max } = match &moment.drawn {
+        Some(drawn) => extent(drawn.sketch),
+        None => {
+            let walls = moment.runs.world().bounds();
+            Bounds {
+                min: [walls.min.x, walls.min.y],
+                max: [walls.max.x, walls.max.y],
+            }
+        }
+    };
+    let is_shown = moment.drawn.is_none_or(|drawn| drawn.problem.is_none());
+    if moment.runs.place() != Some(BuiltInWorld::Apartment) && is_shown {
+        let ends = moment.runs.graph.poses_at(moment.runs.ticks());
+        for pose in ends.iter().chain(&moment.nodes).map(xy) {
+            for i in 0..2 {
+                min[i] = math::min(min[i], pose[i]);
+                max[i] = math::max(max[i], pose[i]);
+            }
+        }
+    }
+    let margin = match moment.drawn.and_then(|drawn| drawn.tool) {
+        Some(_) => EDIT_MARGIN_M,
+        None => MARGIN_M,
+    };
+    Bounds {
+        min: min.map(|least| least - margin),
+        max: max.map(|most| most + margin),
+    }
+}
+
+/// The walls as they are drawn, also before the lap has followed.
+fn walls(moment: &Moment) -> Layer {
+    let ends = |wall: &Wall| [[wall.start.x, wall.start.y], [wall.end.x, wall.end.y]];
+    Layer::segments(
+        match &moment.drawn {
+            Some(drawn) => flat::walls(drawn),
+            None => moment.runs.world().walls().iter().map(ends).collect(),
+        },
+        Stroke::Solid,
+        Tone::Ink,
+        1.0,
+    )
+}
+
+/// In the middle of each room, where no sweep has points.
+fn rooms() -> impl Iterator<Item = Layer> {
+    World::apartment_rooms().into_iter().map(|room| {
+        let middle = [
+            0.5 * (room.bounds.min.x + room.bounds.max.x),
+            0.5 * (room.bounds.min.y + room.bounds.max.y),
+        ];
+        Layer::label(middle, room.name.to_owned(), 0.0)
+    })
+}
+
+/// The sweeps of the keyframes at the graph's poses: dots from the way out, × in the other green from
+/// the way back, so that a wall that is drawn twice is seen as two.
+fn map_points(moment: &Moment) -> [Layer; 2] {
+    let turn = moment.runs.graph.turn_node();
+    let mut out = Vec::new();
+    let mut back = Vec::new();
+    for (node, pose) in moment.nodes.iter().enumerate() {
+        let pass = if turn.is_some_and(|turn| node > turn) {
+            &mut back
+        } else {
+            &mut out
+        };
+        pass.extend(moment.runs.sweep_at(node, *pose));
+    }
+    [
+        Layer::points(out, Mark::Dot, Tone::Measurement, 1.2),
+        Layer::points(back, Mark::Cross, Tone::Revisit, 2.2),
+    ]
+}
+
+fn paths(moment: &Moment) -> [Layer; 3] {
+    let until = 0..=moment.tick;
+    let path = |pose_at: &dyn Fn(usize) -> SE2, stroke, tone| {
+        Layer::line(
+            until.clone().map(|tick| xy(&pose_at(tick))).collect(),
+            stroke,
+            tone,
+            1.75,
+        )
+    };
+    [
+        path(&|tick| moment.runs.truth(tick), Stroke::Dashed, Tone::Truth),
+        path(
+            &|tick| moment.runs.dead_reckoning(tick),
+            Stroke::Solid,
+            Tone::Prediction,
+        ),
+        path(
+            &|tick| moment.runs.front_end.estimate(tick),
+            Stroke::Solid,
+            Tone::Prior,
+        ),
+    ]
+}
+
+/// Nodes, the factors between neighbours, and the factors of the loops closed so far.
+fn graph(moment: &Moment) -> Vec<Layer> {
+    let nodes: Vec<_> = moment.nodes.iter().map(xy).collect();
+    let mut layers = parts::edges(moment);
+    layers.extend(moment.loops_tried().flat_map(|attempt| {
+        let arc = arc(moment, attempt);
+        let top = arc[arc.len() / 2];
+        loop_layers(attempt, arc, top)
+    }));
+    layers.extend(parts::own(moment));
+    layers.push(Layer::points(nodes, Mark::Square, Tone::Posterior, 3.0));
+    layers
+}
+
+/// Where the mark of a loop stands: at the top of its arc.
+pub fn loop_mark(moment: &Moment, attempt: &LoopAttempt) -> [f64; 2] {
+    let arc = arc(moment, attempt);
+    arc[arc.len() / 2]
+}
+
+/// A loop that was accepted is solid and green, a refused one dotted, grey and hollow.
+fn loop_layers(attempt: &LoopAttempt, arc: Vec<[f64; 2]>, top: [f64; 2]) -> [Layer; 2] {
+    let look = LoopLook::of(attempt);
+    [
+        Layer::line(arc, look.stroke, look.tone, 2.5),
+        Layer::points(vec![top], look.mark, look.tone, 4.5),
+    ]
+}
+
+/// At a closed loop, one of the lap or of the reader's own: where the nodes stood before it, and how
+/// each moved.
+fn history(moment: &Moment) -> Vec<Layer> {
+    if !moment.has_moved() {
+        return Vec::new();
+    }
+    let old: Vec<_> = moment.old_nodes.iter().map(xy).collect();
+    let moved = old.iter().zip(moment.nodes.iter().map(xy));
+    vec![
+        Layer::segments(
+            moved.flat_map(|(old, new)| arrow(*old, new)).collect(),
+            Stroke::Solid,
+            Tone::Prior,
+            1.5,
+        ),
+        Layer::points(old, Mark::Circle, Tone::Prior, 3.5),
+    ]
+}
+
+/// A line with a head, as segments; no head where it would be longer than the line.
+fn arrow(from: [f64; 2], to: [f64; 2]) -> Vec<[[f64; 2]; 2]> {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = math::norm2(along[0], along[1]);
+    let mut segments = vec![[from, to]];
+    if length > ARROW_HEAD_M {
+        let [x, y] = along.map(|value| value / length * ARROW_HEAD_M);
+        for aside in [-0.5, 0.5] {
+            segments.push([to, [to[0] - x - aside * y, to[1] - y + aside * x]]);
+        }
+    }
+    segments
+}
+
+/// The loop tried in this tick, by name.
+fn attempt_now(moment: &Moment) -> Vec<Layer> {
+    let Some(attempt) = moment.attempt else {
+        return Vec::new();
+    };
+    let headline = moment.runs.graph.lap().loop_headline(attempt);
+    vec![Layer::label(loop_mark(moment, attempt), headline, 8.0)]
+}
+
+/// Where each estimate has the robot now.
+fn robots(moment: &Moment) -> [Layer; 4] {
+    let tick = moment.tick;
+    let robot =
+        |pose: SE2, mark, tone, radius_px| Layer::pose(pose.to_array(), mark, tone, radius_px);
+    [
+        robot(moment.runs.truth(tick), Mark::Plus, Tone::Truth, 7.0),
+        robot(
+            moment.runs.dead_reckoning(tick),
+            Mark::Triangle,
+            Tone::Prediction,
+            6.0,
+        ),
+        robot(
+            moment.runs.front_end.estimate(tick),
+            Mark::Circle,
+            Tone::Prior,
+            6.0,
+        ),
+        robot(moment.estimate, Mark::Square, Tone::Posterior, 6.0),
+    ]
+}
+
+fn legend(moment: &Moment) -> Vec<LegendEntry> {
+    let mut legend = vec![
+        LegendEntry::line("walls", Tone::Ink, Stroke::Solid),
+        LegendEntry::marked_line("truth", Tone::Truth, Mark::Plus, Stroke::Dashed),
+        LegendEntry::marked_line("odometry", Tone::Prediction, Mark::Triangle, Stroke::Solid),
+        LegendEntry::marked_line(
+            "front end alone; nodes before a loop",
+            Tone::Prior,
+            Mark::Circle,
+            Stroke::Solid,
+        ),
+        LegendEntry::marked_line(
+            "pose graph: nodes and factors",
+            Tone::Posterior,
+            Mark::Square,
+            Stroke::Solid,
+        ),
+        LegendEntry::mark("map, way out", Tone::Measurement, Mark::Dot),
+        LegendEntry::mark("map, way back", Tone::Revisit, Mark::Cross),
+        LoopLook::ACCEPTED.entry("loop accepted"),
+        LoopLook::REFUSED.entry("loop refused"),
+    ];
+    if moment.drawn.as_ref().is_some_and(is_planned) {
+        legend.push(flat::legend());
+    }
+    if moment.own.is_some_and(OwnLoop::is_closed) {
+        let wide = "wide: strained by your loop";
+        legend.push(LegendEntry::line(wide, Tone::Posterior, Stroke::Solid));
+    }
+    legend
+}

@@ -1,0 +1,66 @@
+//! What the values of the parameter list mean to the core.
+
+use ch16_lab::lap::{BuiltInWorld, LapConfig, LapMatcher, LoopClosure};
+use ch16_slam2d::chapter::InformationFrame;
+use ch16_slam2d::chi_squared::gate_threshold;
+use ch16_slam2d::loops::GateModel;
+use kit::run::LOOPS;
+use kit::run::NOISE;
+use kit::values::Values;
+use pr_sim::Course;
+
+use crate::w16_2_full_lap::spec::{GATE, GATE_MODEL, INFORMATION, MATCHER, SEED, WORLD};
+
+/// What a lap depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LapSettings {
+    /// What is driven through; none is the reader's own.
+    pub world: Option<BuiltInWorld>,
+    /// Seed of all noise.
+    pub seed: u32,
+    /// Multiplies the variances of the wheels.
+    pub noise_factor: f64,
+    /// Whether loops are closed.
+    pub loop_closure: LoopClosure,
+    /// Largest squared innovation that is believed.
+    pub gate_chi2: f64,
+    /// What the gate takes for the drift.
+    pub gate_model: GateModel,
+    /// What registers sweeps, for the front end and for loops.
+    pub matcher: LapMatcher,
+    /// In which frame an edge says what it is sure of.
+    pub information_frame: InformationFrame,
+}
+
+impl LapSettings {
+    /// Reads the list.
+    pub fn read(values: &Values) -> Self {
+        Self {
+            world: values.get(&WORLD),
+            seed: values.get(&SEED),
+            noise_factor: values.get(&NOISE),
+            loop_closure: if values.get(&LOOPS) {
+                LoopClosure::On
+            } else {
+                LoopClosure::Off
+            },
+            gate_chi2: gate_threshold(values.get(&GATE)),
+            gate_model: values.get(&GATE_MODEL),
+            matcher: values.get(&MATCHER),
+            information_frame: values.get(&INFORMATION),
+        }
+    }
+
+    /// What the core runs with; `own` is the reader's own course. None where that cannot be driven.
+    pub fn config(&self, own: Option<&Course>) -> Option<LapConfig> {
+        let mut config = match self.world {
+            Some(world) => LapConfig::in_world(world, self.seed, self.noise_factor),
+            None => LapConfig::with_seed_and_noise(self.seed, self.noise_factor).elsewhere(own?),
+        };
+        config.slam.loop_closure = self.loop_closure;
+        config.slam.chapter.loops.gate_chi2 = self.gate_chi2;
+        config.slam.chapter.loops.gate_model = self.gate_model;
+        let config = config.with_matcher(self.matcher);
+        Some(config.with_information(self.information_frame))
+    }
+}

@@ -1,0 +1,78 @@
+//! The widget without its picture, against the reference laps and the words it says of itself.
+
+mod both_gates;
+mod flat;
+mod own;
+mod parts;
+mod playing;
+mod reference;
+mod settings;
+mod worlds;
+
+use kit::model::{Fact, Standing};
+use kit::scene::{Layer, Mark, Stroke, Tone};
+
+use super::*;
+
+fn fact(model: &FullLap, id: &str) -> f64 {
+    let facts = model.outcome().facts;
+    let find = |fact: &&Fact| fact.id == id;
+    facts
+        .iter()
+        .find(find)
+        .unwrap_or_else(|| panic!("no fact `{id}`"))
+        .value
+}
+
+fn at(settings: &[(&str, f64)]) -> FullLap {
+    let mut model = FullLap::default();
+    for (id, value) in settings {
+        model.set(id, *value).unwrap();
+    }
+    model.settle();
+    model
+}
+
+fn set(model: &mut FullLap, id: &str, value: f64) {
+    model.set(id, value).unwrap();
+    model.settle();
+}
+
+fn press(model: &mut FullLap, id: &str) {
+    model.press(id).unwrap();
+    model.settle();
+}
+
+/// The results table at the end of the lap.
+fn results(model: &FullLap) -> Results {
+    model.runs.results_at(model.runs.ticks())
+}
+
+fn table(model: &FullLap, id: &str) -> Vec<Vec<String>> {
+    let tables = model.tables();
+    tables
+        .into_iter()
+        .find(|table| table.id == id)
+        .unwrap()
+        .rows
+}
+
+/// The picture as text: equal where it is the same, also where a sample is not a number.
+fn picture(model: &FullLap) -> String {
+    format!("{:?}", model.scene())
+}
+
+/// The nodes as the map shows them: the purple squares.
+fn shown_nodes(model: &FullLap) -> Vec<[f64; 2]> {
+    let scene = model.scene();
+    let nodes = scene.panels[0].layers.iter().find_map(|layer| match layer {
+        Layer::Points {
+            points,
+            mark: Mark::Square,
+            tone: Tone::Posterior,
+            ..
+        } => Some(points.clone()),
+        _ => None,
+    });
+    nodes.expect("the map shows the graph's nodes")
+}

@@ -1,0 +1,345 @@
+//! What settings and presets do to the lap.
+
+use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner};
+use ch16_slam2d::chapter::InformationFrame;
+use ch16_slam2d::loops::LoopRejection;
+use kit::param::ParamKind;
+
+use super::*;
+use crate::w16_2_full_lap::spec::WORLD;
+
+/// The help of a preset says so.
+fn assert_promised(preset: &str, words: &str) {
+    let help = SPEC.presets.iter().find(|p| p.id == preset).unwrap().help;
+    assert!(help.contains(words), "`{help}` does not say `{words}`");
+}
+
+#[test]
+fn the_start_is_the_first_loop_of_the_canonical_run() {
+    let model = FullLap::default();
+    assert_eq!(model.runs.graph.attempts()[0].tick, model.tick());
+    assert_eq!(
+        model.outcome().sentence,
+        "loop 29 to 7 accepted, chi-squared 4.24 below 7.815, history moved 0.24 m"
+    );
+}
+
+/// Settings that lead to another lap, noisy enough for the two models of the gate to disagree.
+const NOISY: [(&str, f64); 3] = [("seed", 2.0), ("noise", 3.0), ("t", 110.0)];
+
+const OTHER_LAPS: [(&str, f64); 8] = [
+    ("noise", 2.0),
+    ("seed", 3.0),
+    ("loops", 0.0),
+    ("gate", 0.9),
+    ("gate-model", 1.0),
+    ("matcher", 1.0),
+    ("matcher", 2.0),
+    ("information", 1.0),
+];
+
+fn shown(model: &FullLap) -> (Vec<Vec<String>>, Vec<Vec<String>>, f64) {
+    let tables = (table(model, "run"), table(model, "loops"));
+    (tables.0, tables.1, fact(model, "gate_chi2"))
+}
+
+#[test]
+fn every_setting_recomputes_the_lap_and_keeps_the_time() {
+    for (id, value) in OTHER_LAPS {
+        let mut model = at(&NOISY);
+        let before = shown(&model);
+        set(&mut model, id, value);
+        assert_ne!(before, shown(&model), "{id} changed nothing");
+        assert_eq!(model.tick(), 110, "{id} moved the time");
+        assert_eq!(
+            model.advance(0.1),
+            Activity::Idle,
+            "{id} left motion behind"
+        );
+        assert_eq!(model.work(), Activity::Idle, "{id} left work behind");
+    }
+}
+
+#[test]
+fn setting_a_value_runs_nothing_and_the_old_picture_stays_until_the_new_lap_is_whole() {
+    for (id, value) in OTHER_LAPS {
+        let mut model = at(&NOISY);
+        let (steps, before) = (model.laps.steps(), picture(&model));
+        model.set(id, value).unwrap();
+        assert_eq!(model.laps.steps(), steps, "{id} ran at once");
+        let mut pieces = 0;
+        while model.laps.is_running() {
+            assert!(picture(&model) == before, "{id}: half a lap is shown");
+            let done = model.work();
+            let is_seen = !model.laps.is_running();
+            assert_eq!(
+                done,
+                if is_seen {
+                    Activity::Busy
+                } else {
+                    Activity::Unseen
+                }
+            );
+            pieces += 1;
+        }
+        // At least a tick each: no piece is the whole lap.
+        assert!(pieces >= model.runs.ticks(), "{id}: {pieces} pieces");
+        let mut at_once = at(&NOISY);
+        set(&mut at_once, id, value);
+        assert!(picture(&model) == picture(&at_once), "{id}");
+    }
+}
+
+#[test]
+fn of_two_hundred_values_at_once_only_the_newest_lap_is_run() {
+    let mut model = at(&[]);
+    let before = model.laps.steps();
+    for value in 1..=200 {
+        // Twice over the slider, ending at 4.
+        let noise = 0.25 + 3.75 * f64::from((value - 1) % 100) / 99.0;
+        model.set("noise", noise).unwrap();
+    }
+    model.settle();
+    // The lap, the rest of its front end alone, and the end of each.
+    assert!(model.laps.steps() - before <= 2 * model.runs.ticks() + 2);
+    assert!(picture(&model) == picture(&at(&[("noise", 4.0)])));
+}
+
+#[test]
+fn a_preset_goes_to_the_loop_of_the_lap_that_it_asks_for() {
+    let mut model = at(&[("seed", 6.0), ("noise", 2.0), ("t", 10.0)]);
+    model.press("next").unwrap();
+    let first = model.tick();
+    model.set("t", 10.0).unwrap();
+    model.set("noise", 4.0).unwrap();
+    model.press("next").unwrap();
+    assert_eq!(
+        model.tick(),
+        10,
+        "the lap that is asked for is not known yet"
+    );
+    model.settle();
+    let mut straight = at(&[("seed", 6.0), ("noise", 4.0), ("t", 10.0)]);
+    straight.press("next").unwrap();
+    assert_eq!(model.tick(), straight.tick());
+    assert_ne!(model.tick(), first);
+}
+
+#[test]
+fn a_lap_depends_on_its_settings_alone_and_not_on_the_way_to_them() {
+    let mut wandering = at(&[
+        ("noise", 3.0),
+        ("seed", 7.0),
+        ("loops", 0.0),
+        ("gate", 0.99),
+    ]);
+    for (id, value) in [
+        ("loops", 1.0),
+        ("gate", 0.95),
+        ("noise", 1.5),
+        ("seed", 2.0),
+    ] {
+        set(&mut wandering, id, value);
+    }
+    let straight = at(&[("seed", 2.0), ("noise", 1.5)]);
+    assert!(picture(&wandering) == picture(&straight));
+    assert!(wandering.tables() == straight.tables());
+}
+
+#[test]
+fn without_loops_the_graph_is_the_front_end() {
+    let model = at(&[("loops", 0.0), ("noise", 2.5)]);
+    let results = results(&model);
+    assert_eq!(results.graph, results.front_end);
+    assert!(model.timeline().unwrap().marks.is_empty());
+    assert!(model.runs.graph.attempt_near(50).is_none());
+}
+
+#[test]
+fn without_loops_the_two_passes_end_as_far_apart_as_the_preset_says() {
+    let mut model = at(&[("t", 129.0)]);
+    let together = fact(&model, "map_disagreement_m");
+    press(&mut model, "no-loops");
+    let apart = fact(&model, "map_disagreement_m");
+    assert_promised(
+        "no-loops",
+        &format!("{apart:.2} m apart instead of {together:.2} m"),
+    );
+}
+
+#[test]
+fn every_matcher_ends_the_lap_as_far_off_as_its_preset_says() {
+    let end_error = |model: &FullLap| results(model).graph.keyframe_end_error_m;
+    let chapter = end_error(&FullLap::default());
+    for preset in ["bells", "sliding"] {
+        let mut model = FullLap::default();
+        press(&mut model, preset);
+        let off = end_error(&model);
+        assert_promised(
+            preset,
+            &format!("ends {off:.2} m off instead of {chapter:.2} m"),
+        );
+    }
+}
+
+/// The names and the labels of a choice of the widget.
+fn options(id: &str) -> Vec<(&'static str, &'static str)> {
+    let spec = SPEC.params.iter().find(|param| param.id == id).unwrap();
+    let ParamKind::Choice { options } = spec.kind else {
+        panic!("{id} is no choice");
+    };
+    options.iter().map(|it| (it.id, it.label)).collect()
+}
+
+fn named<T: Choice>() -> Vec<(&'static str, &'static str)> {
+    T::ALL.iter().map(|it| (it.name(), it.label())).collect()
+}
+
+#[test]
+fn matchers_and_frames_are_called_as_on_the_command_line_and_drive_the_same_lap() {
+    let mut worlds = named::<BuiltInWorld>();
+    assert_eq!(WORLD.to("own").1, worlds.len() as f64);
+    worlds.push(("own", "your own flat"));
+    assert_eq!(options("world"), worlds);
+    assert_eq!(options("matcher"), named::<LapMatcher>());
+    assert_eq!(options("information"), named::<InformationFrame>());
+    let mut model = at(&[("seed", 7.0), ("noise", 2.0)]);
+    for (matcher, kind) in LapMatcher::ALL.iter().enumerate() {
+        for (information, frame) in InformationFrame::ALL.iter().enumerate() {
+            set(&mut model, "matcher", matcher as f64);
+            set(&mut model, "information", information as f64);
+            let config = LapConfig::with_seed_and_noise(7, 2.0)
+                .with_matcher(*kind)
+                .with_information(*frame);
+            let record = LapRunner::new().run(&config);
+            assert_eq!(results(&model).graph, record.lap.summary);
+        }
+    }
+}
+
+#[test]
+fn the_first_loop_helps_the_robot_and_not_its_history() {
+    let mut model = FullLap::default();
+    press(&mut model, "first-loop");
+    assert!(fact(&model, "graph_error_m") < fact(&model, "front_end_error_m"));
+    assert!(fact(&model, "rms_after_m") > fact(&model, "rms_before_m"));
+}
+
+#[test]
+fn a_wrong_loop_is_called_wrong_wherever_it_is_named() {
+    // In the reference laps, too: within every gate, and more than 0.3 m off the truth.
+    let model = at(&[("seed", 6.0), ("noise", 2.0), ("t", 92.0)]);
+    let outcome = model.outcome();
+    assert_eq!(outcome.standing, Standing::Bad);
+    assert_eq!(outcome.verdict, "wrong loop accepted");
+    assert_eq!(
+        outcome.sentence,
+        "wrong loop 29 to 7 accepted, chi-squared 4.93 below 7.815, history moved 0.32 m: \
+         its measurement is 0.36 m and 1.7° off the truth"
+    );
+    assert!(fact(&model, "loop_error_m") > 0.3);
+    let mark = &model.timeline().unwrap().marks[0];
+    assert_eq!(mark.standing, Standing::Bad);
+    assert_eq!(mark.label, "wrong loop 29 to 7 accepted");
+    let Scene { panels } = model.scene();
+    let named = panels[0]
+        .layers
+        .iter()
+        .any(|layer| matches!(layer, Layer::Label { text, .. } if *text == mark.label));
+    assert!(named, "the map names it alike");
+}
+
+#[test]
+fn seed_6_has_a_loop_that_passes_the_gate_and_is_turned_away_all_the_same() {
+    let mut model = FullLap::default();
+    press(&mut model, "rejected");
+    let attempt = model.runs.graph.attempt_at(model.tick()).unwrap();
+    assert!(attempt.verification.gate.passes() && !attempt.accepted());
+    assert_eq!(
+        model.outcome().sentence,
+        "loop 29 to 7 rejected: chi-squared 4.30 below 7.815, \
+         but the sweep fits to 0.186 m only, 0.16 m is asked"
+    );
+    // "Four keyframes later a better match passes."
+    let next = &model.runs.graph.attempts()[1];
+    assert_eq!(next.verification.from_node, 33);
+    assert!(next.accepted());
+}
+
+#[test]
+fn the_noisy_preset_shows_what_it_says() {
+    let mut model = FullLap::default();
+    press(&mut model, "noisy");
+    let results = results(&model);
+    assert!((4.7..5.0).contains(&results.graph.odometry_end_error_m));
+    assert!(results.front_end.keyframe_end_error_m < 1.0);
+    let last = model.runs.graph.attempts().last().unwrap();
+    assert!(last.accepted());
+    assert_eq!(last.tick, model.runs.ticks());
+}
+
+#[test]
+fn the_tight_gate_turns_away_a_loop_that_the_chapters_gate_accepts() {
+    let mut model = FullLap::default();
+    press(&mut model, "tight-gate");
+    // NIST/SEMATECH e-Handbook: χ² of 0.90 with 3 degrees of freedom.
+    assert_eq!(fact(&model, "gate_chi2"), 6.251);
+    let verdict = |model: &FullLap| {
+        let attempt = model.runs.graph.attempt_at(model.tick()).unwrap();
+        (attempt.verification.from_node, attempt.accepted())
+    };
+    assert_eq!(verdict(&model), (37, false));
+    assert!(model.outcome().sentence.contains("above 6.251"));
+    set(&mut model, "gate", 0.95);
+    assert_eq!(fact(&model, "gate_chi2"), 7.815);
+    assert_eq!(verdict(&model), (37, true));
+}
+
+#[test]
+fn the_locked_out_preset_turns_away_three_right_loops_by_the_gate_alone() {
+    let mut model = FullLap::default();
+    press(&mut model, "locked-out");
+    let attempts = model.runs.graph.attempts();
+    assert_eq!(attempts.len(), 3);
+    for attempt in attempts {
+        let error = model.runs.graph.lap().loop_error(attempt);
+        assert!(!error.is_false(), "{error:?}");
+        let rejection = attempt.verification.rejection;
+        assert!(matches!(rejection, Some(LoopRejection::OutsideGate(_))));
+    }
+}
+
+#[test]
+fn every_preset_can_be_pressed_and_pressed_again() {
+    for preset in SPEC.presets {
+        let mut model = at(&[("noise", 3.3), ("gate", 0.99)]);
+        press(&mut model, preset.id);
+        let once = (model.values().clone(), picture(&model));
+        press(&mut model, preset.id);
+        assert!(
+            (model.values().clone(), picture(&model)) == once,
+            "{}",
+            preset.id
+        );
+    }
+}
+
+#[test]
+fn the_corners_of_the_settings_have_a_picture_at_every_tick() {
+    for seed in [0.0, 1.0, 4_294_967_295.0] {
+        for noise in [0.25, 4.0] {
+            for gate in [0.9, 0.999] {
+                let mut model = at(&[("seed", seed), ("noise", noise), ("gate", gate)]);
+                assert_eq!(model.last(), crate::w16_2_full_lap::spec::LAP_TICKS);
+                for tick in 0..=model.runs.ticks() {
+                    set(&mut model, "t", tick as f64);
+                    let shown = shown_nodes(&model);
+                    assert!(shown.iter().flatten().all(|value| value.is_finite()));
+                    assert_eq!(shown.len() as f64, fact(&model, "keyframes"));
+                    assert!(!model.summary().contains("NaN"));
+                    assert!(!model.outcome().sentence.contains("NaN"));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Other worlds than the Apartment, and what goes wrong in those that break a map.
+
+use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner, LoopJudgement};
+use ch16_slam2d::chapter::InformationFrame;
+
+use super::*;
+use crate::w16_2_full_lap::spec::MOST_TICKS;
+
+#[test]
+fn every_world_is_driven_as_on_the_command_line_and_says_where_it_is() {
+    for (index, world) in BuiltInWorld::ALL.iter().enumerate() {
+        let model = at(&[
+            ("world", index as f64),
+            ("information", 1.0),
+            ("seed", 5.0),
+            ("t", MOST_TICKS),
+        ]);
+        let config = LapConfig::in_world(*world, 5, 1.0).with_information(InformationFrame::Exact);
+        let record = LapRunner::new().run(&config);
+        assert_eq!(results(&model).graph, record.lap.summary, "{world:?}");
+        assert_eq!(model.tick(), record.ticks());
+        assert_eq!(model.runs.place(), Some(*world));
+        assert!(
+            model
+                .summary()
+                .starts_with(&format!("Map of {}", world.label()))
+        );
+        let names = model.scene().panels[0]
+            .layers
+            .iter()
+            .any(|layer| matches!(layer, Layer::Label { text, .. } if text == "A"));
+        assert_eq!(
+            names,
+            *world == BuiltInWorld::Apartment,
+            "rooms are the Apartment's"
+        );
+    }
+}
+
+#[test]
+fn presets_of_other_worlds_show_the_end_of_their_lap() {
+    for preset in ["ring", "twins", "corridor", "hall"] {
+        let mut model = FullLap::default();
+        press(&mut model, preset);
+        assert_eq!(model.values().number("t"), model.last(), "{preset}");
+    }
+}
+
+#[test]
+fn a_moment_asked_for_before_its_lap_is_known_is_kept() {
+    let mut model = FullLap::default();
+    model.set("world", 1.0).unwrap();
+    model.set("t", 200.0).unwrap();
+    assert_eq!(model.values().number("t"), 200.0);
+    assert!(model.tick() <= 129, "the old lap is shown until then");
+    model.settle();
+    assert_eq!(model.tick(), 200);
+    // A lap that ends before it is shown at its end.
+    set(&mut model, "world", 0.0);
+    assert_eq!(model.values().number("t"), 129.0);
+}
+
+#[test]
+fn in_the_twin_rooms_a_wrong_loop_passes_every_test_by_each_matcher() {
+    for matcher in [LapMatcher::PointToPoint, LapMatcher::PointToPlane] {
+        let mut model = FullLap::default();
+        press(&mut model, "twins");
+        let index = LapMatcher::ALL.iter().position(|it| *it == matcher);
+        set(&mut model, "matcher", index.unwrap() as f64);
+        let lap = model.runs.graph.lap();
+        let wrong = lap
+            .false_acceptances()
+            .filter(|attempt| lap.judge(attempt) == LoopJudgement::FalseAcceptance);
+        let wrong: Vec<_> = wrong.collect();
+        assert!(!wrong.is_empty(), "{matcher:?}");
+        // "The two rooms become one": off by the width of a room, 1.3 m.
+        let off = lap.loop_error(wrong[0]).position_m;
+        assert!((off - 1.3).abs() < 0.2, "{off}");
+    }
+}
+
+#[test]
+fn the_bare_corridor_comes_out_a_fraction_of_its_length_and_its_map_agrees_with_itself() {
+    let mut model = FullLap::default();
+    press(&mut model, "corridor");
+    let runs = &model.runs;
+    let farthest = runs
+        .graph
+        .poses_at(runs.ticks())
+        .iter()
+        .map(|pose| pose.x());
+    let driven = (1..=runs.ticks()).map(|tick| runs.truth(tick).x());
+    let (seen, true_m) = (farthest.fold(0.0, f64::max), driven.fold(0.0, f64::max));
+    assert!(seen < 0.5 * true_m, "{seen} of {true_m}");
+    assert!(fact(&model, "map_disagreement_m") < 0.15);
+    assert!(fact(&model, "keyframe_rms_m") > 5.0);
+}
+
+#[test]
+fn in_the_round_hall_the_robot_ends_on_the_far_side_and_the_map_agrees_with_itself() {
+    let mut model = FullLap::default();
+    press(&mut model, "hall");
+    // The way around has a radius of 2.2 m, "three centimetres".
+    assert!(fact(&model, "graph_error_m") > 3.0);
+    assert!(fact(&model, "map_disagreement_m") < 0.035);
+}
+
+#[test]
+fn around_the_ring_loops_close_from_the_other_side() {
+    let mut model = FullLap::default();
+    press(&mut model, "ring");
+    assert!(fact(&model, "loops_closed") >= 1.0);
+    assert!(fact(&model, "keyframe_rms_m") < 0.5);
+}

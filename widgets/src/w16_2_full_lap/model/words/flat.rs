@@ -1,0 +1,96 @@
+//! What is said of a flat while it is edited, and where it cannot be driven.
+
+use kit::counted::counted;
+use kit::model::Standing;
+use pr_sim::Sketch;
+use pr_sim::sketch::{PlaceCm, to_m};
+
+use super::Said;
+use crate::w16_2_full_lap::model::moment::Drawn;
+use crate::w16_2_full_lap::model::piece::Piece;
+
+/// `18 walls, 3 way points`.
+pub fn counts(sketch: &Sketch) -> String {
+    let walls = counted(sketch.walls_cm.len(), "wall");
+    let way_points = counted(sketch.way_points_cm.len(), "way point");
+    format!("{walls}, {way_points}")
+}
+
+/// What is said first of a flat: why the last change was none, why it cannot be driven, what is chosen.
+/// `lap` is what the shown lap says.
+pub fn said(drawn: &Drawn, lap: Said) -> Said {
+    let neutral = |sentence: String| Said {
+        standing: Standing::Neutral,
+        verdict: "your own flat".to_owned(),
+        sentence,
+    };
+    if let Some(note) = drawn.note {
+        return neutral(note.to_owned());
+    }
+    let piece = drawn.piece.map(|piece| piece_words(drawn.sketch, piece));
+    if let Some(problem) = drawn.problem {
+        let piece = piece.map_or_else(String::new, |words| format!("{words}; "));
+        return Said {
+            standing: Standing::Bad,
+            verdict: "cannot be driven".to_owned(),
+            sentence: format!("{piece}this flat cannot be driven: {problem}"),
+        };
+    }
+    match (drawn.tool, piece) {
+        (None, _) => lap,
+        (Some(_), Some(piece)) => neutral(format!("{piece}; {}", lap.sentence)),
+        (Some(_), None) => neutral(format!("{}; {}", counts(drawn.sketch), lap.sentence)),
+    }
+}
+
+/// `wall 3 of 18, from (0, 3.8) to (1.6, 3.8) m`.
+pub fn piece_words(sketch: &Sketch, piece: Piece) -> String {
+    let number = piece.index() + 1;
+    let count = piece.count(sketch);
+    let at = |cm: PlaceCm| {
+        let [x, y] = cm.map(to_m);
+        format!("({x}, {y})")
+    };
+    match piece {
+        Piece::Wall(index) => {
+            let [from, to] = sketch.walls_cm[index].map(at);
+            format!("wall {number} of {count}, from {from} to {to} m")
+        }
+        Piece::FirstEnd(index) => {
+            let end = at(sketch.walls_cm[index][0]);
+            format!("first end of wall {number} of {count}, at {end} m")
+        }
+        Piece::SecondEnd(index) => {
+            let end = at(sketch.walls_cm[index][1]);
+            format!("second end of wall {number} of {count}, at {end} m")
+        }
+        Piece::WayPoint(index) => {
+            let place = at(sketch.way_points_cm[index]);
+            let turn = if sketch.turn == Some(index) {
+                ", from which on places are seen again"
+            } else {
+                ""
+            };
+            format!("way point {number} of {count}, at {place} m{turn}")
+        }
+        Piece::Start => format!("the start, at {} m", at(sketch.start_cm)),
+        Piece::Heading => format!("the start looks to {}°", sketch.heading_deg),
+    }
+}
+
+/// What a reader hears of the flat beside the rest.
+pub fn summary(drawn: &Drawn) -> String {
+    let counts = counts(drawn.sketch);
+    let mut words = match drawn.tool {
+        None => format!(" The flat has {counts}."),
+        Some(_) => format!(" The flat is being edited: {counts}."),
+    };
+    if let Some(piece) = drawn.piece {
+        words += &format!(" Chosen: {}.", piece_words(drawn.sketch, piece));
+    }
+    if let Some(problem) = drawn.problem {
+        words +=
+            &format!(" It cannot be driven: {problem}. The plots show the last lap that could be.");
+    }
+    words
+}

@@ -1,0 +1,666 @@
+//! The widget's words and its one list of parameters.
+
+use super::model::flat::Tool;
+use ch16_lab::lap;
+use ch16_lab::lap::{BuiltInWorld, Choice as _, Claim, LapMatcher, OwnKernel};
+use ch16_slam2d::chapter::InformationFrame;
+use ch16_slam2d::chi_squared::CHAPTER_QUANTILE;
+use ch16_slam2d::loops::GateModel;
+use kit::layers::Opening;
+use kit::param::{Choice, MORE, OneOf, Param, ParamKind, ParamSpec};
+use kit::playback::SPEED;
+use kit::run::{LOOPS, NOISE, seed};
+use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+use pr_sim::sketch::limits;
+
+/// Ticks of a lap of the Apartment.
+pub const LAP_TICKS: f64 = lap::LAP_TICKS as f64;
+
+/// Ticks of a lap elsewhere: like those of the Apartment they do not depend on the noise.
+const RING_TICKS: f64 = 290.0;
+const TWINS_TICKS: f64 = 469.0;
+const CORRIDOR_TICKS: f64 = 287.0;
+const HALL_TICKS: f64 = 154.0;
+
+/// The latest tick that a link may ask for: a drive that has not ended then is cut off.
+pub const MOST_TICKS: f64 = 2000.0;
+
+/// Largest number of a keyframe that a link may ask for.
+const MOST_NODES: f64 = 999.0;
+
+/// Where the widget starts: the tick of the canonical run's first loop.
+const FIRST_LOOP_TICK: f64 = 92.0;
+
+/// Most characters of a flat in a link: four digits of base 64 for each number of the largest.
+const MOST_FLAT: usize = 33_000;
+
+/// Largest number of a wall, counted from 1.
+const MOST_PIECES: f64 = limits::WALLS as f64;
+
+/// What kind of part of the graph is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Picked {
+    /// No part.
+    Nothing,
+    /// A keyframe.
+    Keyframe,
+    /// An edge of odometry.
+    Edge,
+    /// A loop.
+    Loop,
+}
+
+pub(super) static WORLD: OneOf<Option<BuiltInWorld>> = OneOf::new(
+    "world",
+    "world",
+    &[
+        Choice::new("apartment", "the Apartment"),
+        Choice::new("ring", "a ring of corridors"),
+        Choice::new("twins", "two rooms alike"),
+        Choice::new("corridor", "a bare corridor"),
+        Choice::new("hall", "a round hall"),
+        Choice::new("own", "your own flat"),
+    ],
+    &[
+        Some(BuiltInWorld::Apartment),
+        Some(BuiltInWorld::Ring),
+        Some(BuiltInWorld::TwinRooms),
+        Some(BuiltInWorld::Corridor),
+        Some(BuiltInWorld::Hall),
+        None,
+    ],
+)
+.help("What is driven through. The Apartment by the chapter's estimator, every other world by the default one.");
+
+pub(super) static EDIT: OneOf<Option<Tool>> = OneOf::new(
+    "edit",
+    "tool on the map",
+    &[
+        Choice::new("off", "off"),
+        Choice::new("move", "move"),
+        Choice::new("wall", "draw walls"),
+        Choice::new("way", "way points"),
+        Choice::new("remove", "remove"),
+    ],
+    &[None, Some(Tool::Move), Some(Tool::Wall), Some(Tool::Way), Some(Tool::Remove)],
+)
+.help("What a press on the map does: moves a wall, an end, a way point or the start; draws a wall; places a way point behind the chosen one; removes what it meets. All on a grid of 5 cm.");
+
+pub(super) static PIECE: OneOf<Option<usize>> = OneOf::new(
+    "piece",
+    "piece of the flat",
+    &[
+        Choice::new("nothing", "nothing"),
+        Choice::new("wall", "a wall"),
+        Choice::new("first-end", "its first end"),
+        Choice::new("second-end", "its second end"),
+        Choice::new("way-point", "a way point"),
+        Choice::new("start", "the start"),
+        Choice::new("heading", "its heading"),
+    ],
+    &[None, Some(0), Some(1), Some(2), Some(3), Some(4), Some(5)],
+)
+.help("What of the flat the arrows move and Remove takes away. On the map, a press chooses it.");
+
+pub(super) static PIECE_NUMBER: Param<usize> =
+    Param::typed("piece-number", "number of the piece", MOST_PIECES)
+        .default(1.0)
+        .help("The number of the wall or of the way point, from 1.");
+
+pub(super) static FLAT: ParamSpec = ParamSpec {
+    id: "flat",
+    label: "your flat as text",
+    unit: "",
+    kind: ParamKind::Text { most: MOST_FLAT },
+    default: 0.0,
+    help: "Walls, start and way points of your own flat to the centimetre, as links carry them. It makes the world your own flat.",
+};
+
+pub(super) static SEED: Param<u32> = seed(lap::CANONICAL_SEED);
+
+pub(super) static GATE: Param<f64> = Param::slider("gate", "gate quantile", [0.90, 0.999], 0.001)
+    .default(CHAPTER_QUANTILE)
+    .help("Share of right loops that the χ² gate lets pass, 3 degrees of freedom: 0.95 is χ² up to 7.815.");
+
+pub(super) static GATE_MODEL: OneOf<GateModel> = OneOf::new(
+    "gate-model",
+    "drift in the gate",
+    &[
+        Choice::new("path", "path"),
+        Choice::new("exact", "exact"),
+    ],
+    &[GateModel::PathApproximation, GateModel::ExactMarginal],
+)
+.help("Path: the chapter's, which grows with the number of nodes between the two ends. Exact: the covariance of their relative pose in the graph. An outline holds the positions that pass at the registered heading.");
+
+pub(super) static MATCHER: OneOf<LapMatcher> = OneOf::new(
+    "matcher",
+    "matcher",
+    &[
+        Choice::new("p2p", "point to point"),
+        Choice::new("p2l", "point to plane"),
+        Choice::new("ndt", "NDT"),
+    ],
+    LapMatcher::ALL,
+)
+.help("What registers each sweep, in the front end and for loops: the chapter's ICP, point to point, or point to plane, or the normal distributions transform.");
+
+pub(super) static INFORMATION: OneOf<InformationFrame> = OneOf::new(
+    "information",
+    "information",
+    &[
+        Choice::new("chapter", "as the chapter's figures"),
+        Choice::new("exact", "at the edge's target"),
+    ],
+    InformationFrame::ALL,
+)
+.help("The frame in which an edge says what it is sure of. As the chapter's figures were computed, it is turned by a heading of the world; exactly, it stands at the edge's target, the newer of its ends.");
+
+pub(super) static PICK: OneOf<Picked> = OneOf::new(
+    "pick",
+    "look at",
+    &[
+        Choice::new("nothing", "nothing"),
+        Choice::new("keyframe", "a keyframe"),
+        Choice::new("edge", "an edge"),
+        Choice::new("loop", "a loop"),
+    ],
+    &[Picked::Nothing, Picked::Keyframe, Picked::Edge, Picked::Loop],
+)
+.help("What of the graph is looked at and told in numbers. On the map, a click or a tap chooses it, and one beside everything chooses nothing.");
+
+pub(super) static NUMBER: Param<usize> = Param::typed("number", "number", MOST_NODES)
+    .help("The number of the keyframe; of the keyframe where the edge begins; of the newer keyframe of the loop.");
+
+pub(super) static OWN: OneOf<Option<Claim>> = OneOf::new(
+    "own",
+    "your own loop",
+    &[
+        Choice::new("none", "none"),
+        Choice::new("registered", "registered"),
+        Choice::new("truth", "the truth"),
+        Choice::new("same-place", "“the same place”"),
+    ],
+    &[None, Some(Claim::Registered), Some(Claim::Truth), Some(Claim::SamePlace)],
+)
+.help("A loop between any two keyframes. Registered: what the sweeps say, from where the graph believes them to be. The truth: what no robot knows. “The same place”: that both stand at one spot, right or wrong.");
+
+pub(super) static OWN_FROM: Param<usize> = Param::typed(
+    "own-from",
+    "your loop: from keyframe",
+    MOST_NODES,
+)
+.default(40.0)
+.help(
+    "One end of your own loop. On the map, drag from the keyframe that is looked at to any other.",
+);
+
+pub(super) static OWN_TO: Param<usize> =
+    Param::typed("own-to", "your loop: to keyframe", MOST_NODES)
+        .default(12.0)
+        .help("The other end of your own loop.");
+
+pub(super) static OWN_GATE: Param<bool> =
+    Param::switch("own-gate", "your loop has to pass the gate")
+        .on()
+        .help("Whether the tests may turn your own loop away: fit, pairs and gate where it is registered, the gate where it is asserted.");
+
+pub(super) static KERNEL: OneOf<OwnKernel> = OneOf::new(
+    "kernel",
+    "kernel of your loop",
+    &[
+        Choice::new("quadratic", "quadratic"),
+        Choice::new("huber", "Huber"),
+        Choice::new("dcs", "DCS"),
+    ],
+    OwnKernel::ALL,
+)
+.help("What the graph is solved under once your own loop is in it: plain least squares, Huber's kernel from 1.345 standard deviations on, or dynamic covariance scaling from χ² 10 on.");
+
+pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", MOST_TICKS)
+    .default(FIRST_LOOP_TICK)
+    .help("The moment shown; a tick is a quarter of a second, the marks are loops, and past the end means the end.");
+
+pub(super) static FUTURE: Param<bool> = Param::switch("future", "show what is to come")
+    .help("Draws the whole lap into the plots, also what comes after the moment shown.");
+
+/// What the reader can change.
+pub const PARAMS: &[&ParamSpec] = &[
+    &WORLD.spec,
+    &EDIT.spec,
+    &PIECE.spec,
+    &PIECE_NUMBER.spec,
+    &FLAT,
+    &NOISE.spec,
+    &LOOPS.spec,
+    &SEED.spec,
+    &GATE.spec,
+    &GATE_MODEL.spec,
+    &MATCHER.spec,
+    &INFORMATION.spec,
+    &PICK.spec,
+    &NUMBER.spec,
+    &OWN.spec,
+    &OWN_FROM.spec,
+    &OWN_TO.spec,
+    &OWN_GATE.spec,
+    &KERNEL.spec,
+    &TICK.spec,
+    &FUTURE.spec,
+    &SPEED.spec,
+    &MORE.spec,
+];
+
+/// One tick before the loop.
+const BEFORE: ButtonSpec = ButtonSpec {
+    id: "before",
+    label: "Before the loop",
+    help: "One tick before the loop is tried.",
+};
+
+/// The tick of the loop, with its animation.
+const AT: ButtonSpec = ButtonSpec {
+    id: "at",
+    label: "At the loop",
+    help: "The tick of the loop: watch the history move.",
+};
+
+/// One tick after the loop.
+const AFTER: ButtonSpec = ButtonSpec {
+    id: "after",
+    label: "After the loop",
+    help: "One tick after the loop was tried.",
+};
+
+/// On to the next loop.
+const NEXT: ButtonSpec = ButtonSpec {
+    id: "next",
+    label: "Next loop",
+    help: "On to the next loop; after the last one, to the first.",
+};
+
+/// The buttons that go by the loops of the lap.
+pub const LOOP_BUTTONS: [ButtonSpec; 4] = [BEFORE, AT, AFTER, NEXT];
+
+/// Back among the keyframes, edges or loops.
+const ONE_BACK: ButtonSpec = ButtonSpec {
+    id: "one-back",
+    label: "One back",
+    help: "Looks at the keyframe, edge or loop before; from nothing, at the newest keyframe.",
+};
+
+/// On among them.
+const ONE_ON: ButtonSpec = ButtonSpec {
+    id: "one-on",
+    label: "One on",
+    help: "Looks at the next keyframe, edge or loop; from nothing, at the first keyframe.",
+};
+
+/// One end of a loop, then the other.
+const TIE: ButtonSpec = ButtonSpec {
+    id: "tie",
+    label: "Tie",
+    help: "Begins a loop of your own at the keyframe that is looked at; look at another one and press it again.",
+};
+
+/// The loop before the last change of it.
+const UNDO: ButtonSpec = ButtonSpec {
+    id: "undo",
+    label: "Undo",
+    help: "Takes the last change of your own loop back.",
+};
+
+const fn flat_button(id: &'static str, label: &'static str, help: &'static str) -> ButtonSpec {
+    ButtonSpec { id, label, help }
+}
+
+/// Begins and ends the editing of the flat.
+const EDIT_FLAT: ButtonSpec = flat_button(
+    "edit-flat",
+    "Edit the flat",
+    "Puts a pencil into your hand, with which a drag on the map draws a wall, or puts it away.",
+);
+
+/// What edits the flat.
+const FLAT_BUTTONS: [ButtonSpec; 14] = [
+    flat_button(
+        "piece-back",
+        "Piece back",
+        "Chooses the wall, the end or the way point before; also Page Up.",
+    ),
+    flat_button(
+        "piece-on",
+        "Piece on",
+        "Chooses the next wall, end or way point; also Page Down.",
+    ),
+    flat_button(
+        "west",
+        "Left",
+        "Moves what is chosen 5 cm to the left, or turns the start back; also the arrow key.",
+    ),
+    flat_button(
+        "east",
+        "Right",
+        "Moves what is chosen 5 cm to the right, or turns the start on; also the arrow key.",
+    ),
+    flat_button(
+        "north",
+        "Up",
+        "Moves what is chosen 5 cm up, or turns the start on; also the arrow key.",
+    ),
+    flat_button(
+        "south",
+        "Down",
+        "Moves what is chosen 5 cm down, or turns the start back; also the arrow key.",
+    ),
+    flat_button(
+        "remove",
+        "Remove",
+        "Takes away the wall or the way point that is chosen; also Delete.",
+    ),
+    flat_button(
+        "add-wall",
+        "Add a wall",
+        "Puts a wall of a metre into the middle and chooses it.",
+    ),
+    flat_button(
+        "add-way-point",
+        "Add a way point",
+        "Puts a way point behind the chosen one, or at the end, and chooses it.",
+    ),
+    flat_button(
+        "turn-here",
+        "Seen again from here",
+        "From the chosen way point on, places are seen again: the map from there is compared with the one before.",
+    ),
+    flat_button(
+        "take-back",
+        "Take back",
+        "Takes the last change of the flat back; also Ctrl+Z.",
+    ),
+    flat_button(
+        "do-again",
+        "Do again",
+        "Makes the change again that was taken back; also Ctrl+Y.",
+    ),
+    flat_button(
+        "open-flat",
+        "Open a flat",
+        "Opens a world from a JSON file, as slam2d --world reads it.",
+    ),
+    flat_button(
+        "save-flat",
+        "Save the flat",
+        "Saves the world as a JSON file that slam2d --world reads.",
+    ),
+];
+
+/// Keys of those buttons.
+pub const FLAT_KEYS: &[(&str, &str)] = &[
+    ("ArrowLeft", "west"),
+    ("ArrowRight", "east"),
+    ("ArrowUp", "north"),
+    ("ArrowDown", "south"),
+    ("Delete", "remove"),
+    ("PageUp", "piece-back"),
+    ("PageDown", "piece-on"),
+    ("Control+z", "take-back"),
+    ("Control+y", "do-again"),
+];
+
+/// What waits until the flat is edited.
+pub const FLAT_CONTROLS: &[&str] = &[
+    "piece",
+    "piece-number",
+    "piece-back",
+    "piece-on",
+    "west",
+    "east",
+    "north",
+    "south",
+    "remove",
+    "add-wall",
+    "add-way-point",
+    "turn-here",
+    "take-back",
+    "do-again",
+    "open-flat",
+    "save-flat",
+];
+
+/// What the widget shows while the flat is edited.
+pub const EDITING: Opening = Opening {
+    panels: &["map", "loop"],
+    params: &["edit", "piece", "piece-number"],
+    buttons: &[
+        "play",
+        "edit-flat",
+        "piece-back",
+        "piece-on",
+        "west",
+        "east",
+        "north",
+        "south",
+        "remove",
+        "add-wall",
+        "add-way-point",
+        "turn-here",
+        "take-back",
+        "do-again",
+        "open-flat",
+        "save-flat",
+    ],
+};
+
+/// What never changes.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.2",
+    title: "The full lap",
+    misconception: "Closing a loop does not put the whole path right: it makes the map agree with itself.",
+    notice: &[
+        "The walls seen on the way out and on the way back stand apart, and one loop brings them together: the map's disagreement falls to about a third over the lap.",
+        "The typical error over the keyframes hardly changes, and the largest even grows a little: the corridor comes out almost a metre too short, and no loop sees that.",
+        "A loop moves poses that the robot left long ago. A filter that keeps only the newest pose could not.",
+        "Click a keyframe, and drag from it to another: a loop of your own. A wrong one is paid for by every edge between its ends, each a little; a kernel gives it little weight.",
+        "A small χ² alone does not pass: the sweep must also fit the old walls to 0.16 m, with at least 25 pairs.",
+        "The exact gate adds up what the edges say of themselves, and knows the truth no better. Over seeds 1 to 50 at four times the noise the chapter's closes 78 loops, 3 of them wrong; the exact one closes 123, 7 of them wrong. Wrong is more than 0.3 m or 5° off the truth.",
+    ],
+    opening: Opening {
+        panels: &["map", "loop"],
+        params: &["loops"],
+        buttons: &["play", "edit-flat"],
+    },
+    params: PARAMS,
+    buttons: &[
+        PLAY,
+        STEP,
+        RESET,
+        BEFORE,
+        AT,
+        AFTER,
+        NEXT,
+        ONE_BACK,
+        ONE_ON,
+        TIE,
+        UNDO,
+        EDIT_FLAT,
+        FLAT_BUTTONS[0],
+        FLAT_BUTTONS[1],
+        FLAT_BUTTONS[2],
+        FLAT_BUTTONS[3],
+        FLAT_BUTTONS[4],
+        FLAT_BUTTONS[5],
+        FLAT_BUTTONS[6],
+        FLAT_BUTTONS[7],
+        FLAT_BUTTONS[8],
+        FLAT_BUTTONS[9],
+        FLAT_BUTTONS[10],
+        FLAT_BUTTONS[11],
+        FLAT_BUTTONS[12],
+        FLAT_BUTTONS[13],
+        DEFAULTS,
+    ],
+    presets: &[
+        Preset {
+            id: "first-loop",
+            label: "Watch the first loop",
+            help: "Node 29 recognises the corridor at node 7. The robot's own error falls, the error over all keyframes rises.",
+            set: &[TICK.to(FIRST_LOOP_TICK)],
+            then: &["at"],
+        },
+        Preset {
+            id: "rejected",
+            label: "Seed 6: a loop is turned away",
+            help: "The χ² is below the gate, but the sweep fits the old walls badly; four keyframes later a better match passes.",
+            set: &[SEED.to(6), TICK.to(90.0)],
+            then: &[],
+        },
+        Preset {
+            id: "no-loops",
+            label: "Switch the loops off",
+            help: "The front end alone: the same sweeps, and a map whose two passes end 0.24 m apart instead of 0.08 m.",
+            set: &[LOOPS.to(false), TICK.to(LAP_TICKS)],
+            then: &[],
+        },
+        Preset {
+            id: "noisy",
+            label: "Four times the noise",
+            help: "Odometry ends almost 5 m off, the front end holds, and the last loop closes in the last tick.",
+            set: &[NOISE.to(4.0), TICK.to(LAP_TICKS)],
+            then: &[],
+        },
+        Preset {
+            id: "tight-gate",
+            label: "A tight gate on a noisy lap",
+            help: "At the 0.90 quantile the gate turns away a loop that the chapter's gate accepts.",
+            set: &[NOISE.to(4.0), GATE.to(0.90), TICK.to(116.0)],
+            then: &[],
+        },
+        Preset {
+            id: "locked-out",
+            label: "Right loops, locked out",
+            help: "Seed 2 at three times the noise drifts more than the gate allows for: it turns away three right loops, and the drift goes on.",
+            set: &[SEED.to(2), NOISE.to(3.0), TICK.to(LAP_TICKS)],
+            then: &[],
+        },
+        Preset {
+            id: "let-in",
+            label: "The same lap, exact gate",
+            help: "The chapter's gate turns the first loop away by its heading alone. The edges are less sure of the heading: the exact gate lets all three loops in, and the lap ends more than a metre closer.",
+            set: &[
+                SEED.to(2),
+                NOISE.to(3.0),
+                GATE_MODEL.to("exact"),
+                TICK.to(94.0),
+            ],
+            then: &[],
+        },
+        Preset {
+            id: "wrong-loop",
+            label: "A wrong loop, forced in",
+            help: "“Keyframes 40 and 12 are the same place” is a lie of 6 m. Past the gate it folds the map: the history moves by up to 3.8 m, and every edge between the two is strained.",
+            set: &[
+                OWN.to("same-place"),
+                OWN_FROM.to(40),
+                OWN_TO.to(12),
+                OWN_GATE.to(false),
+                TICK.to(LAP_TICKS),
+            ],
+            then: &[],
+        },
+        Preset {
+            id: "tamed-loop",
+            label: "The same lie, tamed",
+            help: "Dynamic covariance scaling gives a loop that is far off next to no weight: nothing moves.",
+            set: &[
+                OWN.to("same-place"),
+                OWN_FROM.to(40),
+                OWN_TO.to(12),
+                OWN_GATE.to(false),
+                KERNEL.to("dcs"),
+                TICK.to(LAP_TICKS),
+            ],
+            then: &[],
+        },
+        Preset {
+            id: "true-loop",
+            label: "A true loop that the gate refuses",
+            help: "From keyframe 25, on the way back, to the start, as it truly is: the typical error over the keyframes falls from 0.59 m to 0.14 m. The gate refuses it, at χ² 13.0: drift does not explain it.",
+            set: &[
+                OWN.to("truth"),
+                OWN_FROM.to(25),
+                OWN_TO.to(0),
+                OWN_GATE.to(false),
+                TICK.to(LAP_TICKS),
+            ],
+            then: &[],
+        },
+        Preset {
+            id: "ring",
+            label: "A ring that closes",
+            help: "Around a block and back to the start from the other side, by point to plane: the chain is held at both ends.",
+            set: &[
+                WORLD.to("ring"),
+                MATCHER.to("p2l"),
+                INFORMATION.to("exact"),
+                TICK.to(RING_TICKS),
+            ],
+            then: &[],
+        },
+        Preset {
+            id: "twins",
+            label: "Two rooms alike",
+            help: "The second room looks like the first, and after so long a way the gate is wide enough: the robot closes a wrong loop, and the two rooms become one.",
+            set: &[
+                WORLD.to("twins"),
+                INFORMATION.to("exact"),
+                TICK.to(TWINS_TICKS),
+            ],
+            then: &[],
+        },
+        Preset {
+            id: "corridor",
+            label: "A bare corridor",
+            help: "Nothing is seen along it, so registration says that the robot hardly moves. The map agrees with itself, and the corridor is a fraction of its length.",
+            set: &[
+                WORLD.to("corridor"),
+                INFORMATION.to("exact"),
+                TICK.to(CORRIDOR_TICKS),
+            ],
+            then: &[],
+        },
+        Preset {
+            id: "hall",
+            label: "A round hall",
+            help: "The wall tells where the middle is, and nothing of the heading: by point to plane the robot is on the far side of the hall at the end, and the map agrees with itself to three centimetres.",
+            set: &[
+                WORLD.to("hall"),
+                MATCHER.to("p2l"),
+                INFORMATION.to("exact"),
+                TICK.to(HALL_TICKS),
+            ],
+            then: &[],
+        },
+        Preset {
+            id: "own-flat",
+            label: "Draw your own flat",
+            help: "The Apartment with a pencil in your hand: each wall that you draw is there at once, and the lap follows.",
+            set: &[EDIT.to("wall")],
+            then: &[],
+        },
+        Preset {
+            id: "bells",
+            label: "The same lap by NDT",
+            help: "The same sweeps, matched to bells in place of points: the lap ends 0.04 m off instead of 0.24 m.",
+            set: &[MATCHER.to("ndt"), TICK.to(LAP_TICKS)],
+            then: &[],
+        },
+        Preset {
+            id: "sliding",
+            label: "The same lap by planes",
+            help: "The same sweeps, each point free to slide along its wall: the lap ends 0.05 m off instead of 0.24 m.",
+            set: &[MATCHER.to("p2l"), TICK.to(LAP_TICKS)],
+            then: &[],
+        },
+    ],
+};

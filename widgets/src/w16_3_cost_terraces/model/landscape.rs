@@ -1,0 +1,223 @@
+//! One measure over all shifts, ready to draw, with the ball that was dropped on it.
+
+use std::sync::Arc;
+
+use kit::scene::{Bounds, Cell, Raster};
+use pr_geom::sort_numbers;
+
+use crate::w16_3_cost_terraces::spec::Colors;
+use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;
+
+/// A ball that rests this near to the truth has come home, m: the limit that counts as success in
+/// the chapter's basin runs.
+const HOME_M: f64 = 0.12;
+
+/// Heights on a square grid over ±1.3 m, row by row from the smallest Δy; low is good.
+#[derive(Clone, Debug)]
+pub struct Landscape {
+    /// The picture.
+    pub raster: Raster,
+    /// Lowest and highest height, zero included.
+    pub range: [f64; 2],
+    /// Shift of the lowest cell, m.
+    pub lowest_m: [f64; 2],
+    /// The ball that was dropped at the cross hair.
+    pub ball: Ball,
+    heights: Vec<f64>,
+}
+
+/// The way of a ball.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ball {
+    /// Shift after every step, the drop first, m; never empty.
+    pub path_m: Vec<[f64; 2]>,
+    /// Height after every step.
+    pub heights: Vec<f64>,
+    /// How it ended.
+    pub end: End,
+}
+
+/// How the way of a ball ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// It lies on level ground or in a hollow.
+    Rests,
+    /// It still rolled when the steps were used up.
+    OutOfSteps,
+}
+
+impl Ball {
+    /// A ball that lies where it was dropped.
+    pub fn at(shift_m: [f64; 2], height: f64) -> Self {
+        Self {
+            path_m: vec![shift_m],
+            heights: vec![height],
+            end: End::Rests,
+        }
+    }
+
+    /// Steps until it rests.
+    pub fn steps(&self) -> usize {
+        self.path_m.len() - 1
+    }
+
+    /// Shift where it ends, m.
+    pub fn end_m(&self) -> [f64; 2] {
+        self.path_m[self.steps()]
+    }
+
+    /// Shift after so many steps, at most where it ends, m.
+    pub fn at_step(&self, step: usize) -> [f64; 2] {
+        self.path_m[step.min(self.steps())]
+    }
+
+    /// Distance of its end from the truth, m.
+    pub fn rest_distance_m(&self) -> f64 {
+        let [x, y] = self.end_m();
+        pr_geom::math::norm2(x, y)
+    }
+
+    /// Whether it rests at the truth.
+    pub fn is_home(&self) -> bool {
+        self.rest_distance_m() < HOME_M
+    }
+}
+
+impl Landscape {
+    /// A landscape without heights.
+    pub fn flat() -> Self {
+        let edge = [HALF_SPAN_M, HALF_SPAN_M];
+        Self {
+            raster: Raster {
+                bounds: Bounds {
+                    min: edge.map(|v| -v),
+                    max: edge,
+                },
+                columns: 0,
+                rows: 0,
+                cells: Arc::new([]),
+                revision: 0,
+            },
+            range: [0.0, 1.0],
+            lowest_m: [0.0, 0.0],
+            ball: Ball::at([0.0, 0.0], 0.0),
+            heights: Vec::new(),
+        }
+    }
+
+    /// Takes new heights, `cells` a side; [`Landscape::color`] makes the picture of them.
+    ///
+    /// # Panics
+    /// Where there are not `cells × cells` heights.
+    pub fn renew(&mut self, cells: usize, heights: impl Iterator<Item = f64>) {
+        self.heights.clear();
+        self.heights.extend(heights);
+        assert_eq!(
+            self.heights.len(),
+            cells * cells,
+            "one height for every cell"
+        );
+        let heights = self.heights.iter().copied();
+        self.range = [
+            heights.clone().fold(0.0, f64::min),
+            heights.fold(0.0, f64::max),
+        ];
+        let mut best = 0;
+        for (index, height) in self.heights.iter().enumerate() {
+            if *height < self.heights[best] {
+                best = index;
+            }
+        }
+        self.lowest_m = [best % cells, best / cells].map(|k| shift_m(cells, k));
+        // Half a cell beyond the outermost samples: a sample is the middle of its cell.
+        let edge = HALF_SPAN_M + 0.5 * spacing_m(cells);
+        self.raster.bounds = Bounds {
+            min: [-edge, -edge],
+            max: [edge, edge],
+        };
+        (self.raster.columns, self.raster.rows) = (cells, cells);
+    }
+
+    /// Colours the heights: dark is low.
+    pub fn color(&mut self, colors: Colors) {
+        let heights = self.heights.iter();
+        self.raster.cells = match colors {
+            Colors::ByHeight => {
+                let [low, high] = self.range;
+                let scale = if high > low { 1.0 / (high - low) } else { 0.0 };
+                let level = |height: &f64| Cell::Level(((height - low) * scale) as f32);
+                heights.map(level).collect()
+            }
+            Colors::ByRank => {
+                let mut sorted = self.heights.clone();
+                sort_numbers(&mut sorted);
+                // Equal heights share a rank, so that level ground has one colour.
+                let below = |height: &f64| sorted.partition_point(|other| other < height);
+                let scale = 1.0 / sorted.len() as f32;
+                heights
+                    .map(|h| Cell::Level(below(h) as f32 * scale))
+                    .collect()
+            }
+        };
+        self.raster.revision += 1;
+    }
+
+    /// Cells a side.
+    pub fn cells(&self) -> usize {
+        self.raster.columns
+    }
+
+    /// Height under the cross hair itself, not of the cell that it lies in.
+    pub fn at_probe(&self) -> f64 {
+        self.ball.heights[0]
+    }
+
+    /// Height of the cell nearest to a shift.
+    pub fn value_near(&self, [x, y]: [f64; 2]) -> f64 {
+        let cells = self.cells();
+        self.heights[nearest(cells, y) * cells + nearest(cells, x)]
+    }
+
+    /// All heights, row by row from the smallest Δy.
+    pub fn heights(&self) -> &[f64] {
+        &self.heights
+    }
+
+    /// The shift of the sample nearest to one along an axis, m.
+    pub fn sample_near(&self, shift: f64) -> f64 {
+        shift_m(self.cells(), nearest(self.cells(), shift))
+    }
+
+    /// `(Δx, height)` of every cell in the row nearest to `y`.
+    pub fn row(&self, y: f64) -> Vec<[f64; 2]> {
+        let cells = self.cells();
+        let row = nearest(cells, y) * cells;
+        self.line((0..cells).map(|k| row + k))
+    }
+
+    /// `(Δy, height)` of every cell in the column nearest to `x`.
+    pub fn column(&self, x: f64) -> Vec<[f64; 2]> {
+        let cells = self.cells();
+        let column = nearest(cells, x);
+        self.line((0..cells).map(|k| k * cells + column))
+    }
+
+    fn line(&self, indices: impl Iterator<Item = usize>) -> Vec<[f64; 2]> {
+        let at = |(k, index): (usize, usize)| [shift_m(self.cells(), k), self.heights[index]];
+        indices.enumerate().map(at).collect()
+    }
+}
+
+fn spacing_m(cells: usize) -> f64 {
+    2.0 * HALF_SPAN_M / (cells - 1) as f64
+}
+
+/// The shift of sample `k` of an axis, m.
+pub fn shift_m(cells: usize, k: usize) -> f64 {
+    -HALF_SPAN_M + 2.0 * HALF_SPAN_M * k as f64 / (cells - 1) as f64
+}
+
+fn nearest(cells: usize, shift_m: f64) -> usize {
+    let place = (shift_m + HALF_SPAN_M) / spacing_m(cells);
+    (place.round().max(0.0) as usize).min(cells - 1)
+}

@@ -1,0 +1,80 @@
+//! The panels: both landscapes, the sweep on the map and on the bells, the slices, the rests.
+
+mod maps;
+mod places;
+mod plots;
+mod rows;
+
+use kit::scene::{Axis, Scene};
+
+use super::landscape::Landscape;
+use super::rests::Rests;
+use super::terrains::Terrains;
+use crate::w16_3_cost_terraces::spec::Colors;
+use crate::w16_3_cost_terraces::spec::HALF_SPAN_M;
+use plots::{Along, Measure};
+
+/// What the picture shows besides the landscapes.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    /// Shift under the cross hair, m.
+    pub probe_m: [f64; 2],
+    /// Whose shift the sweep is shown at.
+    pub looked: Looked,
+    /// Where ICP's ball is, m.
+    pub ball_m: [f64; 2],
+    /// Steps that the balls have taken.
+    pub step: usize,
+    /// What decides a cell's colour.
+    pub colors: Colors,
+}
+
+/// Whose shift the sweep is shown at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Looked {
+    /// The cross hair's.
+    CrossHair,
+    /// That of ICP's ball while it rolls.
+    Ball,
+    /// That under the pointer, which hovers over a map, m.
+    Pointer([f64; 2]),
+}
+
+impl Moment {
+    /// The shift that is looked at, m.
+    pub fn looked_m(&self) -> [f64; 2] {
+        match self.looked {
+            Looked::CrossHair => self.probe_m,
+            Looked::Ball => self.ball_m,
+            Looked::Pointer(at) => at,
+        }
+    }
+
+    /// Where the ball of a landscape is, m.
+    pub fn ball_of(&self, landscape: &Landscape) -> [f64; 2] {
+        landscape.ball.at_step(self.step)
+    }
+}
+
+/// The whole picture.
+pub fn scene(terrains: &Terrains, rests: &Rests, moment: Moment) -> Scene {
+    Scene {
+        panels: vec![
+            maps::icp(&terrains.icp, moment, &rests.now_m()),
+            places::pairs(terrains, moment),
+            maps::ndt(&terrains.ndt, moment),
+            places::bells(terrains, moment),
+            plots::slice(terrains, moment, Measure::Icp, Along::X),
+            plots::slice(terrains, moment, Measure::Icp, Along::Y),
+            plots::slice(terrains, moment, Measure::Ndt, Along::X),
+            plots::slice(terrains, moment, Measure::Ndt, Along::Y),
+            plots::information(terrains, rests),
+            rows::panel(terrains),
+        ],
+    }
+}
+
+/// An axis of shifts.
+fn shift_axis(label: &str) -> Axis {
+    Axis::new(label, -HALF_SPAN_M, HALF_SPAN_M)
+}

@@ -1,0 +1,136 @@
+//! The slices through the cross hair, and the information at the truth over the rests of many sweeps.
+
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+
+use super::{Moment, shift_axis};
+use crate::w16_3_cost_terraces::model::rests::Rests;
+use crate::w16_3_cost_terraces::model::terrains::Terrains;
+use kit::ticks::signed;
+
+/// A vertical axis never spans less than this, in m² or in score: flat ground looks flat.
+const LEAST_SPAN: f64 = 1e-3;
+
+/// The picture of the rests reaches this far from the truth in every place, cm: what is a dot in the
+/// room is not drawn larger than the needle of the corridor.
+const RESTS_SPAN_CM: f64 = 4.0;
+
+/// Beside the ellipse of one standard deviation stands that of so many.
+const MANY_DEVIATIONS: f64 = 3.0;
+
+/// Which landscape is cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// ICP's cost.
+    Icp,
+    /// NDT's score, the right way up.
+    Ndt,
+}
+
+/// Direction of a slice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Along {
+    /// East, in the row of samples nearest to the cross hair.
+    X,
+    /// North, in the column of samples nearest to the cross hair.
+    Y,
+}
+
+/// One landscape along the line of samples nearest to the cross hair; the title says which line.
+pub fn slice(terrains: &Terrains, moment: Moment, measure: Measure, along: Along) -> Panel {
+    let (landscape, sign, name) = match measure {
+        Measure::Icp => (&terrains.icp, 1.0, "ICP cost (m²)"),
+        Measure::Ndt => (&terrains.ndt, -1.0, "NDT score"),
+    };
+    let [x, y] = moment.probe_m;
+    let (title, label, here, heights) = match along {
+        Along::X => {
+            let title = format!("Along x at Δy = {} m", signed(landscape.sample_near(y), 3));
+            (title, "Δx (m)", x, landscape.row(y))
+        }
+        Along::Y => {
+            let title = format!("Along y at Δx = {} m", signed(landscape.sample_near(x), 3));
+            (title, "Δy (m)", y, landscape.column(x))
+        }
+    };
+    let curve: Vec<_> = heights
+        .iter()
+        .map(|[at, height]| [*at, sign * height])
+        .collect();
+    // Both slices of a landscape share the axis of the whole, so that a flat one looks flat.
+    let [low, high] = match measure {
+        Measure::Icp => landscape.range,
+        Measure::Ndt => landscape.range.map(|height| -height),
+    };
+    let (low, high) = (low.min(high), low.max(high).max(LEAST_SPAN));
+    let margin = 0.05 * (high - low);
+    let (min, max) = (low - margin, high + margin);
+    let upright =
+        |at: f64, stroke, tone| Layer::segments(vec![[[at, min], [at, max]]], stroke, tone, 1.5);
+    Panel {
+        id: match (measure, along) {
+            (Measure::Icp, Along::X) => "icp-x",
+            (Measure::Icp, Along::Y) => "icp-y",
+            (Measure::Ndt, Along::X) => "ndt-x",
+            (Measure::Ndt, Along::Y) => "ndt-y",
+        },
+        title,
+        weight: Weight::Side,
+        aspect: Aspect::Free,
+        x: shift_axis(label),
+        y: Axis::new(name, min, max),
+        layers: vec![
+            upright(0.0, Stroke::Dashed, Tone::Truth),
+            upright(here, Stroke::Dotted, Tone::Prior),
+            Layer::line(curve, Stroke::Solid, Tone::Ink, 2.0),
+        ],
+        legend: vec![
+            LegendEntry::line("truth", Tone::Truth, Stroke::Dashed),
+            LegendEntry::line("cross hair", Tone::Prior, Stroke::Dotted),
+        ],
+        color_bar: None,
+    }
+}
+
+/// What is known of a shift at the truth, and where many sweeps rest: the ellipse of the shifts that
+/// lie one standard deviation off, long where the walls say little, over the rests. The scale is the
+/// same in every place.
+pub fn information(terrains: &Terrains, rests: &Rests) -> Panel {
+    let half_axes = terrains.information.half_axes_cm;
+    let axis = |label| Axis::new(label, -RESTS_SPAN_CM, RESTS_SPAN_CM);
+    let ellipse = |deviations: f64, stroke| Layer::Ellipse {
+        center: [0.0, 0.0],
+        half_axes: half_axes.map(|axis| axis.map(|v| deviations * v)),
+        stroke,
+        tone: Tone::Ink,
+    };
+    let rests_cm: Vec<_> = rests
+        .now_m()
+        .iter()
+        .map(|at| at.map(|m| 100.0 * m))
+        .collect();
+    let title = match rests_cm.len() {
+        0 => "Information at the truth".to_owned(),
+        count => format!("Where {count} sweeps rest"),
+    };
+    Panel {
+        id: "information",
+        title,
+        weight: Weight::Side,
+        aspect: Aspect::Equal,
+        x: axis("Δx (cm)"),
+        y: axis("Δy (cm)"),
+        layers: vec![
+            Layer::points(rests_cm, Mark::Dot, Tone::Posterior, 2.0),
+            ellipse(MANY_DEVIATIONS, Stroke::Dotted),
+            ellipse(1.0, Stroke::Solid),
+            Layer::points(vec![[0.0, 0.0]], Mark::Plus, Tone::Truth, 6.0),
+        ],
+        legend: vec![
+            LegendEntry::mark("rests", Tone::Posterior, Mark::Dot),
+            LegendEntry::line("information, 1 σ", Tone::Ink, Stroke::Solid),
+            LegendEntry::line("3 σ", Tone::Ink, Stroke::Dotted),
+            LegendEntry::mark("truth", Tone::Truth, Mark::Plus),
+        ],
+        color_bar: None,
+    }
+}

@@ -1,0 +1,60 @@
+//! What the values of the parameter list mean to the core.
+
+use kit::values::Values;
+
+use crate::w16_3_cost_terraces::spec::{
+    CELLS, COLOURS, Colors, HEADING, MOST_ROWS, NDT_CELL, ODOMETRY, PROBE_X, PROBE_Y, Place, ROWS,
+    SCENE, SEED, TAU,
+};
+
+/// The parameters as the model uses them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Where the sweep was taken.
+    pub place: Place,
+    /// Largest distance of a pair, m.
+    pub tau_m: f64,
+    /// Where the range noise of the sweep starts.
+    pub seed: u32,
+    /// Width of an NDT cell, m.
+    pub ndt_cell_m: f64,
+    /// Turn of the sweep, degrees.
+    pub heading_deg: f64,
+    /// Samples along each axis, odd.
+    pub cells: usize,
+    /// What decides a cell's colour.
+    pub colors: Colors,
+    /// Shift under the cross hair, m.
+    pub probe_m: [f64; 2],
+    /// So many rows of the point-to-plane step are taken.
+    pub rows: usize,
+    /// Standard deviation of a row of odometry, m, where there is one.
+    pub odometry_m: Option<f64>,
+}
+
+impl Settings {
+    /// Reads the list.
+    pub fn read(values: &Values) -> Self {
+        Self {
+            place: values.get(&SCENE),
+            tau_m: values.get(&TAU),
+            seed: values.get(&SEED),
+            ndt_cell_m: values.get(&NDT_CELL),
+            heading_deg: values.get(&HEADING),
+            cells: odd(values.get(&CELLS)),
+            colors: values.get(&COLOURS),
+            probe_m: [values.get(&PROBE_X), values.get(&PROBE_Y)],
+            rows: match values.get(&ROWS) {
+                MOST_ROWS => usize::MAX,
+                rows => rows as usize,
+            },
+            odometry_m: Some(values.get(&ODOMETRY)).filter(|&sigma_m| sigma_m > 0.0),
+        }
+    }
+}
+
+/// The nearest odd number, so that the grid has a cell on the truth.
+fn odd(value: f64) -> usize {
+    let half = ((value - 1.0) / 2.0).round();
+    2 * half as usize + 1
+}

@@ -1,0 +1,299 @@
+//! The widget's words and its one list of parameters.
+
+use ch16_lab::terrain::TerrainScene;
+use kit::layers::Opening;
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use kit::playback::SPEED;
+use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+
+/// The maps reach this far from the truth in every direction, m.
+pub const HALF_SPAN_M: f64 = 1.3;
+
+/// Fewest and most cells a side; both odd, so that one cell lies on the truth.
+const CELLS_OF_A_SIDE: [f64; 2] = [49.0, 161.0];
+
+/// Most steps that a ball may take; the timeline never gets longer.
+pub const MAX_BALL_STEPS: usize = 400;
+
+/// Most sweeps that are dropped at once.
+pub const MOST_DROPS: f64 = 100.0;
+
+/// The end of the slider of rows, where all are taken, however many points a sweep has.
+pub const MOST_ROWS: f64 = 120.0;
+
+/// Where the sweep was taken, and what it is matched with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Room A: walls in both directions. The sweep is its own map.
+    Room,
+    /// A corridor without doors: walls along x alone. Map and sweep were measured apart.
+    Corridor,
+    /// The Apartment's corridor, doors and all. The sweep is its own map.
+    OwnCorridor,
+}
+
+/// What decides a cell's colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Colors {
+    /// Its height, evenly from dark to bright.
+    ByHeight,
+    /// The share of cells that lie lower.
+    ByRank,
+}
+
+pub(super) static SCENE: OneOf<Place> = OneOf::new(
+    "scene",
+    "scene",
+    &[
+        Choice::new("room", "room"),
+        Choice::new("corridor", "corridor"),
+        Choice::new("own-corridor", "corridor on itself"),
+    ],
+    &[Place::Room, Place::Corridor, Place::OwnCorridor],
+)
+.help("Room A on its own points; a corridor without doors on a map that was measured apart; the Apartment's corridor, doors and all, on its own points.");
+
+pub(super) static TAU: Param<f64> = Param::slider("tau", "pair limit τ", [0.1, 1.6], 0.05)
+    .unit("m")
+    .default(0.15)
+    .help(
+        "ICP pairs a point with the nearest map point within τ; a point without a pair costs τ².",
+    );
+
+pub(super) static NDT_CELL: Param<f64> = Param::slider("ndt-cell", "NDT cell", [0.3, 1.2], 0.05)
+    .unit("m")
+    .default(TerrainScene::DEFAULT_NDT_CELL_M)
+    .help("NDT fits one Gaussian to the map points of each cell of this width.");
+
+pub(super) static HEADING: Param<f64> =
+    Param::slider("heading", "heading offset", [-180.0, 180.0], 1.0)
+        .unit("°")
+        .help("The sweep is turned by this much about the sensor before it is shifted.");
+
+pub(super) static CELLS: Param<f64> = Param::slider("cells", "cells a side", CELLS_OF_A_SIDE, 8.0)
+    .default(49.0)
+    .help("Both maps are sampled at this many shifts along each axis.");
+
+pub(super) static COLOURS: OneOf<Colors> = OneOf::new(
+    "colours",
+    "colours",
+    &[
+        Choice::new("value", "by value"),
+        Choice::new("rank", "by rank"),
+    ],
+    &[Colors::ByHeight, Colors::ByRank],
+)
+.default("rank")
+.help("By rank, every colour covers as many cells: low steps show on high ground.");
+
+pub(super) static SEED: Param<u32> = Param::seed("seed of the sweep", TerrainScene::SEED)
+    .help("Where the range noise of the sweep starts; 1472 is the chapter's.");
+
+pub(super) static PROBE_X: Param<f64> =
+    Param::slider("probe-x", "drop at Δx", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
+        .unit("m")
+        .default(0.4)
+        .help("Where the cross hair stands and the balls start, east of the truth.");
+
+pub(super) static PROBE_Y: Param<f64> =
+    Param::slider("probe-y", "drop at Δy", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
+        .unit("m")
+        .default(0.1)
+        .help("Where the cross hair stands and the balls start, north of the truth.");
+
+pub(super) static DROPS: Param<usize> =
+    Param::slider("drops", "sweeps dropped", [0.0, MOST_DROPS], 1.0)
+        .help("So many sweeps, each with noise of its own, are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m.");
+
+pub(super) static ROWS: Param<f64> = Param::slider("rows", "rows of H", [0.0, MOST_ROWS], 1.0)
+    .default(MOST_ROWS)
+    .help("So many points, in the order of the beams, give a row (n_x, n_y, p × n) of the point-to-plane step; to the right, all.");
+
+pub(super) static ODOMETRY: Param<f64> =
+    Param::slider("odometry", "σ of a row of odometry", [0.0, 0.5], 0.01)
+        .unit("m")
+        .help("Adds the row (1, 0, 0) with the weight 1/σ²; 0 adds none.");
+
+// Past the last step means the end: the balls lie where they rest.
+pub(super) static BALL_STEP: Param<f64> =
+    Param::timeline("t", "step of the balls", MAX_BALL_STEPS as f64)
+        .default(MAX_BALL_STEPS as f64)
+        .help("How many gradient steps both balls have taken.");
+
+/// What the reader can change.
+pub const PARAMS: &[&ParamSpec] = &[
+    &SCENE.spec,
+    &TAU.spec,
+    &NDT_CELL.spec,
+    &HEADING.spec,
+    &CELLS.spec,
+    &COLOURS.spec,
+    &SEED.spec,
+    &PROBE_X.spec,
+    &PROBE_Y.spec,
+    &DROPS.spec,
+    &ROWS.spec,
+    &ODOMETRY.spec,
+    &BALL_STEP.spec,
+    &SPEED.spec,
+    &MORE.spec,
+];
+
+/// Drops both balls from the cross hair.
+const DROP: ButtonSpec = ButtonSpec {
+    id: "drop",
+    label: "Drop a ball",
+    help: "Start both balls at the cross hair and let them descend.",
+};
+
+/// Drops many sweeps, each with noise of its own.
+const DROP_100: ButtonSpec = ButtonSpec {
+    id: "drop-100",
+    label: "Drop 100",
+    help: "Drop 100 sweeps, each with noise of its own, and watch them fly to rest.",
+};
+
+/// "What to try".
+const PRESETS: &[Preset] = &[
+    Preset {
+        id: "terraces",
+        label: "Shrink τ to 0.15 m",
+        help: "ICP's bowl breaks into steps, and its ball stops on one. NDT's ball rolls home.",
+        set: &[
+            ("tau", 0.15),
+            ("colours", 1.0),
+            ("probe-x", 0.3),
+            ("probe-y", -0.3),
+        ],
+        then: &["drop"],
+    },
+    Preset {
+        id: "bowl",
+        label: "Widen τ to 0.6 m",
+        help: "The steps melt into one bowl, and both balls come home. Beyond 0.6 m the plain goes on.",
+        set: &[("tau", 0.6), ("colours", 0.0)],
+        then: &["drop"],
+    },
+    Preset {
+        id: "wide-hill",
+        label: "Widen the NDT cell to 0.8 m",
+        help: "The bells grow longer and fewer, and NDT's ball comes home from where ICP's rolls farther away.",
+        set: &[
+            ("tau", 0.6),
+            ("colours", 0.0),
+            ("ndt-cell", 0.8),
+            ("probe-x", -0.7),
+            ("probe-y", 0.7),
+        ],
+        then: &["drop"],
+    },
+    Preset {
+        id: "wide-tau",
+        label: "Widen τ to 1.6 m",
+        help: "No point is without a pair now. ICP's ball comes home from here, NDT's does not.",
+        set: &[
+            ("tau", 1.6),
+            ("colours", 0.0),
+            ("probe-x", 0.7),
+            ("probe-y", 0.7),
+        ],
+        then: &["drop"],
+    },
+    Preset {
+        id: "corridor",
+        label: "Stand in the corridor",
+        help: "Both valleys run along the walls without end. The balls find the middle of the valley and stay where they were dropped along it.",
+        set: &[
+            ("scene", 1.0),
+            ("tau", 0.6),
+            ("colours", 0.0),
+            ("probe-x", 0.6),
+            ("probe-y", 0.05),
+        ],
+        then: &["drop"],
+    },
+    Preset {
+        id: "wrong-wall",
+        label: "Drop it across the corridor",
+        help: "From here the south wall looks like the north wall. Both balls settle on the wrong one.",
+        set: &[
+            ("scene", 1.0),
+            ("tau", 0.6),
+            ("colours", 0.0),
+            ("probe-x", 0.2),
+            ("probe-y", 1.1),
+        ],
+        then: &["drop"],
+    },
+    Preset {
+        id: "own-corridor",
+        label: "Match the corridor with itself",
+        help: "The sweep knows its own noise and its doors again, and the cost is lowest at the truth. No second sweep would be so sure.",
+        set: &[
+            ("scene", 2.0),
+            ("tau", 0.6),
+            ("colours", 0.0),
+            ("probe-x", 0.6),
+            ("probe-y", 0.0),
+        ],
+        then: &["drop"],
+    },
+    Preset {
+        id: "drop-room",
+        label: "Drop 100 sweeps in the room",
+        help: "They rest in a round heap a few millimetres wide, about as wide as the information says.",
+        set: &[("tau", 0.6), ("colours", 0.0)],
+        then: &["drop-100"],
+    },
+    Preset {
+        id: "drop-corridor",
+        label: "Drop 100 sweeps in the corridor",
+        help: "They rest in a streak along the walls, much longer than the needle of the information.",
+        set: &[("scene", 1.0), ("tau", 0.6), ("colours", 0.0)],
+        then: &["drop-100"],
+    },
+    Preset {
+        id: "one-row",
+        label: "Take the corridor's rows one by one",
+        help: "One row, then more with the slider of rows: the second row that differs makes the rank two, and no other ever makes it three.",
+        set: &[("scene", 1.0), ("rows", 1.0)],
+        then: &[],
+    },
+    Preset {
+        id: "wheels-row",
+        label: "Add one row of odometry",
+        help: "The rank is three. Along the corridor the pose is known to the σ of that row, and no better.",
+        set: &[("scene", 1.0), ("odometry", 0.05)],
+        then: &[],
+    },
+    Preset {
+        id: "turned",
+        label: "Turn the sweep by 20°",
+        help: "No shift undoes a turn. The lowest cost rises, and NDT's lowest cell leaves the truth.",
+        set: &[("tau", 0.6), ("colours", 0.0), ("heading", 20.0)],
+        then: &["drop"],
+    },
+];
+
+/// What never changes.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.3",
+    title: "Cost terraces",
+    misconception: "False minima are in the cost: the closed form jumps over small ridges, not out of those.",
+    notice: &[
+        "Both maps hold the same sweep against the same points; only the measure differs. Dark is low, and the balls seek the dark.",
+        "A small τ breaks ICP's bowl into terraces and hollows; colours by rank show them. A ball rests in the next one, however good the solver.",
+        "Each step of the cost is a point that gets another partner, or none. Those that are about to change light up in orange.",
+        "NDT has almost no steps: each point feels the whole bell of its cell. But thin walls make thin bells. Its valley is narrow, and the plain around it has dents of its own; wider cells help.",
+        "A wide τ lets ICP reach farther than NDT. Neither measure wins everywhere.",
+        "In the corridor both valleys run along x without an end. A hundred sweeps rest in a streak there and in a round heap in the room; the ellipse is what the information promises.",
+    ],
+    opening: Opening {
+        panels: &["icp", "sweep", "ndt", "bells"],
+        params: &["tau"],
+        buttons: &["play"],
+    },
+    params: PARAMS,
+    buttons: &[DROP, DROP_100, PLAY, STEP, RESET, DEFAULTS],
+    presets: PRESETS,
+};

@@ -1,0 +1,296 @@
+//! The state of the control room: one recorded run, the tick shown, its grid and registration.
+//!
+//! A parameter of the run asks for a new one. It is computed in pieces, the newest that was asked for
+//! first; the old one stays until the new one is whole, and the moment shown stays.
+
+mod grid;
+mod history;
+mod log;
+mod picture;
+mod settings;
+mod tables;
+mod words;
+
+use ch16_lab::lap::{LapRecord, NewestLap, NewestStep, RegistrationView, TickReport};
+use kit::chart::{dragged_to, grab_now};
+use kit::model::{Activity, Handle, Model, Motion, Outcome, Table, Timeline, press_preset};
+use kit::param::ParamError;
+use kit::playback::Playback;
+use kit::playback::SPEED;
+use kit::scene::Scene;
+use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
+use pr_sim::World;
+
+use crate::w16_4_control_room::spec::{LANE, SPEC, TICK};
+use grid::GridView;
+use history::History;
+use log::Event;
+use picture::lanes;
+use settings::config;
+
+/// Ticks a second at speed 1: twice as fast as the robot.
+const TICKS_PER_S: f64 = 8.0;
+
+/// The control room.
+pub struct ControlRoom {
+    values: Values,
+    world: World,
+    /// What is shown.
+    record: LapRecord,
+    /// What is being computed.
+    laps: NewestLap,
+    /// How often the reader went on to the next event of the run that is being computed.
+    next_events: usize,
+    history: History,
+    events: Vec<Event>,
+    /// The registration of the tick shown.
+    registration: Option<RegistrationView>,
+    grid: GridView,
+    playback: Playback,
+}
+
+impl Default for ControlRoom {
+    /// The chapter's run on its way out.
+    ///
+    /// # Panics
+    /// Never: a lap that was asked for ends.
+    fn default() -> Self {
+        let values = Values::defaults(SPEC.params);
+        let mut laps = NewestLap::new();
+        laps.ask(config(&values));
+        let record = *laps.finish().expect("a lap was asked for");
+        let mut room = Self {
+            history: History::new(&record),
+            events: log::events(&record),
+            registration: None,
+            grid: GridView::new(&record, 0),
+            world: World::apartment(),
+            playback: Playback::default(),
+            values,
+            laps,
+            next_events: 0,
+            record,
+        };
+        room.show();
+        room
+    }
+}
+
+impl ControlRoom {
+    fn tick(&self) -> usize {
+        self.values.get(&TICK) as usize
+    }
+
+    /// The lane whose data are said.
+    fn lane(&self) -> usize {
+        self.values.get(&LANE)
+    }
+
+    fn choose_lane(&mut self, lane: usize) {
+        self.values
+            .set(SPEC.id, "lane", lane as f64)
+            .expect("a lane of the list");
+    }
+
+    fn last(&self) -> f64 {
+        self.record.ticks() as f64
+    }
+
+    fn now(&self) -> Option<&TickReport> {
+        self.record.lap.report(self.tick())
+    }
+
+    fn go_to(&mut self, tick: f64) {
+        let tick = tick.clamp(0.0, self.last());
+        self.values
+            .set(SPEC.id, "t", tick)
+            .expect("a tick of the lap is within the timeline");
+        self.show();
+    }
+
+    /// Works out what the record does not keep of the tick shown.
+    fn show(&mut self) {
+        let tick = self.tick();
+        self.registration = self.record.registration(tick);
+        self.grid.show(&self.record, tick);
+    }
+
+    fn run_again(&mut self) {
+        self.laps.ask(config(&self.values));
+    }
+
+    /// Shows a run that is whole, and does what waited for it.
+    fn take(&mut self, record: LapRecord) {
+        self.record = record;
+        self.history = History::new(&self.record);
+        self.events = log::events(&self.record);
+        self.grid.forget();
+        self.go_to(self.values.get(&TICK));
+        if !self.laps.is_running() {
+            for _ in 0..core::mem::take(&mut self.next_events) {
+                self.next_event();
+            }
+        }
+    }
+
+    fn back_to_defaults(&mut self) {
+        self.playback.pause();
+        self.values.reset();
+        self.next_events = 0;
+        self.run_again();
+        self.show();
+    }
+
+    fn next_event(&mut self) {
+        if self.laps.is_running() {
+            self.next_events += 1;
+            return;
+        }
+        self.playback.pause();
+        let now = self.tick();
+        let next = self.events.iter().find(|event| event.tick > now);
+        if let Some(event) = next.or(self.events.first()) {
+            let (tick, lane) = (event.tick, event.lane);
+            self.choose_lane(lane);
+            self.go_to(tick as f64);
+        }
+    }
+
+    /// The loop test of the tick shown, as the log has it.
+    fn loop_event(&self) -> Option<&Event> {
+        let now = self.tick();
+        let mut marked = self.events.iter().filter(|event| event.marked);
+        marked.find(|event| event.tick == now)
+    }
+}
+
+impl Model for ControlRoom {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        if self.values.set(SPEC.id, id, value)? == Changed::No {
+            return Ok(());
+        }
+        match id {
+            "t" => self.go_to(value),
+            "speed" | "more" | "lane" => {}
+            _ => self.run_again(),
+        }
+        Ok(())
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        let now = self.values.get(&TICK);
+        if let Some(position) = self.playback.press(id, now, self.last()) {
+            self.go_to(position);
+            return Ok(());
+        }
+        match id {
+            "next-event" => self.next_event(),
+            "defaults" => self.back_to_defaults(),
+            _ => return press_preset(self, id),
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        if !self.playback.is_playing() {
+            return Activity::Idle;
+        }
+        let now = self.values.get(&TICK);
+        let rate = TICKS_PER_S * self.values.get(&SPEED);
+        let reached = self.playback.advance(now, self.last(), elapsed_s, rate);
+        if reached != now {
+            self.go_to(reached);
+        }
+        Activity::Busy
+    }
+
+    /// One tick of the run that is being computed.
+    fn work(&mut self) -> Activity {
+        match self.laps.step() {
+            NewestStep::Idle => Activity::Idle,
+            NewestStep::Tick => Activity::Unseen,
+            NewestStep::Finished(record) => {
+                self.take(*record);
+                Activity::Busy
+            }
+        }
+    }
+
+    fn settle(&mut self) -> Activity {
+        let Some(record) = self.laps.finish() else {
+            return Activity::Idle;
+        };
+        self.take(*record);
+        Activity::Busy
+    }
+
+    fn scene(&self) -> Scene {
+        picture::scene(self)
+    }
+
+    fn outcome(&self) -> Outcome {
+        words::outcome(self)
+    }
+
+    fn summary(&self) -> String {
+        words::summary(self)
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        Some(Timeline {
+            param: "t",
+            last: self.last(),
+            playing: self.playback.is_playing(),
+            marks: log::marks(&self.events),
+        })
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        tables::all(self)
+    }
+
+    fn shown_tables(&self) -> Vec<Table> {
+        tables::shown(self)
+    }
+
+    /// The line at the moment shown, in every plot over time, and each mark of the lanes.
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        if panel == lanes::ID
+            && let Some((tick, lane)) = lanes::event_at(&self.record, self.tick(), at, reach)
+        {
+            // The press goes to the tick of the mark, however far beside it the pointer is.
+            return Some(Handle {
+                panel: lanes::ID,
+                id: lanes::name(lane),
+                offset: [at[0] - tick, 0.0],
+            });
+        }
+        let panel = *picture::OVER_TIME.iter().find(|id| **id == panel)?;
+        grab_now(panel, self.values.get(&TICK), at, reach)
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        if let Some(lane) = lanes::of_name(handle.id) {
+            self.choose_lane(lane);
+        }
+        let tick = dragged_to(handle, at);
+        if tick != self.values.get(&TICK) {
+            self.go_to(tick);
+        }
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        if let Some(end) = self.playback.set_motion(motion, self.last()) {
+            self.go_to(end);
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! The panels: the map with its graph, the registration of the newest sweep, the plots over time.
+
+pub mod lanes;
+mod plots;
+
+use ch16_lab::lap::{LapRecord, RegistrationView};
+use ch16_slam2d::cloud::PointCloud;
+use ch16_slam2d::graph::EdgeKind;
+use kit::scene::{
+    Aspect, Axis, Layer, LegendEntry, Mark, Panel, Raster, Scene, Stroke, Tone, Weight,
+};
+use pr_geom::SE2;
+use pr_sim::World;
+
+use super::ControlRoom;
+
+pub use plots::OVER_TIME;
+
+/// Half the side of the close-up, in metres.
+const CLOSE_UP_M: f64 = 4.0;
+
+/// The whole picture.
+pub fn scene(room: &ControlRoom) -> Scene {
+    let (record, now) = (&room.record, room.tick());
+    Scene {
+        panels: vec![
+            map(record, now, room.grid.raster(), &room.world),
+            registration(record, now, room.registration.as_ref()),
+            lanes::lanes(record, now, room.lane()),
+            plots::threshold(&room.history, now),
+            plots::errors(&room.history, now),
+        ],
+    }
+}
+
+/// The map at a tick: grid, graph, truth and robot.
+fn map(record: &LapRecord, tick: usize, raster: &Raster, world: &World) -> Panel {
+    let bounds = world.bounds();
+    let truth = |tick| record.drive.truth(tick);
+    let layers = vec![
+        Layer::Raster(raster.clone()),
+        Layer::line(
+            (0..=tick).map(|tick| xy(&truth(tick))).collect(),
+            Stroke::Dashed,
+            Tone::Truth,
+            1.5,
+        ),
+        factors(record, tick, EdgeKind::Odometry, 1.5),
+        factors(record, tick, EdgeKind::Loop, 2.5),
+        Layer::points(
+            record.lap.poses(tick).iter().map(xy).collect(),
+            Mark::Square,
+            Tone::Posterior,
+            3.0,
+        ),
+        robot(&truth(tick), Mark::Plus, Tone::Truth),
+        robot(&estimate(record, tick), Mark::Square, Tone::Posterior),
+    ];
+    Panel {
+        id: "map",
+        title: "Occupancy grid and pose graph".to_owned(),
+        weight: Weight::Main,
+        aspect: Aspect::Equal,
+        x: Axis::new("x (m)", bounds.min.x, bounds.max.x),
+        y: Axis::new("y (m)", bounds.min.y, bounds.max.y),
+        layers,
+        legend: vec![
+            LegendEntry::marked_line("truth", Tone::Truth, Mark::Plus, Stroke::Dashed),
+            LegendEntry::marked_line("pose graph", Tone::Posterior, Mark::Square, Stroke::Solid),
+            area("occupied", Tone::Ink),
+            area("free", Tone::Paper),
+            area("not seen", Tone::Unseen),
+        ],
+        color_bar: None,
+    }
+}
+
+/// A legend entry for the cells of one colour.
+fn area(label: &str, tone: Tone) -> LegendEntry {
+    LegendEntry {
+        label: label.to_owned(),
+        tone,
+        mark: None,
+        stroke: None,
+    }
+}
+
+/// A tick's registration: local map, the sweep where the wheels put it and where ICP put it.
+///
+/// At the start there is nothing to register on: the first sweep stands at the known pose. A loop
+/// that is closed in the same tick moves the estimate afterwards.
+fn registration(record: &LapRecord, tick: usize, view: Option<&RegistrationView>) -> Panel {
+    let start = record.drive.truth(0);
+    let (center, layers) = match view {
+        Some(view) => (view.icp.pose, registration_layers(record, tick, view)),
+        None => (start, first_sweep(record, &start)),
+    };
+    Panel {
+        id: "registration",
+        title: "Registration of this sweep".to_owned(),
+        weight: Weight::Half,
+        aspect: Aspect::Equal,
+        x: Axis::new("x (m)", center.x() - CLOSE_UP_M, center.x() + CLOSE_UP_M),
+        y: Axis::new("y (m)", center.y() - CLOSE_UP_M, center.y() + CLOSE_UP_M),
+        layers,
+        legend: vec![
+            LegendEntry::mark("local map, last six sweeps", Tone::Prior, Mark::Circle),
+            LegendEntry::mark("sweep as predicted", Tone::Prediction, Mark::Triangle),
+            LegendEntry::mark("sweep as registered", Tone::Measurement, Mark::Cross),
+            LegendEntry::line("pairs", Tone::Ink, Stroke::Solid),
+            LegendEntry::mark("robot", Tone::Posterior, Mark::Square),
+        ],
+        color_bar: None,
+    }
+}
+
+fn first_sweep(record: &LapRecord, start: &SE2) -> Vec<Layer> {
+    let sweep = record.drive.sweep(0).cloud.transformed(start);
+    vec![
+        Layer::points(positions(&sweep), Mark::Cross, Tone::Measurement, 3.0),
+        robot(start, Mark::Square, Tone::Posterior),
+    ]
+}
+
+fn registration_layers(record: &LapRecord, tick: usize, view: &RegistrationView) -> Vec<Layer> {
+    let sweep = &record.drive.sweep(tick).cloud;
+    let placed = |pose: &SE2| positions(&sweep.transformed(pose));
+    let pairs = view.icp.pairs.iter();
+    vec![
+        Layer::points(positions(&view.local_cloud), Mark::Circle, Tone::Prior, 2.0),
+        Layer::segments(
+            pairs
+                .map(|pair| {
+                    [
+                        [pair.source.x, pair.source.y],
+                        [pair.target.x, pair.target.y],
+                    ]
+                })
+                .collect(),
+            Stroke::Solid,
+            Tone::Ink,
+            1.0,
+        ),
+        Layer::points(
+            placed(&view.prediction),
+            Mark::Triangle,
+            Tone::Prediction,
+            3.0,
+        ),
+        Layer::points(placed(&view.icp.pose), Mark::Cross, Tone::Measurement, 3.0),
+        robot(&view.prediction, Mark::Triangle, Tone::Prediction),
+        robot(&view.icp.pose, Mark::Square, Tone::Posterior),
+    ]
+}
+
+/// The estimate at the end of a tick, `world_from_body`.
+fn estimate(record: &LapRecord, tick: usize) -> SE2 {
+    let report = record.lap.report(tick);
+    report.map_or_else(|| record.drive.truth(0), |report| report.estimate)
+}
+
+fn factors(record: &LapRecord, tick: usize, kind: EdgeKind, width_px: f32) -> Layer {
+    let poses = record.lap.poses(tick);
+    let edges = record.lap.edges(tick).iter();
+    Layer::segments(
+        edges
+            .filter(|edge| edge.kind == kind)
+            .map(|edge| [xy(&poses[edge.from]), xy(&poses[edge.to])])
+            .collect(),
+        Stroke::Solid,
+        Tone::Posterior,
+        width_px,
+    )
+}
+
+fn positions(cloud: &PointCloud) -> Vec<[f64; 2]> {
+    cloud.iter().map(|point| [point.x, point.y]).collect()
+}
+
+fn robot(pose: &SE2, mark: Mark, tone: Tone) -> Layer {
+    Layer::pose(pose.to_array(), mark, tone, 6.0)
+}
+
+fn xy(pose: &SE2) -> [f64; 2] {
+    [pose.x(), pose.y()]
+}

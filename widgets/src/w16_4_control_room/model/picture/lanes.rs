@@ -1,0 +1,264 @@
+//! The two machines over time: a lane for each thing that they do, and a mark where it was done.
+
+use ch16_lab::lap::{LapRecord, LoopAttempt, TickReport};
+use ch16_slam2d::loops::LoopRejection;
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
+use kit::ticks::signed;
+
+/// Name of the panel.
+pub const ID: &str = "lanes";
+
+/// How something that was done came out.
+#[derive(Clone, Copy, PartialEq)]
+enum Done {
+    /// It was not asked for in this tick.
+    Not,
+    /// It passed.
+    Well,
+    /// It was refused.
+    Refused,
+}
+
+/// A lane, and what it says of a tick.
+struct Lane {
+    name: &'static str,
+    done: fn(&TickReport) -> Done,
+    /// The numbers of what was done.
+    data: fn(&TickReport) -> String,
+}
+
+/// What happens in a tick, in its order: the front end's two at every tick, the back end's at
+/// keyframes, and the map at last.
+static LANES: [Lane; 8] = [
+    Lane {
+        name: "predict",
+        done: |_| Done::Well,
+        data: |report| {
+            let at = report.registration.prediction;
+            let off_m = (at.position() - report.registration.estimate.position()).norm();
+            format!(
+                "robot at ({}, {}) m, {off_m:.3} m from where the sweep puts it",
+                signed(at.x(), 2),
+                signed(at.y(), 2)
+            )
+        },
+    },
+    Lane {
+        name: "register",
+        done: |report| judged(report.registration.accepted),
+        data: |report| {
+            let found = &report.registration.matched;
+            format!(
+                "{} pairs within τ = {:.2} m, rmse {:.3} m, {} iterations",
+                found.inliers, report.registration.tau_m, found.rmse_m, found.iterations
+            )
+        },
+    },
+    Lane {
+        name: "keyframe",
+        done: |report| only(report.new_keyframe.is_some()),
+        data: |report| match report.new_keyframe {
+            Some(node) => format!("node {node} and an edge to node {}", node.saturating_sub(1)),
+            None => NOTHING.to_owned(),
+        },
+    },
+    Lane {
+        name: "candidate",
+        done: |report| only(report.loop_attempt.is_some()),
+        data: |report| {
+            of_loop(report, |attempt| {
+                let candidate = &attempt.verification.candidate;
+                let new = attempt.verification.from_node;
+                format!(
+                    "node {new} to node {}, {:.2} m away in the graph",
+                    candidate.node, candidate.distance_m
+                )
+            })
+        },
+    },
+    Lane {
+        name: "fit",
+        done: |report| match &report.loop_attempt {
+            None => Done::Not,
+            Some(attempt) => judged(!matches!(
+                attempt.verification.rejection,
+                Some(
+                    LoopRejection::PoorFit { .. }
+                        | LoopRejection::FewInliers { .. }
+                        | LoopRejection::NoPlace { .. }
+                )
+            )),
+        },
+        data: |report| {
+            of_loop(report, |attempt| {
+                let found = &attempt.verification;
+                format!("{} pairs, rmse {:.3} m", found.inliers, found.rmse_m)
+            })
+        },
+    },
+    Lane {
+        name: "gate",
+        done: |report| match &report.loop_attempt {
+            None => Done::Not,
+            Some(attempt) => judged(attempt.verification.gate.passes()),
+        },
+        data: |report| {
+            of_loop(report, |attempt| {
+                let gate = &attempt.verification.gate;
+                let side = if gate.passes() { "below" } else { "above" };
+                format!("chi-squared {:.2} {side} {:.3}", gate.chi2, gate.gate_chi2)
+            })
+        },
+    },
+    Lane {
+        name: "optimize",
+        done: |report| only(closed_loop(report)),
+        data: |report| {
+            of_loop(report, |attempt| match &attempt.effect {
+                Some(effect) => format!(
+                    "{} iterations, chi-squared {:.1} to {:.1}, nodes moved by up to {:.2} m",
+                    effect.iterations, effect.chi2.before, effect.chi2.after, effect.max_shift_m
+                ),
+                None => NOTHING.to_owned(),
+            })
+        },
+    },
+    Lane {
+        name: "repaint",
+        done: |report| only(closed_loop(report)),
+        data: |report| {
+            of_loop(report, |attempt| match attempt.effect {
+                Some(_) => format!(
+                    "the grid from the sweeps of {} keyframes",
+                    attempt.verification.from_node + 1
+                ),
+                None => NOTHING.to_owned(),
+            })
+        },
+    },
+];
+
+/// What a lane says of a tick in which it had nothing to do.
+const NOTHING: &str = "nothing to do";
+
+fn of_loop(report: &TickReport, say: impl Fn(&LoopAttempt) -> String) -> String {
+    let attempt = report.loop_attempt.as_ref();
+    attempt.map_or_else(|| NOTHING.to_owned(), say)
+}
+
+fn judged(well: bool) -> Done {
+    if well { Done::Well } else { Done::Refused }
+}
+
+fn only(done: bool) -> Done {
+    if done { Done::Well } else { Done::Not }
+}
+
+fn closed_loop(report: &TickReport) -> bool {
+    report
+        .loop_attempt
+        .as_ref()
+        .is_some_and(|attempt| attempt.accepted())
+}
+
+/// Name of a lane.
+pub fn name(lane: usize) -> &'static str {
+    LANES[lane].name
+}
+
+/// The lane of that name.
+pub fn of_name(name: &str) -> Option<usize> {
+    LANES.iter().position(|lane| lane.name == name)
+}
+
+/// Height of a lane on the axis: the first one on top.
+fn height(lane: usize) -> f64 {
+    (LANES.len() - lane) as f64
+}
+
+/// Everything that was done up to a tick.
+fn done(record: &LapRecord, now: usize, wanted: Done) -> Vec<[f64; 2]> {
+    let reports = record.lap.reports.iter().take(now);
+    reports
+        .flat_map(|report| {
+            let lanes = LANES.iter().enumerate();
+            let of = lanes.filter(move |(_, lane)| (lane.done)(report) == wanted);
+            of.map(move |(lane, _)| [report.tick as f64, height(lane)])
+        })
+        .collect()
+}
+
+/// What every lane did in a tick, by its name.
+pub fn data(report: &TickReport) -> impl Iterator<Item = (&'static str, String)> + '_ {
+    LANES
+        .iter()
+        .map(move |lane| (lane.name, (lane.data)(report)))
+}
+
+/// The lanes up to a tick; a ring stands round the mark of the chosen lane at the tick shown.
+pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
+    let last = record.ticks() as f64;
+    let names = LANES.iter().enumerate();
+    let mut layers = vec![Layer::line(
+        vec![[now as f64, 0.4], [now as f64, height(0) + 0.9]],
+        Stroke::Solid,
+        Tone::Faint,
+        2.0,
+    )];
+    layers.extend([
+        Layer::points(
+            done(record, now, Done::Well),
+            Mark::Dot,
+            Tone::Measurement,
+            2.4,
+        ),
+        Layer::points(
+            done(record, now, Done::Refused),
+            Mark::Circle,
+            Tone::Truth,
+            3.5,
+        ),
+    ]);
+    let here = record.lap.report(now);
+    if here.is_some_and(|report| (LANES[chosen].done)(report) != Done::Not) {
+        let at = vec![[now as f64, height(chosen)]];
+        layers.push(Layer::points(at, Mark::Circle, Tone::Ink, 7.0));
+    }
+    layers.extend(names.map(|(lane, Lane { name, .. })| Layer::Text {
+        at: [-0.14 * last, height(lane)],
+        text: format!("{} {name}", height(lane)),
+        tone: Tone::Ink,
+    }));
+    Panel {
+        id: ID,
+        title: "Who does what when".to_owned(),
+        weight: Weight::Side,
+        aspect: Aspect::Free,
+        // The names have room before the first tick, and the ring at the last one is whole.
+        x: Axis::new("tick", -0.28 * last.max(1.0), 1.03 * last.max(1.0)),
+        y: Axis::new("lane", 0.4, height(0) + 0.9),
+        layers,
+        legend: vec![
+            LegendEntry::mark("done, passed", Tone::Measurement, Mark::Dot),
+            LegendEntry::mark("refused", Tone::Truth, Mark::Circle),
+        ],
+        color_bar: None,
+    }
+}
+
+/// Tick and lane of the mark nearest to a spot, within `reach` of it.
+pub fn event_at(
+    record: &LapRecord,
+    now: usize,
+    at: [f64; 2],
+    reach: [f64; 2],
+) -> Option<(f64, usize)> {
+    let away = |mark: &[f64; 2]| {
+        let [x, y] = [0, 1].map(|i: usize| ((mark[i] - at[i]) / reach[i]).abs());
+        x.max(y)
+    };
+    let marks = [Done::Well, Done::Refused].map(|wanted| done(record, now, wanted));
+    let marks = marks.iter().flatten().filter(|mark| away(mark) <= 1.0);
+    let [tick, high] = *marks.min_by(|a, b| away(a).total_cmp(&away(b)))?;
+    Some((tick, LANES.len() - high as usize))
+}

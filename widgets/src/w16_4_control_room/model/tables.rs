@@ -1,0 +1,107 @@
+//! The tables: the event log, and the data of every plot.
+
+use kit::model::Table;
+
+use super::ControlRoom;
+use super::log::Event;
+use super::picture::lanes;
+
+/// Events that the table beside the picture shows.
+const SHOWN_EVENTS: usize = 8;
+
+/// The tables beside the picture.
+pub fn shown(room: &ControlRoom) -> Vec<Table> {
+    vec![this_tick(room), newest_events(&room.events, room.tick())]
+}
+
+/// All tables, the shown ones first.
+pub fn all(room: &ControlRoom) -> Vec<Table> {
+    let mut tables = shown(room);
+    tables.extend([full_log(&room.events), over_time(room)]);
+    tables
+}
+
+/// What every lane did in the tick shown.
+fn this_tick(room: &ControlRoom) -> Table {
+    let done = room.now().into_iter().flat_map(lanes::data);
+    Table::shown(
+        "control-room-tick",
+        format!("Tick {}, lane by lane", room.tick()),
+        &["lane", "what it did"],
+        done.map(|(name, data)| vec![name.to_owned(), data])
+            .collect(),
+    )
+}
+
+/// The newest events up to a tick, newest first.
+fn newest_events(events: &[Event], now: usize) -> Table {
+    let past = &events[..events.partition_point(|event| event.tick <= now)];
+    Table::shown(
+        "control-room-log",
+        "Event log, newest first",
+        &["tick", "part", "event"],
+        past.iter().rev().take(SHOWN_EVENTS).map(row).collect(),
+    )
+}
+
+/// All events, for the export.
+fn full_log(events: &[Event]) -> Table {
+    Table::exported(
+        "control-room-events",
+        "Event log",
+        &["tick", "part", "event"],
+        events.iter().map(row).collect(),
+    )
+}
+
+fn row(event: &Event) -> Vec<String> {
+    vec![
+        event.tick.to_string(),
+        event.part.to_owned(),
+        event.text.clone(),
+    ]
+}
+
+/// All samples of the run, one row a tick.
+fn over_time(room: &ControlRoom) -> Table {
+    let head = [
+        "tick",
+        "tau (m)",
+        "pairs",
+        "rmse (m)",
+        "iterations",
+        "odometry error (m)",
+        "estimate error (m)",
+        "map disagreement (m)",
+    ];
+    let history = &room.history;
+    let rows = room.record.lap.reports.iter().map(|report| {
+        let matched = &report.registration.matched;
+        let tick = report.tick;
+        vec![
+            tick.to_string(),
+            history.tau_m[tick].to_string(),
+            matched.inliers.to_string(),
+            matched.rmse_m.to_string(),
+            matched.iterations.to_string(),
+            history.odometry_error_m[tick].to_string(),
+            history.estimate_error_m[tick].to_string(),
+            finite(history.disagreement_m[tick]),
+        ]
+    });
+    Table::exported(
+        "control-room-over-time",
+        "The run, tick by tick",
+        &head,
+        rows.collect(),
+    )
+}
+
+/// The number, or nothing where there is none.
+fn finite(value: f64) -> String {
+    if value.is_finite() {
+        value.to_string()
+    } else {
+        String::new()
+    }
+}

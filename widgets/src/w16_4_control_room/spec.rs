@@ -1,0 +1,126 @@
+//! The widget's words and its one list of parameters.
+
+use ch16_lab::lap;
+use kit::layers::Opening;
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use kit::playback::SPEED;
+use kit::run::{LOOPS, NOISE, seed};
+use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+
+/// Ticks of a lap.
+const LAP_TICKS: f64 = lap::LAP_TICKS as f64;
+
+pub(super) static SEED: Param<u32> = seed(lap::CANONICAL_SEED);
+
+pub(super) static LANE: OneOf<usize> = OneOf::new(
+    "lane",
+    "lane",
+    &[
+        lane("predict"),
+        lane("register"),
+        lane("keyframe"),
+        lane("candidate"),
+        lane("fit"),
+        lane("gate"),
+        lane("optimize"),
+        lane("repaint"),
+    ],
+    &[0, 1, 2, 3, 4, 5, 6, 7],
+)
+.default("register")
+.help("The thing whose data of this tick are said; a press on a mark of the lanes chooses it.");
+
+pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", LAP_TICKS)
+    .default(60.0)
+    .help("The moment shown; a tick is a quarter of a second, and the marks are loops.");
+
+/// What the reader can change.
+pub const PARAMS: &[&ParamSpec] = &[
+    &NOISE.spec,
+    &LOOPS.spec,
+    &SEED.spec,
+    &LANE.spec,
+    &TICK.spec,
+    &SPEED.spec,
+    &MORE.spec,
+];
+
+const fn lane(name: &'static str) -> Choice {
+    Choice {
+        id: name,
+        label: name,
+    }
+}
+
+/// On to the next event of the log.
+const NEXT_EVENT: ButtonSpec = ButtonSpec {
+    id: "next-event",
+    label: "Next event",
+    help: "On to the next keyframe, loop test or way point; after the last one, to the first.",
+};
+
+/// What never changes.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.4",
+    title: "Control room",
+    misconception: "A SLAM system is not one algorithm that runs: a fast front end and a slow back end pass poses and constraints to each other, and the map is only drawn from them.",
+    notice: &[
+        "The front end works at every tick: it predicts by odometry and corrects by one registration. The threshold τ follows how wrong the predictions were.",
+        "The back end works only at keyframes, and its big moment is a loop: then old poses move.",
+        "The grid stores no poses. After an accepted loop it is thrown away and drawn again from every keyframe's sweep.",
+        "A cell takes the ink of these words where it is likely occupied, and the colour of the paper where it is likely free, on light paper as on dark. Of the tinted rest nothing was seen.",
+        "Each lane is one thing that the system does. The upper two run at every tick, the rest waits for a keyframe. A press on a mark goes there and says its data.",
+        "Walls blur where two passes disagree. At the first loop they sharpen: the cells that are more than 90 % likely to be occupied go from 110 to 156.",
+    ],
+    opening: Opening {
+        panels: &["map", "registration", "lanes"],
+        params: &["noise"],
+        buttons: &["play"],
+    },
+    params: PARAMS,
+    buttons: &[PLAY, STEP, RESET, NEXT_EVENT, DEFAULTS],
+    presets: &[
+        Preset {
+            id: "watch",
+            label: "Watch the whole run",
+            help: "From the first sweep to the end of the lap, over three loops.",
+            set: &[TICK.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "blurred",
+            label: "Just before the first loop",
+            help: "The corridor has been mapped twice, and the two passes disagree by 0.12 m.",
+            set: &[TICK.to(91.0)],
+            then: &[],
+        },
+        Preset {
+            id: "rebuilt",
+            label: "The grid drawn again",
+            help: "One tick and one loop later the passes disagree by 0.08 m, and the walls are sharper.",
+            set: &[TICK.to(92.0)],
+            then: &[],
+        },
+        Preset {
+            id: "noisy",
+            label: "Four times the noise",
+            help: "The threshold τ opens up from 0.77 m to 1.51 m: predictions are worse, so pairs are looked for farther away.",
+            set: &[NOISE.to(4.0), TICK.to(60.0)],
+            then: &[],
+        },
+        Preset {
+            id: "wrong-loop",
+            label: "A wrong loop gets in",
+            help: "Seed 6 at twice the noise: the first loop passes every test, and is 0.36 m off. Only the truth tells, and no robot knows it.",
+            set: &[SEED.to(6), NOISE.to(2.0), TICK.to(92.0)],
+            then: &[],
+        },
+        Preset {
+            id: "open",
+            label: "No loops",
+            help: "Without loops nothing ever moves a pose again. The two passes end 0.24 m apart instead of 0.08 m, and 104 cells are surely occupied instead of 175.",
+            set: &[LOOPS.to(false), TICK.to(LAP_TICKS)],
+            then: &[],
+        },
+    ],
+};

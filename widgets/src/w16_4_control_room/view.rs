@@ -1,0 +1,47 @@
+//! Where the control room's panels stand: the map beside the registration, the lanes over the whole width below.
+
+use kit::layout::PlotHeight;
+use kit::scene::Scene;
+use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
+
+/// The view of [`crate::w16_4_control_room::model::ControlRoom`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ControlRoomView;
+
+impl View for ControlRoomView {
+    fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
+        let lanes = Slot {
+            panel: "lanes",
+            // Three panels above each other stay within two screens of a phone.
+            height: PlotHeight::Fixed(if width < SIDE_BY_SIDE { 200.0 } else { 220.0 }),
+        };
+        let natural = |panel| Slot {
+            panel,
+            height: PlotHeight::Natural { most: 480.0 },
+        };
+        let plot = |panel| Slot {
+            panel,
+            height: PlotHeight::Fixed(130.0),
+        };
+        if width < SIDE_BY_SIDE {
+            let rows = |slots: &[Slot]| slots.iter().map(|slot| Row::of(&[*slot])).collect();
+            return Arrangement {
+                stage: rows(&[natural("map"), natural("registration"), lanes]),
+                below: rows(&[plot("tau"), plot("errors")]),
+            };
+        }
+        let column = |share, panel| Column {
+            share,
+            slots: vec![natural(panel)],
+        };
+        Arrangement {
+            stage: vec![
+                Row {
+                    columns: vec![column(3.0, "map"), column(2.0, "registration")],
+                },
+                Row::of(&[lanes]),
+            ],
+            below: vec![Row::of(&[plot("tau"), plot("errors")])],
+        }
+    }
+}

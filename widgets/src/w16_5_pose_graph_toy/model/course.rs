@@ -1,0 +1,71 @@
+//! The solver's steps from where the reader has put the poses.
+
+use ch16_slam2d::graph::{EdgeId, EdgeView, PoseGraph};
+use pr_geom::SE2;
+
+use crate::w16_5_pose_graph_toy::spec::MOST_STEPS;
+
+/// A step that moves no pose by as much ends the course, m and rad added.
+const REST: f64 = 1e-6;
+
+/// The graph after one number of steps.
+pub struct Moment {
+    /// The poses.
+    pub poses: Vec<SE2>,
+    /// `eᵀΩe` of each edge.
+    pub edge_chi2: Vec<f64>,
+    /// Their sum.
+    pub chi2: f64,
+    /// How far the step to here moved a pose at most, m and rad added; 0 at the start.
+    pub moved: f64,
+}
+
+/// All steps to rest.
+pub struct Course {
+    /// The edges, which no step changes.
+    pub edges: Vec<EdgeView>,
+    /// The start, and the graph after each step.
+    pub moments: Vec<Moment>,
+    /// Whether a step could not be computed.
+    pub failed: bool,
+}
+
+impl Course {
+    /// Steps until nothing moves any more.
+    pub fn new(mut graph: PoseGraph) -> Self {
+        let edges: Vec<_> = graph.edges().collect();
+        let mut moments = vec![moment(&graph, &edges, 0.0)];
+        let mut failed = false;
+        while moments.len() <= MOST_STEPS {
+            let moved = graph.optimize_once(f64::INFINITY);
+            if !moved.is_finite() {
+                failed = true;
+                break;
+            }
+            if moved < REST {
+                break;
+            }
+            moments.push(moment(&graph, &edges, moved));
+        }
+        Self {
+            edges,
+            moments,
+            failed,
+        }
+    }
+
+    /// Number of steps.
+    pub fn last(&self) -> usize {
+        self.moments.len() - 1
+    }
+}
+
+fn moment(graph: &PoseGraph, edges: &[EdgeView], moved: f64) -> Moment {
+    let of = |id: EdgeId| graph.edge_chi2(id);
+    Moment {
+        poses: graph.poses().to_vec(),
+        edge_chi2: edges.iter().map(|edge| of(edge.id)).collect(),
+        chi2: graph.chi2(),
+        moved,
+    }
+}

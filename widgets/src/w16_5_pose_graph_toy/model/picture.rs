@@ -1,0 +1,279 @@
+//! The panels: poses tied by springs, a bar for each spring, χ² over the steps.
+
+use ch16_slam2d::graph::{EdgeKind, EdgeView};
+use kit::chart::{Series, TimeChart, axis_from_zero};
+use kit::scene::{
+    Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight,
+};
+use pr_geom::{SE2, math};
+
+use super::hands::turn_handle;
+use super::{PoseGraphToy, panel};
+
+use crate::w16_5_pose_graph_toy::spec::PINNED;
+
+/// Room around the poses, m.
+const MARGIN_M: f64 = 0.7;
+/// The map is at least so large, m.
+const LEAST_SIZE_M: [f64; 2] = [3.6, 2.2];
+/// Windings of a spring.
+const WINDINGS: usize = 7;
+/// Half the width of a spring, m.
+const SPRING_M: f64 = 0.05;
+/// The loop runs beside the edges that it spans, m.
+const LOOP_BOW_M: f64 = 0.35;
+
+pub fn scene(toy: &PoseGraphToy) -> Scene {
+    Scene {
+        panels: vec![graph(toy), bars(toy), steps(toy)],
+    }
+}
+
+fn tone(edge: &EdgeView) -> Tone {
+    match edge.edge.kind {
+        EdgeKind::Odometry => Tone::Prediction,
+        EdgeKind::Loop => Tone::Measurement,
+    }
+}
+
+fn graph(toy: &PoseGraphToy) -> Panel {
+    let poses = &toy.shown().poses;
+    let start = &toy.course.moments[0].poses;
+    let mut layers = Vec::new();
+    if toy.step() > 0 {
+        layers.extend(trails(toy));
+        layers.extend(
+            start
+                .iter()
+                .map(|pose| Layer::pose(pose.to_array(), Mark::Circle, Tone::Prior, 6.0)),
+        );
+    }
+    for edge in &toy.course.edges {
+        let (from, to) = (&poses[edge.from.index()], &poses[edge.to.index()]);
+        let bow_m = match edge.edge.kind {
+            EdgeKind::Odometry => 0.0,
+            EdgeKind::Loop => LOOP_BOW_M,
+        };
+        layers.push(Layer::Line {
+            points: spring([from.x(), from.y()], [to.x(), to.y()], bow_m),
+            stroke: Stroke::Solid,
+            tone: tone(edge),
+            // A stiff spring is a thick one.
+            width_px: (0.7 + 1.2 * math::sqrt(edge.edge.information[(0, 0)])) as f32,
+        });
+        let wanted = *from * edge.edge.measurement;
+        layers.push(Layer::segments(
+            vec![[[to.x(), to.y()], [wanted.x(), wanted.y()]]],
+            Stroke::Dotted,
+            tone(edge),
+            2.0,
+        ));
+        layers.push(Layer::points(
+            vec![[wanted.x(), wanted.y()]],
+            Mark::Plus,
+            tone(edge),
+            5.0,
+        ));
+    }
+    layers.extend(poses.iter().enumerate().flat_map(|(k, pose)| node(k, pose)));
+    if toy.values.get(&PINNED) {
+        layers.push(words([poses[0].x(), poses[0].y() - 0.28], "pinned"));
+    }
+    let [x, y] = axes(toy);
+    Panel {
+        id: panel::GRAPH,
+        title: format!(
+            "Step {} of {}: χ² {:.3}",
+            toy.step(),
+            toy.course.last(),
+            toy.shown().chi2
+        ),
+        weight: Weight::Main,
+        aspect: Aspect::Equal,
+        x,
+        y,
+        layers,
+        legend: vec![
+            LegendEntry::mark("pose now, to be dragged", Tone::Posterior, Mark::Square),
+            LegendEntry::mark("as it was put", Tone::Prior, Mark::Circle),
+            LegendEntry::line("odometry", Tone::Prediction, Stroke::Solid),
+            LegendEntry::line("loop", Tone::Measurement, Stroke::Solid),
+            LegendEntry::marked_line(
+                "where an edge sees its pose",
+                Tone::Ink,
+                Mark::Plus,
+                Stroke::Dotted,
+            ),
+        ],
+        color_bar: None,
+    }
+}
+
+fn node(k: usize, pose: &SE2) -> Vec<Layer> {
+    let tip = turn_handle(pose);
+    vec![
+        Layer::segments(
+            vec![[[pose.x(), pose.y()], [tip.x, tip.y]]],
+            Stroke::Solid,
+            Tone::Posterior,
+            2.0,
+        ),
+        Layer::points(vec![[tip.x, tip.y]], Mark::Dot, Tone::Posterior, 4.0),
+        Layer::Handle {
+            at: [pose.x(), pose.y()],
+            tone: Tone::Posterior,
+            label: "drag the pose; its tip turns it",
+        },
+        words([pose.x(), pose.y() + 0.24], &(k + 1).to_string()),
+    ]
+}
+
+fn words(at: [f64; 2], text: &str) -> Layer {
+    Layer::Text {
+        at,
+        text: text.to_owned(),
+        tone: Tone::Ink,
+    }
+}
+
+/// The way of each pose over the steps so far.
+fn trails(toy: &PoseGraphToy) -> impl Iterator<Item = Layer> + '_ {
+    let moments = &toy.course.moments[..=toy.step()];
+    (0..toy.shown().poses.len()).map(|k| {
+        Layer::line(
+            moments
+                .iter()
+                .map(|moment| [moment.poses[k].x(), moment.poses[k].y()])
+                .collect(),
+            Stroke::Solid,
+            Tone::Prior,
+            1.25,
+        )
+    })
+}
+
+/// A zigzag between two points, bowed to the right of the way by so much.
+fn spring(from: [f64; 2], to: [f64; 2], bow_m: f64) -> Vec<[f64; 2]> {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = math::norm2(along[0], along[1]).max(1e-9);
+    let right = [along[1] / length, -along[0] / length];
+    let count = 2 * WINDINGS + 2;
+    let at = |k: usize| {
+        let share = k as f64 / count as f64;
+        let swing = match k {
+            0 | 1 => 0.0,
+            k if k + 1 >= count => 0.0,
+            k if k.is_multiple_of(2) => SPRING_M,
+            _ => -SPRING_M,
+        };
+        let aside = swing + bow_m * 4.0 * share * (1.0 - share);
+        core::array::from_fn(|i| from[i] + share * along[i] + aside * right[i])
+    };
+    (0..=count).map(at).collect()
+}
+
+/// Axes over all poses of all steps, so that nothing jumps while it plays.
+fn axes(toy: &PoseGraphToy) -> [Axis; 2] {
+    let mut bounds = Bounds {
+        min: [f64::INFINITY; 2],
+        max: [f64::NEG_INFINITY; 2],
+    };
+    let poses = toy.course.moments.iter().flat_map(|moment| &moment.poses);
+    for pose in poses {
+        let at = [pose.x(), pose.y()];
+        for (i, at) in at.into_iter().enumerate() {
+            bounds.min[i] = bounds.min[i].min(at);
+            bounds.max[i] = bounds.max[i].max(at);
+        }
+    }
+    let (middle, size) = (bounds.middle(), bounds.size());
+    let axis = |i: usize, label: &str| {
+        // In halves of a metre, so that a drag moves the axes seldom.
+        let half = 0.5 * (size[i] + 2.0 * MARGIN_M).max(LEAST_SIZE_M[i]);
+        let low = (2.0 * (middle[i] - half)).floor() / 2.0;
+        let high = (2.0 * (middle[i] + half)).ceil() / 2.0;
+        Axis::new(label, low, high)
+    };
+    [axis(0, "x (m)"), axis(1, "y (m)")]
+}
+
+/// A bar for the χ² of each spring, and what it was at the start.
+fn bars(toy: &PoseGraphToy) -> Panel {
+    let shown = toy.shown();
+    let start = &toy.course.moments[0];
+    let highest = start
+        .edge_chi2
+        .iter()
+        .chain(&shown.edge_chi2)
+        .copied()
+        .fold(0.0, f64::max);
+    // Room for a number above the highest bar, and for the names above all of them.
+    let y = axis_from_zero("χ²", 1.35 * highest);
+    let mut layers = Vec::new();
+    for (k, edge) in toy.course.edges.iter().enumerate() {
+        let x = k as f64 + 1.0;
+        let (now, was) = (shown.edge_chi2[k], start.edge_chi2[k]);
+        layers.push(Layer::segments(
+            vec![[[x, 0.0], [x, now]]],
+            Stroke::Solid,
+            tone(edge),
+            14.0,
+        ));
+        layers.push(Layer::segments(
+            vec![[[x - 0.3, was], [x + 0.3, was]]],
+            Stroke::Dotted,
+            Tone::Prior,
+            2.0,
+        ));
+        layers.push(words([x, now + 0.09 * y.max], &short(now)));
+        let name = format!("{}–{}", edge.from.index() + 1, edge.to.index() + 1);
+        layers.push(words([x, 0.94 * y.max], &name));
+    }
+    Panel {
+        id: panel::BARS,
+        title: "What each spring costs".to_owned(),
+        weight: Weight::Half,
+        aspect: Aspect::Free,
+        x: Axis::new("spring", 0.4, toy.course.edges.len() as f64 + 0.6),
+        y,
+        layers,
+        legend: vec![LegendEntry::line(
+            "before the first step",
+            Tone::Prior,
+            Stroke::Dotted,
+        )],
+        color_bar: None,
+    }
+}
+
+/// A number of four characters at most.
+fn short(value: f64) -> String {
+    if value < 10.0 {
+        format!("{value:.2}")
+    } else {
+        format!("{value:.0}")
+    }
+}
+
+fn steps(toy: &PoseGraphToy) -> Panel {
+    let chi2: Vec<f64> = toy
+        .course
+        .moments
+        .iter()
+        .map(|moment| moment.chi2)
+        .collect();
+    let chart = TimeChart {
+        id: panel::STEPS,
+        title: "χ² over the steps",
+        x_label: "step",
+        last: toy.course.last(),
+        y_label: "χ²",
+        now: toy.step(),
+    };
+    chart.panel(&[Series {
+        label: "χ² of the graph",
+        values: &chi2,
+        tone: Tone::Posterior,
+        mark: Mark::Square,
+    }])
+}

@@ -1,0 +1,123 @@
+//! The result in words and numbers.
+
+use ch16_slam2d::graph::{EdgeKind, EdgeView};
+use kit::model::{Fact, Outcome, Standing};
+
+use super::PoseGraphToy;
+
+use crate::w16_5_pose_graph_toy::spec::PINNED;
+
+/// `2 to 3`, as the poses are numbered on screen.
+pub fn ends(edge: &EdgeView) -> String {
+    format!("{} to {}", edge.from.index() + 1, edge.to.index() + 1)
+}
+
+/// What an edge is.
+pub fn kind(edge: &EdgeView) -> &'static str {
+    match edge.edge.kind {
+        EdgeKind::Odometry => "odometry",
+        EdgeKind::Loop => "loop",
+    }
+}
+
+/// Good is a graph at rest; without a pin it rests anywhere.
+pub fn standing(toy: &PoseGraphToy) -> Standing {
+    if toy.course.failed {
+        Standing::Bad
+    } else if toy.step() == toy.course.last() {
+        Standing::Good
+    } else {
+        Standing::Neutral
+    }
+}
+
+fn is_pinned(toy: &PoseGraphToy) -> bool {
+    toy.values.get(&PINNED)
+}
+
+pub fn outcome(toy: &PoseGraphToy) -> Outcome {
+    let (shown, step) = (toy.shown(), toy.step());
+    let last = toy.course.last();
+    let before = &toy.course.moments[step.saturating_sub(1)];
+    let verdict = match (step == last, is_pinned(toy)) {
+        _ if toy.course.failed => "no step possible",
+        (true, true) => "at rest",
+        (true, false) => "at rest, anywhere",
+        (false, _) => "springs pull",
+    };
+    let worst = toy
+        .course
+        .edges
+        .iter()
+        .zip(&shown.edge_chi2)
+        .max_by(|(_, a), (_, b)| a.total_cmp(b));
+    let worst = worst.map_or(String::new(), |(edge, chi2)| {
+        format!(
+            "; most of it, {chi2:.3}, is in the {} from {}",
+            kind(edge),
+            ends(edge)
+        )
+    });
+    let sentence = if step == 0 {
+        format!("before the first step χ² is {:.3}{worst}", shown.chi2)
+    } else {
+        format!(
+            "step {step} of {last} takes χ² from {:.3} to {:.3} and moves a pose by {:.2} at most{worst}",
+            before.chi2, shown.chi2, shown.moved
+        )
+    };
+    let floats = if is_pinned(toy) {
+        ""
+    } else {
+        "; nothing is pinned, and χ² is the same wherever the whole graph stands"
+    };
+    let mut facts = vec![
+        Fact::new("chi2", "χ²", shown.chi2, "", 3),
+        Fact::new(
+            "chi2_start",
+            "χ² before the first step",
+            toy.course.moments[0].chi2,
+            "",
+            3,
+        ),
+        Fact::new(
+            "chi2_rest",
+            "χ² at rest",
+            toy.course.moments[last].chi2,
+            "",
+            3,
+        ),
+        Fact::count("steps_to_rest", "steps to rest", last as f64),
+        Fact::new("moved", "moved by the last step", shown.moved, "m + rad", 3),
+    ];
+    let end = shown.poses[shown.poses.len() - 1];
+    facts.push(Fact::metres("last_x_m", "last pose: x", end.x()));
+    facts.push(Fact::metres("last_y_m", "last pose: y", end.y()));
+    Outcome {
+        standing: standing(toy),
+        verdict: verdict.to_owned(),
+        sentence: format!("{sentence}{floats}"),
+        facts,
+    }
+}
+
+pub fn summary(toy: &PoseGraphToy) -> String {
+    let poses = toy.shown().poses.iter().enumerate();
+    let poses = poses.map(|(k, pose)| {
+        format!(
+            "pose {} at x {:.2} m, y {:.2} m, turned {:.0}°",
+            k + 1,
+            pose.x(),
+            pose.y(),
+            pose.theta().to_degrees()
+        )
+    });
+    let poses: Vec<_> = poses.collect();
+    let sentence = outcome(toy).sentence;
+    format!(
+        "A pose graph of {} poses and {} springs. {}. Now {sentence}.",
+        toy.shown().poses.len(),
+        toy.course.edges.len(),
+        poses.join("; ")
+    )
+}

@@ -1,0 +1,218 @@
+//! The widget's words and its one list of parameters.
+
+use kit::layers::Opening;
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use kit::playback::SPEED;
+use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+
+/// Poses of the largest graph.
+pub const MOST_POSES: usize = 6;
+
+/// A pose is moved at most so far from where odometry puts it, m.
+pub const REACH_M: f64 = 3.0;
+
+/// Steps at which the solver ends in any case.
+pub const MOST_STEPS: usize = 20;
+
+/// What the loop of the chapter's three poses measures beyond odometry, m.
+const CHAPTER_GAP_M: f64 = 0.6;
+
+/// Which graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// The chapter's three poses on a line.
+    Line,
+    /// Four poses around a square.
+    Square,
+    /// Six poses around a ring.
+    Ring,
+}
+
+pub(super) static STIFFNESS: Param<f64> =
+    Param::slider("stiffness", "stiffness of the loop", [0.1, 10.0], 0.1)
+        .unit("×")
+        .default(1.0)
+        .help(
+            "How sure the loop is, against each edge of odometry: a stiffer spring gives way less.",
+        );
+
+pub(super) static GRAPH: OneOf<Shape> = OneOf::new(
+    "graph",
+    "graph",
+    &[
+        Choice::new("line", "three poses"),
+        Choice::new("square", "a square"),
+        Choice::new("ring", "a ring of six"),
+    ],
+    &[Shape::Line, Shape::Square, Shape::Ring],
+)
+.help("The chapter's three poses on a line, four around a square, or six around a ring.");
+
+pub(super) static GAP: Param<f64> = Param::slider(
+    "gap",
+    "the loop disagrees by",
+    [-1.5, 1.5],
+    0.05,
+)
+.unit("m")
+.default(CHAPTER_GAP_M)
+.help("How much farther ahead of the first pose the loop sees the last one than odometry does.");
+
+pub(super) static ODOMETRY: Param<f64> =
+    Param::slider("odometry", "stiffness of odometry", [0.1, 10.0], 0.1)
+        .unit("×")
+        .default(1.0)
+        .help("How sure each edge of odometry is.");
+
+pub(super) static PINNED: Param<bool> = Param::switch("pinned", "pin the first pose")
+    .on()
+    .help("Measurements are relative: without a pin the whole graph may stand anywhere.");
+
+pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MOST_STEPS as f64)
+    .help("How many steps of the solver are done; 0 is the graph as it was put.");
+
+/// The parameters that move a pose: along x, along y, and turned.
+pub(super) static MOVED: [[Param<f64>; 3]; MOST_POSES] = [
+    [
+        along("x1", "pose 1: moved in x"),
+        along("y1", "pose 1: moved in y"),
+        turn("turn1", "pose 1: turned"),
+    ],
+    [
+        along("x2", "pose 2: moved in x"),
+        along("y2", "pose 2: moved in y"),
+        turn("turn2", "pose 2: turned"),
+    ],
+    [
+        along("x3", "pose 3: moved in x"),
+        along("y3", "pose 3: moved in y"),
+        turn("turn3", "pose 3: turned"),
+    ],
+    [
+        along("x4", "pose 4: moved in x"),
+        along("y4", "pose 4: moved in y"),
+        turn("turn4", "pose 4: turned"),
+    ],
+    [
+        along("x5", "pose 5: moved in x"),
+        along("y5", "pose 5: moved in y"),
+        turn("turn5", "pose 5: turned"),
+    ],
+    [
+        along("x6", "pose 6: moved in x"),
+        along("y6", "pose 6: moved in y"),
+        turn("turn6", "pose 6: turned"),
+    ],
+];
+
+/// What the reader can change.
+pub const PARAMS: &[&ParamSpec] = &[
+    &STIFFNESS.spec,
+    &GRAPH.spec,
+    &GAP.spec,
+    &ODOMETRY.spec,
+    &PINNED.spec,
+    &MOVED[0][0].spec,
+    &MOVED[0][1].spec,
+    &MOVED[0][2].spec,
+    &MOVED[1][0].spec,
+    &MOVED[1][1].spec,
+    &MOVED[1][2].spec,
+    &MOVED[2][0].spec,
+    &MOVED[2][1].spec,
+    &MOVED[2][2].spec,
+    &MOVED[3][0].spec,
+    &MOVED[3][1].spec,
+    &MOVED[3][2].spec,
+    &MOVED[4][0].spec,
+    &MOVED[4][1].spec,
+    &MOVED[4][2].spec,
+    &MOVED[5][0].spec,
+    &MOVED[5][1].spec,
+    &MOVED[5][2].spec,
+    &STEPS.spec,
+    &SPEED.spec,
+    &MORE.spec,
+];
+
+const fn along(id: &'static str, label: &'static str) -> Param<f64> {
+    Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
+        .unit("m")
+        .help("How far the pose is put from where odometry has it, before the first step.")
+}
+
+const fn turn(id: &'static str, label: &'static str) -> Param<f64> {
+    Param::slider(id, label, [-180.0, 180.0], 1.0)
+        .unit("°")
+        .help("How far the pose is turned from where odometry has it, before the first step.")
+}
+
+/// One step of the solver, under the name that it has here.
+const ONE_STEP: ButtonSpec = ButtonSpec {
+    label: "One step",
+    help: "One Gauss–Newton step: every pose moves at once.",
+    ..STEP
+};
+
+/// What never changes.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.5",
+    title: "Pose-graph toy",
+    misconception: "No measurement is put right and none is thrown away: each gives way by as much as it is unsure.",
+    notice: &[
+        "Each edge is a spring at rest where its measurement holds. The dotted line shows what is missing, the bar what it costs.",
+        "On a line one step is the answer, from anywhere: the problem is linear. Headings make it bend, and then it takes a few.",
+        "The disagreement does not vanish. It is shared out, and a stiff spring takes less of it.",
+        "Without a pin nothing changes but the place: χ² knows only differences, so the whole graph floats.",
+    ],
+    opening: Opening {
+        panels: &["graph", "bars"],
+        params: &["stiffness"],
+        buttons: &["play", "step", "reset"],
+    },
+    params: PARAMS,
+    buttons: &[PLAY, ONE_STEP, RESET, DEFAULTS],
+    presets: &[
+        Preset {
+            id: "three-poses",
+            label: "The chapter's three poses",
+            help: "One step takes χ² from 0.36 to 0.12: each of the three edges gives way by 0.2 m.",
+            set: &[],
+            then: &["step"],
+        },
+        Preset {
+            id: "stiff",
+            label: "A loop that is sure",
+            help: "Ten times as stiff, the loop keeps almost all of its word, and odometry gives way.",
+            set: &[STIFFNESS.to(10.0)],
+            then: &["step"],
+        },
+        Preset {
+            id: "unpinned",
+            label: "Unpin the gauge",
+            help: "The last pose is put 1 m too far, and nothing is held: χ² falls to 0.12 all the same, with all poses elsewhere.",
+            set: &[PINNED.to(false), MOVED[2][0].to(1.0)],
+            then: &["step"],
+        },
+        Preset {
+            id: "square",
+            label: "A square that does not close",
+            help: "Four sides and a loop that sees the end elsewhere: the whole square gives way a little.",
+            set: &[GRAPH.to("square"), STEPS.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "tangled",
+            label: "A tangled ring",
+            help: "One pose is thrown far off and turned: headings bend the problem, and it takes a few steps.",
+            set: &[
+                GRAPH.to("ring"),
+                MOVED[3][0].to(1.5),
+                MOVED[3][1].to(1.0),
+                MOVED[3][2].to(60.0),
+                STEPS.to(0.0),
+            ],
+            then: &["play"],
+        },
+    ],
+};

@@ -1,0 +1,35 @@
+//! Where the panels stand: the graph beside the bars of its springs, χ² over the steps below.
+
+use kit::layout::PlotHeight;
+use kit::scene::Scene;
+use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
+
+use crate::w16_5_pose_graph_toy::model::panel;
+
+/// The widget's arrangement.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ToyView;
+
+impl View for ToyView {
+    fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
+        let slot = |panel, height| Slot { panel, height };
+        let graph = slot(panel::GRAPH, PlotHeight::Natural { most: 420.0 });
+        let bars = slot(panel::BARS, PlotHeight::Fixed(150.0));
+        let steps = slot(panel::STEPS, PlotHeight::Fixed(120.0));
+        let stage = if width >= SIDE_BY_SIDE {
+            let column = |share, slot| Column {
+                share,
+                slots: vec![slot],
+            };
+            vec![Row {
+                columns: vec![column(1.5, graph), column(1.0, bars)],
+            }]
+        } else {
+            vec![Row::of(&[graph]), Row::of(&[bars])]
+        };
+        Arrangement {
+            stage,
+            below: vec![Row::of(&[steps])],
+        }
+    }
+}

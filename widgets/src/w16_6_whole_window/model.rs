@@ -1,0 +1,277 @@
+//! The state of the search and every rule that changes it.
+
+mod hands;
+mod hunt;
+mod picture;
+mod settings;
+mod tables;
+mod words;
+
+use ch16_lab::basin::{BasinScene, BasinStart};
+use ch16_slam2d::icp::IcpWorkspace;
+use ch16_slam2d::search::SearchGoal;
+use kit::model::{
+    Activity, Handle, Model, Motion, Outcome, Standing, Table, Timeline, TimelineMark, press_preset,
+};
+use kit::param::MORE;
+use kit::param::ParamError;
+use kit::playback::SPEED;
+use kit::played::{Played, Pressed};
+use kit::scene::Scene;
+use kit::spec::{PLAY, STEP, WidgetSpec};
+use kit::values::{Changed, Values};
+use pr_geom::{SE2, math};
+
+use crate::w16_6_whole_window::spec::{
+    DX, DY, HEADING, OFFSET_SPAN_M, PARAMS, PROGRESS, SEED, SPEC,
+};
+use hunt::{Hunt, Refined};
+
+/// Names of the panels.
+pub mod panel {
+    /// The two sweeps.
+    pub const SWEEPS: &str = "sweeps";
+    /// The places of the window, with the best score of each.
+    pub const PLACES: &str = "places";
+    /// Bounds of the boxes over the heading.
+    pub const BOUNDS: &str = "bounds";
+    /// The largest bound and the best score over the steps.
+    pub const GAP: &str = "gap";
+}
+
+/// A search plays in that many seconds at normal speed, however long it is.
+const PLAYS_FOR_S: f64 = 12.0;
+
+/// Steps of ICP a second at normal speed.
+const REFINES_PER_S: f64 = 4.0;
+
+/// The whole window without its picture.
+pub struct WholeWindow {
+    values: Values,
+    played: Played,
+    scene: BasinScene,
+    workspace: IcpWorkspace,
+    hunt: Hunt,
+    /// Searches begun so far.
+    searches: u64,
+}
+
+impl Default for WholeWindow {
+    /// The start from which ICP fails, before the search.
+    fn default() -> Self {
+        let values = Values::defaults(PARAMS);
+        let scene = BasinScene::with_seed(values.get(&SEED));
+        let mut workspace = IcpWorkspace::new();
+        Self {
+            hunt: Hunt::new(&scene, settings::config(&values), &mut workspace),
+            played: Played::along(&PROGRESS),
+            values,
+            scene,
+            workspace,
+            searches: 1,
+        }
+    }
+}
+
+impl WholeWindow {
+    fn start_over(&mut self) {
+        let config = settings::config(&self.values);
+        self.hunt = Hunt::new(&self.scene, config, &mut self.workspace);
+        self.searches += 1;
+    }
+
+    /// Where ICP starts, the window's middle.
+    fn guess(&self) -> SE2 {
+        self.scene.guess(&self.hunt.window.config().start)
+    }
+
+    /// Boxes that the search has taken up, all of them.
+    fn boxes_taken(&self) -> usize {
+        self.hunt.window.moments().len() - 1
+    }
+
+    /// ICP from what was found.
+    fn refined(&self) -> Option<&Refined> {
+        let found = self.hunt.found.as_ref()?;
+        found.home.as_ref().map(|(_, refined)| refined)
+    }
+
+    /// Last place on the timeline: the boxes, and the steps of ICP behind them.
+    fn last(&self) -> usize {
+        let refining = self.refined().map_or(0, |refined| refined.way.len() - 1);
+        self.boxes_taken() + refining
+    }
+
+    fn place(&self) -> usize {
+        self.played.place(&self.values, self.last() as f64) as usize
+    }
+
+    /// Boxes taken up at the place that is shown.
+    fn step(&self) -> usize {
+        self.place().min(self.boxes_taken())
+    }
+
+    /// Steps of ICP at the place that is shown; none while it is searched.
+    fn refining(&self) -> Option<usize> {
+        let refining = self.place().checked_sub(self.boxes_taken())?;
+        self.refined().map(|_| refining)
+    }
+
+    /// The pose that is shown: ICP's, the best one so far, or the start.
+    fn shown_pose(&self) -> SE2 {
+        if let (Some(k), Some(refined)) = (self.refining(), self.refined()) {
+            return refined.way[k];
+        }
+        let moment = &self.hunt.window.moments()[self.step()];
+        moment.best.map_or_else(|| self.guess(), |best| best.pose)
+    }
+
+    /// Makes a pose the start, rounded so that links stay short.
+    fn start_at(&mut self, start: BasinStart) {
+        let rounded = |value: f64, per_unit: f64| (value * per_unit).round() / per_unit;
+        let offset = |value: f64| rounded(value, 100.0).clamp(-OFFSET_SPAN_M, OFFSET_SPAN_M);
+        let turned = SE2::new(0.0, 0.0, start.heading_deg.to_radians()).theta();
+        self.played.pause();
+        self.values.put(
+            &HEADING,
+            rounded(turned.to_degrees(), 1.0).clamp(-180.0, 180.0),
+        );
+        self.values.put(&DX, offset(start.dx_m));
+        self.values.put(&DY, offset(start.dy_m));
+        self.values.put(&PROGRESS, 0.0);
+        self.start_over();
+    }
+}
+
+impl Model for WholeWindow {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        if self.values.set(SPEC.id, id, value)? == Changed::No
+            || [PROGRESS.id, SPEED.id, MORE.id].contains(&id)
+        {
+            return Ok(());
+        }
+        if id == "seed" {
+            self.scene = BasinScene::with_seed(self.values.get(&SEED));
+        }
+        self.start_over();
+        Ok(())
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        let plays = id == PLAY.id && self.played.motion() == Motion::Full;
+        if [PLAY.id, STEP.id].contains(&id) && !plays {
+            // The end has to be known.
+            self.settle();
+        }
+        let last = self.last() as f64;
+        match self.played.press(&mut self.values, id, last) {
+            Pressed::Transport => {}
+            Pressed::Defaults => {
+                self.scene = BasinScene::with_seed(self.values.get(&SEED));
+                self.start_over();
+            }
+            Pressed::Other => return press_preset(self, id),
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        if self.played.is_playing() && self.hunt.found.is_none() {
+            // The search is ahead of its playback: it ends in a few frames.
+            return Activity::Busy;
+        }
+        let (here, last) = (self.place() as f64, self.last() as f64);
+        let searched = self.boxes_taken() as f64;
+        let rate = if here < searched {
+            math::max(searched / PLAYS_FOR_S, REFINES_PER_S)
+        } else {
+            REFINES_PER_S
+        };
+        let activity = self.played.advance(&mut self.values, last, elapsed_s, rate);
+        // ICP goes at its own pace, from its first step on.
+        if here < searched && self.played.is_playing() && self.place() as f64 > searched {
+            self.values.put(&PROGRESS, searched);
+        }
+        activity
+    }
+
+    fn work(&mut self) -> Activity {
+        if self.hunt.search(&self.scene, &mut self.workspace) == Activity::Busy {
+            return Activity::Busy;
+        }
+        self.hunt.fill()
+    }
+
+    fn settle(&mut self) -> Activity {
+        if self.hunt.is_settled() {
+            return Activity::Idle;
+        }
+        while self.hunt.search(&self.scene, &mut self.workspace) == Activity::Busy {}
+        Activity::Busy
+    }
+
+    fn scene(&self) -> Scene {
+        picture::scene(self)
+    }
+
+    fn outcome(&self) -> Outcome {
+        words::outcome(self)
+    }
+
+    fn summary(&self) -> String {
+        words::summary(self)
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        let moments = self.hunt.window.moments();
+        let mut marks = Vec::new();
+        let mut mark = |at: usize, label: &str, standing| {
+            marks.push(TimelineMark {
+                at: at as f64,
+                label: label.to_owned(),
+                standing,
+            });
+        };
+        if self.hunt.found.is_some() {
+            let after = moments.iter().position(|m| m.goal == SearchGoal::RunnerUp);
+            if let Some(at) = after {
+                mark(at - 1, "the best pose is certain", Standing::Neutral);
+            }
+            let standing = words::standing(self);
+            mark(self.last(), words::verdict(self), standing);
+        }
+        Some(self.played.timeline(self.last() as f64, marks))
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        tables::all(self)
+    }
+
+    fn shown_tables(&self) -> Vec<Table> {
+        tables::shown(self)
+    }
+
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        hands::grab(self, panel, at, reach)
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        hands::drag(self, handle, at);
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        if self.played.is_playing() {
+            self.settle();
+        }
+        let last = self.last() as f64;
+        self.played.set_motion(&mut self.values, motion, last);
+    }
+}

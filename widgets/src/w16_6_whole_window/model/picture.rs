@@ -1,0 +1,102 @@
+//! The panels: the sweeps, the places of the window, the bounds over the heading, the gap over time.
+
+mod bounds;
+mod places;
+
+use ch16_slam2d::cloud::PointCloud;
+use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
+use pr_geom::SE2;
+
+use super::hands::turn_handle;
+use super::words::now;
+use super::{WholeWindow, panel};
+
+pub fn scene(window: &WholeWindow) -> Scene {
+    Scene {
+        panels: vec![
+            sweeps(window),
+            places::panel(window),
+            bounds::panel(window),
+            bounds::gap(window),
+        ],
+    }
+}
+
+fn sweeps(window: &WholeWindow) -> Panel {
+    let scene = &window.scene;
+    let guess = window.guess();
+    let pose = window.shown_pose();
+    let turn = turn_handle(&guess);
+    let mut layers = vec![
+        points(scene.target(), Mark::Cross, Tone::Measurement, 3.0),
+        // ICP alone: its end, and its way there.
+        points(
+            &scene.source().transformed(&window.hunt.alone.outcome.pose),
+            Mark::Dot,
+            Tone::Prediction,
+            1.6,
+        ),
+        Layer::line(
+            window.hunt.alone.way.iter().map(position).collect(),
+            Stroke::Dotted,
+            Tone::Prediction,
+            1.5,
+        ),
+        points(
+            &scene.source().transformed(&pose),
+            Mark::Square,
+            Tone::Posterior,
+            2.6,
+        ),
+        sensor(scene.truth(), Mark::Plus, Tone::Truth),
+        sensor(guess, Mark::Circle, Tone::Prior),
+        Layer::segments(
+            vec![[position(&guess), [turn.x, turn.y]]],
+            Stroke::Solid,
+            Tone::Prior,
+            1.5,
+        ),
+        Layer::Handle {
+            at: [turn.x, turn.y],
+            tone: Tone::Prior,
+            label: "turn the start; drag its sensor to move it",
+        },
+        sensor(pose, Mark::Square, Tone::Posterior),
+    ];
+    if window.step() == 0 && window.place() == 0 {
+        // Before the search the source lies at the start.
+        layers.pop();
+    }
+    Panel {
+        id: panel::SWEEPS,
+        title: now(window),
+        weight: Weight::Main,
+        aspect: Aspect::Equal,
+        x: Axis::new("x from the target's sensor (m)", -3.2, 3.2),
+        y: Axis::new("y (m)", -2.9, 3.3),
+        layers,
+        legend: vec![
+            LegendEntry::mark("target", Tone::Measurement, Mark::Cross),
+            LegendEntry::mark("best pose so far", Tone::Posterior, Mark::Square),
+            LegendEntry::mark("start, to be turned", Tone::Prior, Mark::Circle),
+            LegendEntry::mark("where ICP alone ends", Tone::Prediction, Mark::Dot),
+            LegendEntry::mark("truth", Tone::Truth, Mark::Plus),
+        ],
+        color_bar: None,
+    }
+}
+
+/// Where a sensor stands.
+pub fn position(pose: &SE2) -> [f64; 2] {
+    [pose.x(), pose.y()]
+}
+
+/// Where a sensor stands and looks.
+pub fn sensor(pose: SE2, mark: Mark, tone: Tone) -> Layer {
+    Layer::pose(pose.to_array(), mark, tone, 6.0)
+}
+
+fn points(cloud: &PointCloud, mark: Mark, tone: Tone, radius_px: f32) -> Layer {
+    let points = cloud.iter().map(|p| [p.x, p.y]).collect();
+    Layer::points(points, mark, tone, radius_px)
+}

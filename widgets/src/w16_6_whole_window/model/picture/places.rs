@@ -1,0 +1,98 @@
+//! The window from above: the best score of each place, and the boxes that wait over it.
+
+use ch16_slam2d::search::PoseBox;
+use kit::scene::{
+    Aspect, Axis, Bounds, Cell, Layer, LegendEntry, Mark, Panel, Raster, Stroke, Tone, Weight,
+};
+
+use super::super::{WholeWindow, panel};
+use super::sensor;
+
+/// Room around the window: a share of its width.
+const MARGIN: f64 = 0.06;
+
+pub fn panel(window: &WholeWindow) -> Panel {
+    let search = &window.hunt.window;
+    let moment = &search.moments()[window.step()];
+    let [low, high] = search.search().extent_m();
+    let margin = MARGIN * (high[0] - low[0]);
+    let mut layers = vec![
+        Layer::Raster(raster(window)),
+        boxes(
+            search
+                .boxes()
+                .iter()
+                .filter(|seen| seen.waits_after(window.step()))
+                .map(|seen| &seen.poses),
+            Tone::Prediction,
+            1.0,
+        ),
+    ];
+    if let Some(taken) = moment.taken {
+        let taken = core::iter::once(&search.boxes()[taken].poses);
+        layers.push(boxes(taken, Tone::Posterior, 2.5));
+    }
+    layers.push(sensor(window.scene.truth(), Mark::Plus, Tone::Truth));
+    layers.push(sensor(window.guess(), Mark::Circle, Tone::Prior));
+    if let Some(runner_up) = moment.runner_up {
+        layers.push(sensor(runner_up.pose, Mark::Triangle, Tone::Prediction));
+    }
+    if moment.best.is_some() {
+        layers.push(sensor(window.shown_pose(), Mark::Square, Tone::Posterior));
+    }
+    let progress = window.hunt.surface.progress();
+    let filled = if progress < 1.0 {
+        format!(", {:.0} % drawn", (100.0 * progress).floor())
+    } else {
+        String::new()
+    };
+    Panel {
+        id: panel::PLACES,
+        title: format!("Where the sensor may stand: best score{filled}"),
+        weight: Weight::Half,
+        aspect: Aspect::Equal,
+        x: Axis::new("x (m)", low[0] - margin, high[0] + margin),
+        y: Axis::new("y (m)", low[1] - margin, high[1] + margin),
+        layers,
+        legend: vec![
+            LegendEntry::line("box that waits", Tone::Prediction, Stroke::Solid),
+            LegendEntry::line("box taken up", Tone::Posterior, Stroke::Solid),
+            LegendEntry::mark("best", Tone::Posterior, Mark::Square),
+            LegendEntry::mark("runner-up", Tone::Prediction, Mark::Triangle),
+            LegendEntry::mark("the more ink, the better it fits", Tone::Ink, Mark::Dot),
+        ],
+        color_bar: None,
+    }
+}
+
+/// The outlines of boxes from above.
+fn boxes<'a>(boxes: impl Iterator<Item = &'a PoseBox>, tone: Tone, width_px: f32) -> Layer {
+    let mut points = Vec::new();
+    for PoseBox { x_m, y_m, .. } in boxes {
+        points.extend([
+            [x_m[0], y_m[0]],
+            [x_m[1], y_m[0]],
+            [x_m[1], y_m[1]],
+            [x_m[0], y_m[1]],
+            [x_m[0], y_m[0]],
+            [f64::NAN; 2],
+        ]);
+    }
+    Layer::line(points, Stroke::Solid, tone, width_px)
+}
+
+/// Paper where nothing fits, ink where all does.
+fn raster(window: &WholeWindow) -> Raster {
+    let (surface, search) = (&window.hunt.surface, window.hunt.window.search());
+    let [rows, columns] = search.places();
+    let [min, max] = search.extent_m();
+    let cells = surface.by_place().iter();
+    Raster {
+        bounds: Bounds { min, max },
+        columns,
+        rows,
+        cells: cells.map(|score| Cell::Occupancy(*score as f32)).collect(),
+        // Surfaces of two searches may be filled as far.
+        revision: (window.searches << 32) + surface.rows_done() as u64,
+    }
+}

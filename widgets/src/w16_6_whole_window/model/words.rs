@@ -1,0 +1,222 @@
+//! The result in words and numbers.
+
+use ch16_lab::basin::{BasinOutcome, Minimum};
+use ch16_slam2d::search::{BoxFate, SearchGoal};
+use kit::model::{Fact, Outcome, Standing};
+use pr_geom::SE2;
+
+use super::WholeWindow;
+use super::hunt::TURNS;
+
+use crate::w16_6_whole_window::spec::HEADING;
+
+/// How the answer is judged.
+pub fn standing(window: &WholeWindow) -> Standing {
+    match (&window.hunt.found, window.refined()) {
+        (None, _) => Standing::Neutral,
+        (_, Some(refined)) if refined.outcome.ending == Minimum::Right => Standing::Good,
+        _ => Standing::Bad,
+    }
+}
+
+/// The answer in a few words.
+pub fn verdict(window: &WholeWindow) -> &'static str {
+    match (&window.hunt.found, window.refined()) {
+        (None, _) => "searching",
+        (_, None) => "no place fits",
+        (_, Some(refined)) => match refined.outcome.ending {
+            Minimum::Right => "the search finds home",
+            other => other.name(),
+        },
+    }
+}
+
+pub fn outcome(window: &WholeWindow) -> Outcome {
+    let counts = window.hunt.window.search().counts();
+    let alone = &window.hunt.alone.outcome;
+    let start = format!(
+        "From {:.0}° off, ICP alone ends {}.",
+        window.values.get(&HEADING),
+        ending(alone)
+    );
+    let work = format!(
+        "The search makes {} sums over the points in place of {}",
+        counts.scored(),
+        counts.window
+    );
+    let result = window.hunt.window.result();
+    let answer = match (&window.hunt.found, window.refined(), &result) {
+        (Some(_), Some(refined), Some(result)) => {
+            let ahead = result.margin().map_or(String::new(), |margin| {
+                format!(", {margin:.3} ahead of the next place")
+            });
+            format!(
+                "{work}; its best pose scores {:.3}{ahead}, and ICP from there ends {}.",
+                result.best.score,
+                ending(&refined.outcome)
+            )
+        }
+        (Some(_), ..) => format!("{work}, and no pose of the window scores half or more."),
+        (None, ..) => "The search is under way.".to_owned(),
+    };
+    Outcome {
+        standing: standing(window),
+        verdict: verdict(window).to_owned(),
+        sentence: format!("{start} {answer}"),
+        facts: facts(window),
+    }
+}
+
+fn facts(window: &WholeWindow) -> Vec<Fact> {
+    let counts = window.hunt.window.search().counts();
+    let found = window.hunt.found.as_ref();
+    let result = window.hunt.window.result().filter(|_| found.is_some());
+    let or_none = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let end = window.refined().map(|refined| &refined.outcome);
+    let alone = &window.hunt.alone.outcome;
+    let best = result.map(|result| result.best);
+    let behind = |turns: &[usize]| {
+        let rivals = turns.iter().filter_map(|&k| found?.rivals[k]);
+        let score = rivals.map(|rival| rival.score).reduce(f64::max);
+        or_none(best.zip(score).map(|(best, score)| best.score - score))
+    };
+    vec![
+        Fact::metres(
+            "error_m",
+            "position error at the end",
+            or_none(end.map(|e| e.error_m)),
+        ),
+        Fact::new(
+            "error_deg",
+            "heading error at the end",
+            or_none(end.map(|e| e.error_deg)),
+            "°",
+            1,
+        ),
+        Fact::metres("icp_error_m", "position error of ICP alone", alone.error_m),
+        Fact::new(
+            "icp_error_deg",
+            "heading error of ICP alone",
+            alone.error_deg,
+            "°",
+            1,
+        ),
+        Fact::new(
+            "score",
+            "score of the best pose",
+            or_none(best.map(|b| b.score)),
+            "",
+            3,
+        ),
+        Fact::new(
+            "margin",
+            "the next place is behind by",
+            or_none(result.and_then(|result| result.margin())),
+            "",
+            3,
+        ),
+        Fact::new(
+            "quarter_behind",
+            "the quarter turn is behind by",
+            behind(&[0, 1]),
+            "",
+            3,
+        ),
+        Fact::new(
+            "half_behind",
+            "the half turn is behind by",
+            behind(&[2]),
+            "",
+            3,
+        ),
+        Fact::count("scored", "sums over the points", counts.scored() as f64),
+        Fact::count("window", "poses of the window", counts.window as f64),
+        Fact::new(
+            "fewer",
+            "times fewer",
+            counts.window as f64 / counts.scored() as f64,
+            "",
+            0,
+        ),
+    ]
+}
+
+pub fn summary(window: &WholeWindow) -> String {
+    let moments = window.hunt.window.moments();
+    let moment = &moments[window.step()];
+    let best = moment.best.map_or("no pose yet".to_owned(), |best| {
+        format!("the best pose so far scores {:.3}", best.score)
+    });
+    let waiting = waiting(window);
+    let turns = window.hunt.found.as_ref().map_or(String::new(), |found| {
+        let told = TURNS
+            .iter()
+            .zip(&found.rivals)
+            .filter_map(|((name, _), rival)| {
+                rival.map(|rival| format!("{name} {:.3}", rival.score))
+            });
+        let told: Vec<_> = told.collect();
+        if told.is_empty() {
+            String::new()
+        } else {
+            format!(" Scores of the other turns: {}.", told.join(", "))
+        }
+    });
+    format!(
+        "Two laser sweeps of one room, and a window of {} poses at {} headings. After {} boxes {waiting} wait and {best}. {}{turns}",
+        moment.counts.window,
+        window.hunt.window.search().headings(),
+        window.step(),
+        outcome(window).sentence
+    )
+}
+
+/// How many boxes wait at the place that is shown.
+pub fn waiting(window: &WholeWindow) -> usize {
+    let boxes = window.hunt.window.boxes().iter();
+    boxes.filter(|seen| seen.waits_after(window.step())).count()
+}
+
+/// What the place that is shown is about.
+pub fn now(window: &WholeWindow) -> String {
+    if let Some(k) = window.refining().filter(|k| *k > 0) {
+        return format!("ICP from there, step {k}");
+    }
+    let search = &window.hunt.window;
+    let moment = &search.moments()[window.step()];
+    let Some(taken) = moment.taken else {
+        return "Before the search: the start".to_owned();
+    };
+    let seen = &search.boxes()[taken];
+    let became = match seen.fate {
+        Some(BoxFate::Split { parts }) => format!("split into {parts}"),
+        Some(BoxFate::Best) => "a pose, the best so far".to_owned(),
+        Some(BoxFate::SamePlace) => "the same place as the best".to_owned(),
+        Some(BoxFate::Pruned) | None => "dropped".to_owned(),
+    };
+    let goal = match moment.goal {
+        SearchGoal::Best => "",
+        SearchGoal::RunnerUp => ", for the runner-up",
+    };
+    format!(
+        "Box {} of {}{goal}: {became}",
+        window.step(),
+        window.boxes_taken()
+    )
+}
+
+/// How far a heading is from the truth, degrees.
+pub fn heading_error_deg(window: &WholeWindow, heading_rad: f64) -> f64 {
+    let turn = SE2::new(0.0, 0.0, heading_rad - window.scene.truth().theta());
+    turn.theta().to_degrees()
+}
+
+fn ending(end: &BasinOutcome) -> String {
+    let off = format!("{:.2} m and {:.1}° off", end.error_m, end.error_deg.abs());
+    match end.ending {
+        Minimum::Right => format!("at home, {off}"),
+        Minimum::Other => format!("in another false minimum, {off}"),
+        Minimum::WrongHeading => format!("at the right place with a wrong heading, {off}"),
+        turn => format!("in the {}, {off}", turn.name()),
+    }
+}

@@ -1,0 +1,133 @@
+//! The widget's words and its one list of parameters.
+
+use ch16_lab::basin::BasinScene;
+use kit::layers::Opening;
+use kit::param::{MORE, Param, ParamSpec};
+use kit::playback::SPEED;
+use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+
+/// Largest offset of a start, m.
+pub const OFFSET_SPAN_M: f64 = 1.5;
+
+/// More boxes than any search takes up, and what ICP adds.
+const MOST_STEPS: f64 = 200_000.0;
+
+pub(super) static HEADING: Param<f64> = Param::slider(
+    "heading",
+    "heading error of the start",
+    [-180.0, 180.0],
+    1.0,
+)
+.unit("°")
+.default(75.0)
+.help("How far the start is turned away from the truth: ICP depends on it, the search does not.");
+
+pub(super) static DX: Param<f64> = offset("dx", "Δx of the start");
+
+pub(super) static DY: Param<f64> = offset("dy", "Δy of the start");
+
+pub(super) static WINDOW: Param<f64> = Param::slider("window", "window ±", [0.5, 3.0], 0.25)
+    .unit("m")
+    .default(1.5)
+    .help("How far from the start the search looks, along x and along y.");
+
+pub(super) static TURN: Param<f64> = Param::slider("turn", "headings ±", [30.0, 180.0], 15.0)
+    .unit("°")
+    .default(180.0)
+    .help("How far from the start's heading the search looks; 180 is the whole turn.");
+
+pub(super) static CELL: Param<f64> = Param::slider("cell", "cell", [0.05, 0.2], 0.01)
+    .unit("m")
+    .default(0.05)
+    .help("How fine the search is; the map is blurred with it.");
+
+pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
+    .help("Where the range noise of both sweeps starts; 457 is the chapter's.");
+
+pub(super) static PROGRESS: Param<f64> = Param::timeline("progress", "boxes taken up", MOST_STEPS)
+    .help("How many boxes the search has taken up; behind the last one come the steps of ICP.");
+
+/// What the reader can change.
+pub const PARAMS: &[&ParamSpec] = &[
+    &HEADING.spec,
+    &DX.spec,
+    &DY.spec,
+    &WINDOW.spec,
+    &TURN.spec,
+    &CELL.spec,
+    &SEED.spec,
+    &PROGRESS.spec,
+    &SPEED.spec,
+    &MORE.spec,
+];
+
+const fn offset(id: &'static str, label: &'static str) -> Param<f64> {
+    Param::slider(id, label, [-OFFSET_SPAN_M, OFFSET_SPAN_M], 0.05)
+        .unit("m")
+        .help("How far the start, which is the window's middle, is moved away from the truth.")
+}
+
+/// One box, under the name that it has here.
+const ONE_BOX: ButtonSpec = ButtonSpec {
+    label: "One box",
+    help: "Take up the most promising box: split it, or drop it.",
+    ..STEP
+};
+
+/// What never changes.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.6",
+    title: "The whole window",
+    misconception: "Searching everything does not mean scoring everything: a bound on a box of poses \
+                    can rule out all of them at once, and the answer is still the best one there is.",
+    notice: &[
+        "A bar is a box of poses, as high as no pose in it can score. Boxes are split, and their bars fall towards the true scores.",
+        "Whatever falls below the best pose so far is dropped unseen. That is why it is exact.",
+        "The half turn is the runner-up. The quarter turn, which traps ICP, is far behind: the search counts the points that fit nowhere.",
+        "The search is as fine as its cells. ICP does the rest, from a start that it can use.",
+    ],
+    opening: Opening {
+        panels: &["sweeps", "places", "bounds"],
+        params: &["heading"],
+        buttons: &["play", "step", "reset"],
+    },
+    params: PARAMS,
+    buttons: &[PLAY, ONE_BOX, RESET, DEFAULTS],
+    presets: &[
+        Preset {
+            id: "quarter-turn",
+            label: "Start 75° off",
+            help: "ICP alone falls into the quarter turn. The search comes home.",
+            set: &[PROGRESS.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "upside-down",
+            label: "Start upside down",
+            help: "ICP alone stays upside down, and fits well. For the search the half turn is the runner-up.",
+            set: &[HEADING.to(180.0), PROGRESS.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "wide",
+            label: "Four times the window",
+            help: "±3 m in place of ±1.5 m: four times the poses, and not twice the work.",
+            set: &[WINDOW.to(3.0), PROGRESS.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "without-home",
+            label: "A window without home",
+            help: "Only ±60° around a start 75° off: home is not in it, and the search says that no place fits.",
+            set: &[TURN.to(60.0), PROGRESS.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "coarse",
+            label: "Coarse cells",
+            help: "Cells of 0.2 m blur the room: the quarter turn fits almost as well as the half turn.",
+            set: &[CELL.to(0.2), PROGRESS.to(0.0)],
+            then: &["play"],
+        },
+    ],
+};

@@ -1,0 +1,44 @@
+//! Where the panels stand: the sweeps beside the places and the bounds, what is left below.
+
+use kit::layout::PlotHeight;
+use kit::scene::Scene;
+use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
+
+use crate::w16_6_whole_window::model::panel;
+
+/// The widget's arrangement.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WindowView;
+
+impl View for WindowView {
+    fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
+        let slot = |panel, height| Slot { panel, height };
+        // Three panels above each other stay within two screens of a phone.
+        let most = if width >= SIDE_BY_SIDE { 330.0 } else { 240.0 };
+        let sweeps = slot(panel::SWEEPS, PlotHeight::Natural { most });
+        let places = slot(panel::PLACES, PlotHeight::Natural { most });
+        let bounds = slot(panel::BOUNDS, PlotHeight::Fixed(150.0));
+        let gap = slot(panel::GAP, PlotHeight::Fixed(120.0));
+        let stage = if width >= SIDE_BY_SIDE {
+            let column = |slot| Column {
+                share: 1.0,
+                slots: vec![slot],
+            };
+            vec![
+                Row {
+                    columns: vec![column(sweeps), column(places)],
+                },
+                Row::of(&[bounds]),
+            ]
+        } else {
+            [sweeps, places, bounds]
+                .iter()
+                .map(|slot| Row::of(&[*slot]))
+                .collect()
+        };
+        Arrangement {
+            stage,
+            below: vec![Row::of(&[gap])],
+        }
+    }
+}

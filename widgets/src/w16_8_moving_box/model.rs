@@ -1,0 +1,199 @@
+//! The state of the three registrations and every rule that changes it.
+
+mod curves;
+mod picture;
+mod settings;
+mod tables;
+mod words;
+
+use ch16_lab::moving_box::{BoxMethods, BoxScene};
+use ch16_slam2d::icp::{IcpSummary, IcpTrace, IcpWorkspace};
+use kit::model::{
+    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, press_preset,
+};
+use kit::param::MORE;
+use kit::param::ParamError;
+use kit::playback::SPEED;
+use kit::played::{Played, Pressed};
+use kit::scene::Scene;
+use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
+
+use crate::w16_8_moving_box::spec::{ITERATION, MOST_SHARE, PARAMS, SHARE, SPEC};
+use curves::Curves;
+
+/// Names of the panels.
+pub mod panel {
+    /// The sweeps as each method registers them, in the order of the core.
+    pub const SWEEPS: [&str; 3] = ["plain", "trimmed", "huber"];
+    /// Bias over the share of the box.
+    pub const BIAS: &str = "bias";
+}
+
+/// Iterations a second at normal speed.
+const STEPS_PER_S: f64 = 5.0;
+
+/// One registration: how it went, and how it ended.
+struct Run {
+    trace: Vec<IcpTrace>,
+    end: IcpSummary,
+    error_m: [f64; 2],
+}
+
+/// The moving box without its picture.
+pub struct MovingBox {
+    values: Values,
+    played: Played,
+    workspace: IcpWorkspace,
+    scene: BoxScene,
+    runs: [Run; 3],
+    curves: Curves,
+}
+
+impl Default for MovingBox {
+    /// A fifth of the points on the box.
+    fn default() -> Self {
+        let values = Values::defaults(PARAMS);
+        let mut workspace = IcpWorkspace::new();
+        let (config, methods) = (settings::config(&values), settings::methods(&values));
+        let scene = BoxScene::new(&config);
+        Self {
+            runs: register(&scene, &methods, &mut workspace),
+            curves: Curves::new(methods, config.moved_m),
+            played: Played::along(&ITERATION),
+            values,
+            workspace,
+            scene,
+        }
+    }
+}
+
+impl MovingBox {
+    fn follow(&mut self) {
+        let (config, methods) = (
+            settings::config(&self.values),
+            settings::methods(&self.values),
+        );
+        self.scene = BoxScene::new(&config);
+        self.runs = register(&self.scene, &methods, &mut self.workspace);
+        self.curves.follow(methods, config.moved_m);
+    }
+
+    /// Last iteration of the longest run.
+    fn last(&self) -> usize {
+        let lasts = self.runs.iter().map(|run| run.trace.len() - 1);
+        lasts.max().unwrap_or_default()
+    }
+
+    fn iteration(&self) -> usize {
+        self.played.place(&self.values, self.last() as f64) as usize
+    }
+
+    /// A run at the iteration that is shown; past its end it rests.
+    fn shown(&self, method: usize) -> &IcpTrace {
+        let trace = &self.runs[method].trace;
+        &trace[self.iteration().min(trace.len() - 1)]
+    }
+}
+
+fn register(scene: &BoxScene, methods: &BoxMethods, workspace: &mut IcpWorkspace) -> [Run; 3] {
+    methods.configs().map(|config| {
+        let end = scene.register(&config, workspace);
+        Run {
+            trace: workspace.trace().to_vec(),
+            error_m: BoxScene::error_m(&end.pose),
+            end,
+        }
+    })
+}
+
+impl Model for MovingBox {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        if self.values.set(SPEC.id, id, value)? == Changed::Yes
+            && ![ITERATION.id, SPEED.id, MORE.id].contains(&id)
+        {
+            self.follow();
+        }
+        Ok(())
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        let last = self.last() as f64;
+        match self.played.press(&mut self.values, id, last) {
+            Pressed::Transport => {}
+            Pressed::Defaults => self.follow(),
+            Pressed::Other => return press_preset(self, id),
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        let last = self.last() as f64;
+        self.played
+            .advance(&mut self.values, last, elapsed_s, STEPS_PER_S)
+    }
+
+    fn work(&mut self) -> Activity {
+        self.curves.work(&mut self.workspace)
+    }
+
+    fn scene(&self) -> Scene {
+        picture::scene(self)
+    }
+
+    fn outcome(&self) -> Outcome {
+        words::outcome(self)
+    }
+
+    fn summary(&self) -> String {
+        words::summary(self)
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        let last = self.last() as f64;
+        Some(self.played.timeline(
+            last,
+            vec![TimelineMark {
+                at: last,
+                label: words::verdict(self).to_owned(),
+                standing: words::standing(self),
+            }],
+        ))
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        tables::all(self)
+    }
+
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        // The line at the share that is shown.
+        let away = at[0] - self.values.get(&SHARE);
+        (panel == panel::BIAS && away.abs() <= reach[0]).then_some(Handle {
+            panel: panel::BIAS,
+            id: "share",
+            offset: [away, 0.0],
+        })
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        let share = (at[0] - handle.offset[0]).round();
+        if share.is_finite() {
+            self.played.pause();
+            self.values.put(&SHARE, share.clamp(0.0, MOST_SHARE));
+            self.follow();
+        }
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        let last = self.last() as f64;
+        self.played.set_motion(&mut self.values, motion, last);
+    }
+}

@@ -1,0 +1,25 @@
+//! What the values of the parameter list mean to the core.
+
+use ch16_lab::moving_box::{BoxConfig, BoxMethods};
+use kit::values::Values;
+
+use crate::w16_8_moving_box::spec::{DROPPED, HUBER, MOVED, SEED, SHARE, TAU, VARIANT};
+
+/// The sweeps above the curves.
+pub fn config(values: &Values) -> BoxConfig {
+    BoxConfig {
+        seed: values.get(&SEED),
+        share: values.get(&SHARE) / 100.0,
+        moved_m: values.get(&MOVED),
+    }
+}
+
+/// What becomes of long pairs.
+pub fn methods(values: &Values) -> BoxMethods {
+    BoxMethods {
+        variant: values.get(&VARIANT),
+        tau_m: values.get(&TAU),
+        dropped: values.get(&DROPPED) / 100.0,
+        huber_width_m: values.get(&HUBER),
+    }
+}

@@ -1,0 +1,120 @@
+//! The result in words and numbers.
+
+use ch16_lab::moving_box::BoxMethods;
+use kit::model::{Fact, Outcome, Standing};
+use pr_geom::math;
+
+use super::MovingBox;
+use super::curves::SEEDS;
+
+use crate::w16_8_moving_box::spec::SHARE;
+
+/// A registration this near is home, m: half the step between neighbouring points of a wall.
+const HOME_M: f64 = 0.02;
+
+/// How far the translation of a method is off at its end, m.
+pub fn error_m(moving: &MovingBox, method: usize) -> f64 {
+    let [x, y] = moving.runs[method].error_m;
+    math::norm2(x, y)
+}
+
+fn home(moving: &MovingBox) -> [bool; 3] {
+    [0, 1, 2].map(|method| error_m(moving, method) < HOME_M)
+}
+
+/// Good where all three are home.
+pub fn standing(moving: &MovingBox) -> Standing {
+    if home(moving).iter().all(|home| *home) {
+        Standing::Good
+    } else {
+        Standing::Bad
+    }
+}
+
+/// Who is home.
+pub fn verdict(moving: &MovingBox) -> &'static str {
+    match home(moving) {
+        [true, true, true] => "all three are home",
+        [false, true, true] => "plain is pulled away",
+        [false, true, false] => "only trimmed is home",
+        [false, false, true] => "only Huber is home",
+        [false, false, false] => "all three are pulled away",
+        [true, true, false] => "Huber is pulled away",
+        [true, false, true] => "trimmed is pulled away",
+        [true, false, false] => "only plain is home",
+    }
+}
+
+pub fn outcome(moving: &MovingBox) -> Outcome {
+    let share = moving.values.get(&SHARE);
+    let told = BoxMethods::NAMES
+        .iter()
+        .enumerate()
+        .map(|(k, name)| format!("{name} {:.3} m off", error_m(moving, k)));
+    let told: Vec<_> = told.collect();
+    let rmse = moving.runs[0].end.rmse;
+    Outcome {
+        standing: standing(moving),
+        verdict: verdict(moving).to_owned(),
+        sentence: format!(
+            "With {share:.0} % of the points on the box, registration ends with {}; the rmse of plain is {rmse:.3} m.",
+            told.join(", ")
+        ),
+        facts: facts(moving),
+    }
+}
+
+fn facts(moving: &MovingBox) -> Vec<Fact> {
+    let ids = [
+        ("plain_error_m", "plain_bias_m", "plain_rmse_m"),
+        ("trimmed_error_m", "trimmed_bias_m", "trimmed_rmse_m"),
+        ("huber_error_m", "huber_bias_m", "huber_rmse_m"),
+    ];
+    let labels = [
+        ("plain: off by", "plain: bias, all seeds", "plain: rmse"),
+        (
+            "trimmed: off by",
+            "trimmed: bias, all seeds",
+            "trimmed: rmse",
+        ),
+        ("Huber: off by", "Huber: bias, all seeds", "Huber: rmse"),
+    ];
+    let mut facts = Vec::new();
+    for (k, (id, label)) in ids.into_iter().zip(labels).enumerate() {
+        facts.extend([
+            Fact::metres(id.0, label.0, error_m(moving, k)),
+            Fact::metres(id.1, label.1, bias_m(moving, k)),
+            Fact::metres(id.2, label.2, moving.runs[k].end.rmse),
+        ]);
+    }
+    facts
+}
+
+/// The bias at the share that is chosen; no number unless the curves hold it with all their seeds.
+fn bias_m(moving: &MovingBox, method: usize) -> f64 {
+    let share = moving.values.get(&SHARE);
+    let mut points = moving.curves.bias_m(method);
+    let at = points.find(|(at, _)| *at == share);
+    let is_whole = moving.curves.seeds() == SEEDS;
+    at.and_then(|(_, bias)| bias.filter(|_| is_whole))
+        .unwrap_or(f64::NAN)
+}
+
+pub fn summary(moving: &MovingBox) -> String {
+    let last = moving.last();
+    let curves = BoxMethods::NAMES.iter().enumerate().map(|(k, name)| {
+        let points = moving.curves.bias_m(k);
+        let told = points.filter(|(share, _)| *share > 0.0 && share % 20.0 == 0.0);
+        let told = told.filter_map(|(share, bias)| Some(format!("{:.3} m at {share:.0} %", bias?)));
+        let told: Vec<_> = told.collect();
+        format!("{name} {}", told.join(", "))
+    });
+    let curves: Vec<_> = curves.collect();
+    format!(
+        "Two sweeps of one room with a box that moved between them, registered in three ways, iteration {} of {last}. {} Bias over {} seeds: {}.",
+        moving.iteration(),
+        outcome(moving).sentence,
+        moving.curves.seeds(),
+        curves.join("; ")
+    )
+}

@@ -1,0 +1,125 @@
+//! The widget's words and its one list of parameters.
+
+use ch16_slam2d::icp::IcpVariant;
+use kit::layers::Opening;
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use kit::playback::SPEED;
+use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+
+/// Largest share of the box, %.
+pub const MOST_SHARE: f64 = 60.0;
+
+/// Iterations at which a registration ends in any case.
+pub const MOST_ITERATIONS: f64 = 30.0;
+
+pub(super) static SHARE: Param<f64> =
+    Param::slider("share", "points on the box", [0.0, MOST_SHARE], 1.0)
+        .unit("%")
+        .default(20.0)
+        .help("Which share of the points of both sweeps lies on the box that was moved.");
+
+pub(super) static MOVED: Param<f64> = Param::slider("moved", "box moved by", [0.0, 0.8], 0.05)
+    .unit("m")
+    .default(0.3)
+    .help("How far the box was moved between the sweeps, away from the sensor along x.");
+
+pub(super) static DROPPED: Param<f64> =
+    Param::slider("dropped", "trimmed: pairs dropped", [0.0, 70.0], 5.0)
+        .unit("%")
+        .default(25.0)
+        .help("Which share of the pairs trimming drops in each iteration, the longest first.");
+
+pub(super) static HUBER: Param<f64> = Param::slider("huber", "Huber width", [0.01, 0.3], 0.01)
+    .unit("m")
+    .default(0.05)
+    .help("Pairs longer than this pull with the same force, however long they are.");
+
+pub(super) static TAU: Param<f64> = Param::slider("tau", "pairing distance τ", [0.1, 1.6], 0.05)
+    .unit("m")
+    .default(0.7)
+    .help("A point farther than this from the target has no pair: a gate is a kernel, too.");
+
+pub(super) static VARIANT: OneOf<IcpVariant> = OneOf::new(
+    "variant",
+    "error that ICP reduces",
+    &[
+        Choice::new("point-to-point", "point to point"),
+        Choice::new("point-to-plane", "point to plane"),
+    ],
+    &[IcpVariant::PointToPoint, IcpVariant::PointToPlane],
+)
+.help("Distance between paired points, or distance along the wall's normal.");
+
+pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", 1).help(
+    "Where the range noise of the sweeps above starts; the curves go over their own hundred seeds.",
+);
+
+pub(super) static ITERATION: Param<f64> =
+    Param::timeline("iteration", "iteration", MOST_ITERATIONS)
+        .default(MOST_ITERATIONS)
+        .help("Which iteration is shown of all three; past its last one a registration rests.");
+
+/// What the reader can change.
+pub const PARAMS: &[&ParamSpec] = &[
+    &SHARE.spec,
+    &MOVED.spec,
+    &DROPPED.spec,
+    &HUBER.spec,
+    &TAU.spec,
+    &VARIANT.spec,
+    &SEED.spec,
+    &ITERATION.spec,
+    &SPEED.spec,
+    &MORE.spec,
+];
+
+/// What never changes.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.8",
+    title: "The moving box",
+    misconception: "Least squares has no majority: a few points that moved together pull the answer after \
+                    them, and the rmse does not say so.",
+    notice: &[
+        "The walls do not quite meet where the box pulls. A few centimetres look like noise, and are none: they do not average out.",
+        "Trimming drops the longest pairs, and the longest are mostly those of the box. It gives way last, and slowly.",
+        "Huber's kernel never drops a pair. It holds a small box back; one with half of the points leads it farther away than plain.",
+        "A short τ does the same work as trimming, until the start is farther off than τ.",
+    ],
+    opening: Opening {
+        panels: &["plain", "trimmed", "huber", "bias"],
+        params: &["share"],
+        buttons: &["play"],
+    },
+    params: PARAMS,
+    buttons: &[PLAY, STEP, RESET, DEFAULTS],
+    presets: &[
+        Preset {
+            id: "fifth",
+            label: "A fifth of the points",
+            help: "The exercise: plain is pulled after the box, trimmed and Huber hardly.",
+            set: &[ITERATION.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "most",
+            label: "More than trimming drops",
+            help: "At half of the points the box has more pairs than a quarter: who degrades most gracefully?",
+            set: &[SHARE.to(50.0), ITERATION.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "none",
+            label: "No box",
+            help: "Without a box all three agree, and trimming has thrown good pairs away.",
+            set: &[SHARE.to(0.0), ITERATION.to(0.0)],
+            then: &["play"],
+        },
+        Preset {
+            id: "gate",
+            label: "A short τ",
+            help: "With τ of 0.2 m the box has few partners, and plain is as good as the others.",
+            set: &[TAU.to(0.2), ITERATION.to(0.0)],
+            then: &["play"],
+        },
+    ],
+};

@@ -1,0 +1,35 @@
+//! Where the panels stand: the three registrations beside each other, the curves below them.
+
+use kit::layout::PlotHeight;
+use kit::scene::Scene;
+use kit::view::{Arrangement, Row, SIDE_BY_SIDE, Slot, View};
+
+use crate::w16_8_moving_box::model::panel;
+
+/// The widget's arrangement.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BoxView;
+
+impl View for BoxView {
+    fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
+        let slot = |panel, height| Slot { panel, height };
+        // Four panels above each other stay within two screens of a phone.
+        let [most, plot] = if width >= SIDE_BY_SIDE {
+            [230.0, 170.0]
+        } else {
+            [150.0, 130.0]
+        };
+        let sweeps = panel::SWEEPS.map(|panel| slot(panel, PlotHeight::Natural { most }));
+        let bias = slot(panel::BIAS, PlotHeight::Fixed(plot));
+        let mut stage = if width >= SIDE_BY_SIDE {
+            vec![Row::of(&sweeps)]
+        } else {
+            sweeps.iter().map(|slot| Row::of(&[*slot])).collect()
+        };
+        stage.push(Row::of(&[bias]));
+        Arrangement {
+            stage,
+            below: Vec::new(),
+        }
+    }
+}

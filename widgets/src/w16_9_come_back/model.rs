@@ -1,0 +1,236 @@
+//! The state of a morning and every rule that changes it.
+
+mod hands;
+mod known;
+mod picture;
+mod settings;
+mod tables;
+mod words;
+
+use ch16_lab::come_back::{Moment, Morning};
+use kit::model::{
+    Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, finish_work,
+    press_preset,
+};
+use kit::param::MORE;
+use kit::param::ParamError;
+use kit::playback::SPEED;
+use kit::played::{Played, Pressed};
+use kit::scene::Scene;
+use kit::spec::WidgetSpec;
+use kit::values::{Changed, Values};
+use pr_geom::SE2;
+
+use crate::w16_9_come_back::spec::{
+    HEADING, MOMENT, MOST_MOMENTS, PARAMS, PLAN_M, SPEC, START_X, START_Y,
+};
+use known::{Known, Work};
+
+/// Names of the panels.
+pub mod panel {
+    /// The saved map, and what is believed on it.
+    pub const MAP: &str = "map";
+    /// How well the best place and the next one fit, scan by scan.
+    pub const SCORES: &str = "scores";
+}
+
+/// Moments a second at normal speed.
+const MOMENTS_PER_S: f64 = 6.0;
+
+/// Come back tomorrow, without its picture.
+pub struct ComeBack {
+    values: Values,
+    played: Played,
+    /// What is being computed; none once the morning is over.
+    work: Option<Work>,
+    /// The last map that was saved.
+    known: Option<Known>,
+    /// The last morning that is over.
+    morning: Option<Morning>,
+}
+
+impl Default for ComeBack {
+    /// The default start, before the map is driven.
+    fn default() -> Self {
+        let values = Values::defaults(PARAMS);
+        Self {
+            work: Some(Work::map(&values)),
+            played: Played::along(&MOMENT),
+            known: None,
+            morning: None,
+            values,
+        }
+    }
+}
+
+impl ComeBack {
+    /// Drives another map, or switches the robot on elsewhere on the one that is known.
+    fn follow(&mut self) {
+        let known = self
+            .known
+            .as_ref()
+            .filter(|known| known.is_of(&self.values));
+        self.work = Some(match known {
+            Some(known) => Work::morning(known, &self.values),
+            None => Work::map(&self.values),
+        });
+    }
+
+    fn start(&self) -> SE2 {
+        settings::start(&self.values)
+    }
+
+    /// What is shown: the morning that is over, whose map and start are those of the values.
+    fn told(&self) -> Option<(&Known, &Morning)> {
+        if self.work.is_some() {
+            return None;
+        }
+        self.known.as_ref().zip(self.morning.as_ref())
+    }
+
+    fn last(&self) -> usize {
+        let told = self.morning.as_ref();
+        told.map_or(0, |morning| morning.moments().len() - 1)
+    }
+
+    /// Where a run ends: past every place, while the morning is still computed.
+    fn end(&self) -> f64 {
+        match self.work {
+            Some(_) => MOST_MOMENTS,
+            None => self.last() as f64,
+        }
+    }
+
+    fn place(&self) -> usize {
+        self.played.place(&self.values, self.last() as f64) as usize
+    }
+
+    fn moment(&self) -> Option<&Moment> {
+        let (_, morning) = self.told()?;
+        morning.moments().get(self.place())
+    }
+
+    /// Puts the robot elsewhere, rounded so that links stay short.
+    fn put(&mut self, pose: SE2) {
+        let tenth = |value: f64, most: f64| ((value * 10.0).round() / 10.0).clamp(0.0, most);
+        let heading_deg = (pose.theta().to_degrees() / 5.0).round() * 5.0;
+        self.played.pause();
+        self.values.put(&START_X, tenth(pose.x(), PLAN_M[0]));
+        self.values.put(&START_Y, tenth(pose.y(), PLAN_M[1]));
+        self.values.put(&HEADING, heading_deg.clamp(-180.0, 180.0));
+        self.follow();
+    }
+}
+
+impl Model for ComeBack {
+    fn spec(&self) -> &'static WidgetSpec {
+        &SPEC
+    }
+
+    fn values(&self) -> &Values {
+        &self.values
+    }
+
+    fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
+        let is_changed = self.values.set(SPEC.id, id, value)? == Changed::Yes;
+        if is_changed && ![MOMENT.id, SPEED.id, MORE.id].contains(&id) {
+            self.follow();
+        }
+        Ok(())
+    }
+
+    fn press(&mut self, id: &str) -> Result<(), ParamError> {
+        let end = self.end();
+        match self.played.press(&mut self.values, id, end) {
+            Pressed::Transport => {}
+            Pressed::Defaults => self.follow(),
+            Pressed::Other => return press_preset(self, id),
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, elapsed_s: f64) -> Activity {
+        if self.played.is_playing() && self.work.is_some() {
+            // The morning is ahead of its playback: it ends in a few frames.
+            return Activity::Busy;
+        }
+        let last = self.last() as f64;
+        self.played
+            .advance(&mut self.values, last, elapsed_s, MOMENTS_PER_S)
+    }
+
+    fn work(&mut self) -> Activity {
+        let Some(work) = self.work.take() else {
+            return Activity::Idle;
+        };
+        match work.step(&self.values) {
+            known::Step::GoesOn(work) => {
+                self.work = Some(work);
+                return Activity::Unseen;
+            }
+            known::Step::Saved(known) => {
+                self.work = Some(Work::morning(&known, &self.values));
+                self.known = Some(*known);
+                self.morning = None;
+            }
+            known::Step::Over(morning) => self.morning = Some(*morning),
+        }
+        Activity::Busy
+    }
+
+    fn settle(&mut self) -> Activity {
+        finish_work(self)
+    }
+
+    fn scene(&self) -> Scene {
+        picture::scene(self)
+    }
+
+    fn outcome(&self) -> Outcome {
+        words::outcome(self)
+    }
+
+    fn summary(&self) -> String {
+        words::summary(self)
+    }
+
+    fn timeline(&self) -> Option<Timeline> {
+        let mut marks = Vec::new();
+        if let Some((_, morning)) = self.told()
+            && let Some(found) = morning.found()
+        {
+            let moments = morning.moments();
+            let at = moments.partition_point(|moment| moment.tick <= found) - 1;
+            marks.push(TimelineMark {
+                at: at as f64,
+                label: words::verdict(self).to_owned(),
+                standing: words::standing(self),
+            });
+        }
+        Some(self.played.timeline(self.last() as f64, marks))
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        tables::all(self)
+    }
+
+    fn shown_tables(&self) -> Vec<Table> {
+        Vec::new()
+    }
+
+    fn grab(&self, panel: &str, at: [f64; 2], reach: [f64; 2]) -> Option<Handle> {
+        hands::grab(self, panel, at, reach)
+    }
+
+    fn drag(&mut self, handle: Handle, at: [f64; 2]) {
+        hands::drag(self, handle, at);
+    }
+
+    fn set_motion(&mut self, motion: Motion) {
+        if self.played.is_playing() {
+            self.settle();
+        }
+        let end = self.end();
+        self.played.set_motion(&mut self.values, motion, end);
+    }
+}

@@ -1,0 +1,146 @@
+//! The widget's words and its one list of parameters.
+
+use ch16_lab::lap::BuiltInWorld;
+use ch16_lab::lap::CANONICAL_SEED;
+use kit::layers::Opening;
+use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
+use kit::playback::SPEED;
+use kit::run;
+use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
+
+/// Sides of the plan, m: no world is larger.
+pub const PLAN_M: [f64; 2] = [12.0, 9.0];
+
+/// More moments than any morning has.
+pub const MOST_MOMENTS: f64 = 4000.0;
+
+pub(super) static LAPS: Param<usize> =
+    Param::slider("laps", "laps since the wardrobe moved", [0.0, 2.0], 1.0)
+        .help("The map is of one lap before that night, and of so many after it.");
+
+pub(super) static START_X: Param<f64> = place("x", "switched on at x", PLAN_M[0], 4.4);
+
+pub(super) static START_Y: Param<f64> = place("y", "switched on at y", PLAN_M[1], 4.4);
+
+pub(super) static HEADING: Param<f64> =
+    Param::slider("heading", "heading there", [-180.0, 180.0], 5.0)
+        .unit("°")
+        .help("Where the robot looks when it is switched on. Nobody tells it.");
+
+pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
+    "world",
+    "world",
+    &[
+        Choice::new("apartment", "the Apartment"),
+        Choice::new("ring", "a ring of corridors"),
+        Choice::new("twins", "two rooms alike"),
+    ],
+    &[
+        BuiltInWorld::Apartment,
+        BuiltInWorld::Ring,
+        BuiltInWorld::TwinRooms,
+    ],
+)
+.help("Where it all happens. The wardrobe stands in the Apartment alone.");
+
+pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
+
+pub(super) static MOMENT: Param<f64> = Param::timeline("moment", "moment", MOST_MOMENTS)
+    .default(MOST_MOMENTS)
+    .help("Which moment of the morning is shown: boxes of a search, and scans.");
+
+/// What the reader can change.
+pub const PARAMS: &[&ParamSpec] = &[
+    &LAPS.spec,
+    &START_X.spec,
+    &START_Y.spec,
+    &HEADING.spec,
+    &WORLD.spec,
+    &SEED.spec,
+    &MOMENT.spec,
+    &SPEED.spec,
+    &MORE.spec,
+];
+
+const fn place(id: &'static str, label: &'static str, max: f64, default: f64) -> Param<f64> {
+    Param::slider(id, label, [0.0, max], 0.1)
+        .unit("m")
+        .default(default)
+        .help("Where the robot is put overnight, on the plan. Nobody tells it.")
+}
+
+/// One moment, under the name that it has here.
+const ONE_MOMENT: ButtonSpec = ButtonSpec {
+    label: "Next moment",
+    help: "On to more boxes of the search, or to the next scan.",
+    ..STEP
+};
+
+/// What never changes.
+pub const SPEC: WidgetSpec = WidgetSpec {
+    id: "w16.9",
+    title: "Come back tomorrow",
+    misconception: "A saved map does not say where the robot is. It has to be looked for everywhere, and \
+                    an honest robot says when two places look alike.",
+    notice: &[
+        "Orange boxes are places that are not ruled out yet. What is left of them is where the robot may be.",
+        "Where the map was driven, one scan is enough. In a room that it never saw, or in one of two rooms alike, no pose is told before the robot is out of the door.",
+        "Once it is found, each scan is registered on the map around it, and nothing is searched any more.",
+        "The wardrobe was moved overnight. The map still shows it where it stood; after another lap it is gone from there.",
+    ],
+    opening: Opening {
+        panels: &["map", "scores"],
+        params: &["laps"],
+        buttons: &["play", "step", "reset"],
+    },
+    params: PARAMS,
+    buttons: &[PLAY, ONE_MOMENT, RESET, DEFAULTS],
+    presets: &[
+        Preset {
+            id: "room",
+            label: "Switched on in a room",
+            help: "The lap never entered it, so the robot says that it does not know, and drives out of the door.",
+            set: &[
+                WORLD.to("apartment"),
+                START_X.to(2.6),
+                START_Y.to(2.2),
+                HEADING.to(120.0),
+                MOMENT.to(0.0),
+            ],
+            then: &["play"],
+        },
+        Preset {
+            id: "corridor",
+            label: "Switched on in the corridor",
+            help: "Here the map was driven: one scan is enough, among millions of poses.",
+            set: &[
+                WORLD.to("apartment"),
+                START_X.to(4.4),
+                START_Y.to(4.4),
+                HEADING.to(0.0),
+                MOMENT.to(0.0),
+            ],
+            then: &["play"],
+        },
+        Preset {
+            id: "forget",
+            label: "One more lap",
+            help: "The wardrobe is gone from where it stood: newer scans have looked through it.",
+            set: &[WORLD.to("apartment"), LAPS.to(1)],
+            then: &[],
+        },
+        Preset {
+            id: "twins",
+            label: "In one of two rooms alike",
+            help: "Both rooms fit to the millimetre: no pose is told before the robot is out of the door.",
+            set: &[
+                WORLD.to("twins"),
+                START_X.to(6.2),
+                START_Y.to(3.7),
+                HEADING.to(180.0),
+                MOMENT.to(0.0),
+            ],
+            then: &["play"],
+        },
+    ],
+};

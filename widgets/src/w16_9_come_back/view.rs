@@ -1,0 +1,36 @@
+//! Where the panels stand: the map, and the scores below it or beside it.
+
+use kit::layout::PlotHeight;
+use kit::scene::Scene;
+use kit::view::{Arrangement, Column, Row, SIDE_BY_SIDE, Slot, View};
+
+use crate::w16_9_come_back::model::panel;
+
+/// The widget's arrangement.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ComeBackView;
+
+impl View for ComeBackView {
+    fn arrange(&self, _scene: &Scene, width: f32) -> Arrangement {
+        let slot = |panel, height| Slot { panel, height };
+        let is_wide = width >= SIDE_BY_SIDE;
+        let most = if is_wide { 400.0 } else { 300.0 };
+        let map = slot(panel::MAP, PlotHeight::Natural { most });
+        let scores = |height| slot(panel::SCORES, PlotHeight::Fixed(height));
+        let stage = if is_wide {
+            let column = |share, slot| Column {
+                share,
+                slots: vec![slot],
+            };
+            vec![Row {
+                columns: vec![column(3.0, map), column(2.0, scores(300.0))],
+            }]
+        } else {
+            vec![Row::of(&[map]), Row::of(&[scores(150.0)])]
+        };
+        Arrangement {
+            stage,
+            below: Vec::new(),
+        }
+    }
+}

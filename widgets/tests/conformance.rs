@@ -1,0 +1,444 @@
+//! What every widget promises: each test goes through the registry.
+
+use egui::accesskit::Role;
+use egui::{Key, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use kit::controls::on_transport_bar;
+use kit::model::{Activity, Model, Motion};
+use kit::palette::Theme;
+use kit::param::{MORE, ParamKind, ParamSpec};
+use kit::promises::{assert_reports, assert_values};
+use kit::scene::Layer;
+use kit::shell::Shell;
+use kit::spec::Preset;
+use widgets::registry::{MODELS, SHELLS, SPECS, find, names};
+
+use crate::support::{HEIGHT, drawn, press_key, value};
+
+/// States beside the defaults in which the ends of every parameter are tried.
+///
+/// Each shape of a picture has a state of its own, and a search that takes long a coarser one.
+fn states(name: &str) -> Vec<Vec<(&'static str, f64)>> {
+    let each = |id, count: u32| (0..count).map(|k| vec![(id, f64::from(k))]).collect();
+    match name {
+        "w16.1" => vec![vec![("tau", 0.1)]],
+        "w16.5" => (0..3)
+            .map(|k| vec![("steps", 20.0), ("graph", f64::from(k))])
+            .collect(),
+        "w16.6" => vec![vec![("cell", 0.15), ("progress", 90.0)]],
+        "w16.7" => each("detector", 3),
+        "w16.8" => vec![vec![("share", 40.0)]],
+        "w16.11" => each("shape", 4),
+        _ => vec![Vec::new()],
+    }
+}
+
+/// Does something; if that panics, prints what it was.
+fn doing<T>(what: impl Fn() -> String, act: impl FnOnce() -> T) -> T {
+    struct Doing<F: Fn() -> String>(F);
+    impl<F: Fn() -> String> Drop for Doing<F> {
+        fn drop(&mut self) {
+            if std::thread::panicking() {
+                eprintln!("{}", (self.0)());
+            }
+        }
+    }
+    let _doing = Doing(what);
+    act()
+}
+
+#[test]
+fn a_widget_is_registered_under_its_own_name() {
+    for ((model, shell), spec) in MODELS.into_iter().zip(SHELLS).zip(SPECS) {
+        for found in [model().spec(), shell().model().spec()] {
+            assert_eq!(format!("{found:?}"), format!("{spec:?}"));
+        }
+        assert_eq!(find(spec.id).unwrap()().model().spec().id, spec.id);
+    }
+    assert!(names().contains("w16.4"));
+    let refused = find("w17.1").err().unwrap();
+    assert!(refused.starts_with("there is no widget `w17.1`; there are w16.1, w16.2"));
+}
+
+#[test]
+fn the_ends_of_every_parameter_have_a_finite_picture() {
+    for make in MODELS {
+        let mut model = make();
+        let spec = model.spec();
+        for state in states(spec.id) {
+            for param in spec.params {
+                let (min, max) = param.range();
+                for value in [min, max] {
+                    model.press("defaults").expect("every widget has defaults");
+                    for (id, value) in &state {
+                        model.set(id, *value).expect("a value in range");
+                    }
+                    doing(
+                        || format!("{} {state:?}, {} at {value}", spec.id, param.id),
+                        || {
+                            model.set(param.id, value).unwrap();
+                            model.settle();
+                            model.work();
+                            assert_values(model.as_ref());
+                            assert_reports(model.as_ref());
+                        },
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Lines alone may be broken by what is not finite: those of these widgets are not.
+#[test]
+fn no_line_is_broken_where_nothing_is_missing() {
+    for name in ["w16.5", "w16.7", "w16.8"] {
+        let mut shell = find(name).unwrap()();
+        shell.settle();
+        shell.model_mut().work();
+        for panel in shell.model().scene().panels {
+            for layer in &panel.layers {
+                if let Layer::Line { points, .. } = layer {
+                    let finite = points.iter().flatten().all(|value| value.is_finite());
+                    assert!(finite, "{name}: {}", panel.id);
+                }
+            }
+        }
+    }
+}
+
+/// All that a reader is told; facts that are not known are NaN, and equal nothing.
+fn told(model: &dyn Model) -> String {
+    format!(
+        "{:?} {:?} {}",
+        model.values(),
+        model.outcome(),
+        model.summary()
+    )
+}
+
+#[test]
+fn a_wrong_value_or_button_is_refused_and_changes_nothing() {
+    for make in MODELS {
+        let mut model = make();
+        model.settle();
+        let before = told(model.as_ref());
+        let spec = model.spec();
+        for param in spec.params {
+            let (min, max) = param.range();
+            for bad in [min - 1.0, max + 1.0, -1e300, f64::INFINITY, f64::NAN] {
+                let refused = model.set(param.id, bad);
+                assert!(refused.is_err(), "{}: {} took {bad}", spec.id, param.id);
+            }
+        }
+        assert!(model.set("nonsense", 0.0).is_err(), "{}", spec.id);
+        assert!(model.set_text("nonsense", "0").is_err(), "{}", spec.id);
+        let refused = model.press("stepp").unwrap_err().to_string();
+        for known in spec.buttons.iter().map(|button| button.id) {
+            assert!(refused.contains(known), "{refused}");
+        }
+        assert_eq!(told(model.as_ref()), before);
+    }
+}
+
+#[test]
+fn playing_goes_on_to_the_end_and_stops_there() {
+    for make in MODELS {
+        let mut model = make();
+        model.settle();
+        let name = model.spec().id;
+        // The run of w16.10 is a reader's log, and it has none yet.
+        if name == "w16.10" {
+            continue;
+        }
+        let timeline = model.timeline().expect("every other widget has a run");
+        let at = |model: &dyn Model| model.values().number(timeline.param);
+        model.press("reset").unwrap();
+        assert_eq!(at(model.as_ref()), 0.0, "{name}");
+        model.press("play").unwrap();
+        assert!(model.timeline().unwrap().playing, "{name}");
+        let (mut before, mut frames) = (0.0, 0);
+        while model.advance(0.1).goes_on() {
+            let now = at(model.as_ref());
+            assert!(now >= before, "{name} goes from {before} back to {now}");
+            before = now;
+            frames += 1;
+            assert!(frames < 3000, "{name}: five minutes and no end");
+        }
+        let end = model.timeline().unwrap();
+        assert!(!end.playing && at(model.as_ref()) >= end.last, "{name}");
+        // Again from the start, and under reduced motion at the end at once.
+        model.press("reset").unwrap();
+        model.press("play").unwrap();
+        model.set_motion(Motion::Reduced);
+        assert!(
+            at(model.as_ref()) >= end.last,
+            "{name}: asked for on the way"
+        );
+        for start in ["reset", "step"] {
+            model.press(start).unwrap();
+            model.press("play").unwrap();
+            assert!(at(model.as_ref()) >= end.last, "{name} after {start}");
+            assert!(!model.timeline().unwrap().playing, "{name} after {start}");
+            assert_eq!(model.advance(0.1), Activity::Idle, "{name} after {start}");
+        }
+        let plays = |preset: &&Preset| preset.then.contains(&"play");
+        for preset in model.spec().presets.iter().filter(plays) {
+            model.press(preset.id).unwrap();
+            model.settle();
+            let end = model.timeline().unwrap();
+            let ends = at(model.as_ref()) >= end.last && !end.playing;
+            assert!(ends, "{name} after {}", preset.id);
+        }
+    }
+}
+
+/// The states that a reader comes to by one press: the start, and each preset.
+fn pressed_states(shell: &Shell) -> Vec<&'static str> {
+    let presets = shell.model().spec().presets.iter();
+    core::iter::once("defaults")
+        .chain(presets.map(|preset| preset.id))
+        .collect()
+}
+
+#[test]
+fn a_preset_sets_what_it_names_and_can_be_pressed_again() {
+    for make in SHELLS {
+        let mut shell = make();
+        let spec = shell.model().spec();
+        for preset in spec.presets {
+            let mut told_first = None;
+            for _ in 0..2 {
+                shell.model_mut().press(preset.id).unwrap();
+                shell.settle();
+                let values = shell.model().values();
+                // What it starts may go on from there at once.
+                let moved = shell.model().timeline().map(|timeline| timeline.param);
+                for (id, expected) in preset.set.iter().filter(|(id, _)| Some(*id) != moved) {
+                    assert_eq!(values.number(id), *expected, "{} {}", spec.id, preset.id);
+                }
+                let told = format!("{:?}", shell.model().outcome());
+                assert_eq!(
+                    *told_first.get_or_insert_with(|| told.clone()),
+                    told,
+                    "{} {}",
+                    spec.id,
+                    preset.id
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn no_text_overlaps_or_is_cut_off() {
+    for make in SHELLS {
+        let mut shell = make();
+        let name = shell.model().spec().id;
+        for state in pressed_states(&shell) {
+            shell.model_mut().press(state).expect("the widget has it");
+            shell.settle();
+            for more in [0.0, 1.0] {
+                let model = shell.model_mut();
+                model.set(MORE.id, more).expect("every widget has layers");
+                for width in [320.0, 340.0, 390.0, 520.0, 560.0, 700.0, 1100.0, 1400.0] {
+                    let faults = shell.text_faults(width);
+                    assert!(faults.is_empty(), "{name} after {state}: {faults:#?}");
+                }
+            }
+        }
+    }
+}
+
+/// The canvas on a phone of 390 by 844 points, between the margins of the page.
+const PHONE: egui::Vec2 = vec2(356.0, 844.0);
+/// The border of the element, and its buttons below the canvas.
+const BAR: f32 = 47.0;
+const TWO_SCREENS: f32 = 2.0 * PHONE.y - BAR;
+
+/// What the module measures in the browser, with egui's own fonts in place of ours.
+fn height_on_a_phone(ctx: &egui::Context, shell: &mut Shell) -> f32 {
+    let input = egui::RawInput {
+        screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, PHONE)),
+        ..Default::default()
+    };
+    for _ in 0..3 {
+        let mut output = ctx.run_ui(input.clone(), |ui| shell.ui(ui));
+        // Nothing is drawn: the font's texture is not wanted.
+        output.textures_delta.clear();
+    }
+    shell.content_height()
+}
+
+#[test]
+fn no_widget_is_higher_than_two_screens_of_a_phone_until_more_is_asked_for() {
+    let ctx = egui::Context::default();
+    for make in SHELLS {
+        let mut shell = make();
+        let name = shell.model().spec().id;
+        for state in pressed_states(&shell) {
+            shell.model_mut().press(state).expect("the widget has it");
+            shell.settle();
+            let height = height_on_a_phone(&ctx, &mut shell);
+            assert!(height <= TWO_SCREENS, "{name} after {state}: {height}");
+        }
+        let opening = height_on_a_phone(&ctx, &mut shell);
+        shell.model_mut().set(MORE.id, 1.0).expect("a switch");
+        let all = height_on_a_phone(&ctx, &mut shell);
+        assert!(all > opening + 200.0, "{name}: {opening} and {all}");
+    }
+}
+
+/// The page finds a control by its name alone, whatever its kind.
+#[test]
+fn no_two_controls_of_a_widget_share_a_name() {
+    for spec in SPECS {
+        let mut ids: Vec<_> = (spec.presets.iter().map(|preset| preset.id))
+            .chain(spec.params.iter().map(|param| param.id))
+            .chain(spec.buttons.iter().map(|button| button.id))
+            .collect();
+        ids.sort_unstable();
+        for pair in ids.windows(2) {
+            assert_ne!(pair[0], pair[1], "{} has two of this name", spec.id);
+        }
+    }
+}
+
+#[test]
+fn what_a_widget_opens_with_is_there() {
+    for make in MODELS {
+        let model = make();
+        let spec = model.spec();
+        let panels: Vec<_> = model.scene().panels.iter().map(|panel| panel.id).collect();
+        let params: Vec<_> = spec.params.iter().map(|param| param.id).collect();
+        let buttons: Vec<_> = spec.buttons.iter().map(|button| button.id).collect();
+        for (known, named) in [
+            (panels, spec.opening.panels),
+            (params, spec.opening.params),
+            (buttons, spec.opening.buttons),
+        ] {
+            assert!(!named.is_empty(), "{}", spec.id);
+            for id in named {
+                assert!(known.contains(id), "{} has no {id}", spec.id);
+            }
+        }
+        let name = spec.id;
+        assert_eq!(
+            spec.opening.params.len(),
+            1,
+            "{name} opens with one control"
+        );
+        assert!(spec.opening.buttons.contains(&"play"), "{name}");
+    }
+}
+
+/// Everything of a widget, at rest.
+fn still(name: &str, width: f32) -> Harness<'static, Shell> {
+    drawn(name, width, |shell| {
+        // Animations would take frames to end, and what is hidden has no control on screen.
+        shell.set_motion(Motion::Reduced);
+        let more = shell.model_mut().set(MORE.id, 1.0);
+        more.expect("every widget has layers");
+        shell.settle();
+    })
+}
+
+/// The control of a parameter as a screen reader finds it; a text has none.
+fn control(spec: &ParamSpec) -> Option<(Role, String)> {
+    let label = spec.label.to_owned();
+    match spec.kind {
+        ParamKind::Slider { .. } | ParamKind::Timeline { .. } => Some((Role::Slider, label)),
+        ParamKind::Seed { .. } => Some((Role::SpinButton, label)),
+        ParamKind::Choice { options } => {
+            Some((Role::RadioButton, format!("{label}: {}", options[0].label)))
+        }
+        ParamKind::Switch => Some((Role::CheckBox, label)),
+        ParamKind::Text { .. } => None,
+    }
+}
+
+#[test]
+fn every_control_is_on_screen_under_its_name_at_every_width_and_in_both_themes() {
+    for spec in SPECS {
+        let mut harness = still(spec.id, 340.0);
+        for (width, theme) in [
+            (340.0, Theme::Light),
+            (390.0, Theme::Dark),
+            (700.0, Theme::Light),
+            (1100.0, Theme::Dark),
+            (1400.0, Theme::Light),
+        ] {
+            harness.set_size(vec2(width, HEIGHT));
+            harness.state_mut().set_theme(theme);
+            harness.run_steps(3);
+            let height = harness.state().content_height();
+            let model = harness.state().model();
+            let layer = model.layer();
+            let buttons = spec.buttons.iter().filter(|b| layer.has_button(b.id));
+            let params = spec.params.iter().filter(|p| layer.has_param(p.id));
+            let controls = (params
+                .filter(|param| param.id != MORE.id)
+                .filter_map(|param| control(param)))
+            .chain(buttons.map(|button| (Role::Button, button.label.to_owned())))
+            .chain(
+                spec.presets
+                    .iter()
+                    .map(|p| (Role::Button, p.label.to_owned())),
+            )
+            .chain([(Role::Button, "Less".to_owned())]);
+            for (role, label) in controls {
+                doing(
+                    || format!("{} at {width}: {label}", spec.id),
+                    || {
+                        let rect = harness.get_by_role_and_label(role, &label).rect();
+                        assert!(rect.left() >= 0.0 && rect.right() <= width, "{rect}");
+                        assert!(rect.bottom() <= height, "{rect} leaves {height}");
+                        assert!(role != Role::Button || rect.height() >= 24.0, "{rect}");
+                    },
+                );
+            }
+            let verdict = model.outcome().verdict;
+            assert!(harness.query_by_label(&verdict).is_some(), "{verdict}");
+        }
+    }
+}
+
+#[test]
+fn every_slider_takes_an_arrow_key_by_its_own_step() {
+    for spec in SPECS {
+        let mut harness = still(spec.id, 700.0);
+        let layer = harness.state().model().layer();
+        for param in spec.params.iter().filter(|p| layer.has_param(p.id)) {
+            let ParamKind::Slider { min, max, step } = param.kind else {
+                continue;
+            };
+            assert!(!on_transport_bar(param));
+            let before = value(&harness, param.id);
+            let (key, by) = if before + step <= max {
+                (Key::ArrowRight, step)
+            } else {
+                (Key::ArrowLeft, -step)
+            };
+            doing(
+                || format!("{}: {}", spec.id, param.id),
+                || {
+                    press_key(&mut harness, param.label, key);
+                    let now = value(&harness, param.id);
+                    // Steps are counted from the least value.
+                    let expected = min + ((before + by - min) / step).round() * step;
+                    assert!((now - expected).abs() < 1e-9, "{before} became {now}");
+                    let slider = harness.get_by_role_and_label(Role::Slider, param.label);
+                    let shown = slider.accesskit_node().numeric_value();
+                    assert_eq!(shown, Some(now), "what a screen reader is told");
+                    harness
+                        .state_mut()
+                        .model_mut()
+                        .set(param.id, before)
+                        .unwrap();
+                    harness.state_mut().settle();
+                },
+            );
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! The widgets from outside: what all of them promise, and each one's own rules. One binary.
+
+mod conformance;
+mod support;
+mod w16_10_own_robot;
+mod w16_11_procrustes;
+mod w16_12_jacobians;
+mod w16_1_basin_explorer;
+mod w16_2_full_lap;
+mod w16_3_cost_terraces;
+mod w16_4_control_room;
+mod w16_5_pose_graph_toy;
+mod w16_6_whole_window;
+mod w16_7_been_here;
+mod w16_8_moving_box;
+mod w16_9_come_back;

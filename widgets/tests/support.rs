@@ -1,0 +1,57 @@
+//! What the tests of several widgets ask of a model, and a shell on a screen without a GPU.
+
+use egui::accesskit::Role;
+use egui::{Key, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use kit::model::Model;
+use kit::scene::Panel;
+use kit::shell::Shell;
+
+/// Height of the screen: no widget is higher.
+pub const HEIGHT: f32 = 3000.0;
+
+/// A number of the outcome.
+pub fn fact(model: &dyn Model, id: &str) -> f64 {
+    let facts = model.outcome().facts;
+    facts.iter().find(|fact| fact.id == id).expect(id).value
+}
+
+/// A panel of the scene.
+pub fn panel_of(model: &dyn Model, id: &str) -> Panel {
+    let panels = model.scene().panels;
+    panels.into_iter().find(|panel| panel.id == id).expect(id)
+}
+
+/// The widget of that name on a screen of that width, prepared before its first frame.
+pub fn drawn(name: &str, width: f32, prepare: impl FnOnce(&mut Shell)) -> Harness<'static, Shell> {
+    let mut shell = widgets::registry::find(name).expect("a widget of the registry")();
+    prepare(&mut shell);
+    let mut harness = Harness::builder()
+        .with_size(vec2(width, HEIGHT))
+        .with_max_steps(3000)
+        .build_ui_state(|ui, shell: &mut Shell| shell.ui(ui), shell);
+    harness.run_steps(3);
+    harness
+}
+
+/// Everything of the widget of that name, not only what it opens with.
+pub fn drawn_whole(name: &str, width: f32) -> Harness<'static, Shell> {
+    drawn(name, width, |shell| {
+        let more = shell.model_mut().set("more", 1.0);
+        more.expect("every widget has layers");
+    })
+}
+
+/// The value of a parameter.
+pub fn value(harness: &Harness<'_, Shell>, id: &str) -> f64 {
+    harness.state().model().values().number(id)
+}
+
+/// Presses a key while a slider has the focus.
+pub fn press_key(harness: &mut Harness<'_, Shell>, slider: &str, key: Key) {
+    harness.get_by_role_and_label(Role::Slider, slider).focus();
+    harness.run_steps(2);
+    harness.key_press(key);
+    harness.run_steps(2);
+}

@@ -1,0 +1,386 @@
+//! What the widget does with what a worker tells, and what it asks of it.
+
+use kit::model::{Activity, Model, Standing};
+use kit::outside::Delivery;
+use kit::scene::Layer;
+use widgets::w16_10_own_robot::model::OwnRobot;
+use widgets::w16_10_own_robot::model::robot::Stage;
+
+pub fn tell(robot: &mut OwnRobot, kind: &str, text: &str, numbers: &[f64]) {
+    robot.receive(&Delivery {
+        kind,
+        text,
+        numbers,
+        bytes: &[],
+    });
+}
+
+/// Five keyframes on a line, two loops, the second refused.
+pub fn mapped() -> OwnRobot {
+    let mut robot = OwnRobot::new();
+    tell(&mut robot, "opening", "my.log", &[]);
+    tell(&mut robot, "file", "my.log", &[1000.0, 1.0]);
+    let keyframes = (0..5).flat_map(|k| {
+        let k = f64::from(k);
+        [k, k, 0.0, 0.0, 1.0 - 0.1 * k, 0.01 * k]
+    });
+    tell(&mut robot, "keyframes", "", &keyframes.collect::<Vec<_>>());
+    robot.receive(&Delivery {
+        kind: "map",
+        numbers: &[2.0, 1.0, -1.0, -0.5, 1.0],
+        bytes: &[0, 255],
+        ..Delivery::default()
+    });
+    let nan = f64::NAN;
+    let loops = [
+        [3.0, 0.0, 0.8, 0.02, 90.0, nan, 20.0, 16.3, 0.0, 1.0],
+        [4.0, 1.0, 0.3, 0.2, 12.0, nan, 90.0, 16.3, 1.0, 1.0],
+    ];
+    let reasons = "\n12 points fit, 30 are asked";
+    tell(&mut robot, "loops", reasons, loops.as_flattened());
+    tell(&mut robot, "doubts", "the loop contradicts", &[3.0]);
+    tell(&mut robot, "stage", "", &[5.0, 1.0, 40.0, 2.0, 1.0]);
+    robot.take_orders();
+    robot
+}
+
+#[test]
+fn play_maps_the_sample_then_holds_it_then_plays_the_way() {
+    let mut robot = OwnRobot::new();
+    robot.press("play").unwrap();
+    assert_eq!(robot.take_orders(), ["sample"]);
+    assert_eq!(robot.robot().stage, Stage::Opening);
+    assert!(robot.timeline().unwrap().playing);
+    robot.press("play").unwrap();
+    assert_eq!(robot.take_orders(), ["pause"]);
+    assert!(!robot.timeline().unwrap().playing);
+    tell(&mut robot, "opening", "ring.log", &[]);
+    assert!(
+        !robot.timeline().unwrap().playing,
+        "it was held before it came"
+    );
+    robot.press("play").unwrap();
+    assert_eq!(robot.take_orders(), ["resume"]);
+
+    let mut robot = mapped();
+    assert_eq!(robot.advance(1.0), Activity::Idle);
+    robot.press("play").unwrap();
+    assert_eq!(robot.values().number("keyframe"), 0.0);
+    let mut frames = 0;
+    while robot.advance(0.1) == Activity::Busy {
+        frames += 1;
+        assert!(frames < 1000, "it never ends");
+    }
+    assert_eq!(robot.values().number("keyframe"), 4.0);
+    assert_eq!(
+        robot.take_orders(),
+        ["look 4"],
+        "of orders to look the last one stands"
+    );
+}
+
+#[test]
+fn what_else_is_doubted_is_not_passed_over_where_no_loop_contradicts() {
+    let mut robot = mapped();
+    tell(&mut robot, "loops", "", &[]);
+    let said = |robot: &OwnRobot| robot.outcome().sentence.clone();
+    assert!(said(&robot).contains("but the list of doubts is not empty"));
+    assert_eq!(robot.outcome().standing, Standing::Neutral);
+    tell(&mut robot, "doubts", "", &[]);
+    assert!(said(&robot).contains("no loop contradicts the graph."));
+    assert_eq!(robot.outcome().standing, Standing::Good);
+}
+
+#[test]
+fn one_of_a_kind_is_said_as_one() {
+    let mut robot = mapped();
+    assert!(
+        robot
+            .outcome()
+            .sentence
+            .contains("40 scans became 5 keyframes")
+    );
+    tell(&mut robot, "keyframes", "", &[0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    tell(&mut robot, "stage", "", &[5.0, 1.0, 1.0, 0.0, 0.0]);
+    tell(&mut robot, "loops", "", &[]);
+    let said = robot.outcome().sentence.clone();
+    assert!(
+        said.contains("1 scan became 1 keyframe on a way of 0 m with 0 loops"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_loop_that_contradicts_is_said_and_shown_first() {
+    let robot = mapped();
+    let outcome = robot.outcome();
+    assert_eq!(
+        (outcome.standing, outcome.verdict.as_str()),
+        (Standing::Bad, "loops contradict")
+    );
+    assert!(outcome.sentence.contains("one loop contradicts the graph"));
+    assert!(outcome.sentence.contains("nothing of it is sent anywhere"));
+    let fact = |id: &str| {
+        outcome
+            .facts
+            .iter()
+            .find(|fact| fact.id == id)
+            .unwrap()
+            .value
+    };
+    assert_eq!(
+        (fact("loops"), fact("loops_refused"), fact("loops_doubted")),
+        (1.0, 1.0, 1.0)
+    );
+    assert_eq!(
+        (fact("scans"), fact("way_m"), fact("worst_sigma_m")),
+        (40.0, 4.0, 0.04)
+    );
+    let tables = robot.shown_tables();
+    assert_eq!(tables[0].rows[0][0], "▸ 0");
+    assert_eq!(tables[0].rows[1][6], "turned away");
+}
+
+#[test]
+fn the_list_is_walked_and_every_choice_becomes_an_order() {
+    let mut robot = mapped();
+    robot.press("next").unwrap();
+    assert_eq!(
+        (
+            robot.values().number("loop"),
+            robot.values().number("keyframe")
+        ),
+        (1.0, 4.0)
+    );
+    assert!(robot.shown_tables()[0].title.contains("12 points fit"));
+    robot.press("turn").unwrap();
+    robot.press("next").unwrap();
+    assert_eq!(
+        robot.values().number("loop"),
+        0.0,
+        "after the last comes the first"
+    );
+    robot.press("previous").unwrap();
+    robot.press("mark").unwrap();
+    robot.set("keyframe", 1.0).unwrap();
+    robot.press("add").unwrap();
+    robot.press("unpin").unwrap();
+    robot.press("doubt").unwrap();
+    assert_eq!(robot.values().number("keyframe"), 3.0);
+    robot.set("poor", 0.75).unwrap();
+    robot.press("doubt").unwrap();
+    assert_eq!(robot.values().number("keyframe"), 4.0, "0.6 of it fits");
+    robot.set("file", 4.0).unwrap();
+    robot.press("save").unwrap();
+    robot.press("cancel").unwrap();
+    let orders = robot.take_orders();
+    assert_eq!(
+        orders,
+        [
+            "turn 1",
+            "add 4 1",
+            "unpin",
+            "look 4",
+            "save graph.g2o",
+            "cancel"
+        ]
+    );
+}
+
+#[test]
+fn a_press_shows_a_keyframe_and_a_drag_moves_the_one_that_is_shown() {
+    let mut robot = mapped();
+    let reach = [0.3, 0.3];
+    assert_eq!(robot.grab("map", [2.0, 1.0], reach), None);
+    let at = [2.1, 0.1];
+    let handle = robot.grab("map", at, reach).unwrap();
+    assert_eq!(handle.id, "keyframe");
+    robot.drag(handle, at);
+    assert_eq!(robot.values().number("keyframe"), 2.0);
+    assert_eq!(robot.take_orders(), ["look 2"]);
+    let handle = robot.grab("map", at, reach).unwrap();
+    assert_eq!(handle.id, "held");
+    robot.drag(handle, at);
+    assert_eq!(
+        robot.take_orders(),
+        Vec::<String>::new(),
+        "a press is no drag"
+    );
+    robot.drag(handle, [2.1, 0.6]);
+    robot.drag(handle, [2.1, 1.1]);
+    let orders = robot.take_orders();
+    assert_eq!(orders.len(), 1);
+    assert!(orders[0].starts_with("pin 2 2 1"), "{orders:?}");
+    let said = robot.outcome().sentence;
+    assert!(
+        said.contains("Keyframe 2 is held at x 2.00 m, y 1.00 m."),
+        "{said}"
+    );
+    robot.drag(handle, [f64::NAN, 1e300]);
+    assert_eq!(robot.take_orders(), Vec::<String>::new());
+}
+
+#[test]
+fn arrow_keys_move_the_keyframe_that_is_shown_as_a_drag_does() {
+    let mut robot = mapped();
+    robot.set("keyframe", 2.0).unwrap();
+    robot.take_orders();
+    for (key, button) in robot.keys() {
+        robot.press(button).unwrap();
+        let orders = robot.take_orders();
+        let expected = match *key {
+            "ArrowLeft" => "pin 2 1.95 0 0",
+            "ArrowUp" => "pin 2 2 0.05 0",
+            // Back again.
+            _ => "pin 2 2 0 0",
+        };
+        assert_eq!(orders, [expected], "{key}");
+    }
+    assert_eq!(robot.keys().len(), 4);
+    tell(&mut robot, "stage", "", &[1.0, 0.5, 20.0, 2.0, 1.0]);
+    robot.press("north").unwrap();
+    let none = Vec::<String>::new();
+    assert_eq!(robot.take_orders(), none, "the graph is not there yet");
+    let mut robot = OwnRobot::new();
+    robot.press("north").unwrap();
+    assert_eq!(robot.take_orders(), none);
+}
+
+#[test]
+fn a_loop_that_is_gone_to_is_told_with_its_evidence() {
+    let mut robot = mapped();
+    let first = "The loop of the list goes from keyframe 3 to 0: closed; 0.80 of the scan fits, 0.020 m off; χ² 20.0 of 16.3.";
+    assert!(robot.summary().ends_with(first), "{}", robot.summary());
+    robot.press("next").unwrap();
+    let second = "from keyframe 4 to 1: turned away, because 12 points fit, 30 are asked; 0.30 of the scan fits";
+    let said = robot.outcome().sentence;
+    assert!(said.contains(second), "{said}");
+    assert_eq!(robot.summary().matches(second).count(), 1);
+    // A loop of a graph from a file has no registration, and may have no χ².
+    let nan = f64::NAN;
+    tell(
+        &mut robot,
+        "loops",
+        "",
+        &[3.0, 0.0, nan, nan, nan, nan, nan, 16.3, 0.0, 0.0],
+    );
+    assert!(robot.summary().ends_with("from keyframe 3 to 0: closed."));
+}
+
+#[test]
+fn what_is_asked_where_there_is_no_map_is_answered() {
+    let mut robot = mapped();
+    tell(
+        &mut robot,
+        "answer",
+        "The loop 3 to 0 is in the graph.",
+        &[],
+    );
+    tell(
+        &mut robot,
+        "failed",
+        "x.log is empty; give a recorded log",
+        &[],
+    );
+    assert_eq!(
+        robot.outcome().sentence,
+        "x.log is empty; give a recorded log"
+    );
+    tell(
+        &mut robot,
+        "answer",
+        "truth.tum waits for a log to be opened.",
+        &[],
+    );
+    assert_eq!(
+        robot.outcome().sentence,
+        "x.log is empty; give a recorded log. truth.tum waits for a log to be opened."
+    );
+}
+
+#[test]
+fn a_way_of_one_keyframe_is_no_metre_long() {
+    let mut robot = mapped();
+    tell(&mut robot, "keyframes", "", &[0.0; 6]);
+    let said = robot.outcome().sentence;
+    assert!(said.contains("on a way of 0 m"), "{said}");
+}
+
+#[test]
+fn what_a_worker_tells_wrongly_changes_nothing() {
+    let mut robot = mapped();
+    let before = robot.robot().clone();
+    tell(&mut robot, "stage", "", &[9.0, 1.0, 1.0, 1.0, 1.0]);
+    tell(&mut robot, "stage", "", &[1.0]);
+    tell(&mut robot, "map", "", &[1e18, 1e18, 0.0, 0.0, 0.05]);
+    tell(&mut robot, "map", "", &[0.0, 0.0, 0.0, 0.0, 0.05]);
+    tell(&mut robot, "scan", "", &[]);
+    tell(&mut robot, "weather", "fine", &[1.0]);
+    // NaN is what a number that is not there reads as, and equals nothing.
+    assert_eq!(format!("{before:?}"), format!("{:?}", robot.robot()));
+    tell(&mut robot, "loops", "", &[f64::NAN; 10]);
+    tell(&mut robot, "keyframes", "", &[f64::NAN; 12]);
+    tell(&mut robot, "errors", "", &[f64::INFINITY]);
+    let _ = (
+        robot.scene(),
+        robot.outcome(),
+        robot.summary(),
+        robot.tables(),
+    );
+}
+
+#[test]
+fn the_way_is_coloured_by_what_is_known_of_it() {
+    let mut robot = mapped();
+    let bar = |robot: &OwnRobot| robot.scene().panels[0].color_bar.clone();
+    let shades = |robot: &OwnRobot| {
+        let scene = robot.scene();
+        let layers = scene.panels[0].layers.iter();
+        layers
+            .filter(|layer| {
+                matches!(
+                    layer,
+                    Layer::Segments {
+                        tone: kit::scene::Tone::Level(_),
+                        ..
+                    }
+                )
+            })
+            .count()
+    };
+    assert_eq!((bar(&robot).unwrap().max, shades(&robot)), (4.0, 4));
+    robot.set("colour", 2.0).unwrap();
+    assert_eq!(bar(&robot).unwrap().label, "σ (m)");
+    robot.set("colour", 3.0).unwrap();
+    assert_eq!(
+        (bar(&robot), shades(&robot)),
+        (None, 0),
+        "no reference was given"
+    );
+    tell(&mut robot, "errors", "", &[0.0, 0.1, 0.2, f64::NAN, 0.4]);
+    tell(&mut robot, "grade", "5 poses: 0.2 m off", &[2.0, 5.0, 0.2]);
+    assert_eq!(shades(&robot), 3);
+    assert!(robot.outcome().sentence.contains("5 poses: 0.2 m off."));
+}
+
+#[test]
+fn another_file_takes_the_place_of_the_first_and_a_bad_one_is_answered() {
+    let mut robot = mapped();
+    robot.press("sure").unwrap();
+    assert_eq!(robot.take_orders(), ["close", "sample"]);
+    assert_eq!(robot.robot().stage, Stage::Opening);
+    let mut robot = mapped();
+    robot.set("keyframe", 2.0).unwrap();
+    tell(&mut robot, "opening", "other.bag", &[]);
+    assert!(robot.robot().keyframes.is_empty());
+    assert_eq!(robot.values().number("keyframe"), 999_999.0);
+    tell(
+        &mut robot,
+        "failed",
+        "other.bag is empty; give a recorded log",
+        &[],
+    );
+    let outcome = robot.outcome();
+    assert_eq!(outcome.standing, Standing::Bad);
+    assert_eq!(outcome.sentence, "other.bag is empty; give a recorded log");
+}

@@ -1,0 +1,234 @@
+//! The robot of another log on the map, and what a recording has several of.
+
+use kit::model::{Model, Standing};
+use kit::outside::Delivery;
+use kit::scene::{Layer, Stroke};
+use widgets::w16_10_own_robot::model::OwnRobot;
+use widgets::w16_10_own_robot::model::whereabouts::Belief;
+
+use crate::w16_10_own_robot::model::{mapped, tell};
+
+const NAN: f64 = f64::NAN;
+
+/// Five scans: lost, doubtful, found, followed, lost again.
+fn places() -> Vec<f64> {
+    let place = |scan: f64, at: [f64; 3], verdict: f64, sigma_m: f64| {
+        let [x, y, theta] = at;
+        [
+            scan,
+            10.0 + scan,
+            x,
+            y,
+            theta,
+            verdict,
+            0.8,
+            sigma_m,
+            0.5 * sigma_m,
+            0.0,
+        ]
+    };
+    [
+        place(0.0, [NAN; 3], 3.0, NAN),
+        place(1.0, [1.0, 0.2, 0.0], 2.0, NAN),
+        place(2.0, [2.0, 0.2, 0.0], 0.0, 0.05),
+        place(3.0, [2.5, 0.2, 0.1], 1.0, 0.04),
+        place(4.0, [NAN; 3], 3.0, NAN),
+    ]
+    .concat()
+}
+
+fn with_visitor(is_over: bool) -> OwnRobot {
+    let mut robot = mapped();
+    let over = f64::from(u8::from(is_over));
+    let mut numbers = vec![0.4, over, 1.0, 1.0, 1.0, 2.0, 2.0];
+    numbers.extend(places());
+    tell(&mut robot, "where", "tuesday.log", &numbers);
+    robot
+}
+
+#[test]
+fn another_log_is_asked_for_anywhere_or_at_the_keyframe_that_is_shown() {
+    let mut robot = mapped();
+    robot.press("locate").unwrap();
+    robot.press("locate-sample").unwrap();
+    assert_eq!(robot.take_orders(), ["locate", "locate-sample"]);
+    robot.set("start", 1.0).unwrap();
+    robot.set("keyframe", 2.0).unwrap();
+    robot.take_orders();
+    robot.press("locate").unwrap();
+    assert_eq!(robot.take_orders(), ["locate 2 0 0"]);
+    tell(&mut robot, "dropped", "tuesday.log", &[]);
+    assert_eq!(robot.take_orders(), ["locate-dropped 2 0 0"]);
+    robot.set("drop", 1.0).unwrap();
+    assert_eq!(robot.take_orders(), ["drop where"]);
+    robot.press("defaults").unwrap();
+    assert_eq!(robot.take_orders(), ["close", "drop map"]);
+}
+
+#[test]
+fn its_verdicts_are_said_in_words_and_numbers_and_walked_through() {
+    let mut robot = with_visitor(true);
+    let said = |robot: &OwnRobot| robot.outcome().sentence;
+    let whole = "The robot of tuesday.log is found at its scan 2: of 5 scans 2 are believed, 1 doubtful, 2 lost.";
+    assert!(said(&robot).contains(whole), "{}", said(&robot));
+    assert!(said(&robot).contains("At scan 4 it is lost."));
+    robot.press("change").unwrap();
+    assert_eq!(
+        robot.values().number("scan"),
+        0.0,
+        "after the last change comes the first scan"
+    );
+    robot.press("change").unwrap();
+    assert_eq!(robot.values().number("scan"), 2.0);
+    assert!(
+        said(&robot)
+            .contains("At scan 2 it is found at x 2.0 m, y 0.2 m, turned 0°, known to 0.05 m.")
+    );
+    robot.press("change").unwrap();
+    assert_eq!(robot.values().number("scan"), 4.0);
+    let facts = robot.outcome().facts;
+    let fact = |id: &str| facts.iter().find(|fact| fact.id == id).unwrap().value;
+    assert_eq!(
+        (
+            fact("where_believed"),
+            fact("where_doubtful"),
+            fact("where_lost")
+        ),
+        (2.0, 1.0, 2.0)
+    );
+    let tables = robot.tables();
+    let table = tables.iter().find(|table| table.id == "where").unwrap();
+    let verdicts: Vec<&str> = table.rows.iter().map(|row| row[2].as_str()).collect();
+    assert_eq!(verdicts, ["lost", "doubtful", "found", "followed", "lost"]);
+    assert!(robot.summary().contains("tuesday.log"));
+}
+
+#[test]
+fn its_way_lies_over_the_map_and_what_is_doubtful_is_dotted() {
+    let mut robot = with_visitor(true);
+    robot.set("scan", 3.0).unwrap();
+    let scene = robot.scene();
+    let lines = |wanted: Stroke| {
+        let layers = scene.panels[0].layers.iter();
+        let known = layers.filter_map(|layer| match layer {
+            Layer::Line {
+                points,
+                stroke,
+                tone,
+                ..
+            } if *stroke == wanted && *tone == kit::scene::Tone::Class(2) => {
+                Some(points.iter().filter(|point| point[0].is_finite()).count())
+            }
+            _ => None,
+        });
+        known.sum::<usize>()
+    };
+    assert_eq!((lines(Stroke::Solid), lines(Stroke::Dotted)), (2, 1));
+    let is_ellipse = |layer: &&Layer| matches!(layer, Layer::Ellipse { .. });
+    let ellipse = scene.panels[0].layers.iter().find(is_ellipse);
+    let Some(Layer::Ellipse {
+        center, half_axes, ..
+    }) = ellipse
+    else {
+        panic!("no ellipse");
+    };
+    assert_eq!(*center, [2.5, 0.2]);
+    assert!(
+        (half_axes[0][0] - 0.12).abs() < 1e-12,
+        "three standard deviations"
+    );
+    let legend = &scene.panels[0].legend;
+    assert!(
+        legend
+            .iter()
+            .any(|entry| entry.label == "the other log, believed")
+    );
+    let faults =
+        kit::audit::text_faults(&robot, &widgets::w16_10_own_robot::view::RobotView, 390.0);
+    assert!(faults.is_empty(), "{faults:#?}");
+}
+
+#[test]
+fn looking_is_held_and_goes_on_by_play() {
+    let mut robot = with_visitor(false);
+    assert_eq!(robot.outcome().verdict, "looking for the robot");
+    assert_eq!(robot.outcome().standing, Standing::Neutral);
+    assert!(
+        robot
+            .outcome()
+            .sentence
+            .contains("found at its scan 2, 40 % done")
+    );
+    robot.press("play").unwrap();
+    assert_eq!(robot.take_orders(), ["pause"]);
+    tell(&mut robot, "stage", "", &[5.0, 1.0, 40.0, 2.0, 1.0]);
+    assert_eq!(robot.outcome().verdict, "held");
+    robot.take_orders();
+    robot.press("play").unwrap();
+    assert_eq!(robot.take_orders(), ["resume"]);
+}
+
+#[test]
+fn a_log_with_nothing_to_look_for_is_answered_and_wrong_numbers_change_nothing() {
+    let mut robot = mapped();
+    let text = "x.log\nx.log is no CARMEN log";
+    tell(
+        &mut robot,
+        "where",
+        text,
+        &[1.0, 1.0, 0.0, 0.0, 0.0, 0.0, NAN],
+    );
+    assert!(
+        robot
+            .outcome()
+            .sentence
+            .contains(" x.log is no CARMEN log.")
+    );
+    assert_eq!(robot.outcome().verdict, "loops contradict");
+    let before = format!("{:?}", robot.robot());
+    tell(&mut robot, "where", "y.log", &[1.0, 1.0]);
+    assert_eq!(before, format!("{:?}", robot.robot()));
+    robot.receive(&Delivery {
+        kind: "where",
+        numbers: &[NAN; 27],
+        ..Delivery::default()
+    });
+    let _ = (
+        robot.scene(),
+        robot.outcome(),
+        robot.summary(),
+        robot.tables(),
+    );
+    robot.press("change").unwrap();
+    let mut robot = with_visitor(true);
+    tell(&mut robot, "opening", "other.log", &[]);
+    assert!(robot.robot().whereabouts.is_none());
+    assert!(Belief::Found.is_believed() && !Belief::Doubtful.is_believed());
+}
+
+#[test]
+fn another_topic_is_taken_where_the_recording_has_one() {
+    let mut robot = mapped();
+    let said = |robot: &OwnRobot| robot.outcome().sentence;
+    robot.press("other").unwrap();
+    assert!(said(&robot).contains("offers nothing else"));
+    let offers = "scan-topic\t/front\t/back\t/front\nodom-topic\t/odom\t/odom\nbody-frame\tbase\tbase\tlaser\tmap\n";
+    tell(&mut robot, "offers", offers, &[]);
+    let shown = robot.shown_tables();
+    let table = shown.iter().find(|table| table.id == "offers").unwrap();
+    assert_eq!(
+        table.rows,
+        [
+            ["scan topic", "/front", "/back"],
+            ["body frame", "base", "laser, map"]
+        ]
+    );
+    robot.press("other").unwrap();
+    assert_eq!(robot.take_orders(), ["option scan-topic /back"]);
+    robot.set("option", 3.0).unwrap();
+    robot.press("other").unwrap();
+    assert_eq!(robot.take_orders(), ["option body-frame laser"]);
+    robot.set("option", 1.0).unwrap();
+    robot.press("other").unwrap();
+    assert!(robot.take_orders().is_empty());
+}

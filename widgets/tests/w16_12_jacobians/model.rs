@@ -1,0 +1,141 @@
+//! The four solvers without their picture.
+
+use kit::model::{Model, Standing};
+use kit::promises::assert_reports;
+use kit::scene::Layer;
+use widgets::w16_12_jacobians::model::{WrongJacobians, panel};
+use widgets::w16_12_jacobians::spec::{MOST_STEPS, SPEC};
+
+use crate::support::fact;
+
+fn with(values: &[(&str, f64)]) -> WrongJacobians {
+    let mut widget = WrongJacobians::default();
+    for (id, value) in values {
+        widget.set(id, *value).unwrap();
+    }
+    widget
+}
+
+#[test]
+fn the_wrong_residual_alone_ends_elsewhere_and_the_wrong_jacobian_takes_more_steps() {
+    for wrong in [0.0, 1.0] {
+        let widget = with(&[("wrong", wrong)]);
+        assert_eq!(
+            widget.outcome().verdict,
+            "the wrong residual ends elsewhere"
+        );
+        assert_eq!(widget.outcome().standing, Standing::Bad);
+        for id in ["approximate_steps", "jacobian_steps"] {
+            assert!(fact(&widget, id) > fact(&widget, "exact_steps"), "{id}");
+        }
+        assert!(fact(&widget, "residual_off_m") > 10.0 * fact(&widget, "approximate_off_m"));
+        assert!(fact(&widget, "residual_chi2") > fact(&widget, "exact_chi2"));
+    }
+}
+
+#[test]
+fn half_the_contradiction_halves_one_error_and_quarters_the_other() {
+    let [whole, half] = [6.0, 3.0].map(|bias| with(&[("bias", bias)]));
+    let share = |id: &str| fact(&half, id) / fact(&whole, id);
+    // A tenth of each: the next order of the expansion.
+    assert!((share("residual_off_m") - 0.5).abs() < 0.05);
+    assert!((share("approximate_off_m") - 0.25).abs() < 0.025);
+}
+
+#[test]
+fn where_measurements_agree_all_four_end_alike() {
+    let widget = with(&[("bias", 0.0)]);
+    assert_eq!(widget.outcome().verdict, "all four end alike");
+    assert_eq!(widget.outcome().standing, Standing::Good);
+}
+
+#[test]
+fn each_curve_ends_where_the_table_says() {
+    let widget = WrongJacobians::default();
+    let panels = widget.scene().panels;
+    let curve = panels
+        .iter()
+        .find(|panel| panel.id == panel::CURVE)
+        .unwrap();
+    let ends = curve.layers.iter().filter_map(|layer| match layer {
+        Layer::Points { points, .. } => points.last(),
+        _ => None,
+    });
+    let ends: Vec<_> = ends.collect();
+    assert_eq!(ends.len(), 4);
+    let ids = ["exact", "approximate", "jacobian", "residual"];
+    for (end, id) in ends.iter().zip(ids) {
+        assert_eq!(end[0], fact(&widget, &format!("{id}_steps")));
+        let off_m = fact(&widget, &format!("{id}_off_m"));
+        // Powers of ten, not below the floor of the picture.
+        assert!((end[1] - off_m.max(1e-9).log10()).abs() < 1e-9, "{id}");
+    }
+    let by_chi2 = with(&[("curve", 1.0)]).scene().panels;
+    assert_eq!(by_chi2.last().unwrap().title, "χ² above the optimum");
+}
+
+#[test]
+fn the_step_is_dragged_along_the_curves() {
+    let mut widget = with(&[("steps", 3.0)]);
+    let handle = widget.grab(panel::CURVE, [3.2, 0.0], [0.5, 1.0]).unwrap();
+    widget.drag(handle, [7.1, 0.0]);
+    assert_eq!(widget.values().number("steps"), 7.0);
+    widget.drag(handle, [f64::NAN, 0.0]);
+    widget.drag(handle, [1e300, 0.0]);
+    assert_eq!(
+        widget.values().number("steps"),
+        widget.timeline().unwrap().last
+    );
+    assert!(
+        widget
+            .grab(panel::MAPS[0], [3.0, 0.0], [9.0, 9.0])
+            .is_none()
+    );
+}
+
+#[test]
+fn every_preset_does_what_its_button_says() {
+    let after = |id: &str| {
+        let mut widget = WrongJacobians::default();
+        widget.press(id).unwrap();
+        widget
+    };
+    assert_eq!(
+        after("four").outcome().verdict,
+        "the wrong residual ends elsewhere"
+    );
+    assert_eq!(after("agree").outcome().verdict, "all four end alike");
+    let left = fact(&after("left"), "jacobian_off_m");
+    assert!(
+        left > 0.0005 && left < 0.0025,
+        "a millimetre or two: {left}"
+    );
+    let half = after("half");
+    assert!(fact(&half, "residual_off_m") < 0.6 * fact(&after("four"), "residual_off_m"));
+    let last = after("four").timeline().unwrap().last;
+    assert!(last > 20.0 && last <= MOST_STEPS as f64);
+    assert_eq!(SPEC.presets.len(), 4, "a preset without a test");
+}
+
+#[test]
+fn all_settings_come_to_rest() {
+    for bias in [0.0, 0.5, 6.0, 10.0] {
+        for scatter in [0.0, 0.3] {
+            for (wrong, seed) in [(0.0, 1.0), (1.0, 2.0), (0.0, 4_294_967_295.0)] {
+                let values = [
+                    ("bias", bias),
+                    ("scatter", scatter),
+                    ("wrong", wrong),
+                    ("seed", seed),
+                ];
+                let widget = with(&values);
+                assert_ne!(
+                    widget.outcome().verdict,
+                    "not all come to rest",
+                    "{values:?}"
+                );
+                assert_reports(&widget);
+            }
+        }
+    }
+}

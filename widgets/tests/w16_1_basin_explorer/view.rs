@@ -1,0 +1,89 @@
+//! The widget as a reader meets it: through egui's accessibility tree and the pointer.
+
+use egui::accesskit::Role;
+use egui::{Event, Modifiers, PointerButton, Pos2, pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use kit::shell::Shell;
+use widgets::w16_1_basin_explorer::model::panel;
+
+use crate::support::{drawn_whole, value};
+
+fn screen(harness: &Harness<'_, Shell>, panel: &str, at: [f64; 2]) -> Pos2 {
+    let [x, y] = harness
+        .state()
+        .panel_to_screen(panel, at)
+        .expect("the panel is shown");
+    pos2(x, y)
+}
+
+fn drag(harness: &mut Harness<'_, Shell>, from: Pos2, to: Pos2) {
+    for (pos, pressed) in [(from, Some(true)), (to, None), (to, Some(false))] {
+        harness.event(Event::PointerMoved(pos));
+        if let Some(pressed) = pressed {
+            harness.event(Event::PointerButton {
+                pos,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::NONE,
+            });
+        }
+        harness.run_steps(2);
+    }
+}
+
+#[test]
+fn the_cloud_is_dragged_by_its_sensor_and_turned_by_its_handle() {
+    let mut harness = drawn_whole("w16.1", 1100.0);
+    harness
+        .state_mut()
+        .model_mut()
+        .set("iteration", 30.0)
+        .unwrap();
+    harness.run_steps(2);
+    let from = screen(&harness, panel::SWEEPS, [0.5, -0.35]);
+    let to = screen(&harness, panel::SWEEPS, [0.9, -0.35]);
+    drag(&mut harness, from, to);
+    assert!(
+        (value(&harness, "dx") - 0.4).abs() < 0.05,
+        "{}",
+        value(&harness, "dx")
+    );
+    let handle = screen(
+        &harness,
+        panel::SWEEPS,
+        [0.9 + 0.35_f64.cos(), -0.35 + 0.35_f64.sin()],
+    );
+    let up = screen(&harness, panel::SWEEPS, [0.9, 0.65]);
+    drag(&mut harness, handle, up);
+    let turned = 90.0 - 0.35_f64.to_degrees();
+    assert!(
+        (value(&harness, "heading") - turned).abs() < 3.0,
+        "{}",
+        value(&harness, "heading")
+    );
+}
+
+#[test]
+fn a_click_on_a_basin_map_sets_the_start() {
+    let mut harness = drawn_whole("w16.1", 1100.0);
+    let model = harness.state_mut().model_mut();
+    model.set("iteration", 30.0).unwrap();
+    harness.run_steps(2);
+    let spot = screen(&harness, panel::PLANE, [-90.0, 1.0]);
+    drag(&mut harness, spot, spot);
+    assert!((value(&harness, "heading") + 90.0).abs() < 1.0);
+    assert!((value(&harness, "dx") - 1.0).abs() < 0.02);
+    assert_eq!(value(&harness, "variant"), 1.0);
+    assert_eq!(value(&harness, "iteration"), 0.0);
+}
+
+#[test]
+fn the_verdict_on_screen_follows_the_preset() {
+    let mut harness = drawn_whole("w16.1", 1100.0);
+    harness
+        .get_by_role_and_label(Role::Button, "Start 60° off")
+        .click();
+    harness.run_steps(2);
+    assert!(harness.query_by_label("quarter turn").is_some());
+}

@@ -1,0 +1,3 @@
+//! The widget through its shell.
+
+mod shell;

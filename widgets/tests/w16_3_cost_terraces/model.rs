@@ -1,0 +1,377 @@
+//! What the widget claims, asked of its model without a picture.
+
+use kit::model::{Activity, Model, Motion, Standing, apply_preset};
+use kit::scene::{Layer, Raster, Tone};
+use widgets::w16_3_cost_terraces::model::CostTerraces;
+
+use crate::support::{fact, panel_of as panel};
+
+fn with(settings: &[(&str, f64)]) -> CostTerraces {
+    let mut model = CostTerraces::default();
+    for (id, value) in settings {
+        model.set(id, *value).unwrap();
+    }
+    model
+}
+
+fn preset(id: &str) -> CostTerraces {
+    let mut model = CostTerraces::default();
+    let preset = model.spec().presets.iter().find(|preset| preset.id == id);
+    apply_preset(&mut model, preset.unwrap()).unwrap();
+    model
+}
+
+/// Separate segments of a panel in that tone and width.
+fn segments(model: &dyn Model, id: &str, tone: Tone, width_px: f32) -> usize {
+    let layers = panel(model, id).layers;
+    let found = layers.iter().filter_map(|layer| match layer {
+        Layer::Segments {
+            segments,
+            tone: drawn,
+            width_px: width,
+            ..
+        } if *drawn == tone && *width == width_px => Some(segments.len()),
+        _ => None,
+    });
+    found.sum()
+}
+
+fn raster(model: &dyn Model, id: &str) -> Raster {
+    let panel = panel(model, id);
+    let raster = panel.layers.iter().find_map(|layer| match layer {
+        Layer::Raster(raster) => Some(raster.clone()),
+        _ => None,
+    });
+    raster.unwrap()
+}
+
+/// SPEC §10, printed there with three digits.
+#[test]
+fn the_cross_hair_reads_the_chapters_costs() {
+    for (scene, x, y, cost_m2) in [
+        (0.0, 0.6, 0.0, 0.189),
+        (0.0, 0.0, 0.6, 0.160),
+        (2.0, 0.6, 0.0, 0.053),
+        (2.0, 0.0, 0.6, 0.347),
+    ] {
+        let model = with(&[
+            ("scene", scene),
+            ("tau", 0.6),
+            ("probe-x", x),
+            ("probe-y", y),
+        ]);
+        let read = fact(&model, "icp_cost_m2");
+        assert!(
+            (read - cost_m2).abs() < 5e-4,
+            "{read} for {cost_m2} at ({x}, {y})"
+        );
+    }
+}
+
+/// SPEC §10: 74 % of the peak along the corridor, nothing across it.
+#[test]
+fn the_corridors_ndt_score_fades_across_the_walls_alone() {
+    let mut model = with(&[("scene", 2.0), ("probe-x", 0.6), ("probe-y", 0.0)]);
+    let along = fact(&model, "ndt_score");
+    model.set("probe-x", 0.0).unwrap();
+    let peak = fact(&model, "ndt_score");
+    model.set("probe-y", 0.6).unwrap();
+    let across = fact(&model, "ndt_score");
+    assert!((along / peak - 0.74).abs() < 5e-3, "{along} of {peak}");
+    assert!(across < 1e-9, "{across}");
+}
+
+#[test]
+fn a_small_tau_stops_icps_ball_on_a_terrace_and_ndts_rolls_home() {
+    let model = preset("terraces");
+    assert!(fact(&model, "icp_rest_m") > 0.15, "{:?}", model.outcome());
+    assert!(fact(&model, "ndt_rest_m") < 0.12, "{:?}", model.outcome());
+    assert_eq!(model.outcome().verdict, "ICP sticks");
+    assert_eq!(model.outcome().standing, Standing::Bad);
+}
+
+#[test]
+fn the_loosest_direction_of_the_corridor_is_along_its_walls() {
+    let corridor = preset("corridor");
+    let angle = fact(&corridor, "loose_direction_deg");
+    assert!(angle.abs() < 5.0 || angle.abs() > 175.0, "{angle}°");
+    let share = |model: &dyn Model| {
+        fact(model, "information_loose_per_cm2") / fact(model, "information_firm_per_cm2")
+    };
+    let room = CostTerraces::default();
+    assert!(share(&corridor) < 0.01, "corridor {}", share(&corridor));
+    assert!(share(&room) > 0.5, "room {}", share(&room));
+    // The chapter: the corridor's point-to-plane matrix has rank 2.
+    assert_eq!(fact(&corridor, "information_rank"), 2.0);
+    assert_eq!(fact(&room, "information_rank"), 3.0);
+}
+
+#[test]
+fn across_the_corridor_both_balls_settle_on_the_wrong_wall() {
+    let model = preset("wrong-wall");
+    for rest in ["icp_rest_m", "ndt_rest_m"] {
+        // The corridor is 1.2 m wide: one wall lies on the other at Δy = 1.2 m.
+        assert!(fact(&model, rest) > 1.0, "{rest}: {:?}", model.outcome());
+    }
+}
+
+#[test]
+fn a_wider_ndt_cell_brings_home_a_ball_that_the_usual_cell_loses() {
+    let mut model = preset("wide-hill");
+    assert_eq!(model.outcome().verdict, "ICP sticks");
+    let drop_m = 0.7_f64.hypot(0.7);
+    assert!(fact(&model, "icp_rest_m") > drop_m, "ICP's rolls away");
+    model.set("ndt-cell", 0.55).unwrap();
+    assert!(fact(&model, "ndt_rest_m") > 0.12, "{:?}", model.outcome());
+}
+
+#[test]
+fn with_the_widest_tau_no_point_is_without_a_pair() {
+    let model = preset("wide-tau");
+    let points = panel(&model, "sweep")
+        .layers
+        .iter()
+        .find_map(|layer| match layer {
+            Layer::Points { points, tone, .. } if *tone == Tone::Prior => Some(points.len()),
+            _ => None,
+        });
+    // Those that stay, and those that are about to change.
+    let pairs =
+        segments(&model, "sweep", Tone::Ink, 0.75) + segments(&model, "sweep", Tone::Ink, 2.5);
+    assert_eq!(pairs, points.unwrap());
+}
+
+#[test]
+fn a_slices_title_names_the_row_that_it_shows() {
+    // 49 samples over 2.6 m lie 5.4 cm apart: none lies at 0.3 m.
+    let model = with(&[("probe-x", 0.3), ("probe-y", -0.3)]);
+    let panels = model.scene().panels;
+    let tables = model.tables();
+    let maps = tables.iter().find(|table| table.id == "maps").unwrap();
+    for (id, title, fixed, value) in [
+        ("icp-x", "Along x at Δy = −0.325 m", 1, 2),
+        ("icp-y", "Along y at Δx = 0.325 m", 0, 2),
+        ("ndt-x", "Along x at Δy = −0.325 m", 1, 3),
+    ] {
+        let panel = panels.iter().find(|panel| panel.id == id).unwrap();
+        assert_eq!(panel.title, title);
+        let shift = if fixed == 1 { "-0.3250" } else { "0.3250" };
+        let line = maps.rows.iter().filter(|row| row[fixed] == shift);
+        let heights: Vec<f64> = line.map(|row| row[value].parse().unwrap()).collect();
+        let curve = panel.layers.iter().find_map(|layer| match layer {
+            Layer::Line { points, .. } => Some(points.iter().map(|at| at[1])),
+            _ => None,
+        });
+        assert_eq!(curve.unwrap().collect::<Vec<_>>(), heights, "{id}");
+    }
+}
+
+#[test]
+fn a_wide_tau_brings_home_what_ndt_loses() {
+    let mut model = preset("wide-tau");
+    assert_eq!(model.outcome().verdict, "NDT sticks");
+    // With the chapter's τ the same drop sticks on ICP as well.
+    model.set("tau", 0.6).unwrap();
+    assert_eq!(model.outcome().verdict, "both stick");
+}
+
+#[test]
+fn a_turned_sweep_has_no_shift_without_cost() {
+    let (straight, turned) = (CostTerraces::default(), preset("turned"));
+    assert_eq!(raster_low(&straight), 0.0);
+    assert!(raster_low(&turned) > 0.0);
+    assert_eq!(fact(&straight, "ndt_lowest_m"), 0.0);
+    assert!(fact(&turned, "ndt_lowest_m") > 0.3);
+}
+
+/// Lowest ICP cost of the map, from the table that is given out as CSV.
+fn raster_low(model: &dyn Model) -> f64 {
+    let tables = model.tables();
+    let maps = tables.iter().find(|table| table.id == "maps").unwrap();
+    let costs = maps.rows.iter().map(|row| row[2].parse::<f64>().unwrap());
+    costs.fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn a_parameter_recomputes_what_depends_on_it_and_nothing_else() {
+    let revisions = |model: &dyn Model| ["icp", "ndt"].map(|id| raster(model, id).revision);
+    for (id, value, changes) in [
+        ("probe-x", -0.3, [false, false]),
+        ("probe-y", 0.9, [false, false]),
+        ("t", 1.0, [false, false]),
+        ("speed", 4.0, [false, false]),
+        ("drops", 2.0, [false, false]),
+        ("colours", 0.0, [true, true]),
+        ("tau", 0.3, [true, false]),
+        ("ndt-cell", 0.8, [false, true]),
+        ("heading", 7.0, [true, true]),
+        ("cells", 57.0, [true, true]),
+        ("scene", 1.0, [true, true]),
+        ("seed", 7.0, [true, true]),
+    ] {
+        let mut model = CostTerraces::default();
+        let before = revisions(&model);
+        model.set(id, value).unwrap();
+        let after = revisions(&model);
+        assert_eq!(
+            [before[0] != after[0], before[1] != after[1]],
+            changes,
+            "{id}"
+        );
+    }
+}
+
+#[test]
+fn the_order_of_the_settings_does_not_matter() {
+    let settings = [
+        ("tau", 0.25),
+        ("scene", 1.0),
+        ("ndt-cell", 0.7),
+        ("cells", 65.0),
+        ("heading", -12.0),
+        ("probe-x", 0.4),
+        ("probe-y", -0.2),
+    ];
+    let forwards = with(&settings);
+    let mut reversed = settings;
+    reversed.reverse();
+    let backwards = with(&reversed);
+    assert_eq!(forwards.outcome(), backwards.outcome());
+    assert_eq!(forwards.tables(), backwards.tables());
+}
+
+#[test]
+fn defaults_bring_back_the_first_picture() {
+    let fresh = CostTerraces::default();
+    for preset in fresh.spec().presets {
+        let mut model = self::preset(preset.id);
+        model.press("defaults").unwrap();
+        assert_eq!(model.values(), fresh.values());
+        assert_eq!(model.outcome(), fresh.outcome());
+        assert_eq!(model.timeline(), fresh.timeline());
+    }
+}
+
+#[test]
+fn a_dropped_ball_plays_to_its_rest_and_stops() {
+    let mut model = CostTerraces::default();
+    model.press("drop").unwrap();
+    assert!(model.timeline().unwrap().playing);
+    let mut frames = 0;
+    while model.advance(1.0 / 60.0) == Activity::Busy {
+        frames += 1;
+        assert!(frames < 60 * 120, "two minutes and no rest");
+    }
+    let timeline = model.timeline().unwrap();
+    assert!(!timeline.playing);
+    // Past the last step means the end, here as after the next drag of the cross hair.
+    assert!(model.values().number("t") >= timeline.last);
+    model.press("reset").unwrap();
+    model.press("step").unwrap();
+    assert_eq!(model.values().number("t"), 1.0);
+}
+
+#[test]
+fn with_reduced_motion_the_balls_are_at_rest_at_once() {
+    let mut model = CostTerraces::default();
+    model.set_motion(Motion::Reduced);
+    model.press("drop").unwrap();
+    assert_eq!(model.advance(1.0), Activity::Idle);
+    assert!(model.values().number("t") >= model.timeline().unwrap().last);
+}
+
+#[test]
+fn a_ball_never_climbs() {
+    for preset in CostTerraces::default().spec().presets {
+        let (id, model) = (preset.id, self::preset(preset.id));
+        for ball in ["icp-ball", "ndt-ball"] {
+            let tables = model.tables();
+            let way = tables.iter().find(|table| table.id == ball).unwrap();
+            let heights: Vec<f64> = way.rows.iter().map(|row| row[3].parse().unwrap()).collect();
+            for pair in heights.windows(2) {
+                assert!(
+                    pair[1] <= pair[0],
+                    "{id}, {ball}: {} after {}",
+                    pair[1],
+                    pair[0]
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_press_on_either_map_puts_the_cross_hair_there() {
+    let mut model = CostTerraces::default();
+    for panel in ["icp", "ndt"] {
+        let handle = model.grab(panel, [-0.5, 0.25], [0.1, 0.1]).unwrap();
+        model.drag(handle, [-0.5, 0.25]);
+        assert_eq!(model.values().number("probe-x"), -0.5);
+        assert_eq!(model.values().number("probe-y"), 0.25);
+        // Dragged off the map, it stays at the border.
+        model.drag(handle, [9.0, -9.0]);
+        assert_eq!(model.values().number("probe-x"), 1.3);
+        assert_eq!(model.values().number("probe-y"), -1.3);
+    }
+    assert!(model.grab("slice-x", [0.0, 0.5], [0.1, 0.1]).is_none());
+}
+
+#[test]
+fn the_extremes_of_every_parameter_have_every_figure_and_a_cell_on_the_truth() {
+    let fresh = CostTerraces::default();
+    for (spec, _) in fresh.values().iter() {
+        let (min, max) = spec.range();
+        for value in [min, max] {
+            let mut model = CostTerraces::default();
+            model.set(spec.id, value).unwrap();
+            model.settle();
+            let outcome = model.outcome();
+            for fact in &outcome.facts {
+                assert!(fact.value.is_finite(), "{} at {value}: {fact:?}", spec.id);
+            }
+            for id in ["icp", "ndt"] {
+                let raster = raster(&model, id);
+                assert_eq!(raster.columns % 2, 1, "a cell on the truth");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_value_of_cells_keeps_a_cell_on_the_truth() {
+    for cells in 49..=161 {
+        let model = with(&[("cells", f64::from(cells))]);
+        let raster = raster(&model, "icp");
+        assert_eq!(raster.columns % 2, 1);
+        assert!((49..=161).contains(&raster.columns));
+    }
+}
+
+#[test]
+fn the_pointer_over_one_map_reads_both() {
+    let mut model = CostTerraces::default();
+    let titles = |model: &CostTerraces| {
+        let panels = model.scene().panels;
+        ["icp", "ndt"].map(|id| {
+            let panel = panels.iter().find(|panel| panel.id == id);
+            panel.unwrap().title.clone()
+        })
+    };
+    let resting = titles(&model);
+    assert!(
+        resting
+            .iter()
+            .all(|title| title.ends_with("at the cross hair"))
+    );
+    model.hover("icp", Some([0.0, 0.0]));
+    // The sweep lies on its own points: no cost; the score is the peak of the reference grid.
+    assert_eq!(
+        titles(&model),
+        [
+            "ICP cost 0.0000 m² under the pointer",
+            "NDT score 0.5922 under the pointer"
+        ]
+    );
+    model.hover("icp", None);
+    assert_eq!(titles(&model), resting);
+}

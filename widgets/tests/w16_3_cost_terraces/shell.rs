@@ -1,0 +1,81 @@
+//! The widget driven as a reader drives it, through egui's accessibility tree and its pointer.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use kit::shell::Shell;
+
+use crate::support::{drawn_whole, press_key, value};
+
+fn verdict(harness: &Harness<'_, Shell>) -> String {
+    harness.state().model().outcome().verdict
+}
+
+fn click_at(harness: &mut Harness<'_, Shell>, pos: Pos2) {
+    harness.event(Event::PointerMoved(pos));
+    for pressed in [true, false] {
+        harness.event(Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+        harness.run_steps(2);
+    }
+}
+
+#[test]
+fn the_scene_is_chosen_by_its_button() {
+    let mut harness = drawn_whole("w16.3", 1100.0);
+    harness
+        .get_by_role_and_label(Role::RadioButton, "scene: corridor")
+        .click();
+    harness.run_steps(2);
+    assert_eq!(value(&harness, "scene"), 1.0);
+}
+
+#[test]
+fn a_click_on_either_map_moves_both_cross_hairs() {
+    let mut harness = drawn_whole("w16.3", 1100.0);
+    for (panel, at) in [("icp", [0.5, -0.5]), ("ndt", [-0.75, 0.25])] {
+        let [x, y] = harness.state().panel_to_screen(panel, at).unwrap();
+        click_at(&mut harness, pos2(x, y));
+        // A pixel is 8 mm here.
+        assert!((value(&harness, "probe-x") - at[0]).abs() < 0.01);
+        assert!((value(&harness, "probe-y") - at[1]).abs() < 0.01);
+    }
+}
+
+#[test]
+fn a_preset_drops_the_balls_and_the_widget_comes_to_rest() {
+    let mut harness = drawn_whole("w16.3", 1100.0);
+    harness.get_by_label("Shrink τ to 0.15 m").click();
+    harness.run_steps(2);
+    assert!(harness.state().is_busy());
+    let frames = 60 * 120;
+    for _ in 0..frames {
+        harness.step();
+        if !harness.state().is_busy() {
+            break;
+        }
+    }
+    assert!(
+        !harness.state().is_busy(),
+        "an idle widget asks for no frame"
+    );
+    assert_eq!(verdict(&harness), "ICP sticks");
+    let last = harness.state().model().timeline().unwrap().last;
+    assert!(value(&harness, "t") >= last);
+}
+
+#[test]
+fn defaults_put_the_cross_hair_back() {
+    let mut harness = drawn_whole("w16.3", 700.0);
+    press_key(&mut harness, "drop at Δx", Key::ArrowRight);
+    harness
+        .get_by_role_and_label(Role::Button, "Defaults")
+        .click();
+    harness.run_steps(2);
+    assert_eq!(value(&harness, "probe-x"), 0.4);
+}

@@ -1,0 +1,457 @@
+//! The control room driven headless; figures from `tests/reference/lap.json`.
+
+use kit::model::{Activity, Model as _, Standing};
+use kit::scene::{Layer, Panel, Tone};
+use widgets::w16_4_control_room::model::ControlRoom;
+use widgets::w16_4_control_room::spec::SPEC;
+
+use crate::support::fact;
+
+/// The run of the reference file with that seed, noise factor and loop closure.
+fn reference(seed: u64, noise: f64, loops: bool) -> serde_json::Value {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/reference/lap.json");
+    let text = std::fs::read_to_string(path).expect("the reference file is in the project");
+    let runs: Vec<serde_json::Value> = serde_json::from_str(&text).expect("it is JSON");
+    let wanted = |run: &serde_json::Value| {
+        run["seed"] == seed && run["noise"].as_f64() == Some(noise) && run["loops"] == loops
+    };
+    runs.into_iter()
+        .find(wanted)
+        .expect("the run is in the file")
+}
+
+fn set(room: &mut ControlRoom, id: &str, value: f64) {
+    room.set(id, value).unwrap();
+    room.settle();
+}
+
+fn press(room: &mut ControlRoom, id: &str) {
+    room.press(id).unwrap();
+    room.settle();
+}
+
+fn revision(room: &ControlRoom) -> u64 {
+    let scene = room.scene();
+    let grid = scene.panels[0].layers.iter().find_map(|layer| match layer {
+        Layer::Raster(raster) => Some(raster.revision),
+        _ => None,
+    });
+    grid.expect("the map has a grid")
+}
+
+#[test]
+fn the_end_of_every_reference_run_has_its_grid_its_loops_and_its_errors() {
+    let mut room = ControlRoom::default();
+    for (seed, noise, loops) in [
+        (12_648_430, 1.0, true),
+        (6, 2.0, true),
+        (12_648_430, 1.0, false),
+    ] {
+        let run = reference(seed, noise, loops);
+        set(&mut room, "seed", seed as f64);
+        set(&mut room, "noise", noise);
+        set(&mut room, "loops", f64::from(u8::from(loops)));
+        set(&mut room, "t", run["ticks"].as_f64().unwrap());
+        assert_eq!(fact(&room, "keyframes"), run["keyframes"].as_f64().unwrap());
+        assert_eq!(
+            fact(&room, "occupied_cells"),
+            run["occupied_cells"].as_f64().unwrap()
+        );
+        assert_eq!(
+            fact(&room, "free_cells"),
+            run["free_cells"].as_f64().unwrap()
+        );
+        let events = run["events"].as_array().unwrap();
+        let marks = room.timeline().unwrap().marks;
+        assert_eq!(marks.len(), events.len(), "one mark for each loop test");
+        for (mark, event) in marks.iter().zip(events) {
+            let accepted = event["accepted"] == true;
+            let is_judged = mark.standing != Standing::Neutral;
+            assert_eq!(is_judged, accepted, "{}", mark.label);
+        }
+        // 1e-6: a whole lap.
+        let error = run["odometry_end_error"].as_f64().unwrap();
+        assert!((fact(&room, "odometry_error_m") - error).abs() < 1e-6);
+        let disagreement = run["map_disagreement"].as_f64().unwrap();
+        assert!((fact(&room, "map_disagreement_m") - disagreement).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn the_grid_is_drawn_again_when_a_loop_moves_its_keyframes() {
+    let mut room = ControlRoom::default();
+    set(&mut room, "t", 91.0);
+    let before = fact(&room, "occupied_cells");
+    assert_eq!(fact(&room, "loops"), 0.0);
+    press(&mut room, "step");
+    assert_eq!(fact(&room, "loops"), 1.0);
+    assert_ne!(fact(&room, "occupied_cells"), before);
+    assert!(
+        room.outcome().sentence.starts_with(
+            "loop 29 to 7 accepted, chi-squared 4.24 below 7.815, history moved 0.24 m"
+        ),
+        "{}",
+        room.outcome().sentence
+    );
+}
+
+#[test]
+fn a_tick_without_a_keyframe_uploads_no_new_texture() {
+    let mut room = ControlRoom::default();
+    set(&mut room, "t", 0.0);
+    let first = revision(&room);
+    press(&mut room, "step");
+    assert_eq!(revision(&room), first);
+    set(&mut room, "t", 20.0);
+    assert_ne!(revision(&room), first);
+}
+
+#[test]
+fn scrubbing_back_shows_what_playing_showed() {
+    let mut played = ControlRoom::default();
+    played.set("t", 0.0).unwrap();
+    played.press("play").unwrap();
+    while played.values().number("t") < 96.0 {
+        assert_eq!(played.advance(0.125), Activity::Busy);
+    }
+    played.press("play").unwrap();
+    assert_eq!(played.advance(0.125), Activity::Idle);
+    let mut scrubbed = ControlRoom::default();
+    scrubbed.set("t", 129.0).unwrap();
+    scrubbed.set("t", played.values().number("t")).unwrap();
+    assert_eq!(played.outcome(), scrubbed.outcome());
+    assert_eq!(played.summary(), scrubbed.summary());
+}
+
+#[test]
+fn the_line_at_the_moment_shown_can_be_dragged_in_every_plot_over_time() {
+    let mut room = ControlRoom::default();
+    for panel in &room.scene().panels {
+        let grabbed = room.grab(panel.id, [61.0, 0.1], [3.0, 0.1]);
+        assert_eq!(grabbed.is_some(), panel.x.label == "tick", "{}", panel.id);
+    }
+    // Grabbed one tick beside the line: it does not jump by that tick.
+    let line = room.grab("tau", [61.0, 0.1], [3.0, 0.1]).unwrap();
+    for (to, tick) in [(71.0, 70.0), (-40.0, 0.0), (500.0, 129.0)] {
+        room.drag(line, [to, 0.0]);
+        assert_eq!(room.values().number("t"), tick);
+    }
+}
+
+#[test]
+fn the_start_shows_the_first_sweep_where_nothing_is_off_yet() {
+    let mut room = ControlRoom::default();
+    set(&mut room, "t", 0.0);
+    assert_eq!(fact(&room, "estimate_error_m"), 0.0);
+    assert_eq!(fact(&room, "odometry_error_m"), 0.0);
+    assert!(fact(&room, "pairs").is_nan(), "nothing was registered");
+    let scene = room.scene();
+    let sweep = scene.panels[1].layers.iter().any(|layer| {
+        matches!(layer, Layer::Points { points, tone: Tone::Measurement, .. } if points.len() > 50)
+    });
+    assert!(sweep);
+}
+
+#[test]
+fn changing_the_run_keeps_the_moment() {
+    let mut room = ControlRoom::default();
+    set(&mut room, "t", 87.0);
+    let before = room.outcome();
+    set(&mut room, "noise", 4.0);
+    assert_eq!(room.values().number("t"), 87.0);
+    assert_ne!(room.outcome(), before);
+    press(&mut room, "defaults");
+    set(&mut room, "t", 87.0);
+    assert_eq!(room.outcome(), before);
+}
+
+#[test]
+fn a_setting_runs_in_pieces_of_a_tick_and_the_old_run_stays_until_the_new_one_is_whole() {
+    let mut room = ControlRoom::default();
+    set(&mut room, "t", 92.0);
+    let before = room.outcome();
+    for noise in [2.0, 3.0, 4.0] {
+        room.set("noise", noise).unwrap();
+    }
+    let mut pieces = 0;
+    while room.work().goes_on() {
+        pieces += 1;
+        if pieces < 129 {
+            assert_eq!(room.outcome(), before, "piece {pieces}");
+        }
+    }
+    // One lap and its front end alone, of 129 ticks each, and two ends: of three values one is run.
+    assert!((129..=260).contains(&pieces), "{pieces} pieces");
+    let mut at_once = ControlRoom::default();
+    set(&mut at_once, "t", 92.0);
+    set(&mut at_once, "noise", 4.0);
+    assert_eq!(room.outcome(), at_once.outcome());
+    assert_ne!(room.outcome(), before);
+}
+
+#[test]
+fn the_next_event_is_one_of_the_run_that_is_asked_for() {
+    let mut room = ControlRoom::default();
+    set(&mut room, "t", 60.0);
+    room.set("seed", 6.0).unwrap();
+    room.press("next-event").unwrap();
+    assert_eq!(room.values().number("t"), 60.0);
+    room.settle();
+    let mut at_once = ControlRoom::default();
+    set(&mut at_once, "t", 60.0);
+    set(&mut at_once, "seed", 6.0);
+    press(&mut at_once, "next-event");
+    assert_eq!(room.values().number("t"), at_once.values().number("t"));
+}
+
+#[test]
+fn the_transport_steps_resets_and_restores() {
+    let mut room = ControlRoom::default();
+    set(&mut room, "noise", 2.0);
+    for (button, tick) in [("step", 61.0), ("reset", 0.0), ("defaults", 60.0)] {
+        press(&mut room, button);
+        assert_eq!(room.values().number("t"), tick, "{button}");
+    }
+    // At the default tick the map cannot disagree with itself yet: NaN, which equals nothing.
+    let mut fresh = ControlRoom::default();
+    for widget in [&mut room, &mut fresh] {
+        widget.set("t", 87.0).unwrap();
+    }
+    assert_eq!(room.outcome(), fresh.outcome());
+    let refused = room.press("plya").unwrap_err().to_string();
+    assert!(refused.contains("next-event"), "{refused}");
+}
+
+#[test]
+fn every_lap_ends_where_the_timeline_does() {
+    let mut room = ControlRoom::default();
+    let spec = SPEC.params.iter().find(|spec| spec.id == "t").unwrap();
+    let (_, last) = spec.range();
+    for (seed, noise) in [(0.0, 0.25), (6.0, 2.0), (4_294_967_295.0, 4.0)] {
+        set(&mut room, "seed", seed);
+        set(&mut room, "noise", noise);
+        assert_eq!(room.timeline().unwrap().last, last, "seed {seed}");
+        set(&mut room, "t", last);
+        assert_eq!(room.outcome().verdict, "run finished");
+    }
+}
+
+/// The marks of the lanes: those that passed, and those that were refused.
+fn lane_marks(room: &ControlRoom) -> [Vec<[f64; 2]>; 2] {
+    let scene = room.scene();
+    let panel = scene.panels.iter().find(|panel| panel.id == "lanes");
+    let layers = &panel.expect("the lanes").layers;
+    [Tone::Measurement, Tone::Truth].map(|wanted| {
+        let points = layers.iter().find_map(|layer| match layer {
+            Layer::Points { points, tone, .. } if *tone == wanted => Some(points.clone()),
+            _ => None,
+        });
+        points.expect("both kinds of marks")
+    })
+}
+
+#[test]
+fn every_lane_has_a_mark_for_what_was_done_up_to_the_tick_shown() {
+    let mut room = ControlRoom::default();
+    set(&mut room, "t", 92.0);
+    let [passed, refused] = lane_marks(&room);
+    let lane = |height: f64| passed.iter().filter(|mark| mark[1] == height).count();
+    // Predict and register at every tick; candidate, fit, gate, optimize and repaint at the first
+    // loop, in tick 92.
+    assert_eq!((lane(8.0), lane(7.0)), (92, 92));
+    assert_eq!(
+        lane(6.0) as f64,
+        fact(&room, "keyframes") - 1.0,
+        "but the first"
+    );
+    for height in [5.0, 4.0, 3.0, 2.0, 1.0] {
+        assert_eq!(lane(height), 1, "lane {height}");
+    }
+    assert!(refused.is_empty());
+    // Seed 6: at tick 90 a candidate passes the gate and not the fit.
+    set(&mut room, "seed", 6.0);
+    set(&mut room, "t", 90.0);
+    let [passed, refused] = lane_marks(&room);
+    assert!(passed.contains(&[90.0, 3.0]));
+    assert!(refused.contains(&[90.0, 4.0]));
+}
+
+#[test]
+fn a_press_on_a_mark_of_a_lane_shows_its_data() {
+    let mut room = ControlRoom::default();
+    set(&mut room, "t", 129.0);
+    let handle = room
+        .grab("lanes", [93.0, 3.1], [2.0, 0.4])
+        .expect("the gate at tick 92");
+    room.drag(handle, [93.0, 3.1]);
+    assert_eq!(room.values().number("t"), 92.0);
+    let sentence = room.outcome().sentence;
+    assert!(sentence.starts_with("loop 29 to 7 accepted"), "{sentence}");
+}
+
+fn lanes(room: &ControlRoom) -> Panel {
+    let panels = room.scene().panels;
+    panels
+        .into_iter()
+        .find(|panel| panel.id == "lanes")
+        .expect("the lanes")
+}
+
+#[test]
+fn the_name_of_a_lane_stands_on_it_before_its_first_mark() {
+    let panel = lanes(&ControlRoom::default());
+    let names: Vec<_> = panel
+        .layers
+        .iter()
+        .filter_map(|layer| match layer {
+            Layer::Text { at, text, .. } => Some((*at, text.as_str())),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(names.len(), SAID.len());
+    for (lane, ([x, y], text)) in names.into_iter().enumerate() {
+        assert!(panel.x.min < x && x < 0.0, "{text} at tick {x}");
+        let height = (SAID.len() - lane) as f64;
+        assert_eq!(
+            (y, text),
+            (height, format!("{height} {}", SAID[lane].0).as_str())
+        );
+    }
+}
+
+/// The marks of every lane, and a piece of what each says in the tick of the first loop.
+const SAID: [(&str, &str); 8] = [
+    ("predict", "Predict: robot at ("),
+    ("register", " pairs within τ = "),
+    ("keyframe", "Keyframe: node 29 and an edge to node 28."),
+    ("candidate", "Candidate: node 29 to node 7, "),
+    ("fit", "Fit: "),
+    ("gate", "Gate: chi-squared 4.24 below 7.815."),
+    ("optimize", "nodes moved by up to 0.24 m."),
+    (
+        "repaint",
+        "Repaint: the grid from the sweeps of 30 keyframes.",
+    ),
+];
+
+#[test]
+fn every_mark_of_every_lane_says_its_data_when_it_is_pressed_or_chosen() {
+    let mut pressed = ControlRoom::default();
+    set(&mut pressed, "t", 129.0);
+    for (lane, (name, said)) in SAID.into_iter().enumerate() {
+        set(&mut pressed, "t", 129.0);
+        let spot = [92.3, 8.0 - lane as f64];
+        let handle = pressed.grab("lanes", spot, [2.0, 0.4]).expect(name);
+        pressed.drag(handle, spot);
+        assert_eq!(pressed.values().number("t"), 92.0, "{name}");
+        assert_eq!(pressed.values().number("lane"), lane as f64, "{name}");
+        let sentence = pressed.outcome().sentence;
+        assert!(sentence.contains(said), "{name}: {sentence}");
+        // By key: the lane and the tick are controls.
+        let mut chosen = ControlRoom::default();
+        set(&mut chosen, "lane", lane as f64);
+        set(&mut chosen, "t", 92.0);
+        assert_eq!(chosen.outcome(), pressed.outcome());
+        assert!(
+            lanes(&chosen) == lanes(&pressed),
+            "{name}: with the same ring"
+        );
+        let tables = chosen.shown_tables();
+        let tick = tables.iter().find(|table| table.id == "control-room-tick");
+        let row = &tick.expect("the tick's table").rows[lane];
+        assert_eq!(row[0], name);
+        assert!(sentence.contains(&row[1]), "{row:?}");
+    }
+    // Where a lane had nothing to do it says so, and no ring stands there.
+    let rings = |room: &ControlRoom| {
+        let scene = room.scene();
+        let lanes = scene.panels.iter().find(|panel| panel.id == "lanes");
+        let layers = &lanes.expect("the lanes").layers;
+        let ring = |layer: &&Layer| {
+            matches!(
+                layer,
+                Layer::Points {
+                    tone: Tone::Ink,
+                    ..
+                }
+            )
+        };
+        layers.iter().filter(ring).count()
+    };
+    assert_eq!(rings(&pressed), 1);
+    set(&mut pressed, "t", 91.0);
+    let sentence = pressed.outcome().sentence;
+    assert!(sentence.ends_with("Repaint: nothing to do."), "{sentence}");
+    assert_eq!(rings(&pressed), 0);
+}
+
+#[test]
+fn the_next_event_chooses_its_lane() {
+    let mut room = ControlRoom::default();
+    set(&mut room, "t", 91.0);
+    press(&mut room, "next-event");
+    assert_eq!(room.values().number("t"), 92.0);
+    let sentence = room.outcome().sentence;
+    assert!(sentence.contains("Keyframe: node 29"), "{sentence}");
+}
+
+#[test]
+fn plots_show_nothing_of_what_is_still_to_come() {
+    let mut room = ControlRoom::default();
+    let lines = |room: &ControlRoom| {
+        let panels = room.scene().panels.into_iter();
+        let plots = panels.filter(|panel| ["tau", "errors", "lanes"].contains(&panel.id));
+        let layers = plots.flat_map(|panel| panel.layers);
+        let points = layers.filter_map(|layer| match layer {
+            Layer::Line { points, .. } | Layer::Points { points, .. } => Some(points),
+            _ => None,
+        });
+        points.collect::<Vec<_>>()
+    };
+    let axes = |room: &ControlRoom| {
+        let panels = room.scene().panels.into_iter();
+        let plots = panels.filter(|panel| panel.x.label == "tick");
+        plots.map(|panel| (panel.x, panel.y)).collect::<Vec<_>>()
+    };
+    let whole = axes(&room);
+    for tick in [0.0, 40.0, 92.0, 129.0] {
+        set(&mut room, "t", tick);
+        let shown = lines(&room);
+        assert!(shown.iter().flatten().all(|[x, _]| *x <= tick), "at {tick}");
+        let reached = shown.iter().filter(|line| line.len() as f64 == tick + 1.0);
+        assert!(
+            tick == 0.0 || reached.count() >= 3,
+            "τ and both errors up to {tick}"
+        );
+        assert_eq!(axes(&room), whole, "nothing jumps while it plays");
+    }
+}
+
+#[test]
+fn the_grid_has_a_legend_whose_areas_are_the_colours_of_its_cells() {
+    use kit::palette::{Theme, cell, contrast, tone};
+    use kit::scene::Cell;
+    let room = ControlRoom::default();
+    let scene = room.scene();
+    let legend = &scene.panels[0].legend;
+    for (label, of) in [
+        ("occupied", Cell::Occupancy(1.0)),
+        ("free", Cell::Occupancy(0.0)),
+        ("not seen", Cell::Unknown),
+    ] {
+        let entry = legend
+            .iter()
+            .find(|entry| entry.label == label)
+            .expect(label);
+        assert_eq!((entry.mark, entry.stroke), (None, None), "an area");
+        for theme in [Theme::Light, Theme::Dark] {
+            assert_eq!(tone(theme, entry.tone), cell(theme, of), "{label}");
+        }
+    }
+    // Occupied is ink and free is paper, on light and on dark.
+    for theme in [Theme::Light, Theme::Dark] {
+        let [full, free] = [1.0, 0.0].map(|share| cell(theme, Cell::Occupancy(share)));
+        assert!(contrast(full, free) > 10.0);
+        assert_eq!(full, tone(theme, Tone::Ink));
+    }
+}

@@ -1,0 +1,140 @@
+//! The whole window without its picture; figures from the room of the chapter's basins.
+
+use kit::model::{Activity, Model, Standing};
+use widgets::w16_6_whole_window::model::{WholeWindow, panel};
+use widgets::w16_6_whole_window::spec::SPEC;
+
+use crate::support::fact;
+
+fn with(values: &[(&str, f64)]) -> WholeWindow {
+    let mut window = WholeWindow::default();
+    for (id, value) in values {
+        window.set(id, *value).unwrap();
+    }
+    window.settle();
+    window
+}
+
+#[test]
+fn it_finds_home_from_where_icp_ends_in_the_quarter_turn() {
+    let window = with(&[]);
+    assert_eq!(window.outcome().standing, Standing::Good);
+    assert!(fact(&window, "error_m") < 0.12);
+    // 0.943 m and 89.5°: the chapter's quarter turn.
+    assert!((fact(&window, "icp_error_m") - 0.943).abs() < 5e-4);
+    assert!((fact(&window, "icp_error_deg") - 89.5).abs() < 0.05);
+    assert!(fact(&window, "fewer") > 100.0);
+    // The half turn is the runner-up, the quarter turn is far behind.
+    let (half, quarter) = (
+        fact(&window, "half_behind"),
+        fact(&window, "quarter_behind"),
+    );
+    assert!((half - fact(&window, "margin")).abs() < 0.01);
+    assert!(quarter > 3.0 * half && half > 0.05);
+}
+
+#[test]
+fn it_finds_home_from_every_heading() {
+    for heading in [-180.0, -135.0, -60.0, 0.0, 45.0, 120.0, 180.0] {
+        let window = with(&[("heading", heading)]);
+        assert_eq!(window.outcome().standing, Standing::Good, "{heading}");
+    }
+}
+
+#[test]
+fn the_search_goes_on_in_pieces_and_its_end_does_not_depend_on_them() {
+    let mut pieces = WholeWindow::default();
+    assert_eq!(pieces.outcome().verdict, "searching");
+    let mut count = 0;
+    while pieces.outcome().verdict == "searching" {
+        assert_eq!(pieces.work(), Activity::Busy);
+        count += 1;
+    }
+    assert!(count > 20, "{count} pieces");
+    pieces.settle();
+    let whole = with(&[]);
+    assert_eq!(pieces.settle(), Activity::Idle);
+    assert_eq!(pieces.outcome(), whole.outcome());
+}
+
+#[test]
+fn the_surface_fills_in_and_ends() {
+    let mut window = with(&[("cell", 0.2), ("window", 0.5)]);
+    let mut pieces = 0;
+    while window.work().goes_on() {
+        pieces += 1;
+    }
+    assert!(pieces > 10);
+    let scene = window.scene();
+    let places = scene.panels.iter().find(|p| p.id == panel::PLACES).unwrap();
+    assert!(!places.title.contains('%'), "{}", places.title);
+    assert_eq!(window.work(), Activity::Idle);
+}
+
+#[test]
+fn playing_goes_through_the_search_and_the_steps_of_icp() {
+    let mut window = with(&[("cell", 0.2)]);
+    window.press("play").unwrap();
+    let (mut places, mut frames) = (Vec::new(), 0);
+    while window.advance(1.0 / 30.0) == Activity::Busy {
+        places.push(window.values().number("progress"));
+        frames += 1;
+    }
+    let last = window.timeline().unwrap().last;
+    assert_eq!(places.last(), Some(&last));
+    assert!(places.windows(2).all(|pair| pair[0] <= pair[1]));
+    // Twelve seconds and a few steps of ICP, at thirty frames a second.
+    assert!((330..600).contains(&frames), "{frames}");
+
+    let error = fact(&window, "error_m");
+    assert!(error < 0.12);
+}
+
+#[test]
+fn a_dragged_start_is_searched_anew_and_lies_where_it_was_put() {
+    let mut window = with(&[("progress", 500.0)]);
+    // The truth is at (0.5, −0.35) m, the start on it.
+    let handle = window
+        .grab(panel::PLACES, [0.5, -0.35], [0.05, 0.05])
+        .unwrap();
+    window.drag(handle, [1.0, -0.15]);
+    assert_eq!(window.values().number("progress"), 0.0);
+    assert!((window.values().number("dx") - 0.5).abs() < 1e-9);
+    assert!((window.values().number("dy") - 0.2).abs() < 1e-9);
+    assert_eq!(window.outcome().verdict, "searching");
+    window.drag(handle, [f64::NAN, 0.0]);
+    assert!((window.values().number("dx") - 0.5).abs() < 1e-9);
+    window.drag(handle, [1e300, -1e300]);
+    assert_eq!(window.values().number("dx"), 1.5);
+    assert!(window.grab("nothing", [0.5, -0.35], [0.1, 0.1]).is_none());
+}
+
+#[test]
+fn every_preset_does_what_its_button_says() {
+    for (id, verdict, standing) in [
+        ("quarter-turn", "the search finds home", Standing::Good),
+        ("upside-down", "the search finds home", Standing::Good),
+        ("wide", "the search finds home", Standing::Good),
+        ("without-home", "no place fits", Standing::Bad),
+        ("coarse", "the search finds home", Standing::Good),
+    ] {
+        let mut window = WholeWindow::default();
+        window.press(id).unwrap();
+        window.settle();
+        assert_eq!(window.outcome().verdict, verdict, "{id}");
+        assert_eq!(window.outcome().standing, standing, "{id}");
+    }
+    assert_eq!(SPEC.presets.len(), 5, "a preset without a test");
+    let near = with(&[]);
+    let wide = with(&[("window", 3.0)]);
+    let ratio = |id: &str| fact(&wide, id) / fact(&near, id);
+    assert!((3.9..4.0).contains(&ratio("window")), "{}", ratio("window"));
+    assert!(ratio("scored") < 2.0, "{}", ratio("scored"));
+    assert!(fact(&wide, "fewer") > 200.0);
+    let coarse = with(&[("cell", 0.2)]);
+    let (half, quarter) = (
+        fact(&coarse, "half_behind"),
+        fact(&coarse, "quarter_behind"),
+    );
+    assert!((half - quarter).abs() < 0.02, "{half} and {quarter}");
+}

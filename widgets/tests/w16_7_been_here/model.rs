@@ -1,0 +1,156 @@
+//! The comparison without its picture; figures from `slam2d places`.
+
+use ch16_lab::lap::{Choice, LapConfig, LapDetector, LapMatcher};
+use ch16_lab::places::{place_curves, place_pairs};
+use kit::model::{Activity, Model, Motion, Standing};
+use kit::param::ParamKind;
+use widgets::w16_7_been_here::model::{BeenHere, panel};
+use widgets::w16_7_been_here::spec::SPEC;
+
+use crate::support::fact;
+
+fn set(been: &mut BeenHere, values: &[(&str, f64)]) {
+    for (id, value) in values {
+        been.set(id, *value).unwrap();
+    }
+    been.settle();
+}
+
+fn with(values: &[(&str, f64)]) -> BeenHere {
+    let mut been = BeenHere::default();
+    set(&mut been, values);
+    been
+}
+
+#[test]
+fn its_curves_are_those_of_the_command_line() {
+    let been = with(&[]);
+    let lap = LapConfig::default().with_matcher(LapMatcher::Ndt);
+    let pairs = place_pairs(&lap);
+    assert_eq!(fact(&been, "graded"), pairs.len() as f64);
+    for curve in place_curves(&pairs) {
+        let id = format!("{}_area", curve.detector.name());
+        assert_eq!(fact(&been, &id), curve.average_precision, "{id}");
+    }
+}
+
+#[test]
+fn the_options_are_the_detectors_of_the_core_in_their_order() {
+    let detector = SPEC.params.iter().find(|param| param.id == "detector");
+    let ParamKind::Choice { options } = detector.unwrap().kind else {
+        panic!("a choice");
+    };
+    let names = LapDetector::ALL.iter().map(|detector| detector.name());
+    assert!(options.iter().map(|option| option.id).eq(names));
+}
+
+#[test]
+fn a_looser_threshold_finds_more_and_is_wrong_more_often() {
+    let mut been = with(&[("called", 0.0)]);
+    assert_eq!(been.outcome().verdict, "no pair is called the same");
+    let (mut found, mut first) = (0.0, f64::NAN);
+    for called in [5.0, 20.0, 40.0, 60.0] {
+        set(&mut been, &[("called", called)]);
+        let recall = fact(&been, "context_recall");
+        assert!(recall >= found, "{called}");
+        found = recall;
+        if first.is_nan() {
+            first = fact(&been, "context_precision");
+        }
+    }
+    assert!(fact(&been, "context_precision") < first);
+    assert!(found > 0.5);
+}
+
+#[test]
+fn the_lap_is_driven_and_compared_in_pieces() {
+    let mut pieces = BeenHere::default();
+    assert_eq!(pieces.outcome().verdict, "driving");
+    let mut count = 0;
+    while pieces.work().goes_on() {
+        count += 1;
+    }
+    // 129 ticks of the drive and of the lap each, and the pairs.
+    assert!(count > 300, "{count} pieces");
+    assert_eq!(pieces.settle(), Activity::Idle);
+    assert_eq!(pieces.outcome(), with(&[]).outcome());
+}
+
+#[test]
+fn a_pair_is_chosen_in_the_matrix_by_either_of_its_two_places() {
+    let mut been = with(&[]);
+    for at in [[40.0, 5.2], [4.8, 40.3]] {
+        let handle = been.grab(panel::MATRIX, at, [0.1, 0.1]).unwrap();
+        been.drag(handle, at);
+        assert_eq!(been.values().number("new"), 40.0);
+        assert_eq!(been.values().number("old"), 5.0);
+        assert!(been.outcome().sentence.contains("Keyframes 5 and 40"));
+    }
+    let handle = been.grab(panel::MATRIX, [9.0, 3.0], [0.1, 0.1]).unwrap();
+    for nowhere in [[f64::NAN, 3.0], [f64::INFINITY, 0.0]] {
+        been.drag(handle, nowhere);
+    }
+    been.drag(handle, [-1e300, -1e300]);
+    assert_eq!(been.values().number("new"), 40.0, "there is no pair there");
+    been.drag(handle, [1e300, 1e300]);
+    let last = been.timeline().unwrap().last;
+    assert_eq!(been.values().number("new"), last);
+    assert!(been.values().number("old") < last);
+    assert!(been.grab(panel::SCANS, [0.0, 0.0], [1.0, 1.0]).is_none());
+}
+
+#[test]
+fn playing_drives_the_lap_from_its_start_to_its_end() {
+    let mut been = BeenHere::default();
+    been.press("lap").unwrap();
+    assert_eq!(
+        been.advance(0.1),
+        Activity::Busy,
+        "the lap is not there yet"
+    );
+    been.settle();
+    let mut newest = 0.0;
+    while been.advance(0.1) == Activity::Busy {
+        assert!(been.values().number("new") >= newest);
+        newest = been.values().number("new");
+    }
+    assert_eq!(newest, been.timeline().unwrap().last);
+    been.set_motion(Motion::Reduced);
+    been.press("reset").unwrap();
+    been.press("play").unwrap();
+    assert_eq!(been.values().number("new"), newest);
+}
+
+#[test]
+fn in_the_corridor_histograms_look_more_alike_than_contexts() {
+    // Of all graded pairs, those that are other places: the histogram takes more of them for one.
+    let been = with(&[("called", 30.0)]);
+    assert!(fact(&been, "context_area") > fact(&been, "histogram_area"));
+    assert!(fact(&been, "nearby_area") > fact(&been, "histogram_area"));
+}
+
+#[test]
+fn a_turned_scan_shifts_its_sectors_by_the_turn() {
+    // The robot passes the corridor both ways: the way back is turned by half a turn.
+    let been = with(&[]);
+    let turn = fact(&been, "pair_turn_deg");
+    assert!(turn.is_finite());
+    let scene = been.scene();
+    let looks = scene.panels.iter().find(|p| p.id == panel::LOOKS).unwrap();
+    assert!(
+        looks.title.contains(&format!("{turn:.0}°")),
+        "{}",
+        looks.title
+    );
+}
+
+#[test]
+fn every_preset_shows_a_lap_with_its_grades() {
+    let mut been = BeenHere::default();
+    for preset in SPEC.presets {
+        been.press(preset.id).unwrap();
+        been.settle();
+        assert!(fact(&been, "same") > 10.0, "{}", preset.id);
+        assert_ne!(been.outcome().standing, Standing::Neutral, "{}", preset.id);
+    }
+}

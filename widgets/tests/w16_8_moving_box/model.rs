@@ -1,0 +1,100 @@
+//! The moving box without its picture.
+
+use kit::model::{Activity, Model};
+use widgets::w16_8_moving_box::model::{MovingBox, panel};
+use widgets::w16_8_moving_box::spec::SPEC;
+
+use crate::support::fact;
+
+fn with(values: &[(&str, f64)]) -> MovingBox {
+    let mut moving = MovingBox::default();
+    for (id, value) in values {
+        moving.set(id, *value).unwrap();
+    }
+    moving
+}
+
+fn errors(moving: &MovingBox) -> [f64; 3] {
+    ["plain_error_m", "trimmed_error_m", "huber_error_m"].map(|id| fact(moving, id))
+}
+
+#[test]
+fn without_a_box_all_three_are_home() {
+    let moving = with(&[("share", 0.0)]);
+    assert_eq!(moving.outcome().verdict, "all three are home");
+}
+
+#[test]
+fn a_fifth_of_the_points_pulls_plain_and_hardly_the_others() {
+    let [plain, trimmed, huber] = errors(&with(&[("share", 20.0)]));
+    assert!(trimmed < 0.5 * plain && huber < 0.5 * plain);
+    assert!(plain > 0.02, "{plain}");
+}
+
+#[test]
+fn a_short_tau_does_the_work_of_trimming() {
+    let [far, ..] = errors(&with(&[("share", 20.0)]));
+    let [near, ..] = errors(&with(&[("share", 20.0), ("tau", 0.2)]));
+    assert!(near < 0.5 * far, "{near} and {far}");
+}
+
+#[test]
+fn a_box_that_did_not_move_pulls_nobody() {
+    for error in errors(&with(&[("share", 40.0), ("moved", 0.0)])) {
+        assert!(error < 0.02, "{error}");
+    }
+}
+
+#[test]
+fn the_curves_fill_in_seed_by_seed_and_end() {
+    let mut moving = MovingBox::default();
+    assert!(fact(&moving, "plain_bias_m").is_nan());
+    let mut pieces = 0;
+    while moving.work().goes_on() {
+        pieces += 1;
+    }
+    // Seven shares of a hundred seeds: two sweeps and three registrations each.
+    assert_eq!(pieces, 4 * 700);
+    assert!(fact(&moving, "plain_bias_m") > fact(&moving, "trimmed_bias_m"));
+    let scene = moving.scene();
+    let bias = scene.panels.iter().find(|p| p.id == panel::BIAS).unwrap();
+    assert!(bias.title.ends_with("over 100 seeds"), "{}", bias.title);
+    // Neither the share nor the seed above starts them over; τ does.
+    moving.set("share", 45.0).unwrap();
+    moving.set("seed", 7.0).unwrap();
+    assert_eq!(moving.work(), Activity::Idle);
+    moving.set("tau", 0.5).unwrap();
+    assert_eq!(moving.work(), Activity::Busy);
+}
+
+#[test]
+fn the_share_is_dragged_along_the_curves() {
+    let mut moving = MovingBox::default();
+    let handle = moving.grab(panel::BIAS, [20.5, 1.0], [1.0, 1.0]).unwrap();
+    moving.drag(handle, [40.6, 3.0]);
+    assert_eq!(moving.values().number("share"), 40.0);
+    moving.drag(handle, [f64::NAN, 0.0]);
+    assert_eq!(moving.values().number("share"), 40.0);
+    moving.drag(handle, [1e300, 0.0]);
+    assert_eq!(moving.values().number("share"), 60.0);
+    assert!(moving.grab(panel::BIAS, [20.0, 1.0], [1.0, 1.0]).is_none());
+    assert!(moving.grab("plain", [60.0, 1.0], [1.0, 1.0]).is_none());
+}
+
+#[test]
+fn every_preset_does_what_its_button_says() {
+    let after = |id: &str| {
+        let mut moving = MovingBox::default();
+        moving.press(id).unwrap();
+        moving
+    };
+    let fifth = errors(&after("fifth"));
+    assert!(fifth[1] < 0.5 * fifth[0] && fifth[2] < 0.5 * fifth[0]);
+    let most = errors(&after("most"));
+    assert!(most[0] > fifth[0] && most[2] > fifth[2]);
+    assert!(errors(&after("none")).iter().all(|error| *error < 0.02));
+    let gate = errors(&after("gate"));
+    assert!(gate[0] < 2.0 * gate[2].max(0.01));
+    assert!(after("fifth").timeline().unwrap().last > 2.0);
+    assert_eq!(SPEC.presets.len(), 4, "a preset without a test");
+}

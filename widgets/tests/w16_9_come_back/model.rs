@@ -1,0 +1,143 @@
+//! The morning without its picture.
+
+use ch16_lab::lap::{BuiltInWorld, Choice};
+use kit::model::{Activity, Model, Motion, Standing};
+use kit::param::ParamKind;
+use widgets::w16_9_come_back::model::{ComeBack, panel};
+use widgets::w16_9_come_back::spec::SPEC;
+
+use crate::support::fact;
+
+/// The outcome as text: a number that is none is none again.
+fn told(back: &ComeBack) -> String {
+    format!("{:?}", back.outcome())
+}
+
+fn pressed(id: &str) -> ComeBack {
+    let mut back = ComeBack::default();
+    back.press(id).unwrap();
+    back.settle();
+    back
+}
+
+#[test]
+fn where_the_map_was_driven_one_scan_is_enough_and_the_others_follow() {
+    let back = pressed("corridor");
+    assert_eq!(back.outcome().verdict, "found");
+    assert_eq!(fact(&back, "scans"), 1.0);
+    // 0.3: the map of one lap is 0.1 m off itself.
+    assert!(fact(&back, "found_error_m") < 0.3);
+    assert!(fact(&back, "end_error_m") < 0.3);
+    // The search rules out by bounds.
+    assert!(fact(&back, "window") > 100.0 * fact(&back, "scored"));
+}
+
+#[test]
+fn in_a_room_that_the_map_never_saw_no_pose_is_told_before_the_door() {
+    let back = pressed("room");
+    assert!(fact(&back, "scans") > 10.0, "{:?}", back.outcome());
+    assert_eq!(back.outcome().standing, Standing::Good);
+}
+
+#[test]
+fn in_one_of_two_rooms_alike_no_pose_is_told_from_within() {
+    let back = pressed("twins");
+    let scans = fact(&back, "scans");
+    assert!(scans.is_nan() || scans > 5.0, "{:?}", back.outcome());
+    assert_ne!(back.outcome().standing, Standing::Bad);
+}
+
+#[test]
+fn another_lap_forgets_the_wardrobe_where_it_stood() {
+    let mut back = ComeBack::default();
+    back.settle();
+    assert!(fact(&back, "wardrobe_points") > 20.0);
+    back.press("forget").unwrap();
+    back.settle();
+    assert_eq!(fact(&back, "wardrobe_points"), 0.0);
+    assert_eq!(back.outcome().verdict, "found");
+}
+
+#[test]
+fn the_options_are_worlds_of_the_core_in_their_order() {
+    let world = SPEC.params.iter().find(|param| param.id == "world");
+    let ParamKind::Choice { options } = world.unwrap().kind else {
+        panic!("a choice");
+    };
+    for (option, world) in options.iter().zip(BuiltInWorld::ALL) {
+        assert_eq!((option.id, option.label), (world.name(), world.label()));
+    }
+}
+
+#[test]
+fn everything_is_computed_in_pieces() {
+    let mut pieces = ComeBack::default();
+    assert_eq!(pieces.outcome().verdict, "a lap is driven");
+    let mut count = 0;
+    while pieces.work().goes_on() {
+        count += 1;
+    }
+    // The ticks of the lap, driven and mapped, and the morning's.
+    assert!(count > 300, "{count} pieces");
+    assert_eq!(pieces.settle(), Activity::Idle);
+    let mut whole = ComeBack::default();
+    whole.settle();
+    assert_eq!(told(&pieces), told(&whole));
+}
+
+#[test]
+fn the_robot_is_put_and_turned_on_the_map_and_the_map_stays() {
+    let mut back = ComeBack::default();
+    back.settle();
+    let keyframes = fact(&back, "keyframes");
+    let (x, y) = (back.values().number("x"), back.values().number("y"));
+    let place = back.grab(panel::MAP, [x, y], [0.1, 0.1]).unwrap();
+    back.drag(place, [9.33, 6.08]);
+    assert_eq!(
+        (back.values().number("x"), back.values().number("y")),
+        (9.3, 6.1)
+    );
+    let heading = back.values().number("heading").to_radians();
+    let tip = [9.3 + heading.cos(), 6.1 + heading.sin()];
+    let turn = back.grab(panel::MAP, tip, [0.1, 0.1]).unwrap();
+    back.drag(turn, [9.3, 9.0]);
+    assert_eq!(back.values().number("heading"), 90.0);
+    let mut pieces = 0;
+    while back.work().goes_on() {
+        pieces += 1;
+    }
+    // No lap is driven again.
+    assert!(pieces > 40);
+    assert_eq!(fact(&back, "keyframes"), keyframes);
+    for nowhere in [[f64::NAN, 3.0], [f64::INFINITY, 0.0]] {
+        back.drag(place, nowhere);
+    }
+    assert_eq!(back.values().number("x"), 9.3);
+    back.drag(place, [-1e300, 1e300]);
+    assert_eq!(
+        (back.values().number("x"), back.values().number("y")),
+        (0.0, 9.0)
+    );
+    assert!(back.grab(panel::SCORES, [0.0, 0.0], [9.0, 9.0]).is_none());
+}
+
+#[test]
+fn playing_goes_through_the_boxes_and_the_scans_to_the_end() {
+    let mut back = ComeBack::default();
+    back.press("room").unwrap();
+    assert_eq!(back.advance(0.1), Activity::Busy, "it is not there yet");
+    back.settle();
+    let mut at = 0.0;
+    let mut waited = 0;
+    while back.advance(0.1) == Activity::Busy {
+        assert!(back.values().number("moment") >= at);
+        at = back.values().number("moment");
+        waited += usize::from(back.scene().panels[0].title.contains("boxes wait"));
+    }
+    assert!(waited > 0);
+    assert_eq!(at, back.timeline().unwrap().last);
+    back.set_motion(Motion::Reduced);
+    back.press("reset").unwrap();
+    back.press("play").unwrap();
+    assert_eq!(back.values().number("moment"), at);
+}
