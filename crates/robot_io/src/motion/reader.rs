@@ -18,9 +18,9 @@ struct Mended {
     /// Where the laser was said to sit.
     said: SE2,
     /// Where it does.
-    body_from_sensor: SE2,
-    /// Whether its beams are listed the other way round.
-    is_flipped: bool,
+    mount: LaserMount,
+    /// Whether its beams are listed the other way round than was said.
+    is_turned_over: bool,
 }
 
 /// Reads a log, compares its first scans with its odometry, and mends what is surely wrong.
@@ -31,6 +31,8 @@ pub struct ComparedReader<'a> {
     /// Whether the run goes by scans alone.
     is_alone: bool,
     waiting: VecDeque<LogFrame>,
+    /// What a comparison found before.
+    known: Option<Motion>,
     motion: Option<Motion>,
     mount: Option<Mended>,
     metres: f64,
@@ -48,6 +50,7 @@ impl<'a> ComparedReader<'a> {
             is_told,
             is_alone: false,
             waiting: VecDeque::new(),
+            known: None,
             motion: None,
             mount: None,
             metres: 1.0,
@@ -61,6 +64,13 @@ impl<'a> ComparedReader<'a> {
     #[must_use]
     pub fn for_scans_alone(mut self, is_so: bool) -> Self {
         self.is_alone = is_so;
+        self
+    }
+
+    /// The same reader of a log that was compared before: what was found then holds.
+    #[must_use]
+    pub fn knowing(mut self, motion: Motion) -> Self {
+        self.known = Some(motion);
         self
     }
 
@@ -85,6 +95,10 @@ impl<'a> ComparedReader<'a> {
             };
             beams += frame.scan.ranges_m.len().max(1);
             has_odometry |= frame.odometry.is_some();
+            if self.known.is_some() {
+                self.waiting.push_back(frame);
+                break;
+            }
             let comparing = comparison.get_or_insert_with(|| Comparison::new(&frame));
             comparing.take(&frame);
             let is_enough = comparing.is_enough();
@@ -93,15 +107,20 @@ impl<'a> ComparedReader<'a> {
                 break;
             }
         }
-        let mut motion = Motion::default();
-        if let (true, Some(comparison), Some(first)) =
-            (has_odometry, comparison, self.waiting.front())
-        {
-            let said = first.scan.body_from_sensor;
-            motion = Motion::of(&comparison.stretches, said);
+        let said = self
+            .waiting
+            .front()
+            .map(|first| first.scan.body_from_sensor);
+        let found = self.known.take().or_else(|| {
+            let compared = comparison.filter(|_| has_odometry)?;
+            let mut motion = Motion::of(&compared.stretches, said?);
             if self.is_alone {
                 motion.keep_mounting();
             }
+            Some(motion)
+        });
+        let motion = found.unwrap_or_default();
+        if let Some(said) = said {
             let told = self.inner.notes().laser;
             let mount = told.unwrap_or(LaserMount {
                 body_from_sensor: said,
@@ -112,8 +131,8 @@ impl<'a> ComparedReader<'a> {
                 let mended = motion.mended_mount(mount);
                 self.mount = mended.map(|mended| Mended {
                     said,
-                    body_from_sensor: mended.body_from_sensor,
-                    is_flipped: mended.is_flipped != mount.is_flipped,
+                    mount: mended,
+                    is_turned_over: mended.is_flipped != mount.is_flipped,
                 });
             }
             self.metres = motion.metres().unwrap_or(1.0);
@@ -127,10 +146,10 @@ impl<'a> ComparedReader<'a> {
         if let Some(mended) = &self.mount
             && frame.scan.body_from_sensor == mended.said
         {
-            if mended.is_flipped {
+            if mended.is_turned_over {
                 flip(&mut frame.scan);
             }
-            frame.scan.body_from_sensor = mended.body_from_sensor;
+            frame.scan.body_from_sensor = mended.mount.body_from_sensor;
         }
         if self.is_still {
             frame.odometry = None;
@@ -146,6 +165,9 @@ impl<'a> ComparedReader<'a> {
     fn take_notes(&mut self) {
         self.notes.clone_from(self.inner.notes());
         self.notes.warnings.extend(self.said.iter().cloned());
+        if let Some(mended) = &self.mount {
+            self.notes.laser = Some(mended.mount);
+        }
     }
 }
 
