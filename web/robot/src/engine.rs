@@ -13,8 +13,8 @@ use std::io::{self, BufRead, Read};
 
 use ch16_slam2d::graph::PoseGraph;
 use pr_geom::SE2;
-use robot_io::log::{LogOptions, LogReader};
-use robot_io::log_bytes::LogBytes;
+use robot_io::doctor::Checkup;
+use robot_io::log::LogReader;
 use robot_io::log_format::LogFormat;
 use robot_io::motion::ComparedReader;
 use robot_io::recorder::RunRecorder;
@@ -23,6 +23,7 @@ use robot_io::session::{self, Session};
 use robot_io::trajectory::{StampedPose, Trajectory};
 
 use crate::files;
+use crate::given::{Choices, Given, compared};
 use crate::grade::Reference;
 use crate::graph_log::{self, GraphSolving, loops_of};
 use crate::links::Link;
@@ -32,6 +33,8 @@ use crate::whereabouts::Whereabouts;
 
 /// What is under way.
 enum Work<'a> {
+    /// The doctor looks through all of the log before it is mapped.
+    Examining(Box<Examination<'a>>),
     Reading(Box<dyn LogReader + 'a>),
     /// No scan follows: the last loops are closed.
     Finishing,
@@ -39,6 +42,15 @@ enum Work<'a> {
     Checking,
     Idle,
     Failed(String),
+}
+
+/// A log under the doctor's eyes.
+struct Examination<'a> {
+    reader: ComparedReader<'a>,
+    checkup: Checkup,
+    /// What is opened once more to be mapped.
+    given: Given<'a>,
+    choices: Choices,
 }
 
 /// Which parts changed since they were told.
@@ -88,17 +100,16 @@ pub struct Engine<'a> {
 }
 
 impl<'a> Engine<'a> {
-    /// Opens a file of that name and size; `options` choose of what a recording has several of.
+    /// Opens what was given, with the options that were chosen.
     ///
     /// # Errors
     /// One sentence where it is nothing that can be mapped, solved or looked at.
-    pub fn open(
-        source: impl Into<LogBytes<'a>>,
-        name: &str,
-        size_bytes: u64,
-        options: &LogOptions,
-    ) -> Result<Self, String> {
-        let bytes = source.into();
+    pub fn open(given: Given<'a>, choices: &Choices) -> Result<Self, String> {
+        let name = given.name.clone();
+        let (name, size_bytes) = (name.as_str(), given.size_bytes);
+        let Some(bytes) = given.parts.first() else {
+            return Err("no file was given".to_owned());
+        };
         let told = |problem: io::Error| match bytes.is_packed() {
             Ok(true) => format!("{name} does not unpack: {problem}; copy it once more"),
             _ => format!("{name} cannot be read: {problem}; it may have moved or changed"),
@@ -131,12 +142,18 @@ impl<'a> Engine<'a> {
                 Work::Solving(Box::new(GraphSolving::read(&bytes, name)?))
             } else {
                 drop(source);
-                let reader = LogFormat::open(bytes, name, options);
-                let reader = reader.map_err(|problem| problem.to_string())?;
-                let is_told = options.laser.is_some();
-                Work::Reading(Box::new(ComparedReader::new(reader, is_told)))
+                Work::Examining(Box::new(Examination {
+                    reader: compared(&given, choices)?,
+                    checkup: Checkup::default(),
+                    given: given.clone(),
+                    choices: choices.clone(),
+                }))
             };
-        Ok(Self::beginning(work, name, size_bytes))
+        let run = LogRun::new(choices.odometry);
+        Ok(Self {
+            run,
+            ..Self::beginning(work, name, size_bytes)
+        })
     }
 
     /// A session is a map that stands already.
@@ -164,7 +181,7 @@ impl<'a> Engine<'a> {
         Self {
             name: name.to_owned(),
             size_bytes,
-            has_scans: matches!(work, Work::Reading(_)),
+            has_scans: matches!(work, Work::Examining(_)),
             scans_before: 0,
             whereabouts: None,
             work,
@@ -195,7 +212,7 @@ impl<'a> Engine<'a> {
     #[must_use]
     pub fn stage(&self) -> Stage {
         match self.work {
-            Work::Reading(_) => Stage::Reading,
+            Work::Examining(_) | Work::Reading(_) => Stage::Reading,
             Work::Finishing => Stage::Finishing,
             Work::Solving(_) => Stage::Solving,
             Work::Checking => Stage::Checking,
@@ -207,6 +224,7 @@ impl<'a> Engine<'a> {
     /// Does the next piece of work; false where nothing is left to do until an order comes.
     pub fn step(&mut self) -> bool {
         match core::mem::replace(&mut self.work, Work::Idle) {
+            Work::Examining(examination) => self.examine(examination),
             Work::Reading(reader) => self.read(reader),
             Work::Finishing => self.close_last_loops(),
             Work::Solving(solving) => self.solve(solving),
@@ -220,6 +238,47 @@ impl<'a> Engine<'a> {
         true
     }
 
+    fn examine(&mut self, mut examination: Box<Examination<'a>>) {
+        let Examination {
+            reader, checkup, ..
+        } = examination.as_mut();
+        match reader.next_frame() {
+            Ok(Some(frame)) => {
+                checkup.take(&frame);
+                self.work = Work::Examining(examination);
+                return;
+            }
+            // What the log ends with is told again when it is mapped.
+            Ok(None) => {}
+            Err(_) if checkup.scans() > 0 => {}
+            Err(problem) => return self.end_of_log(&examination.reader, Some(problem.to_string())),
+        }
+        self.tell_diagnosis(&examination);
+        let Examination {
+            reader,
+            given,
+            choices,
+            ..
+        } = *examination;
+        self.work = match compared(&given, &choices) {
+            Ok(again) => Work::Reading(Box::new(match reader.motion() {
+                Some(motion) => again.knowing(motion.clone()),
+                None => again,
+            })),
+            Err(problem) => Work::Failed(problem),
+        };
+    }
+
+    fn tell_diagnosis(&mut self, examination: &Examination<'_>) {
+        let Examination {
+            reader, checkup, ..
+        } = examination;
+        let motion = reader.motion().cloned().unwrap_or_default();
+        let diagnosis = checkup.finish(&self.name, reader.notes(), &motion);
+        let told = serde_json::to_string(&diagnosis).expect("plain numbers, strings and lists");
+        self.waiting.push(Update::text("diagnosis", told));
+    }
+
     fn read(&mut self, mut reader: Box<dyn LogReader + 'a>) {
         match reader.next_frame() {
             Ok(Some(frame)) => {
@@ -227,11 +286,6 @@ impl<'a> Engine<'a> {
                 if let Some(report) = self.run.step(frame.clone()) {
                     if is_first {
                         self.tell_offers(&reader.notes().offers);
-                        // What is wrong with the recording comes before its map.
-                        let said = reader.notes().sentences(&self.name);
-                        if !said.is_empty() {
-                            self.waiting.push(Update::text("remarks", said.join("\n")));
-                        }
                     }
                     self.recorder.take(&frame, &report);
                     if report.new_keyframe.is_some() {
