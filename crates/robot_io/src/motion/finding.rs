@@ -7,6 +7,7 @@ use pr_geom::{SE2, math, wrap_angle};
 use serde::Serialize;
 
 use super::Stretch;
+use super::lag::{Heading, lag_s};
 use crate::laser_mount::LaserMount;
 use crate::remark::{NO_ODOMETRY, Part, Remark};
 use crate::stamps::median;
@@ -94,6 +95,8 @@ pub struct Motion {
     pub turn_scale: Option<f64>,
     /// Median distance between both after a metre, m.
     pub drift_m_per_m: Option<f64>,
+    /// How late odometry is against the scans, s; none if it is not, or the turns do not show it.
+    pub lag_s: Option<f64>,
     #[serde(skip)]
     findings: Vec<Finding>,
 }
@@ -223,8 +226,14 @@ impl Motion {
         }
     }
 
+    /// Compares when both turn.
+    pub(super) fn compare_turns(&mut self, headings: &[Heading]) {
+        self.lag_s = lag_s(headings).filter(|_| !self.is_still());
+    }
+
     /// Leaves the findings about the laser alone.
     pub(super) fn keep_mounting(&mut self) {
+        self.lag_s = None;
         let is_of_laser = |finding: &Finding| {
             matches!(finding, Finding::Mirrored { .. } | Finding::Turned { .. })
         };
@@ -343,7 +352,15 @@ impl Motion {
                 }
             }
         };
-        self.findings.iter().map(remark).collect()
+        let late = self.lag_s.map(|lag_s| {
+            let way = if lag_s > 0.0 { "late" } else { "early" };
+            let text = format!(
+                "odometry is {:.2} s {way} against the scans, as the turns of both show; it is moved by that. Set both clocks by NTP, and stamp each message when it is measured",
+                lag_s.abs()
+            );
+            Remark::mended(Part::Clocks, text)
+        });
+        self.findings.iter().map(remark).chain(late).collect()
     }
 }
 

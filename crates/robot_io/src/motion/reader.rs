@@ -8,10 +8,13 @@ use super::{Comparison, Motion};
 use crate::laser_mount::{LaserMount, flip};
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::remark::Remark;
+use crate::wheel_poses::WheelPoses;
 
 /// So many scans are compared at most, with so many beams together: they are in memory.
 const MOST_SCANS: usize = 2000;
 const MOST_BEAMS: usize = 1 << 21;
+/// So many scans wait for odometry that is late at most: more than any sensor takes in a second.
+const MOST_LATE: usize = 200;
 
 /// A mounting that was mended.
 struct Mended {
@@ -21,6 +24,48 @@ struct Mended {
     mount: LaserMount,
     /// Whether its beams are listed the other way round than was said.
     is_turned_over: bool,
+}
+
+/// Odometry whose stamps are late by so much: each scan waits for the odometry of its time.
+struct Late {
+    by_s: f64,
+    wheels: WheelPoses,
+    waiting: VecDeque<LogFrame>,
+    is_over: bool,
+}
+
+impl Late {
+    fn by(by_s: f64) -> Self {
+        Self {
+            by_s,
+            wheels: WheelPoses::default(),
+            waiting: VecDeque::new(),
+            is_over: false,
+        }
+    }
+
+    /// The next frame whose odometry has come, with that.
+    fn next(&mut self) -> Option<LogFrame> {
+        let at_s = self.waiting.front()?.stamp_s + self.by_s;
+        let is_full = self.waiting.len() > MOST_LATE;
+        if !self.is_over && !is_full && !self.wheels.reaches(at_s) {
+            return None;
+        }
+        let mut frame = self.waiting.pop_front()?;
+        frame.odometry = self.wheels.at(at_s);
+        Some(frame)
+    }
+
+    fn take(&mut self, frame: Option<LogFrame>) {
+        let Some(frame) = frame else {
+            self.is_over = true;
+            return;
+        };
+        if let Some(pose) = frame.odometry {
+            self.wheels.push(frame.stamp_s, pose);
+        }
+        self.waiting.push_back(frame);
+    }
 }
 
 /// Reads a log, compares its first scans with its odometry, and mends what is surely wrong.
@@ -37,6 +82,7 @@ pub struct ComparedReader<'a> {
     mount: Option<Mended>,
     metres: f64,
     is_still: bool,
+    late: Option<Late>,
     notes: LogNotes,
     said: Vec<Remark>,
 }
@@ -55,6 +101,7 @@ impl<'a> ComparedReader<'a> {
             mount: None,
             metres: 1.0,
             is_still: false,
+            late: None,
             notes: LogNotes::default(),
             said: Vec::new(),
         }
@@ -114,6 +161,7 @@ impl<'a> ComparedReader<'a> {
         let found = self.known.take().or_else(|| {
             let compared = comparison.filter(|_| has_odometry)?;
             let mut motion = Motion::of(&compared.stretches, said?);
+            motion.compare_turns(&compared.headings);
             if self.is_alone {
                 motion.keep_mounting();
             }
@@ -137,6 +185,7 @@ impl<'a> ComparedReader<'a> {
             }
             self.metres = motion.metres().unwrap_or(1.0);
             self.is_still = motion.is_still();
+            self.late = motion.lag_s.map(Late::by);
         }
         self.motion = Some(motion);
         Ok(())
@@ -162,6 +211,16 @@ impl<'a> ComparedReader<'a> {
         frame
     }
 
+    /// The next frame, but for its time.
+    fn next_mended(&mut self) -> Result<Option<LogFrame>, LogError> {
+        if let Some(frame) = self.waiting.pop_front() {
+            return Ok(Some(self.mended(frame)));
+        }
+        let frame = self.inner.next_frame();
+        self.take_notes();
+        Ok(frame?.map(|frame| self.mended(frame)))
+    }
+
     fn take_notes(&mut self) {
         self.notes.clone_from(self.inner.notes());
         self.notes.warnings.extend(self.said.iter().cloned());
@@ -178,12 +237,17 @@ impl LogReader for ComparedReader<'_> {
             self.take_notes();
             compared?;
         }
-        if let Some(frame) = self.waiting.pop_front() {
-            return Ok(Some(self.mended(frame)));
+        loop {
+            if let Some(frame) = self.late.as_mut().and_then(Late::next) {
+                return Ok(Some(frame));
+            }
+            let frame = self.next_mended()?;
+            match &mut self.late {
+                None => return Ok(frame),
+                Some(late) if late.is_over => return Ok(None),
+                Some(late) => late.take(frame),
+            }
         }
-        let frame = self.inner.next_frame();
-        self.take_notes();
-        Ok(frame?.map(|frame| self.mended(frame)))
     }
 
     fn notes(&self) -> &LogNotes {
