@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use measuring::skip::skip;
 use pr_geom::SE2;
+use robot_io::graph_file::GraphFile;
 use robot_io::log::LogOptions;
 use robot_io::log_bytes::LogBytes;
 use robot_io::trajectory::Trajectory;
@@ -184,6 +185,33 @@ fn a_log_whose_stamps_have_six_digits_keeps_its_scans() {
     assert!(distance_m(&poses, &good) < 1e-6);
     let off_m = distance_m(&poses, &truth);
     assert!(off_m < 0.2, "{off_m} m");
+}
+
+#[test]
+fn the_other_files_of_the_field_are_read_or_refused_by_name() {
+    if truth().is_none() {
+        return skip(
+            "graphs, trajectories and a map without returns",
+            "they are not in ../shared/data/field, beside the repository",
+        );
+    }
+    let of = |name: &str| bytes(&folder().join(name));
+    let outcome = mapped_log(&of("map/hall_inf.mcap"), "hall_inf.mcap");
+    assert_eq!(outcome.path.len(), 60, "{}", outcome.said);
+    let graph = GraphFile::read(&of("g2o/edges_only.g2o"), "edges_only.g2o");
+    assert!(graph.is_ok());
+    let space = GraphFile::read(&of("g2o/se3.g2o"), "se3.g2o");
+    let said = space.err().unwrap().to_string();
+    assert!(said.contains("three dimensions"), "{said}");
+    let read = |name: &str| Trajectory::read_tum(&of(name)[..], name);
+    let plain = read("tum/t.tum").unwrap();
+    assert_eq!(read("tum/commas.tum").unwrap().poses(), plain.poses());
+    assert!(read("tum/est.tum").is_ok());
+    // Its nanoseconds overflowed, so that no order is left: neither a log nor a trajectory.
+    let said = read("tum/euroc.csv").unwrap_err().to_string();
+    assert!(said.contains("overflowed 32 bits"), "{said}");
+    let said = mapped_log(&of("tum/euroc.csv"), "euroc.csv").said;
+    assert!(said.starts_with("euroc.csv is a trajectory"), "{said}");
 }
 
 fn mapped_log(bytes: &[u8], name: &str) -> Outcome {
