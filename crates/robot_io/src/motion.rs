@@ -120,6 +120,3 @@ fn unmounted(scan: &LaserScan) -> LaserScan {
         ..scan.clone()
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -5,6 +5,7 @@
 //! size costs no memory. Nothing here asks a clock: who calls decides how long a slice is.
 
 mod checking;
+mod examining;
 mod orders;
 mod telling;
 
@@ -13,23 +14,22 @@ use std::io::{self, BufRead, Read};
 
 use ch16_slam2d::graph::PoseGraph;
 use pr_geom::SE2;
-use robot_io::doctor::Checkup;
 use robot_io::log::LogReader;
 use robot_io::log_format::LogFormat;
-use robot_io::motion::ComparedReader;
 use robot_io::recorder::RunRecorder;
 use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
 use robot_io::session::{self, Session};
 use robot_io::trajectory::{StampedPose, Trajectory};
 
 use crate::files;
-use crate::given::{Choices, Given, compared};
+use crate::given::{Choices, Given};
 use crate::grade::Reference;
 use crate::graph_log::{self, GraphSolving, loops_of};
 use crate::links::Link;
 use crate::picture::MapPicture;
 use crate::update::{Stage, Update};
 use crate::whereabouts::Whereabouts;
+use examining::Examination;
 
 /// What is under way.
 enum Work<'a> {
@@ -42,15 +42,6 @@ enum Work<'a> {
     Checking,
     Idle,
     Failed(String),
-}
-
-/// A log under the doctor's eyes.
-struct Examination<'a> {
-    reader: ComparedReader<'a>,
-    checkup: Checkup,
-    /// What is opened once more to be mapped.
-    given: Given<'a>,
-    choices: Choices,
 }
 
 /// Which parts changed since they were told.
@@ -142,12 +133,8 @@ impl<'a> Engine<'a> {
                 Work::Solving(Box::new(GraphSolving::read(&bytes, name)?))
             } else {
                 drop(source);
-                Work::Examining(Box::new(Examination {
-                    reader: compared(&given, choices)?,
-                    checkup: Checkup::default(),
-                    given: given.clone(),
-                    choices: choices.clone(),
-                }))
+                let examination = Examination::begin(given.clone(), choices.clone())?;
+                Work::Examining(Box::new(examination))
             };
         let run = LogRun::new(choices.odometry);
         Ok(Self {
@@ -236,47 +223,6 @@ impl<'a> Engine<'a> {
             }
         }
         true
-    }
-
-    fn examine(&mut self, mut examination: Box<Examination<'a>>) {
-        let Examination {
-            reader, checkup, ..
-        } = examination.as_mut();
-        match reader.next_frame() {
-            Ok(Some(frame)) => {
-                checkup.take(&frame);
-                self.work = Work::Examining(examination);
-                return;
-            }
-            // What the log ends with is told again when it is mapped.
-            Ok(None) => {}
-            Err(_) if checkup.scans() > 0 => {}
-            Err(problem) => return self.end_of_log(&examination.reader, Some(problem.to_string())),
-        }
-        self.tell_diagnosis(&examination);
-        let Examination {
-            reader,
-            given,
-            choices,
-            ..
-        } = *examination;
-        self.work = match compared(&given, &choices) {
-            Ok(again) => Work::Reading(Box::new(match reader.motion() {
-                Some(motion) => again.knowing(motion.clone()),
-                None => again,
-            })),
-            Err(problem) => Work::Failed(problem),
-        };
-    }
-
-    fn tell_diagnosis(&mut self, examination: &Examination<'_>) {
-        let Examination {
-            reader, checkup, ..
-        } = examination;
-        let motion = reader.motion().cloned().unwrap_or_default();
-        let diagnosis = checkup.finish(&self.name, reader.notes(), &motion);
-        let told = serde_json::to_string(&diagnosis).expect("plain numbers, strings and lists");
-        self.waiting.push(Update::text("diagnosis", told));
     }
 
     fn read(&mut self, mut reader: Box<dyn LogReader + 'a>) {
