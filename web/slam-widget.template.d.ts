@@ -104,7 +104,9 @@ export declare class SlamWidget extends HTMLElement {
    * Hands a file to a widget that takes files: a log, a session, a reference to grade with, or a world as JSON. A log
    * becomes the map, or with `where` its robot is looked for on the map that is there; with `grade` it is a reference.
    */
-  openFile(file: File, use?: 'map' | 'where' | 'grade'): void;
+  openFile(file: File | readonly File[], use?: 'map' | 'where' | 'grade'): void;
+  /** What the doctor found about the log of w16.10, as `slam2d doctor --json` prints it; null while there is none. */
+  get diagnosis(): Record<string, unknown> | null;
   /** The bytes of a file that w16.10 saves, such as `session.slam2d`; rejects with a sentence where there is none. */
   savedFile(name: string): Promise<File>;
   addEventListener<K extends keyof SlamWidgetEvents>(

@@ -2,13 +2,14 @@
 // all that may happen to the picture.
 
 import assert from 'node:assert/strict';
-import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { cpSync, existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { basename, join } from 'node:path';
 import { describe, it } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { native } from '../native.mjs';
 import { skip } from '../skip.mjs';
+import { OF_COLORS, violations } from './axe.mjs';
 import * as h from './harness.mjs';
 import { fingers } from './touch.mjs';
 
@@ -22,6 +23,8 @@ const SQUARE = [
 ].join('\n');
 const RECORDINGS = fileURLToPath(new URL('../../crates/robot_io/recordings/', import.meta.url));
 const LOGS = fileURLToPath(new URL('../../../shared/data/logs/', import.meta.url));
+
+const FIELD = fileURLToPath(new URL('../../../shared/data/field/', import.meta.url));
 
 const visit = h.visitor();
 const page = (test, how) => visit(BODY, async (tab, server) => {
@@ -52,6 +55,29 @@ const giveBytes = (tab, name, bytes, use) => tab.evaluate(([file, text, what]) =
   const content = Uint8Array.from(atob(text), (digit) => digit.charCodeAt(0));
   document.querySelector('slam-widget').openFile(new File([content], file), what);
 }, [name, Buffer.from(bytes).toString('base64'), use]);
+
+/** Drops files on the picture together. */
+const drop = (tab, files) => tab.evaluate((given) => {
+  const all = new DataTransfer();
+  for (const [name, text] of given) {
+    all.items.add(new File([Uint8Array.from(atob(text), (digit) => digit.charCodeAt(0))], name));
+  }
+  // The canvas takes drops as well, and must not have this one.
+  const canvas = document.querySelector('slam-widget').shadowRoot.querySelector('canvas');
+  const on = canvas ?? document.querySelector('slam-widget').shadowRoot.querySelector('.frame');
+  for (const type of ['dragover', 'drop']) {
+    on.dispatchEvent(new DragEvent(type, { dataTransfer: all, bubbles: true, cancelable: true }));
+  }
+}, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString('base64')]));
+
+/** The doctor's screen once there is one of a log whose laser sits so. */
+const diagnosis = async (tab, laser) => {
+  await tab.waitForFunction((at) => {
+    const found = document.querySelector('slam-widget').diagnosis;
+    return found !== null && (at === undefined || found.laser === at);
+  }, laser);
+  return tab.evaluate(() => document.querySelector('slam-widget').diagnosis);
+};
 
 /** What the reader saves under that name of the list. */
 const saved = async (tab, id) => {
@@ -410,29 +436,19 @@ describe('a log of one’s own', () => {
       await press(tab, 'sample');
       await isMapped(tab);
       const [, session] = await saved(tab, 'session');
-      const drop = (files) => tab.evaluate((given) => {
-        const all = new DataTransfer();
-        for (const [name, text] of given) {
-          all.items.add(new File([Uint8Array.from(atob(text), (digit) => digit.charCodeAt(0))], name));
-        }
-        const frame = document.querySelector('slam-widget').shadowRoot.querySelector('.frame');
-        for (const type of ['dragover', 'drop']) {
-          frame.dispatchEvent(new DragEvent(type, { dataTransfer: all, bubbles: true, cancelable: true }));
-        }
-      }, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString('base64')]));
-      await drop([['day.log', OTHER_DAY], ['monday.slam2d', session]]);
+      await drop(tab, [['day.log', OTHER_DAY], ['monday.slam2d', session]]);
       await says(tab, /^(mapped|loops contradict): monday\.slam2d.*The robot of day\.log is found/);
       await tab.evaluate(() => Object.assign(document.querySelector('slam-widget'), { drop: 'where' }));
       // A picture that rests is made to say where the robot may be.
       await widget(tab, (it) => it.suspend());
-      await drop([['again.log', OTHER_DAY]]);
+      await drop(tab, [['again.log', OTHER_DAY]]);
       await says(tab, /monday\.slam2d.*The robot of again\.log is found/);
       // Around the keyframe that is shown, which is not where it is.
       await tab.evaluate(() => { document.querySelector('slam-widget').value = { start: 'here', keyframe: 0 }; });
-      await drop([['near.log', OTHER_DAY]]);
+      await drop(tab, [['near.log', OTHER_DAY]]);
       await says(tab, /The robot of near\.log is found/);
       await tab.evaluate(() => { document.querySelector('slam-widget').value = { drop: 'map' }; });
-      await drop([['map.log', OTHER_DAY]]);
+      await drop(tab, [['map.log', OTHER_DAY]]);
       await says(tab, /^(mapped|loops contradict): map\.log/);
       assert.doesNotMatch((await outcome(tab)).sentence, /The robot of/);
     });
@@ -544,6 +560,117 @@ describe('a log of one’s own', () => {
       assert.equal(facts.scans, 2726);
       // docs/robots.md: 0.076; the module has the same bits as the command.
       assert.ok(facts.error_m < 0.08, String(facts.error_m));
+    });
+  });
+});
+
+describe('the doctor', () => {
+  it('shows its screen before the map, whose buttons and fields map the log again, by keyboard and in any width', async () => {
+    await visit(`<main><h1>A robot</h1>${BODY}</main>`, async (tab) => {
+      await h.ready(tab);
+      await give(tab, 'ring.log', SAMPLE);
+      const before = await tab.waitForFunction(() => {
+        const { outcome: { facts }, diagnosis: found } = document.querySelector('slam-widget');
+        return facts.scans > 0 && { verdict: found?.verdict };
+      });
+      assert.equal((await before.jsonValue()).verdict, 'good', 'the screen comes before the first scan');
+      const screen = tab.getByRole('region', { name: 'What the doctor found' });
+      await screen.getByText('✓ ring.log: all in order').first().waitFor();
+      await isMapped(tab);
+
+      // By hand, and by keys: a laser that looks backward is told, and what mends it offered.
+      await screen.getByLabel('turned left, °').fill('180');
+      await screen.getByLabel('turned left, °').press('Enter');
+      const turned = await diagnosis(tab, '0,0,180');
+      assert.equal(turned.verdict, 'wrong');
+      assert.deepEqual(turned.remarks.find(({ part }) => part === 'mounting').options, ['--laser 0,0,0']);
+      const focused = () => tab.evaluate(() => document.querySelector('slam-widget').shadowRoot.activeElement?.localName);
+      assert.equal(await focused(), 'summary', 'the heading has the focus of what is gone');
+      await screen.getByRole('img', { name: 'not repaired' }).waitFor();
+      await tab.setViewportSize({ width: 390, height: 844 });
+      for (const colorScheme of ['light', 'dark']) {
+        await tab.emulateMedia({ colorScheme });
+        await tab.waitForFunction((dark) => document.querySelector('slam-widget').shadowRoot
+          .querySelector('.frame').classList.contains('dark') === dark, colorScheme === 'dark');
+        assert.deepEqual(await violations(tab, colorScheme === 'dark' ? OF_COLORS : undefined), []);
+      }
+      assert.equal(await tab.evaluate(() => document.documentElement.scrollWidth), 390);
+      await isMapped(tab);
+      await screen.getByRole('button', { name: 'Map with --laser 0,0,0' }).press('Enter');
+      assert.equal((await diagnosis(tab, '0,0,0')).verdict, 'good');
+      await screen.getByRole('button', { name: 'Map without options' }).press('Enter');
+      assert.equal((await diagnosis(tab, null)).verdict, 'good');
+      await isMapped(tab);
+      assert.match((await outcome(tab)).sentence, /^ring\.log: \d+ scans/);
+      // A graph has no doctor, and no log none either.
+      await give(tab, 'square.g2o', SQUARE);
+      await says(tab, /mapped: square\.g2o/);
+      assert.ok(await screen.isHidden());
+      await give(tab, 'ring.log', SAMPLE);
+      await diagnosis(tab);
+      await press(tab, 'defaults');
+      await says(tab, /no log yet/);
+      assert.ok(await screen.isHidden());
+    }, { options: { viewport: { width: 1000, height: 900 } }, fresh: true });
+  });
+
+  it('takes a folder of rosbag2 as it is dropped, and names a file that its metadata lists and it lacks', async () => {
+    const folder = mkdtempSync(join(tmpdir(), 'slam-bag-'));
+    try {
+      cpSync(join(RECORDINGS, 'plain.db3'), join(folder, 'bag_0.db3'));
+      writeFileSync(join(folder, 'metadata.yaml'), 'relative_file_paths:\n  - bag_0.db3\n');
+      await page(async (tab) => {
+        const system = await tab.context().newCDPSession(tab);
+        const [x, y] = await h.pointOf(tab, 'map', 0, 0);
+        const data = { items: [], files: [folder], dragOperationsMask: 1 };
+        for (const type of ['dragEnter', 'dragOver', 'drop']) {
+          await system.send('Input.dispatchDragEvent', { type, x, y, data });
+        }
+        await says(tab, /(mapped|contradict): bag_0\.db3: 24 scans/);
+        const metadata = 'relative_file_paths:\n  - bag_0.db3\n  - bag_1.db3\n';
+        await drop(tab, [['bag_0.db3', readFileSync(join(folder, 'bag_0.db3'))], ['metadata.yaml', metadata]]);
+        await says(tab, /no map: metadata\.yaml names bag_1\.db3, which did not come with it/);
+        await drop(tab, [['a.log', SAMPLE], ['b.log', SAMPLE]]);
+        await says(tab, /no map: a\.log and 1 more is several files.*give one log at a time/);
+      });
+    } finally {
+      rmSync(folder, { recursive: true });
+    }
+  });
+
+  it('says of recordings as people have them what the command says', async (context) => {
+    if (!existsSync(FIELD)) return skip(context, 'recordings with the faults that people report: see docs/recordings.md');
+    await page(async (tab) => {
+      for (const name of [
+        'base/base.mcap',
+        'carmen/six_digit_stamps.log',
+        'containers/index_length_lies.bag',
+        'containers/rosbag2_db3',
+        'containers/whole_file.mcap.zstd',
+        'mount/mirrored_driver.mcap',
+        'odom/millimetres_odom.mcap',
+        'stamps/scan_clock_+3600.mcap',
+        'units/degrees.mcap',
+        'tum/euroc.csv',
+      ]) {
+        const path = join(FIELD, name);
+        const parts = statSync(path).isDirectory() ? readdirSync(path).map((part) => join(path, part)) : [path];
+        await drop(tab, parts.map((part) => [basename(part), readFileSync(part)]));
+        let told;
+        try {
+          told = JSON.parse(native('slam2d', 'doctor', path, '--json'));
+        } catch ({ stderr }) {
+          const refusal = String(stderr).trim().replace(`slam2d: ${path}`, basename(path));
+          await says(tab, /^no map: /);
+          assert.ok((await outcome(tab)).sentence.startsWith(refusal), refusal);
+          continue;
+        }
+        // The same bits in the page as natively; a folder is called by its file.
+        await tab.waitForFunction((file) => document.querySelector('slam-widget').diagnosis?.name.startsWith(file),
+          told.name);
+        assert.deepEqual({ ...(await diagnosis(tab)), name: told.name }, told, name);
+        await isMapped(tab);
+      }
     });
   });
 });

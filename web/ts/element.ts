@@ -24,7 +24,8 @@ import { State } from './state';
 import { defaultText, shorten, type Value } from './values';
 import { unwatchVisibility, watchVisibility } from './visibility';
 import { Desk, hand, type FileUse } from './robot/desk';
-import { chooseFile, takeDrops } from './robot/files';
+import { DoctorScreen, type Diagnosis } from './robot/doctor';
+import { chooseFiles, takeDrops } from './robot/files';
 import { carryTextOrder, takeTextFile, type TextFileHost } from './text-files';
 import type { Delivery } from './robot/protocol';
 
@@ -46,6 +47,7 @@ export class SlamWidget extends HTMLElement {
   readonly #textFiles: TextFileHost;
   /** Where a reader's own file is worked on, once there is one. */
   #desk: Desk | undefined;
+  #doctor: DoctorScreen | undefined;
 
   constructor() {
     super();
@@ -249,12 +251,21 @@ export class SlamWidget extends HTMLElement {
     else this.#life.ask((widget) => widget.crashForTest());
   }
 
-  /** Hands a file to a widget that takes files: a log, a session, a reference to grade with, or a world. */
-  openFile(file: File, use: FileUse = 'map'): void {
+  /**
+   * Hands a file to a widget that takes files: a log, a session, a reference to grade with, or a world. Several are
+   * those of one recording.
+   */
+  openFile(file: File | readonly File[], use: FileUse = 'map'): void {
     if (!this.#isSetUp) this.#setUp();
     if (!this.#takesFiles) throw new TypeError(`${this.name} takes no files`);
-    if (use === 'where') void this.#act(() => this.#takeFiles([file], use));
-    else this.#takeFiles([file], use);
+    const files = file instanceof File ? [file] : [...file];
+    if (use === 'where') void this.#act(() => this.#takeFiles(files, use));
+    else this.#takeFiles(files, use);
+  }
+
+  /** What the doctor found about the log of w16.10, as `slam2d doctor --json` prints it; null while there is none. */
+  get diagnosis(): Diagnosis | null {
+    return this.#doctor?.diagnosis ?? null;
   }
 
   /** The bytes of a file that w16.10 saves, such as `session.slam2d`; rejects with a sentence where there is none. */
@@ -410,19 +421,31 @@ export class SlamWidget extends HTMLElement {
   }
 
   #openDesk(): Desk {
-    this.#desk ??= new Desk({
+    if (this.#desk !== undefined) return this.#desk;
+    const label = 'A log, or a reference for it';
+    const desk = new Desk({
       deliver: (deliveries) => this.#deliver(deliveries),
-      choose: (accept, chosen) => chooseFile(this.#parts.frame, accept, 'A log, or a reference for it', chosen),
+      choose: (accept, chosen) => chooseFiles(this.#parts.frame, { accept, label, several: true }, chosen),
     });
-    return this.#desk;
+    this.#doctor = new DoctorScreen({
+      choose: (option) => desk.choose(option?.replace(/^--/, '')),
+      chosen: () => desk.chosen,
+    });
+    this.#parts.frame.prepend(this.#doctor.element);
+    this.#desk = desk;
+    return desk;
   }
 
   #closeDesk(): void {
     this.#desk?.close();
     this.#desk = undefined;
+    this.#doctor?.element.remove();
+    this.#doctor = undefined;
   }
 
   #deliver(deliveries: readonly Delivery[]): void {
+    const isMoved = deliveries.filter((delivery) => this.#doctor?.hear(delivery) === true).length > 0;
+    if (isMoved) this.#resized();
     this.#life.ask((widget) => deliveries.forEach((delivery) => hand(widget, delivery)));
     this.#told(this.#changes());
     this.#carryOrders();

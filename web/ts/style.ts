@@ -1,14 +1,16 @@
 // The element's own look. Everything inside is laid out here; the page sets width and margins.
 
-import { accent, faint, ink, paper, soft } from '../../widgets/palette.json';
+import { accent, bad, fair, faint, good, ink, paper, soft } from '../../widgets/palette.json';
 
 export const STYLE = `
 :host { display: block; position: relative; color-scheme: light; }
 :host([hidden]) { display: none; }
 .frame { --paper: ${paper[0]}; --ink: ${ink[0]}; --soft: ${soft[0]}; --line: ${faint[0]}; --accent: ${accent[0]};
+  --good: ${good[0]}; --fair: ${fair[0]}; --bad: ${bad[0]};
   background: var(--paper); color: var(--ink); font: 0.875rem/1.4 system-ui, sans-serif;
   border: 1px solid var(--line); border-radius: 6px; outline: none; }
 .frame.dark { --paper: ${paper[1]}; --ink: ${ink[1]}; --soft: ${soft[1]}; --line: ${faint[1]}; --accent: ${accent[1]};
+  --good: ${good[1]}; --fair: ${fair[1]}; --bad: ${bad[1]};
   color-scheme: dark; }
 .stage { position: relative; overflow: hidden; border-radius: 6px 6px 0 0; min-height: 12rem; height: var(--place); }
 .stage.live { min-height: 0; height: auto; }
@@ -25,6 +27,19 @@ progress { position: absolute; inset: auto 0 0 0; width: 100%; height: 4px; acce
 .note { margin: 0; padding: 0.5rem 0.75rem; border-top: 1px solid var(--line); overflow-wrap: anywhere; }
 .note pre { max-height: 10rem; overflow: auto; white-space: pre-wrap; font-size: 0.75rem; }
 .note:empty { display: none; }
+.doctor { padding: 0.5rem 0.75rem; border-bottom: 1px solid var(--line); overflow-wrap: anywhere; }
+.doctor summary { cursor: pointer; font-weight: 600; }
+.doctor ul { list-style: none; margin: 0.4rem 0; padding: 0; display: grid; gap: 0.35rem; }
+.doctor li { display: grid; grid-template-columns: 1.25rem 1fr; }
+.doctor li button { margin: 0.15rem 0; }
+.doctor .sign { font-weight: 700; color: var(--good); }
+.doctor .mended .sign { color: var(--fair); }
+.doctor .wrong .sign { color: var(--bad); }
+.doctor p { margin: 0.4rem 0; }
+.doctor p:empty { display: none; }
+.doctor form { display: flex; flex-wrap: wrap; gap: 0.35rem 0.75rem; align-items: center; }
+.doctor label { display: inline-flex; gap: 0.35rem; align-items: center; }
+.doctor input[type='number'] { width: 5.5rem; }
 .bar { position: relative; background: var(--paper);
   border-top: 1px solid var(--line); border-radius: 0 0 6px 6px; min-height: 2.75rem; }
 /* While a control has the focus its line stays on the screen, whatever part of the picture is. */

@@ -2,7 +2,7 @@
 
 import type { Widget } from '../pkg/glue.js';
 import { saveBlob } from './export';
-import { chooseFile } from './robot/files';
+import { chooseFiles } from './robot/files';
 
 /** Larger files are no world, bytes: two thousand walls take a tenth of it. */
 const MOST_BYTES = 1 << 20;
@@ -20,7 +20,8 @@ export function carryTextOrder(order: string, host: TextFileHost): boolean {
   const [head = '', ...lines] = order.split('\n');
   const [name, given = ''] = head.split(' ');
   if (name === 'open-text') {
-    chooseFile(host.frame, given, 'A world as JSON', (file) => void takeTextFile(file, host));
+    const wanted = { accept: given, label: 'A world as JSON', several: false };
+    chooseFiles(host.frame, wanted, ([file]) => void (file && takeTextFile(file, host)));
   } else if (name === 'save-text') {
     saveBlob(new Blob([lines.join('\n')], { type: 'application/json' }), given);
   } else {

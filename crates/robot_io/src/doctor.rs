@@ -56,6 +56,8 @@ pub struct Diagnosis {
     pub sensor: SensorSummary,
     /// The odometry; none where there is none.
     pub odometry: Option<OdometrySummary>,
+    /// Where the laser is taken to sit, as `--laser` sets it; none if only the lines of the log have it.
+    pub laser: Option<String>,
     /// Scans against odometry.
     pub motion: Motion,
     /// A sentence for each thing that was looked at.
@@ -148,6 +150,7 @@ impl Checkup {
             verdict: worst.unwrap_or(Verdict::Good),
             sensor,
             odometry,
+            laser: notes.laser.map(|mount| mount.value()),
             motion: motion.clone(),
             remarks,
         }

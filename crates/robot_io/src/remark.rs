@@ -2,6 +2,9 @@
 
 use serde::Serialize;
 
+/// The option that maps by scans alone.
+pub const NO_ODOMETRY: &str = "--no-odometry";
+
 /// A part of a robot's recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -51,36 +54,43 @@ pub struct Remark {
     pub verdict: Verdict,
     /// The sentence, without a point at its end.
     pub text: String,
+    /// Options of the command that answer it, such as `--laser 0,0,180`: any of them, not all.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub options: Vec<String>,
 }
 
 impl Remark {
+    fn new(part: Part, verdict: Verdict, text: String) -> Self {
+        Self {
+            part,
+            verdict,
+            text,
+            options: Vec::new(),
+        }
+    }
+
     /// Something that is as it should be.
     #[must_use]
     pub fn good(part: Part, text: String) -> Self {
-        Self {
-            part,
-            verdict: Verdict::Good,
-            text,
-        }
+        Self::new(part, Verdict::Good, text)
     }
 
     /// Something that was mended.
     #[must_use]
     pub fn mended(part: Part, text: String) -> Self {
-        Self {
-            part,
-            verdict: Verdict::Mended,
-            text,
-        }
+        Self::new(part, Verdict::Mended, text)
     }
 
     /// Something that is wrong.
     #[must_use]
     pub fn wrong(part: Part, text: String) -> Self {
-        Self {
-            part,
-            verdict: Verdict::Wrong,
-            text,
-        }
+        Self::new(part, Verdict::Wrong, text)
+    }
+
+    /// The same remark with an option more that answers it.
+    #[must_use]
+    pub fn with_option(mut self, option: impl AsRef<str>) -> Self {
+        self.options.push(option.as_ref().to_owned());
+        self
     }
 }

@@ -1,13 +1,16 @@
-//! Logs of lines in the order of time, with stamps that were mended.
+//! Logs of lines in the order of time, with stamps that were mended and odometry without jumps.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::io;
 
+use pr_geom::SE2;
+
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::log_bytes::LogBytes;
 use crate::remark::Remark;
 use crate::stamps::MendedStamps;
+use crate::wheel_poses::{jumps_remark, take_jumps_out};
 
 /// A frame waits for so many others at most that stand after it and were taken before it.
 const MOST_WAITING: usize = 1024;
@@ -15,10 +18,12 @@ const MOST_WAITING: usize = 1024;
 /// A frame under its time, in an order that whole numbers have.
 type Key = (u64, usize);
 
-/// Frames whose stamps were mended by a pass over all of the log.
+/// Frames whose stamps and odometry were mended by a pass over all of the log.
 struct Restamped<R> {
     inner: R,
     stamps_s: Vec<f64>,
+    /// The odometry of each frame; empty if it does not jump.
+    odometry: Vec<Option<SE2>>,
     said: Vec<Remark>,
     /// Earliest stamp of any frame after this one, s.
     earliest_after_s: Vec<f64>,
@@ -28,7 +33,7 @@ struct Restamped<R> {
     notes: LogNotes,
 }
 
-/// A reader of a log of lines: as it is where its stamps are in order, else with stamps that are.
+/// A reader of a log of lines: as it is if its stamps are in order and its odometry does not jump, else mended.
 ///
 /// # Errors
 /// What the system says.
@@ -37,31 +42,26 @@ pub fn restamped<'a, R: LogReader + 'a>(
     reader: impl Fn(Box<dyn io::BufRead + 'a>) -> R,
 ) -> io::Result<Box<dyn LogReader + 'a>> {
     let mut first = reader(bytes.stream()?);
-    let mut stamps_s = Vec::new();
+    let (mut stamps_s, mut odometry) = (Vec::new(), Vec::new());
     // What goes wrong here goes wrong again, and is told then.
     while let Ok(Some(frame)) = first.next_frame() {
         stamps_s.push(frame.stamp_s);
+        odometry.push(frame.odometry);
     }
     let inner = reader(bytes.stream()?);
-    // A log may count its frames from 0, which is a stamp here.
-    let least_s = stamps_s.iter().copied().fold(f64::INFINITY, f64::min);
-    let moved: Vec<f64> = stamps_s
-        .iter()
-        .map(|stamp_s| stamp_s - least_s + 1.0)
-        .collect();
-    let is_late = |two: &[f64]| two[1] <= two[0];
-    if !moved.windows(2).any(is_late) {
+    let mut said = Vec::new();
+    if let Some(mended) = mended_stamps(&stamps_s) {
+        said = mended.remarks("scans");
+        stamps_s = mended.stamps_s;
+    }
+    let jumps = without_jumps(&stamps_s, &mut odometry);
+    if jumps.is_empty() {
+        odometry.clear();
+    }
+    said.extend(jumps_remark(&jumps));
+    if said.is_empty() {
         return Ok(Box::new(inner));
     }
-    let mended = MendedStamps::of(&moved, &[]);
-    if mended.is_unchanged() && mended.swapped == 0 {
-        return Ok(Box::new(inner));
-    }
-    let stamps_s: Vec<f64> = mended
-        .stamps_s
-        .iter()
-        .map(|stamp_s| stamp_s + least_s - 1.0)
-        .collect();
     let mut earliest_s = f64::INFINITY;
     let mut earliest_after_s: Vec<f64> = stamps_s
         .iter()
@@ -75,14 +75,51 @@ pub fn restamped<'a, R: LogReader + 'a>(
     earliest_after_s.reverse();
     Ok(Box::new(Restamped {
         inner,
-        said: mended.remarks("scans"),
+        said,
         stamps_s,
+        odometry,
         earliest_after_s,
         waiting: BTreeMap::new(),
         read: 0,
         is_done: false,
         notes: LogNotes::default(),
     }))
+}
+
+/// Stamps in an order that a clock may have had; none if they are so.
+fn mended_stamps(stamps_s: &[f64]) -> Option<MendedStamps> {
+    // A log may count its frames from 0, which is a stamp here.
+    let least_s = stamps_s.iter().copied().fold(f64::INFINITY, f64::min);
+    let moved: Vec<f64> = stamps_s
+        .iter()
+        .map(|stamp_s| stamp_s - least_s + 1.0)
+        .collect();
+    let is_late = |two: &[f64]| two[1] <= two[0];
+    if !moved.windows(2).any(is_late) {
+        return None;
+    }
+    let mut mended = MendedStamps::of(&moved, &[]);
+    if mended.is_unchanged() && mended.swapped == 0 {
+        return None;
+    }
+    for stamp_s in &mut mended.stamps_s {
+        *stamp_s += least_s - 1.0;
+    }
+    Some(mended)
+}
+
+/// Takes the jumps out of the odometry of frames with these stamps; returns the stamps of the jumps, s.
+fn without_jumps(stamps_s: &[f64], odometry: &mut [Option<SE2>]) -> Vec<f64> {
+    let known = odometry.iter().enumerate();
+    let mut order: Vec<(usize, SE2)> = known.filter_map(|(k, pose)| Some((k, (*pose)?))).collect();
+    order.sort_by(|a, b| stamps_s[a.0].total_cmp(&stamps_s[b.0]));
+    let poses = order.iter().map(|&(k, pose)| (stamps_s[k], pose));
+    let mut poses: Vec<(f64, SE2)> = poses.collect();
+    let jumps = take_jumps_out(&mut poses);
+    for ((k, _), (_, pose)) in order.into_iter().zip(poses) {
+        odometry[k] = Some(pose);
+    }
+    jumps
 }
 
 impl<R: LogReader> LogReader for Restamped<R> {
@@ -113,6 +150,9 @@ impl<R: LogReader> LogReader for Restamped<R> {
                 Some(mut frame) => {
                     if let Some(&stamp_s) = self.stamps_s.get(self.read) {
                         frame.stamp_s = stamp_s;
+                    }
+                    if let Some(&odometry) = self.odometry.get(self.read) {
+                        frame.odometry = odometry;
                     }
                     self.waiting
                         .insert(Reverse((ordered(frame.stamp_s), self.read)), frame);
@@ -162,6 +202,28 @@ mod tests {
                 format!("FLASER 3 1 1 1 {x} 0 0 {x} 0 0 {stamp_s} h {stamp_s}\n")
             })
             .collect()
+    }
+
+    #[test]
+    fn odometry_that_starts_again_goes_on_where_it_was() {
+        let lines = |k: u32| {
+            let (x, k) = (0.1 * f64::from(k % 30), 0.1 * f64::from(k));
+            format!("FLASER 3 1 1 1 {x} 0 0 {x} 0 0 {k} h {k}\n")
+        };
+        let text: String = (0..60).map(lines).collect();
+        let bytes = LogBytes::from(text.into_bytes());
+        let mut reader = restamped(&bytes, |source| CarmenReader::new(source, "x.clf")).unwrap();
+        let mut last = None;
+        while let Some(frame) = reader.next_frame().unwrap() {
+            last = frame.odometry;
+        }
+        // 29 steps before and 29 after the start in between.
+        assert!((last.unwrap().x() - 5.8).abs() < 1e-9, "{last:?}");
+        let said = &reader.notes().warnings[0].text;
+        assert!(
+            said.starts_with("odometry jumps 1 time, first at 3.00 s"),
+            "{said}"
+        );
     }
 
     #[test]

@@ -1,5 +1,11 @@
 //! A folder of rosbag2: which files it has, by its `metadata.yaml`.
 
+/// The name of the file that describes a recording.
+pub const METADATA: &str = "metadata.yaml";
+
+/// What a recorder or its owner packs the files of a recording with, by the ends of their names.
+const PACKED: [&str; 3] = [".zstd", ".zst", ".gz"];
+
 /// The names of the files of a recording, in their order, as `metadata.yaml` lists them.
 ///
 /// rosbag2 writes one name on each line of `relative_file_paths`; that is all that is read.
@@ -24,16 +30,60 @@ pub fn files_of(metadata: &str) -> Vec<String> {
 #[must_use]
 pub fn is_recording(name: &str) -> bool {
     let lower = name.to_ascii_lowercase();
-    let plain = [".zstd", ".zst", ".gz"]
+    let plain = PACKED
         .iter()
         .find_map(|end| lower.strip_suffix(end))
         .unwrap_or(&lower);
     [".mcap", ".db3"].iter().any(|end| plain.ends_with(end))
 }
 
+/// Which of the files of these names make up a recording, in the order in which they are read: those that
+/// `metadata` lists, else all of ROS 2 by name.
+///
+/// # Errors
+/// The name of a file that is listed and not there.
+pub fn in_order(metadata: Option<&str>, names: &[String]) -> Result<Vec<usize>, String> {
+    let listed = metadata.map(files_of).unwrap_or_default();
+    if listed.is_empty() {
+        let all = 0..names.len();
+        let mut found: Vec<usize> = all.filter(|&k| is_recording(&names[k])).collect();
+        // a_10.mcap comes after a_9.mcap.
+        found.sort_by_key(|&k| (names[k].len(), &names[k]));
+        return Ok(found);
+    }
+    let find = |listed: String| {
+        // Older versions list them from the folder above, and packing changes their ends.
+        let last = listed.rsplit('/').next().unwrap_or(&listed);
+        let is_it = |name: &String| {
+            let end = name.strip_prefix(last);
+            end.is_some_and(|end| end.is_empty() || PACKED.contains(&end))
+        };
+        names.iter().position(is_it).ok_or(listed)
+    };
+    listed.into_iter().map(find).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_recording_of_several_files_is_read_in_the_order_of_its_metadata_or_its_numbers() {
+        let names = [
+            "a_10.db3",
+            "a_9.db3",
+            "b.txt",
+            "a_2.db3.zstd",
+            "metadata.yaml",
+        ];
+        let names = names.map(str::to_owned);
+        let listed = "  relative_file_paths:\n    - bag/a_9.db3\n    - bag/a_2.db3\n";
+        assert_eq!(in_order(Some(listed), &names), Ok(vec![1, 3]));
+        assert_eq!(in_order(Some("version: 5"), &names), Ok(vec![1, 0, 3]));
+        assert_eq!(in_order(None, &names[2..3]), Ok(vec![]));
+        let absent = "  relative_file_paths:\n    - a_3.db3\n";
+        assert_eq!(in_order(Some(absent), &names), Err("a_3.db3".to_owned()));
+    }
 
     #[test]
     fn the_files_of_a_recording_come_in_their_order() {

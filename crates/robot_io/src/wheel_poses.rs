@@ -4,6 +4,9 @@ use std::collections::VecDeque;
 
 use pr_geom::{SE2, math, sort_numbers};
 
+use crate::counted::counted;
+use crate::remark::{Part, Remark};
+
 /// So many poses are kept of a log that is read once: 20 s at 200 a second.
 const MOST_POSES: usize = 4096;
 /// A pose holds this long beyond the first and the last one, s: until the next message would have come.
@@ -18,6 +21,8 @@ const LONGEST_GAP_PERIODS: f64 = 10.0;
 const JUMP: f64 = 0.5;
 const JUMP_SPEEDS: f64 = 10.0;
 const LEAST_SPEED: f64 = 0.3;
+/// Poses of one time were not taken at one time, s.
+const LEAST_APART_S: f64 = 1e-3;
 
 /// Poses of the body in the odometry's frame, in the order of time.
 #[derive(Clone, Debug)]
@@ -109,12 +114,23 @@ impl WheelPoses {
     }
 }
 
-/// Moves what follows a jump back to where the path was; returns the stamps of the jumps, s.
-fn take_jumps_out(poses: &mut [(f64, SE2)]) -> Vec<f64> {
+/// What is said of odometry that jumped at these stamps (s), if it did.
+pub fn jumps_remark(jumps: &[f64]) -> Option<Remark> {
+    let first_s = jumps.first()?;
+    let text = format!(
+        "odometry jumps {}, first at {first_s:.2} s, as a driver that starts again makes it; what follows is moved back, so that the path goes on",
+        counted(jumps.len(), "time")
+    );
+    Some(Remark::mended(Part::Odometry, text))
+}
+
+/// Moves what follows a jump back to where the path was; returns the stamps of the jumps, s. The poses are in the order
+/// of time.
+pub fn take_jumps_out(poses: &mut [(f64, SE2)]) -> Vec<f64> {
     let step = |two: &[(f64, SE2)]| {
         let motion = two[0].1.between(&two[1].1);
         let moved = math::norm2(motion.x(), motion.y());
-        (moved, moved / (two[1].0 - two[0].0))
+        (moved, moved / (two[1].0 - two[0].0).max(LEAST_APART_S))
     };
     let mut speeds: Vec<f64> = poses.windows(2).map(|two| step(two).1).collect();
     sort_numbers(&mut speeds);

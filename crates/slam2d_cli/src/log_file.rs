@@ -188,35 +188,20 @@ fn log_files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
-    let metadata = path.join("metadata.yaml");
+    let metadata = path.join(rosbag2::METADATA);
     let listed = if metadata.is_file() {
-        rosbag2::files_of(&fs::read_to_string(&metadata).map_err(told(&metadata))?)
+        Some(fs::read_to_string(&metadata).map_err(told(&metadata))?)
     } else {
-        Vec::new()
+        None
     };
-    let mut files: Vec<PathBuf> = listed
-        .iter()
-        .map(|name| {
-            let whole = path.join(name);
-            // Older versions list them from the folder above, and packing changes their ends.
-            let last = Path::new(name).file_name().map(|last| path.join(last));
-            let ends = ["", ".zstd", ".zst", ".gz"].iter().map(|end| {
-                let last = last.clone().unwrap_or_else(|| whole.clone());
-                PathBuf::from(format!("{}{end}", last.display()))
-            });
-            let mut others = std::iter::once(whole.clone()).chain(ends);
-            others.find(|file| file.is_file()).unwrap_or(whole)
-        })
-        .collect();
-    if files.is_empty() {
-        for entry in fs::read_dir(path).map_err(told(path))? {
-            let entry = entry.map_err(told(path))?;
-            if rosbag2::is_recording(&entry.file_name().to_string_lossy()) {
-                files.push(entry.path());
-            }
-        }
-        files.sort();
+    let mut names = Vec::new();
+    for entry in fs::read_dir(path).map_err(told(path))? {
+        let name = entry.map_err(told(path))?.file_name();
+        names.push(name.to_string_lossy().into_owned());
     }
+    let order = rosbag2::in_order(listed.as_deref(), &names)
+        .map_err(|absent| told(&path.join(absent))(io::ErrorKind::NotFound.into()))?;
+    let files: Vec<PathBuf> = order.into_iter().map(|k| path.join(&names[k])).collect();
     if files.is_empty() {
         return Err(FileError::NoRecording {
             path: path.to_owned(),

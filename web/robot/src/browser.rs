@@ -5,20 +5,21 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use ch16_slam2d::localize::StartPose;
 use js_sys::{Array, Float64Array, Function, Object, Reflect, Uint8Array};
 use pr_geom::SE2;
-use robot_io::log::{LogOption, LogOptions};
 use robot_io::log_bytes::LogBytes;
 use wasm_bindgen::prelude::*;
 
 use crate::engine::Engine;
+use crate::given::{Choices, Given, GivenFile};
 use crate::sample;
 use crate::update::{Stage, Update};
 
 /// So much of a file is asked for at once, bytes.
 const PIECE_BYTES: usize = 1 << 18;
 
-/// A file that JavaScript reads: `read(from, to)` gives the bytes of that part.
+/// A file that JavaScript reads: `read(which, from, to)` gives the bytes of that part.
 struct JsFile {
     read: Function,
+    which: f64,
     at: u64,
     size: u64,
 }
@@ -34,7 +35,8 @@ impl Read for JsFile {
             JsValue::from_f64(self.at as f64),
             JsValue::from_f64(end as f64),
         );
-        let read = self.read.call2(&JsValue::NULL, &from, &to);
+        let which = JsValue::from_f64(self.which);
+        let read = self.read.call3(&JsValue::NULL, &which, &from, &to);
         let bytes = read.map_err(|_| io::Error::other("the browser cannot read it any more"))?;
         let bytes = Uint8Array::new(&bytes);
         let count = (bytes.length() as usize).min(into.len());
@@ -65,16 +67,21 @@ pub struct Robot {
 
 #[wasm_bindgen]
 impl Robot {
-    /// Opens a file; `read(from, to)` gives its bytes as a `Uint8Array`, and `chosen` holds the options
-    /// of recordings, a line each: `scan-topic /front`.
+    /// Opens files that came together: `read(which, from, to)` gives bytes of one of them as a `Uint8Array`, and
+    /// `chosen` holds options, a line each: `scan-topic /front`.
     ///
     /// # Errors
-    /// One sentence where it cannot be mapped.
+    /// One sentence where they cannot be mapped.
     #[wasm_bindgen(constructor)]
-    pub fn new(name: &str, size: f64, read: Function, chosen: &str) -> Result<Self, JsError> {
-        let source = source(size, read);
-        let engine = Engine::open(source, name, size as u64, &options(chosen));
-        let engine = engine.map_err(|said| JsError::new(&said))?;
+    pub fn new(
+        names: Vec<String>,
+        sizes: &[f64],
+        read: &Function,
+        chosen: &str,
+    ) -> Result<Self, JsError> {
+        let opened = given(names, sizes, read)
+            .and_then(|given| Engine::open(given, &Choices::read(chosen)?));
+        let engine = opened.map_err(|said| JsError::new(&said))?;
         Ok(Self { engine })
     }
 
@@ -85,9 +92,9 @@ impl Robot {
     /// One sentence where that cannot be done.
     pub fn locate(
         &mut self,
-        name: &str,
-        size: f64,
-        read: Function,
+        names: Vec<String>,
+        sizes: &[f64],
+        read: &Function,
         chosen: &str,
         start: &[f64],
     ) -> Result<(), JsError> {
@@ -95,11 +102,8 @@ impl Robot {
             &[x, y, theta] => StartPose::Near(SE2::new(x, y, theta)),
             _ => StartPose::Anywhere,
         };
-        let source = source(size, read);
-        let chosen = options(chosen);
-        let begun = self
-            .engine
-            .locate(source, name, size as u64, &chosen, start);
+        let begun = given(names, sizes, read)
+            .and_then(|given| self.engine.locate(given, &Choices::read(chosen)?, start));
         begun.map_err(|said| JsError::new(&said))
     }
 
@@ -142,29 +146,27 @@ impl Robot {
     }
 }
 
-/// The bytes of a file, which are read once more for each pass over it.
-fn source(size: f64, read: Function) -> LogBytes<'static> {
-    LogBytes::new(move || {
-        let file = JsFile {
-            read: read.clone(),
-            at: 0,
-            size: size as u64,
+/// The log that files make up; each is read once more for each pass over it.
+fn given(names: Vec<String>, sizes: &[f64], read: &Function) -> Result<Given<'static>, String> {
+    let files = names.into_iter().zip(sizes).enumerate();
+    let files = files.map(|(which, (name, &size))| {
+        let read = read.clone();
+        let open = move || {
+            let file = JsFile {
+                read: read.clone(),
+                which: which as f64,
+                at: 0,
+                size: size as u64,
+            };
+            Ok(BufReader::with_capacity(PIECE_BYTES, file))
         };
-        Ok(BufReader::with_capacity(PIECE_BYTES, file))
-    })
-}
-
-fn options(chosen: &str) -> LogOptions {
-    let mut options = LogOptions::default();
-    for (name, value) in chosen.lines().filter_map(|line| line.split_once(' ')) {
-        if let Some(option) = LogOption::ALL
-            .into_iter()
-            .find(|option| option.name() == name)
-        {
-            options = options.with(option, value);
+        GivenFile {
+            name,
+            size_bytes: size as u64,
+            bytes: LogBytes::new(open),
         }
-    }
-    options
+    });
+    Given::of(files.collect())
 }
 
 fn to_js(update: &Update) -> JsValue {

@@ -5,6 +5,7 @@
 //! size costs no memory. Nothing here asks a clock: who calls decides how long a slice is.
 
 mod checking;
+mod examining;
 mod orders;
 mod telling;
 
@@ -13,25 +14,27 @@ use std::io::{self, BufRead, Read};
 
 use ch16_slam2d::graph::PoseGraph;
 use pr_geom::SE2;
-use robot_io::log::{LogOptions, LogReader};
-use robot_io::log_bytes::LogBytes;
+use robot_io::log::LogReader;
 use robot_io::log_format::LogFormat;
-use robot_io::motion::ComparedReader;
 use robot_io::recorder::RunRecorder;
 use robot_io::run::{LogRun, NOTHING_SEEN, OdometryUse};
 use robot_io::session::{self, Session};
 use robot_io::trajectory::{StampedPose, Trajectory};
 
 use crate::files;
+use crate::given::{Choices, Given};
 use crate::grade::Reference;
 use crate::graph_log::{self, GraphSolving, loops_of};
 use crate::links::Link;
 use crate::picture::MapPicture;
 use crate::update::{Stage, Update};
 use crate::whereabouts::Whereabouts;
+use examining::Examination;
 
 /// What is under way.
 enum Work<'a> {
+    /// The doctor looks through all of the log before it is mapped.
+    Examining(Box<Examination<'a>>),
     Reading(Box<dyn LogReader + 'a>),
     /// No scan follows: the last loops are closed.
     Finishing,
@@ -88,17 +91,16 @@ pub struct Engine<'a> {
 }
 
 impl<'a> Engine<'a> {
-    /// Opens a file of that name and size; `options` choose of what a recording has several of.
+    /// Opens what was given, with the options that were chosen.
     ///
     /// # Errors
     /// One sentence where it is nothing that can be mapped, solved or looked at.
-    pub fn open(
-        source: impl Into<LogBytes<'a>>,
-        name: &str,
-        size_bytes: u64,
-        options: &LogOptions,
-    ) -> Result<Self, String> {
-        let bytes = source.into();
+    pub fn open(given: Given<'a>, choices: &Choices) -> Result<Self, String> {
+        let name = given.name.clone();
+        let (name, size_bytes) = (name.as_str(), given.size_bytes);
+        let Some(bytes) = given.parts.first() else {
+            return Err("no file was given".to_owned());
+        };
         let told = |problem: io::Error| match bytes.is_packed() {
             Ok(true) => format!("{name} does not unpack: {problem}; copy it once more"),
             _ => format!("{name} cannot be read: {problem}; it may have moved or changed"),
@@ -131,12 +133,14 @@ impl<'a> Engine<'a> {
                 Work::Solving(Box::new(GraphSolving::read(&bytes, name)?))
             } else {
                 drop(source);
-                let reader = LogFormat::open(bytes, name, options);
-                let reader = reader.map_err(|problem| problem.to_string())?;
-                let is_told = options.laser.is_some();
-                Work::Reading(Box::new(ComparedReader::new(reader, is_told)))
+                let examination = Examination::begin(given.clone(), choices.clone())?;
+                Work::Examining(Box::new(examination))
             };
-        Ok(Self::beginning(work, name, size_bytes))
+        let run = LogRun::new(choices.odometry);
+        Ok(Self {
+            run,
+            ..Self::beginning(work, name, size_bytes)
+        })
     }
 
     /// A session is a map that stands already.
@@ -164,7 +168,7 @@ impl<'a> Engine<'a> {
         Self {
             name: name.to_owned(),
             size_bytes,
-            has_scans: matches!(work, Work::Reading(_)),
+            has_scans: matches!(work, Work::Examining(_)),
             scans_before: 0,
             whereabouts: None,
             work,
@@ -195,7 +199,7 @@ impl<'a> Engine<'a> {
     #[must_use]
     pub fn stage(&self) -> Stage {
         match self.work {
-            Work::Reading(_) => Stage::Reading,
+            Work::Examining(_) | Work::Reading(_) => Stage::Reading,
             Work::Finishing => Stage::Finishing,
             Work::Solving(_) => Stage::Solving,
             Work::Checking => Stage::Checking,
@@ -207,6 +211,7 @@ impl<'a> Engine<'a> {
     /// Does the next piece of work; false where nothing is left to do until an order comes.
     pub fn step(&mut self) -> bool {
         match core::mem::replace(&mut self.work, Work::Idle) {
+            Work::Examining(examination) => self.examine(examination),
             Work::Reading(reader) => self.read(reader),
             Work::Finishing => self.close_last_loops(),
             Work::Solving(solving) => self.solve(solving),
@@ -227,11 +232,6 @@ impl<'a> Engine<'a> {
                 if let Some(report) = self.run.step(frame.clone()) {
                     if is_first {
                         self.tell_offers(&reader.notes().offers);
-                        // What is wrong with the recording comes before its map.
-                        let said = reader.notes().sentences(&self.name);
-                        if !said.is_empty() {
-                            self.waiting.push(Update::text("remarks", said.join("\n")));
-                        }
                     }
                     self.recorder.take(&frame, &report);
                     if report.new_keyframe.is_some() {

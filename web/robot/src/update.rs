@@ -8,6 +8,7 @@
 //! | `map` | columns, rows, least x, least y, cell (m) | a byte a cell from the least y: 0 unknown, 1 free … 255 occupied |
 //! | `loops` | ten for each, see [`links`](crate::links) | a line each: why it was turned away |
 //! | `doubts` | keyframes to look into | a sentence a line |
+//! | `diagnosis` | | the doctor's screen as `slam2d doctor --json` prints it |
 //! | `remarks` | | what the log's owner should know, a sentence a line |
 //! | `scan` | keyframe, then x and y of every point in the body's frame, m | |
 //! | `grade` | see [`grade`](crate::grade) | in words |

@@ -8,15 +8,13 @@ use ch16_slam2d::localize::{LocalizeReport, StartPose, Verdict};
 use ch16_slam2d::metrics::position_error_m;
 use pr_geom::SE2;
 use robot_io::localize::LocalizeRun;
-use robot_io::log::{LogNotes, LogOptions, LogReader};
-use robot_io::log_bytes::LogBytes;
-use robot_io::log_format::LogFormat;
-use robot_io::motion::ComparedReader;
+use robot_io::log::{LogNotes, LogReader};
 use robot_io::quality::KeyframeQuality;
-use robot_io::run::{OdometryUse, late_scans};
+use robot_io::run::late_scans;
 use robot_io::session::Session;
 use robot_io::trajectory::{StampedPose, Trajectory};
 
+use crate::given::{Choices, Given, compared};
 use crate::update::Update;
 
 /// Share done, whether it is over, and the scans of each verdict: found, tracking, doubtful, lost; then
@@ -53,26 +51,22 @@ pub struct Whereabouts<'a> {
 }
 
 impl<'a> Whereabouts<'a> {
-    /// Opens a log of that name and size; `session` is the map.
+    /// Opens a log; `session` is the map.
     ///
     /// # Errors
     /// One sentence where the file is no log, or the session no map.
     pub fn open(
-        source: impl Into<LogBytes<'a>>,
-        name: &str,
-        size_bytes: u64,
-        options: &LogOptions,
+        given: Given<'a>,
+        choices: &Choices,
         session: &Session,
         start: StartPose,
     ) -> Result<Self, String> {
-        let reader =
-            LogFormat::open(source, name, options).map_err(|problem| problem.to_string())?;
-        let reader = ComparedReader::new(reader, options.laser.is_some());
-        let run = LocalizeRun::new(session, OdometryUse::Log, start)
+        let reader = compared(&given, choices)?;
+        let run = LocalizeRun::new(session, choices.odometry, start)
             .map_err(|problem| format!("The map cannot be searched: {problem}."))?;
         Ok(Self {
-            name: name.to_owned(),
-            size_bytes,
+            name: given.name,
+            size_bytes: given.size_bytes,
             reader: Box::new(reader),
             run,
             map: session.poses(),

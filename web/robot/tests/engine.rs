@@ -7,6 +7,7 @@ use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
 use robot_io::run::{LogRun, OdometryUse};
 use slam_robot::engine::Engine;
+use slam_robot::given::{Choices, Given};
 use slam_robot::sample;
 use slam_robot::update::{Stage, Update};
 
@@ -15,8 +16,12 @@ pub fn files() -> &'static (Vec<u8>, Vec<u8>) {
     FILES.get_or_init(sample::ring)
 }
 
+pub fn given<'a>(bytes: &'a [u8], name: &str) -> Given<'a> {
+    Given::one(name, bytes.len() as u64, bytes)
+}
+
 pub fn open<'a>(bytes: &'a [u8], name: &str) -> Result<Engine<'a>, String> {
-    Engine::open(bytes, name, bytes.len() as u64, &LogOptions::default())
+    Engine::open(given(bytes, name), &Choices::default())
 }
 
 pub fn finished(bytes: &[u8]) -> Engine<'_> {
@@ -194,7 +199,9 @@ fn a_loop_is_added_where_two_scans_fit_and_told_why_not_where_they_do_not() {
 fn a_reading_that_is_stopped_keeps_what_was_read() {
     let (log, truth) = files();
     let mut engine = open(log, "ring.log").unwrap();
-    for _ in 0..60 {
+    // The doctor has seen all of it before its first scan is mapped.
+    let scans = |engine: &mut Engine<'_>| of(&engine.updates(), "stage").numbers[2];
+    while scans(&mut engine) < 60.0 {
         engine.step();
     }
     engine.order("turn 0");
@@ -272,8 +279,8 @@ fn a_file_that_goes_while_it_is_read_leaves_a_map_of_a_part_and_says_so() {
     let half = log[..log.len() / 2].iter().rposition(|&byte| byte == b'\n');
     let bytes = &log[..=half.unwrap()];
     let source = LogBytes::new(move || Ok(std::io::BufReader::new(Torn { bytes })));
-    let options = LogOptions::default();
-    let mut engine = Engine::open(source, "ring.log", log.len() as u64, &options).unwrap();
+    let given = Given::one("ring.log", log.len() as u64, source);
+    let mut engine = Engine::open(given, &Choices::default()).unwrap();
     while engine.step() {}
     assert_eq!(engine.stage(), Stage::Done);
     let said = of(&engine.updates(), "answer").text.clone();

@@ -1,4 +1,5 @@
 //! What the worker promises, without any browser.
 
 mod engine;
+mod given;
 mod sessions;

@@ -2,17 +2,18 @@
 
 use ch16_slam2d::localize::StartPose;
 use pr_geom::SE2;
-use robot_io::log::{LogOption, LogOptions};
+use robot_io::log::LogOptions;
 use robot_io::log_format::LogFormat;
 use robot_io::run::{LogRun, OdometryUse};
 use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
 use slam_robot::engine::Engine;
+use slam_robot::given::{Choices, Given};
 use slam_robot::sample;
 use slam_robot::update::{Stage, Update};
 use slam_robot::whereabouts::{HEAD, PLACE};
 
-use crate::engine::{files, finished, of, open, refuse_first};
+use crate::engine::{files, finished, given, of, open, refuse_first};
 
 fn saved() -> Vec<u8> {
     let mut engine = finished(&files().0);
@@ -137,7 +138,10 @@ fn sessions_that_are_broken_are_answered_in_one_sentence() {
         assert!(told.contains(said), "{told}");
         assert_eq!(told.lines().count(), 1);
     }
-    let huge = Engine::open(&session[..], "x.slam2d", 1 << 30, &LogOptions::default());
+    let huge = Engine::open(
+        Given::one("x.slam2d", 1 << 30, &session[..]),
+        &Choices::default(),
+    );
     assert!(huge.err().unwrap().contains("larger than 512 MB"));
     // By its first bytes alone it is told from a log.
     assert!(open(&session, "monday.log").is_ok());
@@ -145,8 +149,7 @@ fn sessions_that_are_broken_are_answered_in_one_sentence() {
 
 fn look<'a>(engine: &mut Engine<'a>, log: &'a [u8], start: StartPose) -> Update {
     engine.updates();
-    let options = LogOptions::default();
-    let begun = engine.locate(log, "tuesday.log", log.len() as u64, &options, start);
+    let begun = engine.locate(given(log, "tuesday.log"), &Choices::default(), start);
     begun.unwrap();
     while engine.step() {}
     of(&engine.updates(), "where").clone()
@@ -246,16 +249,14 @@ fn what_is_no_log_is_answered_and_leaves_the_map_and_the_place_before_it() {
     let session = saved();
     let mut engine = opened(&session);
     look(&mut engine, &day, StartPose::Anywhere);
-    let options = LogOptions::default();
-    let mut tried = |bytes: &'static [u8]| {
-        let size = bytes.len() as u64;
-        engine.locate(bytes, "x.log", size, &options, StartPose::Anywhere)
-    };
+    let choices = Choices::default();
+    let mut tried =
+        |bytes: &'static [u8]| engine.locate(given(bytes, "x.log"), &choices, StartPose::Anywhere);
     assert!(tried(b"").unwrap_err().contains("is empty"));
     assert!(tried(b"\x1f\x8b").unwrap_err().contains("does not unpack"));
     assert!(tried(b"SLAM2D\r\n").is_err());
     assert!(engine.file("where.tum").is_ok());
-    let begun = engine.locate(&b"hello\n"[..], "x.log", 6, &options, StartPose::Anywhere);
+    let begun = engine.locate(given(b"hello\n", "x.log"), &choices, StartPose::Anywhere);
     begun.unwrap();
     while engine.step() {}
     let told = of(&engine.updates(), "where").clone();
@@ -266,7 +267,7 @@ fn what_is_no_log_is_answered_and_leaves_the_map_and_the_place_before_it() {
     let graph = finished(log).file("graph.g2o").unwrap();
     let mut of_graph = open(&graph, "x.g2o").unwrap();
     while of_graph.step() {}
-    let said = of_graph.locate(&log[..], "x.log", 1, &options, StartPose::Anywhere);
+    let said = of_graph.locate(given(log, "x.log"), &choices, StartPose::Anywhere);
     assert!(said.unwrap_err().contains("no scans"));
 }
 
@@ -275,12 +276,9 @@ fn a_search_is_stopped_and_keeps_what_was_found() {
     let day = sample::another_day();
     let session = saved();
     let mut engine = opened(&session);
-    let options = LogOptions::default();
     let begun = engine.locate(
-        &day[..],
-        "day.log",
-        day.len() as u64,
-        &options,
+        given(&day, "day.log"),
+        &Choices::default(),
         StartPose::Anywhere,
     );
     begun.unwrap();
@@ -297,9 +295,7 @@ fn a_search_is_stopped_and_keeps_what_was_found() {
 #[test]
 fn a_recording_says_what_its_options_could_choose_and_takes_them() {
     let recording = include_bytes!("../../../crates/robot_io/recordings/plain.mcap");
-    let options = LogOptions::default();
-    let size = recording.len() as u64;
-    let mut engine = Engine::open(&recording[..], "plain.mcap", size, &options).unwrap();
+    let mut engine = open(recording, "plain.mcap").unwrap();
     while engine.step() {}
     let told = of(&engine.updates(), "offers").text.clone();
     let offer = |name: &str| {
@@ -308,8 +304,8 @@ fn a_recording_says_what_its_options_could_choose_and_takes_them() {
     };
     let scans = offer("scan-topic");
     assert!(scans.len() >= 3 && scans[2..].contains(&scans[1]), "{told}");
-    let options = LogOptions::default().with(LogOption::ScanTopic, "/nowhere");
-    let mut engine = Engine::open(&recording[..], "plain.mcap", size, &options).unwrap();
+    let choices = Choices::read("scan-topic /nowhere").unwrap();
+    let mut engine = Engine::open(given(recording, "plain.mcap"), &choices).unwrap();
     while engine.step() {}
     let said = of(&engine.updates(), "stage").text.clone();
     assert!(said.contains("/nowhere is not one of"), "{said}");

@@ -15,10 +15,10 @@ declare const SAMPLE_FILES: readonly string[];
 
 /** What is a reference and no log, by the ends of names. */
 const REFERENCES = ['.relations', '.tum'];
-/** What the file picker offers first. */
-const LOGS = '.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd,.g2o,.graph,.toro,.slam2d';
+/** What the file picker offers first; a recording of several files may have a description. */
+const LOGS = '.yaml,.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd,.g2o,.graph,.toro,.slam2d';
 /** The same for the log of a robot that is looked for. */
-const SCANS = '.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd';
+const SCANS = '.yaml,.log,.clf,.mcap,.db3,.bag,.jsonl,.gz,.zst,.zstd';
 /** The end of a session's name. */
 const SESSION = '.slam2d';
 /** The stage in which the map stands. */
@@ -47,7 +47,7 @@ export interface DeskHost {
   /** Hands it to the widget, where one runs. */
   deliver(deliveries: readonly Delivery[]): void;
   /** Opens the system's dialog for a file. */
-  choose(accept: string, chosen: (file: File) => void): void;
+  choose(accept: string, chosen: (files: File[]) => void): void;
 }
 
 export class Desk {
@@ -55,7 +55,8 @@ export class Desk {
   /** The last of each kind, in the order in which they first came. */
   readonly #latest = new Map<string, Delivery>();
   #worker: Worker | undefined;
-  #file: File | undefined;
+  /** One, or those of a recording. */
+  #files: File[] = [];
   #reference: File | undefined;
   /** A reference that came before its log. */
   #early: File | undefined;
@@ -67,13 +68,13 @@ export class Desk {
   /** What the reader changed of the graph; done again after a crash. */
   #edits: string[] = [];
   #owesEdits = false;
-  /** The topics and frames that the reader chose, by option. */
+  /** Topics, frames, the place of the laser and what else the reader chose, by option. */
   readonly #options = new Map<string, string>();
   /** The log of a robot that is looked for on the map, and where it may be at first. */
-  #visitor: { file: File; start: number[] } | undefined;
+  #visitor: { files: File[]; start: number[] } | undefined;
   #owesVisitor = false;
   /** A log that waits for the widget to say where its robot may be. */
-  #dropped: File | undefined;
+  #dropped: File[] | undefined;
   /** What a log is for that is dropped. */
   #dropUse: FileUse = 'map';
   /** Programs that wait for a file to be written, by its name. */
@@ -98,16 +99,16 @@ export class Desk {
     switch (name) {
       case 'open':
         // A reference that the reader picked here all the same grades the map that is there.
-        this.#host.choose(LOGS, (file) => this.take([file], 'map'));
+        this.#host.choose(LOGS, (files) => this.take(files, 'map'));
         break;
       case 'reference':
-        this.#host.choose(REFERENCES.join(), (file) => void this.#grade(file));
+        this.#host.choose(REFERENCES.join(), (files) => this.take(files, 'grade'));
         break;
       case 'sample':
         void this.#openSample();
         break;
       case 'locate':
-        this.#host.choose(SCANS, (file) => this.#visit(file, words));
+        this.#host.choose(SCANS, (files) => this.#visit(files, words));
         break;
       case 'locate-sample':
         void this.#visitSample(words);
@@ -120,13 +121,14 @@ export class Desk {
         this.#dropUse = words[0] === 'where' ? 'where' : 'map';
         break;
       case 'option':
-        this.#choose(words);
+        this.choose(words.join(' '));
         break;
       case 'close':
         this.#renew();
         this.#isOpen = false;
         this.#early = undefined;
         this.#latest.clear();
+        this.#host.deliver([told('closed', '')]);
         break;
       case 'save':
         this.#send({ save: words.join(' ') });
@@ -142,26 +144,27 @@ export class Desk {
     const use = asked ?? this.#dropUse;
     const ends = (file: File, end: string): boolean => file.name.toLowerCase().endsWith(end);
     const isReference = (file: File): boolean => use === 'grade' || REFERENCES.some((end) => ends(file, end));
-    const logs = files.filter((file) => !isReference(file));
-    const session = asked === 'where' ? undefined : logs.find((file) => ends(file, SESSION));
-    const [log] = logs.filter((file) => file !== session);
+    const given = files.filter((file) => !isReference(file));
+    const session = asked === 'where' ? undefined : given.find((file) => ends(file, SESSION));
+    // Several are the parts of one recording.
+    const log = given.filter((file) => file !== session);
     const reference = files.find(isReference);
     if (session !== undefined) {
-      this.open(session, reference);
-      if (log !== undefined) this.#visit(log, []);
-    } else if (log !== undefined && use === 'where') {
+      this.open([session], reference);
+      if (log.length > 0) this.#visit(log, []);
+    } else if (log.length > 0 && use === 'where') {
       if (reference !== undefined) void this.#grade(reference);
       // The widget knows where its robot may be, and asks for it.
       this.#dropped = log;
-      this.#host.deliver([told('dropped', log.name)]);
-    } else if (log !== undefined) this.open(log, reference);
+      this.#host.deliver([told('dropped', nameOf(log))]);
+    } else if (log.length > 0) this.open(log, reference);
     else if (reference !== undefined) void this.#grade(reference);
   }
 
-  /** Maps a file from its start; what was mapped before is gone. */
-  open(file: File, reference?: File): void {
+  /** Maps a log from its start; what was mapped before is gone. */
+  open(files: File[], reference?: File): void {
     this.#renew();
-    this.#setOut(file, reference);
+    this.#setOut(files, reference);
   }
 
   /** The bytes of a file that can be saved; rejects with a sentence where there is nothing to write. */
@@ -211,68 +214,78 @@ export class Desk {
     this.#visitor = undefined;
   }
 
-  /** Another topic or frame of the same file: it is mapped from its start. */
-  #choose([name = '', ...value]: string[]): void {
-    const file = this.#file;
-    if (file === undefined) {
+  /** Another value of an option, such as `scan-topic /front`, or none of any: the same log is mapped from its start. */
+  choose(option: string | undefined): void {
+    const files = this.#files;
+    if (files.length === 0) {
       this.#tell([told('answer', 'Open a log first.')]);
       return;
     }
     this.close();
     this.#isOpen = true;
-    this.#options.set(name, value.join(' '));
+    if (option === undefined) this.#options.clear();
+    else {
+      const [name = '', ...value] = option.split(' ');
+      this.#options.set(name, value.join(' '));
+    }
     this.#beginAnew();
-    void this.#begin(file);
+    void this.#begin(files);
+  }
+
+  /** The options of the command that the log is mapped with. */
+  get chosen(): string[] {
+    return [...this.#options].map(([name, value]) => `--${name} ${value}`.trimEnd());
   }
 
   get #optionLines(): string {
-    return [...this.#options].map(([name, value]) => `${name} ${value}`).join('\n');
+    return this.chosen.map((option) => option.slice(2)).join('\n');
   }
 
   /** Looks for the robot of a log on the map, once that stands. */
-  #visit(file: File, start: readonly string[]): void {
+  #visit(files: File[], start: readonly string[]): void {
+    const name = nameOf(files);
     if (!this.#isOpen) {
-      this.#tell([told('answer', `${file.name} needs a map: open a log or a session first.`)]);
+      this.#tell([told('answer', `${name} needs a map: open a log or a session first.`)]);
       return;
     }
-    this.#visitor = { file, start: start.map(Number) };
+    this.#visitor = { files, start: start.map(Number) };
     if (this.#stands) this.#sendVisitor();
     else {
       this.#owesVisitor = true;
-      this.#tell([told('answer', `${file.name} waits until the map stands.`)]);
+      this.#tell([told('answer', `${name} waits until the map stands.`)]);
     }
   }
 
   #sendVisitor(): void {
     if (this.#visitor === undefined) return;
-    const { file, start } = this.#visitor;
-    this.#send({ locate: file, options: this.#optionLines, start });
+    const { files, start } = this.#visitor;
+    this.#send({ locate: files, options: this.#optionLines, start });
   }
 
   async #visitSample(start: readonly string[]): Promise<void> {
     const turn = this.#turn;
     try {
       const log = await fetchFile(SAMPLE_FILES[2] ?? '');
-      if (turn === this.#turn) this.#visit(log, start);
+      if (turn === this.#turn) this.#visit([log], start);
     } catch {
       if (turn === this.#turn) this.#tell([told('answer', 'The sample could not be fetched; try again.')]);
     }
   }
 
-  #setOut(file: File, reference: File | undefined): void {
-    this.#file = file;
+  #setOut(files: File[], reference: File | undefined): void {
+    this.#files = files;
     this.#reference = reference ?? this.#early;
     this.#early = undefined;
-    void this.#begin(file);
+    void this.#begin(files);
   }
 
-  async #begin(file: File): Promise<void> {
+  async #begin(files: File[]): Promise<void> {
     const turn = this.#turn;
     this.#owesEdits = this.#edits.length > 0;
     this.#owesVisitor = this.#visitor !== undefined;
     this.#stands = false;
     this.#latest.clear();
-    this.#tell([told('opening', file.name)]);
+    this.#tell([told('opening', nameOf(files))]);
     try {
       const module = await program.load(() => {});
       if (turn !== this.#turn) return;
@@ -289,7 +302,7 @@ export class Desk {
         if (turn === this.#turn) this.#fail(NO_WORKER);
       });
       this.#worker = worker;
-      this.#send({ module, file, options: this.#optionLines });
+      this.#send({ module, files, options: this.#optionLines });
       for (const order of this.#waiting.splice(0)) this.#send(order);
       if (this.#reference !== undefined) void this.#sendReference(this.#reference);
     } catch (error) {
@@ -304,7 +317,7 @@ export class Desk {
     const turn = this.#turn;
     try {
       const [log, truth] = await Promise.all(SAMPLE_FILES.slice(0, 2).map(fetchFile));
-      if (log !== undefined && turn === this.#turn) this.#setOut(log, truth);
+      if (log !== undefined && turn === this.#turn) this.#setOut([log], truth);
     } catch {
       if (turn === this.#turn) this.#fail('The sample could not be fetched; open a log of your own, or try again.');
     }
@@ -332,13 +345,13 @@ export class Desk {
 
   #crashed(): void {
     this.#crashes += 1;
-    if (this.#crashes <= MOST_CRASHES && this.#file !== undefined) {
+    if (this.#crashes <= MOST_CRASHES && this.#files.length > 0) {
       this.close();
-      void this.#begin(this.#file);
+      void this.#begin(this.#files);
       this.#tell([told('answer', 'The mapping stopped by an error in its program and was begun again.')]);
       return;
     }
-    const megabytes = Math.ceil((this.#file?.size ?? 0) / 1e6);
+    const megabytes = Math.ceil(this.#files.reduce((sum, { size }) => sum + size, 0) / 1e6);
     this.#fail(
       `The program that maps the log stopped again (the file has ${megabytes} MB); ` +
         'it may need more memory than the browser gives. Try slam2d run on the command line.',
@@ -403,6 +416,12 @@ export class Desk {
     for (const delivery of deliveries) this.#latest.set(delivery.kind, delivery);
     this.#host.deliver(deliveries);
   }
+}
+
+/** What a log of several files is called until the worker has put them in order. */
+function nameOf([first, ...rest]: readonly File[]): string {
+  const more = rest.length === 0 ? '' : ` and ${rest.length} more`;
+  return `${first?.name ?? ''}${more}`;
 }
 
 /** Hands a delivery to a widget's model. */

@@ -2,43 +2,78 @@
 
 import { create } from '../dom';
 
+/** What a dialog asks for. */
+export interface Wanted {
+  accept: string;
+  label: string;
+  several: boolean;
+}
+
 /** Takes files that are dropped on the frame; returns what ends it. */
 export function takeDrops(frame: HTMLElement, take: (files: File[]) => void): () => void {
   const listening = new AbortController();
-  const { signal } = listening;
+  // The canvas takes drops as well, reads all of each file, and lets nobody hear of it: the frame comes first.
+  const first = { signal: listening.signal, capture: true };
   const holdsFiles = ({ dataTransfer }: DragEvent): boolean => dataTransfer?.types.includes('Files') ?? false;
   const show = (isOver: boolean): void => void frame.classList.toggle('dropping', isOver);
+  const keep = (event: DragEvent): void => {
+    // Else the browser shows the file in place of the page.
+    event.preventDefault();
+    event.stopPropagation();
+  };
   frame.addEventListener(
     'dragover',
     (event) => {
       if (!holdsFiles(event)) return;
-      // Else the browser shows the file in place of the page.
-      event.preventDefault();
+      keep(event);
       show(true);
     },
-    { signal },
+    first,
   );
-  frame.addEventListener('dragleave', () => show(false), { signal });
+  frame.addEventListener('dragleave', () => show(false), first);
   frame.addEventListener(
     'drop',
     (event) => {
       show(false);
       if (!holdsFiles(event) || event.dataTransfer === null) return;
-      event.preventDefault();
-      take([...event.dataTransfer.files]);
+      keep(event);
+      const { files, items } = event.dataTransfer;
+      // Entries are to be had in the event alone.
+      const entries = [...items].map((item) => item.webkitGetAsEntry());
+      if (entries.some((entry) => entry?.isDirectory === true)) void filesOf(entries).then(take);
+      else take([...files]);
     },
-    { signal },
+    first,
   );
   return () => listening.abort();
 }
 
-/** Opens the system's dialog; the field for it stays until a file is chosen, or the next dialog. */
-export function chooseFile(frame: HTMLElement, accept: string, label: string, chosen: (file: File) => void): void {
+/** The files that were dropped, and those of the folders among them, but not of folders within. */
+async function filesOf(entries: readonly (FileSystemEntry | null)[]): Promise<File[]> {
+  const found: Promise<File>[] = [];
+  const take = (entry: FileSystemEntry | null): void => {
+    if (entry?.isFile !== true) return;
+    found.push(new Promise((file, failed) => (entry as FileSystemFileEntry).file(file, failed)));
+  };
+  for (const entry of entries) {
+    take(entry);
+    if (entry?.isDirectory !== true) continue;
+    const reader = (entry as FileSystemDirectoryEntry).createReader();
+    const next = (): Promise<FileSystemEntry[]> => new Promise((some, failed) => reader.readEntries(some, failed));
+    // A browser gives a hundred at a time.
+    for (let some = await next(); some.length > 0; some = await next()) some.forEach(take);
+  }
+  return Promise.all(found);
+}
+
+/** Opens the system's dialog; the field for it stays until files are chosen, or the next dialog. */
+export function chooseFiles(frame: HTMLElement, { accept, label, several }: Wanted, chosen: (files: File[]) => void): void {
   frame.querySelector('input[type=file]')?.remove();
   const field = create('input', { type: 'file', accept, hidden: '', 'aria-label': label });
+  field.multiple = several;
   field.addEventListener('change', () => {
-    const [file] = field.files ?? [];
-    if (file !== undefined) chosen(file);
+    const files = [...(field.files ?? [])];
+    if (files.length > 0) chosen(files);
     field.remove();
   });
   frame.append(field);

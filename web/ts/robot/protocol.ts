@@ -10,10 +10,10 @@ export interface Delivery {
 
 /** To the worker. */
 export type Order =
-  /** Comes first: the program, the log, and which topics and frames of it, a line each. */
-  | { module: WebAssembly.Module; file: File; options: string }
+  /** Comes first: the program, the files of the log, and the options for it, a line each. */
+  | { module: WebAssembly.Module; files: File[]; options: string }
   /** Another log, for the map: where its robot was, at first about `[x, y, θ]`, or anywhere. */
-  | { locate: File; options: string; start: number[] }
+  | { locate: File[]; options: string; start: number[] }
   | { order: string }
   | { reference: Uint8Array; name: string }
   | { save: string };

@@ -31,21 +31,24 @@ turn.port1.onmessage = (): void => {
 };
 
 self.addEventListener('message', ({ data }: MessageEvent<Order>) => {
-  if ('module' in data) void open(data.module, data.file, data.options);
+  if ('module' in data) void open(data.module, data.files, data.options);
   else if (robot === undefined) waiting.push(data);
   else guard(() => obey(data));
 });
 
-/** Gives a part of a file, as the program asks for it. */
-function reading(file: File): (from: number, to: number) => Uint8Array {
+/** Names and sizes of files, and what gives a part of one as the program asks for it. */
+function readable(files: File[]): [string[], Float64Array, (which: number, from: number, to: number) => Uint8Array] {
   const reader = new FileReaderSync();
-  return (from, to) => new Uint8Array(reader.readAsArrayBuffer(file.slice(from, to)));
+  const read = (which: number, from: number, to: number): Uint8Array => {
+    return new Uint8Array(reader.readAsArrayBuffer((files[which] as File).slice(from, to)));
+  };
+  return [files.map(({ name }) => name), Float64Array.from(files, ({ size }) => size), read];
 }
 
-async function open(module: WebAssembly.Module, file: File, options: string): Promise<void> {
+async function open(module: WebAssembly.Module, files: File[], options: string): Promise<void> {
   try {
     await init({ module_or_path: module });
-    robot = new Robot(file.name, file.size, reading(file), options);
+    robot = new Robot(...readable(files), options);
   } catch (error) {
     // What the program says of a file is a sentence; all else is its own end.
     if (error instanceof Error && error.constructor === Error) say({ failed: error.message });
@@ -96,9 +99,9 @@ function save(from: Robot, name: string): void {
   }
 }
 
-function locate(on: Robot, log: File, options: string, start: number[]): void {
+function locate(on: Robot, log: File[], options: string, start: number[]): void {
   try {
-    on.locate(log.name, log.size, reading(log), options, Float64Array.from(start));
+    on.locate(...readable(log), options, Float64Array.from(start));
     if (isHeld) hold(false);
     // What was said while it had to wait is over.
     say({ deliveries: [told('answer', '')] });

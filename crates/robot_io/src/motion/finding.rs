@@ -7,8 +7,9 @@ use pr_geom::{SE2, math, wrap_angle};
 use serde::Serialize;
 
 use super::Stretch;
+use super::lag::{Heading, lag_s};
 use crate::laser_mount::LaserMount;
-use crate::remark::{Part, Remark};
+use crate::remark::{NO_ODOMETRY, Part, Remark};
 use crate::stamps::median;
 
 /// Fewer stretches show nothing.
@@ -94,6 +95,8 @@ pub struct Motion {
     pub turn_scale: Option<f64>,
     /// Median distance between both after a metre, m.
     pub drift_m_per_m: Option<f64>,
+    /// How late odometry is against the scans, s; none if it is not, or the turns do not show it.
+    pub lag_s: Option<f64>,
     #[serde(skip)]
     findings: Vec<Finding>,
 }
@@ -223,8 +226,14 @@ impl Motion {
         }
     }
 
+    /// Compares when both turn.
+    pub(super) fn compare_turns(&mut self, headings: &[Heading]) {
+        self.lag_s = lag_s(headings).filter(|_| !self.is_still());
+    }
+
     /// Leaves the findings about the laser alone.
     pub(super) fn keep_mounting(&mut self) {
+        self.lag_s = None;
         let is_of_laser = |finding: &Finding| {
             matches!(finding, Finding::Mirrored { .. } | Finding::Turned { .. })
         };
@@ -276,21 +285,22 @@ impl Motion {
             .any(|finding| matches!(finding, Finding::Still { .. }))
     }
 
-    /// The findings, a sentence each; `mount` is where the laser was said to sit, and `is_mended` whether what
-    /// they say was done.
+    /// The findings, a sentence each; `mount` is where the laser was said to sit, and `is_mended` whether it is
+    /// taken to sit where they say.
     #[must_use]
     pub fn remarks(&self, mount: LaserMount, is_mended: bool) -> Vec<Remark> {
         let option = self
             .mended_mount(mount)
             .map(|mended| mended.option())
             .unwrap_or_default();
-        let of_mount = if is_mended {
-            format!(
-                "it is taken so; keep that with {option}, or the recording's own with {}",
-                mount.option()
-            )
+        let (of_mount, mount_options) = if is_mended {
+            let own = mount.option();
+            let said = format!(
+                "it is taken so; keep that with {option}, or the recording's own with {own}"
+            );
+            (said, vec![option, own])
         } else {
-            format!("mend it with {option}")
+            (format!("mend it with {option}"), vec![option])
         };
         let sentence = |finding: &Finding| match finding {
             Finding::Mirrored { correlation } => format!(
@@ -308,43 +318,49 @@ impl Motion {
                 },
             ),
             Finding::Unit { name, metres } => format!(
-                "odometry is in {name}: it moves {:.0} for each metre by scans; {}",
-                1.0 / metres,
-                if is_mended {
-                    "it is divided. Publish metres"
-                } else {
-                    "publish metres"
-                }
+                "odometry is in {name}: it moves {:.0} for each metre by scans; it is divided. Publish metres",
+                1.0 / metres
             ),
             Finding::Scale { ratio } => format!(
                 "odometry measures {:.2} m for each metre by scans; check the radius of the wheels, or go by scans alone with --no-odometry",
                 ratio
             ),
             Finding::Still { moved_m } => format!(
-                "odometry stands still while the scans move by {moved_m:.1} m; {}. Check its topic",
-                if is_mended {
-                    "it is left out, and scans go alone"
-                } else {
-                    "leave it out with --no-odometry"
-                }
+                "odometry stands still while the scans move by {moved_m:.1} m; it is left out, and scans go alone. Check its topic"
             ),
             Finding::Unlike { correlation } => format!(
                 "scans matched alone and odometry turn differently (correlation {correlation:.2}): the scans see too little to be matched alone, or the odometry is not this robot's; compare with a map by --no-odometry"
             ),
         };
         let remark = |finding: &Finding| {
-            let (part, may_be_mended) = match finding {
-                Finding::Mirrored { .. } | Finding::Turned { .. } => (Part::Mounting, is_mended),
-                Finding::Unit { .. } | Finding::Still { .. } => (Part::Odometry, true),
-                Finding::Scale { .. } | Finding::Unlike { .. } => (Part::Odometry, false),
-            };
             let text = sentence(finding);
-            match may_be_mended {
-                true => Remark::mended(part, text),
-                false => Remark::wrong(part, text),
+            match finding {
+                Finding::Mirrored { .. } | Finding::Turned { .. } => {
+                    let remark = if is_mended {
+                        Remark::mended(Part::Mounting, text)
+                    } else {
+                        Remark::wrong(Part::Mounting, text)
+                    };
+                    mount_options.iter().fold(remark, Remark::with_option)
+                }
+                Finding::Unit { .. } => {
+                    Remark::mended(Part::Odometry, text).with_option(NO_ODOMETRY)
+                }
+                Finding::Still { .. } => Remark::mended(Part::Odometry, text),
+                Finding::Scale { .. } | Finding::Unlike { .. } => {
+                    Remark::wrong(Part::Odometry, text).with_option(NO_ODOMETRY)
+                }
             }
         };
-        self.findings.iter().map(remark).collect()
+        let late = self.lag_s.map(|lag_s| {
+            let way = if lag_s > 0.0 { "late" } else { "early" };
+            let text = format!(
+                "odometry is {:.2} s {way} against the scans, as the turns of both show; it is moved by that. Set both clocks by NTP, and stamp each message when it is measured",
+                lag_s.abs()
+            );
+            Remark::mended(Part::Clocks, text)
+        });
+        self.findings.iter().map(remark).chain(late).collect()
     }
 }
 

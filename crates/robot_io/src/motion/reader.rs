@@ -8,19 +8,64 @@ use super::{Comparison, Motion};
 use crate::laser_mount::{LaserMount, flip};
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::remark::Remark;
+use crate::wheel_poses::WheelPoses;
 
 /// So many scans are compared at most, with so many beams together: they are in memory.
 const MOST_SCANS: usize = 2000;
 const MOST_BEAMS: usize = 1 << 21;
+/// So many scans wait for odometry that is late at most: more than any sensor takes in a second.
+const MOST_LATE: usize = 200;
 
 /// A mounting that was mended.
 struct Mended {
     /// Where the laser was said to sit.
     said: SE2,
     /// Where it does.
-    body_from_sensor: SE2,
-    /// Whether its beams are listed the other way round.
-    is_flipped: bool,
+    mount: LaserMount,
+    /// Whether its beams are listed the other way round than was said.
+    is_turned_over: bool,
+}
+
+/// Odometry whose stamps are late by so much: each scan waits for the odometry of its time.
+struct Late {
+    by_s: f64,
+    wheels: WheelPoses,
+    waiting: VecDeque<LogFrame>,
+    is_over: bool,
+}
+
+impl Late {
+    fn by(by_s: f64) -> Self {
+        Self {
+            by_s,
+            wheels: WheelPoses::default(),
+            waiting: VecDeque::new(),
+            is_over: false,
+        }
+    }
+
+    /// The next frame whose odometry has come, with that.
+    fn next(&mut self) -> Option<LogFrame> {
+        let at_s = self.waiting.front()?.stamp_s + self.by_s;
+        let is_full = self.waiting.len() > MOST_LATE;
+        if !self.is_over && !is_full && !self.wheels.reaches(at_s) {
+            return None;
+        }
+        let mut frame = self.waiting.pop_front()?;
+        frame.odometry = self.wheels.at(at_s);
+        Some(frame)
+    }
+
+    fn take(&mut self, frame: Option<LogFrame>) {
+        let Some(frame) = frame else {
+            self.is_over = true;
+            return;
+        };
+        if let Some(pose) = frame.odometry {
+            self.wheels.push(frame.stamp_s, pose);
+        }
+        self.waiting.push_back(frame);
+    }
 }
 
 /// Reads a log, compares its first scans with its odometry, and mends what is surely wrong.
@@ -31,10 +76,13 @@ pub struct ComparedReader<'a> {
     /// Whether the run goes by scans alone.
     is_alone: bool,
     waiting: VecDeque<LogFrame>,
+    /// What a comparison found before.
+    known: Option<Motion>,
     motion: Option<Motion>,
     mount: Option<Mended>,
     metres: f64,
     is_still: bool,
+    late: Option<Late>,
     notes: LogNotes,
     said: Vec<Remark>,
 }
@@ -48,10 +96,12 @@ impl<'a> ComparedReader<'a> {
             is_told,
             is_alone: false,
             waiting: VecDeque::new(),
+            known: None,
             motion: None,
             mount: None,
             metres: 1.0,
             is_still: false,
+            late: None,
             notes: LogNotes::default(),
             said: Vec::new(),
         }
@@ -61,6 +111,13 @@ impl<'a> ComparedReader<'a> {
     #[must_use]
     pub fn for_scans_alone(mut self, is_so: bool) -> Self {
         self.is_alone = is_so;
+        self
+    }
+
+    /// The same reader of a log that was compared before: what was found then holds.
+    #[must_use]
+    pub fn knowing(mut self, motion: Motion) -> Self {
+        self.known = Some(motion);
         self
     }
 
@@ -85,6 +142,10 @@ impl<'a> ComparedReader<'a> {
             };
             beams += frame.scan.ranges_m.len().max(1);
             has_odometry |= frame.odometry.is_some();
+            if self.known.is_some() {
+                self.waiting.push_back(frame);
+                break;
+            }
             let comparing = comparison.get_or_insert_with(|| Comparison::new(&frame));
             comparing.take(&frame);
             let is_enough = comparing.is_enough();
@@ -93,15 +154,21 @@ impl<'a> ComparedReader<'a> {
                 break;
             }
         }
-        let mut motion = Motion::default();
-        if let (true, Some(comparison), Some(first)) =
-            (has_odometry, comparison, self.waiting.front())
-        {
-            let said = first.scan.body_from_sensor;
-            motion = Motion::of(&comparison.stretches, said);
+        let said = self
+            .waiting
+            .front()
+            .map(|first| first.scan.body_from_sensor);
+        let found = self.known.take().or_else(|| {
+            let compared = comparison.filter(|_| has_odometry)?;
+            let mut motion = Motion::of(&compared.stretches, said?);
+            motion.compare_turns(&compared.headings);
             if self.is_alone {
                 motion.keep_mounting();
             }
+            Some(motion)
+        });
+        let motion = found.unwrap_or_default();
+        if let Some(said) = said {
             let told = self.inner.notes().laser;
             let mount = told.unwrap_or(LaserMount {
                 body_from_sensor: said,
@@ -112,12 +179,13 @@ impl<'a> ComparedReader<'a> {
                 let mended = motion.mended_mount(mount);
                 self.mount = mended.map(|mended| Mended {
                     said,
-                    body_from_sensor: mended.body_from_sensor,
-                    is_flipped: mended.is_flipped != mount.is_flipped,
+                    mount: mended,
+                    is_turned_over: mended.is_flipped != mount.is_flipped,
                 });
             }
             self.metres = motion.metres().unwrap_or(1.0);
             self.is_still = motion.is_still();
+            self.late = motion.lag_s.map(Late::by);
         }
         self.motion = Some(motion);
         Ok(())
@@ -127,10 +195,10 @@ impl<'a> ComparedReader<'a> {
         if let Some(mended) = &self.mount
             && frame.scan.body_from_sensor == mended.said
         {
-            if mended.is_flipped {
+            if mended.is_turned_over {
                 flip(&mut frame.scan);
             }
-            frame.scan.body_from_sensor = mended.body_from_sensor;
+            frame.scan.body_from_sensor = mended.mount.body_from_sensor;
         }
         if self.is_still {
             frame.odometry = None;
@@ -143,9 +211,22 @@ impl<'a> ComparedReader<'a> {
         frame
     }
 
+    /// The next frame, but for its time.
+    fn next_mended(&mut self) -> Result<Option<LogFrame>, LogError> {
+        if let Some(frame) = self.waiting.pop_front() {
+            return Ok(Some(self.mended(frame)));
+        }
+        let frame = self.inner.next_frame();
+        self.take_notes();
+        Ok(frame?.map(|frame| self.mended(frame)))
+    }
+
     fn take_notes(&mut self) {
         self.notes.clone_from(self.inner.notes());
         self.notes.warnings.extend(self.said.iter().cloned());
+        if let Some(mended) = &self.mount {
+            self.notes.laser = Some(mended.mount);
+        }
     }
 }
 
@@ -156,12 +237,17 @@ impl LogReader for ComparedReader<'_> {
             self.take_notes();
             compared?;
         }
-        if let Some(frame) = self.waiting.pop_front() {
-            return Ok(Some(self.mended(frame)));
+        loop {
+            if let Some(frame) = self.late.as_mut().and_then(Late::next) {
+                return Ok(Some(frame));
+            }
+            let frame = self.next_mended()?;
+            match &mut self.late {
+                None => return Ok(frame),
+                Some(late) if late.is_over => return Ok(None),
+                Some(late) => late.take(frame),
+            }
         }
-        let frame = self.inner.next_frame();
-        self.take_notes();
-        Ok(frame?.map(|frame| self.mended(frame)))
     }
 
     fn notes(&self) -> &LogNotes {

@@ -192,11 +192,16 @@ impl Plan {
             .take(MOST_NAMED)
             .collect();
         if !others.is_empty() {
-            let example = others[0].clone();
-            self.warnings.push(Remark::mended(Part::Sensor, format!(
-                "there are scans on {} as well, which are not read; choose with --scan-topic {example}",
-                listed(others.into_iter())
-            )));
+            let options = others.iter().map(|topic| format!("--scan-topic {topic}"));
+            let options: Vec<String> = options.collect();
+            let text = format!(
+                "there are scans on {} as well, which are not read; choose with {}",
+                listed(others.into_iter()),
+                options[0]
+            );
+            let remark = Remark::mended(Part::Sensor, text);
+            self.warnings
+                .push(options.iter().fold(remark, Remark::with_option));
         }
     }
 

@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 
 use measuring::skip::skip;
 use pr_geom::SE2;
+use robot_io::graph_file::GraphFile;
 use robot_io::log::LogOptions;
 use robot_io::log_bytes::LogBytes;
 use robot_io::trajectory::Trajectory;
 
-use super::{distance_m, mapped};
+use super::{Outcome, distance_m, mapped, path};
 
 /// Largest distance of a map with odometry, and of one by scans alone, m.
 const WITH_ODOMETRY_M: f64 = 0.1;
@@ -138,8 +139,7 @@ fn every_recording_of_the_field_is_mapped_and_its_fault_named() {
         );
     };
     for (name, most_m, least_scans, word) in VERDICTS {
-        let parts = vec![LogBytes::from(bytes(&folder().join(name)))];
-        let outcome = mapped(parts, name, &LogOptions::default());
+        let outcome = mapped_log(&bytes(&folder().join(name)), name);
         assert!(
             outcome.path.len() >= least_scans,
             "{name}: {} scans: {}",
@@ -159,8 +159,7 @@ fn every_recording_of_the_field_is_mapped_and_its_fault_named() {
             .iter()
             .map(|(stamp_s, _)| truth[number(*stamp_s)])
             .collect();
-        let poses: Vec<SE2> = outcome.path.iter().map(|(_, pose)| *pose).collect();
-        let off_m = distance_m(&poses, &of_truth);
+        let off_m = distance_m(&path(&outcome), &of_truth);
         assert!(off_m <= most_m, "{name}: {off_m} m: {}", outcome.said);
     }
 }
@@ -174,11 +173,62 @@ fn a_log_whose_stamps_have_six_digits_keeps_its_scans() {
         );
     };
     let name = "carmen/six_digit_stamps.log";
-    let parts = vec![LogBytes::from(bytes(&folder().join(name)))];
-    let outcome = mapped(parts, name, &LogOptions::default());
+    let log = bytes(&folder().join(name));
+    let outcome = mapped_log(&log, name);
     assert_eq!(outcome.path.len(), truth.len());
     assert!(outcome.said.contains("too few digits"), "{}", outcome.said);
-    let poses: Vec<SE2> = outcome.path.iter().map(|(_, pose)| *pose).collect();
-    // Half a turn of beams: 0.2 m is what such a laser gets here with good stamps, too.
-    assert!(distance_m(&poses, &truth) < 0.2);
+    // What is left is the laser's, which sees half a turn: good stamps give the same map.
+    let good = mapped_log(&with_good_stamps(&log), name);
+    assert_eq!(good.said, "");
+    let (poses, good) = (path(&outcome), path(&good));
+    // 1e-6 m: the stamps decide nothing else.
+    assert!(distance_m(&poses, &good) < 1e-6);
+    let off_m = distance_m(&poses, &truth);
+    assert!(off_m < 0.2, "{off_m} m");
+}
+
+#[test]
+fn the_other_files_of_the_field_are_read_or_refused_by_name() {
+    if truth().is_none() {
+        return skip(
+            "graphs, trajectories and a map without returns",
+            "they are not in ../shared/data/field, beside the repository",
+        );
+    }
+    let of = |name: &str| bytes(&folder().join(name));
+    let outcome = mapped_log(&of("map/hall_inf.mcap"), "hall_inf.mcap");
+    assert_eq!(outcome.path.len(), 60, "{}", outcome.said);
+    let graph = GraphFile::read(&of("g2o/edges_only.g2o"), "edges_only.g2o");
+    assert!(graph.is_ok());
+    let space = GraphFile::read(&of("g2o/se3.g2o"), "se3.g2o");
+    let said = space.err().unwrap().to_string();
+    assert!(said.contains("three dimensions"), "{said}");
+    let read = |name: &str| Trajectory::read_tum(&of(name)[..], name);
+    let plain = read("tum/t.tum").unwrap();
+    assert_eq!(read("tum/commas.tum").unwrap().poses(), plain.poses());
+    assert!(read("tum/est.tum").is_ok());
+    // Its nanoseconds overflowed, so that no order is left: neither a log nor a trajectory.
+    let said = read("tum/euroc.csv").unwrap_err().to_string();
+    assert!(said.contains("overflowed 32 bits"), "{said}");
+    let said = mapped_log(&of("tum/euroc.csv"), "euroc.csv").said;
+    assert!(said.starts_with("euroc.csv is a trajectory"), "{said}");
+}
+
+fn mapped_log(bytes: &[u8], name: &str) -> Outcome {
+    mapped(vec![LogBytes::from(bytes)], name, &LogOptions::default())
+}
+
+/// The same log of CARMEN with the stamps that its writer had: two scans a second.
+fn with_good_stamps(log: &[u8]) -> Vec<u8> {
+    let text = std::str::from_utf8(log).unwrap();
+    let lines = text.lines().enumerate().map(|(number, line)| {
+        let mut words: Vec<&str> = line.split(' ').collect();
+        let stamp = (0.5 * number as f64).to_string();
+        let last = words.len() - 1;
+        for at in [last - 2, last] {
+            words[at] = &stamp;
+        }
+        words.join(" ") + "\n"
+    });
+    lines.collect::<String>().into_bytes()
 }

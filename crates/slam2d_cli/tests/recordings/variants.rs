@@ -118,6 +118,32 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         "centimetres",
     ),
     (
+        "odometry that is stamped as it arrives, 0.4 s late",
+        |all| {
+            poses(all, |_, stamp_s, _| *stamp_s += 0.4);
+            for message in all.iter_mut() {
+                if matches!(message.body, Body::Odometry { .. }) {
+                    message.recorded_s += 0.4;
+                }
+            }
+        },
+        NEAR_M,
+        "s late against the scans",
+    ),
+    (
+        "scans that are stamped as they arrive, 0.3 s late",
+        |all| {
+            scans(all, |_, scan| scan.stamp_s += 0.3);
+            for message in all.iter_mut() {
+                if matches!(message.body, Body::Scan(_)) {
+                    message.recorded_s += 0.3;
+                }
+            }
+        },
+        NEAR_M,
+        "s early against the scans",
+    ),
+    (
         "wheels a fifth too large",
         |all| {
             poses(all, |_, _, pose| {

@@ -5,8 +5,6 @@ use ch16_slam2d::localize::StartPose;
 use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::metrics::position_error_m;
 use pr_geom::SE2;
-use robot_io::log::LogOptions;
-use robot_io::log_bytes::LogBytes;
 use robot_io::map_image::map_of;
 use robot_io::report::Report;
 use robot_io::session;
@@ -14,6 +12,7 @@ use robot_io::session;
 use super::{Engine, Work};
 use crate::editing::{Solving, rebuilt, solve};
 use crate::files::{self, MAP_CELL_M, NAMES, REPORT_CELL_M};
+use crate::given::{Choices, Given};
 use crate::grade::Reference;
 use crate::links::{Link, Verdict};
 use crate::update::Update;
@@ -55,10 +54,8 @@ impl<'a> Engine<'a> {
     /// One sentence where there is no map, or the file is no log; what was known of a log before stays.
     pub fn locate(
         &mut self,
-        source: impl Into<LogBytes<'a>>,
-        name: &str,
-        size_bytes: u64,
-        options: &LogOptions,
+        given: Given<'a>,
+        choices: &Choices,
         start: StartPose,
     ) -> Result<(), String> {
         if !self.has_scans {
@@ -66,13 +63,14 @@ impl<'a> Engine<'a> {
         }
         self.may_edit().map_err(|_| {
             format!(
-                "{name} has to wait: the map does not stand yet; ask again once the log is read."
+                "{} has to wait: the map does not stand yet; ask again once the log is read.",
+                given.name
             )
         })?;
         let Some(session) = self.run.session() else {
             return Err("There is no map to be found on.".to_owned());
         };
-        let opened = Whereabouts::open(source, name, size_bytes, options, &session, start)?;
+        let opened = Whereabouts::open(given, choices, &session, start)?;
         self.whereabouts = Some(opened);
         Ok(())
     }
@@ -84,6 +82,11 @@ impl<'a> Engine<'a> {
             return Ok("Stopped looking for the robot.".to_owned());
         }
         match core::mem::replace(&mut self.work, Work::Idle) {
+            Work::Examining(examination) => {
+                self.tell_diagnosis(&examination);
+                self.end_of_log(&examination.reader, None);
+                Ok(String::new())
+            }
             Work::Reading(reader) => {
                 self.end_of_log(reader.as_ref(), None);
                 match self.work {

@@ -1,12 +1,13 @@
 //! What the engine tells of its work: how far it is, the keyframes, the loops, and what could be chosen.
 
-use robot_io::log::LogOffer;
+use robot_io::log::{LogOffer, LogReader};
 
 use super::{Engine, Work, links_of, poses_of};
 use crate::links::Link;
 use crate::update::{Stage, Update};
 
-/// Share of the work that reading is; the last loops are the rest.
+/// Share of the work that is done once the doctor has seen the log, and once it is read; the last loops are the rest.
+const EXAMINED_SHARE: f64 = 0.1;
 const READING_SHARE: f64 = 0.99;
 
 impl Engine<'_> {
@@ -50,9 +51,12 @@ impl Engine<'_> {
         let tried = self.run.loops();
         let (mut share, mut words) = (1.0, String::new());
         match &self.work {
+            Work::Examining(examination) => {
+                share = EXAMINED_SHARE * self.share_read(&examination.reader);
+            }
             Work::Reading(reader) => {
-                let read = reader.notes().bytes as f64 / (self.size_bytes as f64).max(1.0);
-                share = READING_SHARE * read.min(1.0);
+                let rest = READING_SHARE - EXAMINED_SHARE;
+                share = EXAMINED_SHARE + rest * self.share_read(reader.as_ref());
             }
             Work::Finishing => share = READING_SHARE,
             Work::Failed(problem) => words.clone_from(problem),
@@ -73,6 +77,11 @@ impl Engine<'_> {
         }
     }
 
+    fn share_read(&self, reader: &dyn LogReader) -> f64 {
+        let read = reader.notes().bytes as f64 / (self.size_bytes as f64).max(1.0);
+        read.min(1.0)
+    }
+
     fn keyframes_update(&self) -> Update {
         let keyframes = self.keyframes();
         let mut numbers = Vec::with_capacity(6 * keyframes.poses().len());
@@ -88,7 +97,7 @@ impl Engine<'_> {
     fn loops_update(&self) -> Update {
         let under_way;
         let links = match self.work {
-            Work::Reading(_) | Work::Finishing => {
+            Work::Examining(_) | Work::Reading(_) | Work::Finishing => {
                 under_way = links_of(&self.run);
                 &under_way
             }

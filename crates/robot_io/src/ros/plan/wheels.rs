@@ -1,13 +1,12 @@
 //! Which odometry is taken, and how its clock and that of the scans go together.
 
 use super::TRANSFORMS;
-use crate::counted::counted;
 use crate::lines::listed;
 use crate::log::LogOptions;
-use crate::remark::{Part, Remark};
+use crate::remark::{NO_ODOMETRY, Part, Remark};
 use crate::ros::survey::{Survey, Track};
 use crate::stamps::MendedStamps;
-use crate::wheel_poses::WheelPoses;
+use crate::wheel_poses::{WheelPoses, jumps_remark};
 
 /// Clocks that differ by less are one clock with a delay, s.
 const SAME_CLOCK_S: f64 = 1.0;
@@ -187,10 +186,11 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
             said.push(Remark::wrong(
                 Part::Clocks,
                 format!(
-                    "the clocks of scans and odometry differ by {:.0} s, and the recording does not show which is right; set both computers' clocks by NTP and record again, or go by scans alone with --no-odometry",
+                    "the clocks of scans and odometry differ by {:.0} s, and the recording does not show which is right; set both computers' clocks by NTP and record again, or go by scans alone with {NO_ODOMETRY}",
                     apart_s.abs()
                 ),
-            ));
+            )
+            .with_option(NO_ODOMETRY));
         }
     }
     let stamped = clock.stamps_s.iter().zip(&wheels.track.poses);
@@ -198,15 +198,7 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
         .filter(|(stamp_s, _)| stamp_s.is_finite())
         .map(|(stamp_s, pose)| (stamp_s + wheels_by_s, *pose));
     let (poses, jumps) = WheelPoses::of(poses.collect(), clock.period_s);
-    if let Some(first_s) = jumps.first() {
-        said.push(Remark::mended(
-            Part::Odometry,
-            format!(
-                "odometry jumps {}, first at {first_s:.2} s, as a driver that starts again makes it; what follows is moved back, so that the path goes on",
-                counted(jumps.len(), "time")
-            ),
-        ));
-    }
+    said.extend(jumps_remark(&jumps));
     Aligned {
         poses,
         scans_by_s,

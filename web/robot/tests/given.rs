@@ -1,0 +1,125 @@
+//! Files that come together, the options for them, and the doctor's screen of them.
+
+use robot_io::log_bytes::LogBytes;
+use robot_io::run::OdometryUse;
+use serde_json::Value;
+use slam_robot::engine::Engine;
+use slam_robot::given::{Choices, Given, GivenFile};
+use slam_robot::update::Update;
+
+use crate::engine::{files, given, of, open};
+
+fn file<'a>(name: &str, text: &'a str) -> GivenFile<'a> {
+    GivenFile {
+        name: name.to_owned(),
+        size_bytes: text.len() as u64,
+        bytes: LogBytes::from(text.as_bytes()),
+    }
+}
+
+#[test]
+fn the_files_of_a_folder_are_one_recording_in_the_order_of_its_metadata() {
+    let listed = "relative_file_paths:\n  - b_1.db3\n  - b_0.db3\n";
+    let folder = |text| {
+        vec![
+            file("b_0.db3", "0"),
+            file("metadata.yaml", text),
+            file("b_1.db3", "11"),
+        ]
+    };
+    let given = Given::of(folder(listed)).unwrap();
+    assert_eq!(
+        (given.name.as_str(), given.size_bytes),
+        ("b_1.db3 and 1 more", 3)
+    );
+    let given = Given::of(folder("")).unwrap();
+    assert_eq!(given.name, "b_0.db3 and 1 more");
+    let missing = Given::of(folder("relative_file_paths:\n  - b_2.db3\n"))
+        .err()
+        .unwrap();
+    assert!(
+        missing.starts_with("metadata.yaml names b_2.db3"),
+        "{missing}"
+    );
+    // Alone it is for the reader of logs to refuse.
+    assert_eq!(
+        Given::of(vec![file("metadata.yaml", listed)]).unwrap().name,
+        "metadata.yaml"
+    );
+}
+
+#[test]
+fn options_are_those_of_the_command() {
+    let choices = Choices::read("scan-topic /front\nlaser 0,0,180,flipped\nno-odometry").unwrap();
+    assert_eq!(choices.log.scan_topic.as_deref(), Some("/front"));
+    assert_eq!(
+        choices.log.laser.unwrap().option(),
+        "--laser 0,0,180,flipped"
+    );
+    assert_eq!(choices.odometry, OdometryUse::None);
+    assert!(Choices::read("laser 0,0").is_err() && Choices::read("speed 3").is_err());
+    assert_eq!(Choices::read(""), Ok(Choices::default()));
+}
+
+/// All that is told of a log, in its order.
+fn told(mut engine: Engine<'_>) -> Vec<Update> {
+    let mut updates = engine.updates();
+    while engine.step() {
+        updates.extend(engine.updates());
+    }
+    updates.extend(engine.updates());
+    updates
+}
+
+fn diagnosis(updates: &[Update]) -> Value {
+    serde_json::from_str(&of(updates, "diagnosis").text).unwrap()
+}
+
+#[test]
+fn the_doctor_s_screen_comes_before_the_first_keyframe_and_once() {
+    let updates = told(open(&files().0, "ring.log").unwrap());
+    let kinds: Vec<&str> = updates.iter().map(|update| update.kind).collect();
+    let at = |kind: &str| kinds.iter().position(|other| *other == kind).unwrap();
+    assert!(at("diagnosis") < at("keyframes") && at("diagnosis") < at("map"));
+    assert_eq!(kinds.iter().filter(|kind| **kind == "diagnosis").count(), 1);
+    let shares = updates.iter().filter(|update| update.kind == "stage");
+    let shares: Vec<f64> = shares.map(|update| update.numbers[1]).collect();
+    assert!(shares.windows(2).all(|two| two[0] <= two[1]), "{shares:?}");
+    let told = diagnosis(&updates);
+    assert_eq!(
+        (&told["name"], &told["verdict"]),
+        (&"ring.log".into(), &"good".into())
+    );
+}
+
+#[test]
+fn a_laser_that_was_turned_is_told_with_the_options_that_answer_it() {
+    let (log, _) = files();
+    let choices = Choices::read("laser 0,0,180").unwrap();
+    let turned = Engine::open(given(log, "ring.log"), &choices).unwrap();
+    let told_of_turned = diagnosis(&told(turned));
+    assert_eq!(told_of_turned["laser"], "0,0,180");
+    let remarks = told_of_turned["remarks"].as_array().unwrap();
+    let wrong = remarks
+        .iter()
+        .find(|remark| remark["part"] == "mounting")
+        .unwrap();
+    assert_eq!(wrong["verdict"], "wrong");
+    assert_eq!(wrong["options"], serde_json::json!(["--laser 0,0,0"]));
+}
+
+#[test]
+fn scans_go_alone_if_the_reader_leaves_odometry_out() {
+    let (log, _) = files();
+    let choices = Choices::read("no-odometry").unwrap();
+    let alone = told(Engine::open(given(log, "ring.log"), &choices).unwrap());
+    let with = told(open(log, "ring.log").unwrap());
+    let way = |updates: &[Update]| {
+        let last = updates
+            .iter()
+            .rev()
+            .find(|update| update.kind == "keyframes");
+        last.unwrap().numbers.clone()
+    };
+    assert_ne!(way(&alone), way(&with));
+}

@@ -1,0 +1,171 @@
+// The doctor's screen above the picture: what is right, repaired or wrong about a log, what answers it, and
+// where the laser sits. What it shows is the worker's; this only lays it out.
+
+import { create, keepKeys } from '../dom';
+import type { Delivery } from './protocol';
+
+export type Verdict = 'good' | 'mended' | 'wrong';
+
+export interface Remark {
+  part: 'file' | 'sensor' | 'odometry' | 'mounting' | 'clocks';
+  verdict: Verdict;
+  /** A sentence, without a point at its end. */
+  text: string;
+  /** Options of the command that answer it: any of them, not all. */
+  options?: string[];
+}
+
+/** What `slam2d doctor --json` prints, as far as it is shown here. */
+export interface Diagnosis {
+  name: string;
+  verdict: Verdict;
+  /** `x,y,degrees`, and `,flipped`; null if only the lines of the log have it. */
+  laser: string | null;
+  remarks: Remark[];
+}
+
+export interface DoctorHost {
+  /** Maps the log again with an option, or without all of them. */
+  choose(option: string | undefined): void;
+  /** The options that it is mapped with now. */
+  chosen(): string[];
+}
+
+const SIGNS: Record<Verdict, string> = { good: '✓', mended: '!', wrong: '✗' };
+/** The signs in words. */
+const WORDS: Record<Verdict, string> = { good: 'in order', mended: 'repaired or done without', wrong: 'not repaired' };
+
+export class DoctorScreen {
+  readonly element = create('section', { class: 'doctor', hidden: '', 'aria-label': 'What the doctor found' });
+  readonly #host: DoctorHost;
+  readonly #heading = create('summary');
+  readonly #body = create('div');
+  readonly #live = create('p', { class: 'hidden', role: 'status' });
+  #name = '';
+  #diagnosis: Diagnosis | undefined;
+
+  constructor(host: DoctorHost) {
+    this.#host = host;
+    const fold = create('details', { open: '' });
+    fold.append(this.#heading, this.#body);
+    this.element.append(fold, this.#live);
+    keepKeys(this.element);
+  }
+
+  /** What was found last of the log that is open. */
+  get diagnosis(): Diagnosis | undefined {
+    return this.#diagnosis;
+  }
+
+  /** Takes what the worker tells; says whether its size may have changed. */
+  hear({ kind, text }: Delivery): boolean {
+    if (kind === 'opening') this.#wait(text);
+    else if (kind === 'diagnosis') this.#show(JSON.parse(text) as Diagnosis);
+    else if (kind === 'closed' || (kind === 'failed' && this.#diagnosis === undefined)) this.#hide();
+    else return false;
+    return true;
+  }
+
+  #hide(): void {
+    this.element.hidden = true;
+    this.#diagnosis = undefined;
+    this.#name = '';
+    this.#live.textContent = '';
+    this.#body.replaceChildren();
+  }
+
+  /** The same log once more keeps its screen, so that the focus stays; another one comes to an empty one. */
+  #wait(name: string): void {
+    if (name !== this.#name) this.#hide();
+    this.#name = name;
+    this.#diagnosis = undefined;
+    this.#replace(`${name} is looked through.`, []);
+  }
+
+  #show(diagnosis: Diagnosis): void {
+    this.#diagnosis = diagnosis;
+    const said = inShort(diagnosis);
+    this.#replace(said, [this.#list(diagnosis.remarks), this.#choices(), this.#laser(diagnosis)]);
+    this.element.hidden = false;
+    this.#live.textContent = said;
+  }
+
+  #replace(heading: string, body: HTMLElement[]): void {
+    const held = this.#body.contains((this.element.getRootNode() as ShadowRoot).activeElement);
+    // What had the focus goes; the heading stays.
+    if (held) this.#heading.focus();
+    this.#heading.textContent = heading;
+    this.#body.replaceChildren(...body);
+  }
+
+  #list(remarks: readonly Remark[]): HTMLElement {
+    const list = create('ul');
+    for (const { part, verdict, text, options = [] } of remarks) {
+      const item = create('li', { class: verdict });
+      const sign = create('span', { class: 'sign', role: 'img', 'aria-label': WORDS[verdict], title: WORDS[verdict] });
+      sign.textContent = SIGNS[verdict];
+      const name = create('b');
+      name.textContent = part;
+      const sentence = create('span');
+      sentence.append(name, ` ${text}.`);
+      for (const option of options) sentence.append(' ', this.#button(`Map with ${option}`, option));
+      item.append(sign, sentence);
+      list.append(item);
+    }
+    return list;
+  }
+
+  #button(label: string, option: string | undefined): HTMLElement {
+    const button = create('button', { type: 'button' });
+    button.textContent = label;
+    button.addEventListener('click', () => this.#host.choose(option));
+    return button;
+  }
+
+  /** What it is mapped with, and back. */
+  #choices(): HTMLElement {
+    const line = create('p');
+    const chosen = this.#host.chosen();
+    if (chosen.length > 0) line.append(`Mapped with ${chosen.join(' ')}. `, this.#button('Map without options', undefined));
+    return line;
+  }
+
+  /** Where the laser sits, to be set by hand. */
+  #laser({ laser }: Diagnosis): HTMLElement {
+    const form = create('form');
+    const [x = '0', y = '0', heading = '0', flipped] = (laser ?? '').split(',').filter((word) => word !== '');
+    const field = (label: string, value: string): HTMLInputElement => {
+      const input = create('input', { type: 'number', step: 'any', required: '', value });
+      const name = create('label');
+      name.append(`${label} `, input);
+      form.append(name);
+      return input;
+    };
+    const legend = create('b');
+    legend.textContent = 'The laser sits';
+    form.append(legend);
+    const fields = [field('ahead, m', x), field('to the left, m', y), field('turned left, °', heading)];
+    const turnedOver = create('input', { type: 'checkbox' });
+    turnedOver.checked = flipped !== undefined;
+    const name = create('label');
+    name.append(turnedOver, ' upside down');
+    const button = create('button', { type: 'submit' });
+    button.textContent = 'Map with it there';
+    form.append(name, button);
+    form.addEventListener('submit', (event) => {
+      event.preventDefault();
+      const words = fields.map((input) => String(input.valueAsNumber));
+      if (turnedOver.checked) words.push('flipped');
+      this.#host.choose(`--laser ${words.join(',')}`);
+    });
+    return form;
+  }
+}
+
+/** The heading: the sign, the name, and how many findings there are of each kind. */
+function inShort({ name, verdict, remarks }: Diagnosis): string {
+  const count = (of: Verdict): number => remarks.filter((remark) => remark.verdict === of).length;
+  const kinds = (['wrong', 'mended'] as const).filter((of) => count(of) > 0);
+  const found = kinds.map((of) => `${count(of)} ${WORDS[of]}`);
+  return `${SIGNS[verdict]} ${name}: ${found.length === 0 ? 'all in order' : found.join(', ')}`;
+}
