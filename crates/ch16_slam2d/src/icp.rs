@@ -15,6 +15,7 @@ mod align;
 mod config;
 mod information;
 mod pairing;
+mod rejection;
 mod stepper;
 
 pub use align::{Alignment, closed_form, point_to_plane_step, svd_align};
@@ -24,4 +25,5 @@ pub use information::{
     move_information, regularize,
 };
 pub use pairing::{IcpWorkspace, Pair, correspondences};
+pub use rejection::{MaxDistance, PairRejection, Trimmed};
 pub use stepper::{Icp, IcpResult, IcpStep, IcpSummary, IcpTrace, StopReason, icp};

@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector2};
 use pr_geom::{SE2, math};
 
 use super::align::{PlanePair, PointPair, point_to_plane, point_to_point};
-use super::{IcpConfig, IcpTrace, IcpVariant};
+use super::{IcpConfig, IcpTrace, IcpVariant, PairRejection, Trimmed};
 use crate::cloud::{Memory, NearestMap, PointCloud};
 
 /// A moved cloud point and the map point nearest to it.
@@ -188,22 +188,22 @@ impl IcpWorkspace {
             self.pairs.push(pair);
         }
         self.truncated_cost_m2 = cost / cloud.len().max(1) as f64;
-        self.drop_longest(config.trim);
+        if config.trim > 0.0 {
+            self.reject(&Trimmed { share: config.trim });
+        }
     }
 
-    /// Drops the longest `share` of the pairs; those as long as the last that stays, stay with it.
-    fn drop_longest(&mut self, share: f64) {
-        if share <= 0.0 || self.pairs.is_empty() {
+    /// Drops the pairs that do not count by a rule.
+    pub(super) fn reject(&mut self, rule: &dyn PairRejection) {
+        if self.pairs.is_empty() {
             return;
         }
-        let kept = ((1.0 - share) * self.pairs.len() as f64).ceil().max(1.0) as usize;
         self.distances.clear();
         self.distances
             .extend(self.pairs.iter().map(|pair| pair.distance_squared_m2));
-        let (_, &mut limit, _) = self
-            .distances
-            .select_nth_unstable_by(kept - 1, f64::total_cmp);
-        self.pairs.retain(|pair| pair.distance_squared_m2 <= limit);
+        let limit_m2 = rule.largest_m2(&mut self.distances);
+        self.pairs
+            .retain(|pair| pair.distance_squared_m2 <= limit_m2);
         self.sum_of_squares_m2 = self.pairs.iter().map(RawPair::square_m2).sum();
     }
 

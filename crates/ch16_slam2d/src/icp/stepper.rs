@@ -2,7 +2,7 @@
 
 use pr_geom::SE2;
 
-use super::{IcpConfig, IcpWorkspace, Pair};
+use super::{IcpConfig, IcpWorkspace, Pair, PairRejection};
 use crate::cloud::{NearestMap, PointCloud};
 
 /// The state of a registration after one association.
@@ -132,6 +132,7 @@ pub struct Icp<'a, M> {
     map: &'a M,
     config: IcpConfig,
     workspace: &'a mut IcpWorkspace,
+    rejection: Option<&'a dyn PairRejection>,
     current: IcpTrace,
     stop: Option<StopReason>,
 }
@@ -159,11 +160,21 @@ impl<'a, M: NearestMap> Icp<'a, M> {
             map,
             config: *config,
             workspace,
+            rejection: None,
             current,
             stop: None,
         };
         registration.associate_at(init);
         registration
+    }
+
+    /// The same registration, in which only those pairs count that `rule` lets pass, from the guess on.
+    #[must_use]
+    pub fn with_rejection(mut self, rule: &'a dyn PairRejection) -> Self {
+        self.rejection = Some(rule);
+        self.workspace.trace.clear();
+        self.associate_at(self.current.pose);
+        self
     }
 
     /// Makes one increment, unless the registration has ended.
@@ -227,6 +238,9 @@ impl<'a, M: NearestMap> Icp<'a, M> {
     fn associate_at(&mut self, pose: SE2) {
         let workspace = &mut *self.workspace;
         workspace.associate(self.cloud, self.map, &pose, &self.config);
+        if let Some(rule) = self.rejection {
+            workspace.reject(rule);
+        }
         self.current = IcpTrace {
             pose,
             pairs: workspace.pair_count(),

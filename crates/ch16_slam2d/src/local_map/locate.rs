@@ -18,7 +18,7 @@ const STARTS: ([f64; 5], [f64; 9]) = (
 /// A prior that costs more is off by more than three standard deviations.
 const UNLIKELY: f64 = 6.0;
 /// Share of a scan in space that was looked through, above which it was taken elsewhere.
-const REFUTED: f64 = 0.1;
+const REFUTED: f64 = 0.05;
 
 impl LocalMap {
     /// The pose of lowest cost among those that registrations end at: from the prediction, from `others`, and
@@ -62,20 +62,18 @@ impl LocalMap {
                 }
             }
         }
-        // A scan of what was never seen fits anywhere: only one that contradicts the map was taken elsewhere.
-        let is_refuted = |best: &MapRegistration| {
-            best.fit.score < config.good_score
-                && best.fit.contradicting as f64 >= REFUTED * scan.len() as f64
-        };
+        let is_poor = |best: &MapRegistration| best.fit.score < config.good_score;
         for start in others {
-            if is_refuted(&best) {
+            if is_poor(&best) {
                 best = cheaper(
                     best,
                     self.register(scan, *start, &stages, Some(prior), config),
                 );
             }
         }
-        if is_refuted(&best) {
+        // A scan of what was never seen fits anywhere: only one that contradicts the map was taken elsewhere.
+        let is_refuted = best.fit.contradicting as f64 >= REFUTED * scan.len() as f64;
+        if is_poor(&best) && is_refuted {
             let window = SearchWindow::around(prior.pose, config.search_m, config.search_rad);
             if let Some(found) = self.search(scan, &window, 0.0) {
                 best = cheaper(

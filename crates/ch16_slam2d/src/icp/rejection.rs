@@ -1,0 +1,81 @@
+//! Which pairs count: outlier rejection before each increment.
+
+/// A rule that rejects pairs by their distance.
+pub trait PairRejection {
+    /// The largest squared distance of a pair that counts, m²; `squared_m2` holds those of all pairs, in any order
+    /// and at least one, and may be reordered.
+    fn largest_m2(&self, squared_m2: &mut [f64]) -> f64;
+}
+
+/// Pairs up to a distance count.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaxDistance {
+    /// The distance, m.
+    pub tau_m: f64,
+}
+
+impl PairRejection for MaxDistance {
+    fn largest_m2(&self, _: &mut [f64]) -> f64 {
+        self.tau_m * self.tau_m
+    }
+}
+
+/// All but the longest pairs count (Chetverikov et al. 2002); those as long as the last that stays, stay with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trimmed {
+    /// Share of the pairs to drop, 0 to 1.
+    pub share: f64,
+}
+
+impl PairRejection for Trimmed {
+    fn largest_m2(&self, squared_m2: &mut [f64]) -> f64 {
+        let kept = ((1.0 - self.share) * squared_m2.len() as f64).ceil();
+        let last = (kept as usize).clamp(1, squared_m2.len()) - 1;
+        *squared_m2.select_nth_unstable_by(last, f64::total_cmp).1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pr_geom::{Point2, SE2};
+
+    use super::*;
+    use crate::cloud::{PointCloud, VoxelMap};
+    use crate::icp::{Icp, IcpConfig, IcpWorkspace};
+
+    /// Three times the median distance: a rule of the reader's own.
+    struct TimesMedian(f64);
+
+    impl PairRejection for TimesMedian {
+        fn largest_m2(&self, squared_m2: &mut [f64]) -> f64 {
+            let middle = squared_m2.len() / 2;
+            self.0 * self.0 * *squared_m2.select_nth_unstable_by(middle, f64::total_cmp).1
+        }
+    }
+
+    #[test]
+    fn a_custom_rule_keeps_a_box_that_moved_from_pulling_the_scan() {
+        let wall = |k: i32| Point2::new(0.05 * f64::from(k), 0.0);
+        let side = |k: i32| Point2::new(0.0, 0.05 * f64::from(k));
+        let room: PointCloud = (0..80).flat_map(|k| [wall(k), side(k)]).collect();
+        let crate_at = |x: f64| (0..20).map(move |k| Point2::new(x, 1.0 + 0.05 * f64::from(k)));
+        let before: PointCloud = room.iter().chain(crate_at(2.0)).collect();
+        let after: PointCloud = room.iter().chain(crate_at(2.3)).collect();
+        let map = VoxelMap::from_cloud(&before, 0.25, 8);
+        let config = IcpConfig::default();
+        let off = |rule: Option<&dyn PairRejection>| {
+            let mut workspace = IcpWorkspace::new();
+            let mut icp = Icp::new(&after, &map, SE2::identity(), &config, &mut workspace);
+            if let Some(rule) = rule {
+                icp = icp.with_rejection(rule);
+            }
+            icp.run().pose.step_size()
+        };
+        let (pulled, held) = (off(None), off(Some(&TimesMedian(3.0))));
+        assert!(pulled > 0.01, "{pulled}");
+        assert!(held < 1e-6, "{held}");
+        assert!(off(Some(&Trimmed { share: 0.2 })) < 1e-6);
+        // The box's points at 0.3 m, and walls within a tenth of a metre of each other.
+        assert!(off(Some(&MaxDistance { tau_m: 0.1 })) < 0.5 * pulled);
+    }
+}
