@@ -13,7 +13,7 @@ const EVERY_KEYFRAMES: usize = 3;
 #[derive(Clone)]
 enum Finder {
     /// The chapter's way: what is near in the graph, one keyframe at a time.
-    Nearby(NearbyLoops),
+    Nearby(Box<NearbyLoops>),
     /// For robots: keyframes together, on submaps.
     Bundle(Box<BundleLoops>),
 }
@@ -40,7 +40,7 @@ impl LoopCloser {
         Self {
             finder: match &config.robot {
                 Some(robot) => Finder::Bundle(Box::new(BundleLoops::new(robot))),
-                None => Finder::Nearby(NearbyLoops::new(parts.detector, parts.loops)),
+                None => Finder::Nearby(Box::new(NearbyLoops::new(parts.detector, parts.loops))),
             },
             last_attempt_node: None,
         }
