@@ -15,6 +15,7 @@ mod write_your_own_matcher;
 
 use ch16_slam2d::matching::IcpMatcher;
 use ch16_slam2d::prelude::*;
+use ch16_slam2d::scan::Frame;
 use ch16_slam2d::slam::SlamConfig;
 
 #[test]
@@ -110,7 +111,14 @@ fn a_matcher_that_looks_around_finds_the_heading_that_icp_misses() {
     // It drives the estimator, too.
     let mut slam = write_your_own_matcher::slam(config, many);
     for step in 0..10 {
-        slam.step(&run_slam_on_your_frames::frame(step)).unwrap();
+        let log = run_slam_on_your_frames::frame(step);
+        let before = step.checked_sub(1).map(run_slam_on_your_frames::wheels);
+        let frame = Frame {
+            stamp_s: log.stamp_s,
+            odometry: before.zip(log.odometry).map(|(from, to)| from.between(&to)),
+            scan: log.scan,
+        };
+        slam.step(&frame).unwrap();
     }
     let expected = run_slam_on_your_frames::truth(0).between(&run_slam_on_your_frames::truth(9));
     let found = slam.front_end().estimate();

@@ -234,7 +234,7 @@ fn with_section(bytes: &[u8], name: &[u8; 4], change: impl Fn(&[u8]) -> Vec<u8>)
 fn a_session_with_other_parameters_is_refused_by_their_name() {
     let bytes = saved(&run(120, 0..20));
     for (from, to, said) in [
-        ("\"reach_m\"", "\"reach_k\"", "unknown field `reach_k`"),
+        ("\"reach_m\"", "\"reach_k\"", "missing field `reach_m`"),
         ("\"fit_m\":0.15", "\"fit_m\":-0.1", "fit_m cannot be -0.1"),
     ] {
         let other = with_section(&bytes, b"CONF", |content| {
