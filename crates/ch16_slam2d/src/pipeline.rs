@@ -111,6 +111,14 @@ impl Pipeline {
         }
     }
 
+    /// The same pipeline with its log ended: its estimator was `driven` before its keyframes were linked once
+    /// more.
+    #[must_use]
+    pub fn ended(mut self, driven: SlamSnapshot) -> Self {
+        self.driven = Some(driven);
+        self
+    }
+
     /// Takes the next scan.
     ///
     /// # Errors

@@ -4,7 +4,7 @@ use ch16_slam2d::loops::LoopVerification;
 pub use ch16_slam2d::pipeline::OdometryUse;
 use ch16_slam2d::pipeline::{Pipeline, ScanPose};
 use ch16_slam2d::scan::{FrameError, LaserScan};
-use ch16_slam2d::slam::{LoopAttempt, RobotConfig, Slam, SlamReport, SlamSnapshot, SnapshotError};
+use ch16_slam2d::slam::{LoopAttempt, RobotConfig, Slam, SlamReport, SnapshotError};
 use pr_geom::SE2;
 
 use crate::evidence::{PoorFit, TriedLoop};
@@ -40,8 +40,6 @@ pub struct LogRun {
     refused: Option<FrameError>,
     /// Where the beams of the log point that a session goes on with, where it is not as in the session.
     other_sensor: Option<LaserScan>,
-    /// The estimator of a session that was opened to be changed by hand, as it was driven.
-    reopened: Option<SlamSnapshot>,
 }
 
 /// What is said of a log with scans that are not after the one before them; nothing where it has none.
@@ -78,7 +76,6 @@ impl LogRun {
             still: Some(0),
             refused: None,
             other_sensor: None,
-            reopened: None,
         }
     }
 
@@ -107,10 +104,9 @@ impl LogRun {
     pub fn reopen(session: &Session) -> Result<Self, SnapshotError> {
         let mut slam = Slam::restore(&session.driven)?;
         *slam.graph_mut() = session.graph();
-        Ok(Self {
-            reopened: Some(session.driven.clone()),
-            ..Self::holding(session, slam, OdometryUse::Log)
-        })
+        let mut run = Self::holding(session, slam, OdometryUse::Log);
+        run.pipeline = run.pipeline.ended(session.driven.clone());
+        Ok(run)
     }
 
     /// A run with what a session has seen.
@@ -141,7 +137,7 @@ impl LogRun {
             for (setting, value) in &self.settings {
                 robot = setting.set(&robot, *value).unwrap_or(robot);
             }
-            self.pipeline = self.pipeline.clone().with_config(robot);
+            self.pipeline = std::mem::take(&mut self.pipeline).with_config(robot);
         }
         let motion = self.pipeline.motion(&log);
         let report = match self.pipeline.step(&log) {
@@ -259,11 +255,10 @@ impl LogRun {
     /// kept beside it.
     #[must_use]
     pub fn session(&self) -> Option<Session> {
-        let driven = self.reopened.clone().or_else(|| self.pipeline.driven())?;
-        let is_linked = self.reopened.is_some() || self.pipeline.is_finished();
-        let graph = self.slam().filter(|_| is_linked).map(Slam::graph);
+        let slam = self.slam().filter(|_| self.pipeline.is_finished());
+        let graph = slam.map(Slam::graph);
         Some(Session {
-            driven,
+            driven: self.pipeline.driven()?,
             mapped: graph.map(MappedGraph::of),
             places: places_kept(self.pipeline.scans()),
             sensor: self.sensor.clone(),

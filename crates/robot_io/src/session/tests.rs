@@ -426,3 +426,13 @@ fn a_robot_that_waits_does_not_fill_the_file_with_places() {
     assert_eq!((kept[0], kept[7].stamp_s), (places[0], 87.0));
     assert_eq!(places_kept(&kept), kept);
 }
+
+#[test]
+fn a_session_that_is_reopened_is_saved_as_it_was_even_if_it_is_ended_again() {
+    let session = run(120, 0..60).session().unwrap();
+    let mut reopened = LogRun::reopen(&session).unwrap();
+    let before = reopened.session().unwrap();
+    reopened.finish();
+    assert_eq!(reopened.session().unwrap(), before);
+    assert_eq!(before.driven, session.driven);
+}
