@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use robot_io::laser_mount::LaserMount;
-use robot_io::log::{LogError, LogOptions, LogReader};
+use robot_io::log::{LogError, LogFrame, LogOptions, LogReader};
 use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
 use robot_io::motion::ComparedReader;
@@ -128,6 +128,20 @@ pub fn open_log(
     let name = path.display().to_string();
     let reader = LogFormat::open_parts(parts, &name, &topics.options())?;
     Ok((reader, progress))
+}
+
+/// All frames of a log.
+///
+/// # Errors
+/// Where it cannot be read, or is no log.
+pub fn read_frames(path: &Path, topics: &TopicArgs) -> Result<Vec<LogFrame>, FileError> {
+    let (mut reader, progress) = open_log(path, topics)?;
+    let mut frames = Vec::new();
+    while let Some(frame) = reader.next_frame()? {
+        frames.push(frame);
+    }
+    progress.end();
+    Ok(frames)
 }
 
 /// Opens a log as [`open_log`] does, and compares its first scans with its odometry: what surely is wrong about

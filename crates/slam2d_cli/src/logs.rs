@@ -17,7 +17,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use crate::grade::GradeError;
-use crate::log_file::{FileError, TopicArgs, open, open_log};
+use crate::log_file::{FileError, TopicArgs, open, read_frames};
 use crate::output::{print_json, say};
 
 /// Around the table on a page.
@@ -140,16 +140,10 @@ fn read(folder: &Path) -> Result<Vec<Bench>, LogsError> {
         let Some(reference) = reference_of(path)? else {
             continue;
         };
-        let (mut reader, progress) = open_log(path, &TopicArgs::default())?;
-        let mut frames = Vec::new();
-        while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
-            frames.push(frame);
-        }
-        progress.end();
         let name = path.file_stem().unwrap_or(path.as_os_str());
         benches.push(Bench {
             name: name.to_string_lossy().into_owned(),
-            frames,
+            frames: read_frames(path, &TopicArgs::default())?,
             reference,
         });
     }

@@ -15,7 +15,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use crate::grade::GradeError;
-use crate::log_file::{FileError, TopicArgs, open, open_log};
+use crate::log_file::{FileError, TopicArgs, open, read_frames};
 use crate::output::{print_json, say};
 
 /// Around the table on a page.
@@ -183,12 +183,7 @@ pub fn run(args: &ParametersArgs) -> Result<(), ParametersFailure> {
 fn read(args: &ParametersArgs) -> Result<Bench, ParametersFailure> {
     let name = args.relations.display().to_string();
     let relations = read_relations(open(&args.relations)?, &name).map_err(GradeError::from)?;
-    let (mut reader, progress) = open_log(&args.log, &args.topics)?;
-    let mut frames = Vec::new();
-    while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
-        frames.push(frame);
-    }
-    progress.end();
+    let frames = read_frames(&args.log, &args.topics)?;
     if frames.is_empty() {
         return Err(ParametersFailure::Empty(args.log.display().to_string()));
     }

@@ -9,7 +9,7 @@ use super::{LoopCandidate, LoopConfig};
 use crate::chapter::{InformationFrame, chapter_information};
 use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
-use crate::matching::{MatchRequest, MatchSummary, Matcher, match_information};
+use crate::matching::{MatchRequest, MatchSummary, Matcher};
 use crate::slam::Keyframe;
 
 /// Why a loop was turned away, with what was measured.
@@ -207,14 +207,14 @@ pub fn verify_loop(
         &view.keyframes[node].scan,
         &MatchRequest::new(initial, tau_m, config.max_iterations).with_min_score(config.min_score),
     );
-    let found = answer.summary;
-    workspace.pairs = answer.pairs;
     let information = match frame {
         InformationFrame::Chapter => {
-            chapter_information(&workspace.pairs, center.theta(), &config.trust)
+            chapter_information(&answer.pairs, center.theta(), &config.trust)
         }
-        InformationFrame::Exact => match_information(&workspace.pairs, &found.pose, &config.trust),
+        InformationFrame::Exact => answer.information(&config.trust),
     };
+    let found = answer.summary;
+    workspace.pairs = answer.pairs;
     let innovation = belief.between(&found.pose).log();
     let assumed = gate_information.unwrap_or_default();
     let gate = chi_squared_gate(&innovation, &assumed, config.gate_chi2);

@@ -133,8 +133,12 @@ impl Mapper {
         new: usize,
         robot: &RobotConfig,
     ) -> Result<LoopVerification, OptimizeError> {
-        let information = self.expected_information(old, new)?;
-        let covariance = information.try_inverse().unwrap_or_default();
+        // What the graph holds of the relative pose, and a floor.
+        let floor = Vector3::new(SHIFT.0, SHIFT.0, SHIFT.1).map(|sigma| sigma * sigma);
+        let covariance = self.graph.relative_covariance(old, new)? + Matrix3::from_diagonal(&floor);
+        let information = covariance
+            .try_inverse()
+            .ok_or(OptimizeError::NotPositiveDefinite { node: new })?;
         let sigma = |variance: f64| math::sqrt(math::max(variance, 0.0));
         let (sigmas, most_m, most_rad) = ASKED_WINDOW;
         let half_m = sigmas * sigma(math::max(covariance.m11, covariance.m22));
@@ -153,19 +157,6 @@ impl Mapper {
         let profile = |near: usize| Arc::new(RangeProfile::new(&self.keyframes[near].scan));
         let mut map = LocalMap::default();
         Ok(self.link(new, candidate, gate, profile, &mut map, robot))
-    }
-
-    /// Information of the relative pose that the graph holds, less a floor.
-    fn expected_information(
-        &mut self,
-        old: usize,
-        new: usize,
-    ) -> Result<Matrix3<f64>, OptimizeError> {
-        let floor = Vector3::new(SHIFT.0, SHIFT.0, SHIFT.1).map(|sigma| sigma * sigma);
-        let covariance = self.graph.relative_covariance(old, new)?;
-        (covariance + Matrix3::from_diagonal(&floor))
-            .try_inverse()
-            .ok_or(OptimizeError::NotPositiveDefinite { node: new })
     }
 
     /// Registers keyframe `node` on the visit around an older one, from where the graph has it.
