@@ -57,7 +57,8 @@ fn compare(bytes: &[u8]) {
     screen.lines().skip(1).for_each(assert_sentence);
 }
 
-fn read(bytes: &[u8], options: &LogOptions) -> Option<(Vec<LogFrame>, LogNotes)> {
+/// The frames and notes of a log, unless it is refused in a sentence.
+pub fn read(bytes: &[u8], options: &LogOptions) -> Option<(Vec<LogFrame>, LogNotes)> {
     let told = |refusal: robot_io::log::LogError| assert_refusal(&refusal.to_string());
     let mut reader = LogFormat::open(bytes, NAME, options).map_err(told).ok()?;
     let mut frames = Vec::new();
