@@ -1,5 +1,5 @@
-//! The door `clouds` of `tests/doors`.
+//! The target `clouds` of `tests/fuzz_targets`.
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_doors::clouds::door(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_fuzz_targets::clouds::fuzz(data));

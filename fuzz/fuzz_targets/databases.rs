@@ -1,5 +1,5 @@
-//! The door `databases` of `tests/doors`.
+//! The target `databases` of `tests/fuzz_targets`.
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_doors::databases::door(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_fuzz_targets::databases::fuzz(data));

@@ -1,5 +1,5 @@
-//! The door `files` of `tests/doors`.
+//! The target `files` of `tests/fuzz_targets`.
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_doors::files::door(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_fuzz_targets::files::fuzz(data));

@@ -1,5 +1,5 @@
-//! The door `g2o` of `tests/doors`.
+//! The target `g2o` of `tests/fuzz_targets`.
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_doors::g2o::door(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_fuzz_targets::g2o::fuzz(data));

@@ -1,5 +1,5 @@
-//! The door `graphs` of `tests/doors`.
+//! The target `graphs` of `tests/fuzz_targets`.
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_doors::graphs::door(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_fuzz_targets::graphs::fuzz(data));

@@ -1,5 +1,5 @@
-//! The door `hands` of `tests/doors`.
+//! The target `hands` of `tests/fuzz_targets`.
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_doors::hands::door(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_fuzz_targets::hands::fuzz(data));

@@ -1,5 +1,5 @@
-//! The door `links` of `tests/doors`.
+//! The target `links` of `tests/fuzz_targets`.
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_doors::links::door(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_fuzz_targets::links::fuzz(data));

@@ -1,5 +1,5 @@
-//! The door `logs` of `tests/doors`.
+//! The target `logs` of `tests/fuzz_targets`.
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_doors::logs::door(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_fuzz_targets::logs::fuzz(data));

@@ -1,5 +1,5 @@
-//! The door `messages` of `tests/doors`.
+//! The target `messages` of `tests/fuzz_targets`.
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_doors::messages::door(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_fuzz_targets::messages::fuzz(data));

@@ -1,5 +1,5 @@
-//! The door `registration` of `tests/doors`.
+//! The target `registration` of `tests/fuzz_targets`.
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_doors::registration::door(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_fuzz_targets::registration::fuzz(data));

@@ -1,5 +1,5 @@
-//! The door `sessions` of `tests/doors`.
+//! The target `sessions` of `tests/fuzz_targets`.
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_doors::sessions::door(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| slam2d_fuzz_targets::sessions::fuzz(data));

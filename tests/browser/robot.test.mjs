@@ -286,8 +286,8 @@ describe('a log of one’s own', () => {
       await tab.mouse.up();
       await tab.waitForFunction(([before, at]) => {
         const widget = document.querySelector('slam-widget');
-        return widget.outcome.facts.way_m !== before && widget.get('keyframe') === at;
-      }, [(await outcome(tab)).facts.way_m - 1e9, middle]);
+        return widget.outcome.facts.path_length_m !== before && widget.get('keyframe') === at;
+      }, [(await outcome(tab)).facts.path_length_m - 1e9, middle]);
       await tab.waitForFunction(async ([old, at]) => {
         const tables = await document.querySelector('slam-widget').tables();
         const rows = tables.find(({ id }) => id === 'keyframes').csv.split('\r\n');
@@ -355,7 +355,7 @@ describe('a log of one’s own', () => {
         await (await chosen).setFiles(join(folder, 'session.slam2d'));
         await says(tab, /(mapped|contradict): session\.slam2d/);
         const after = (await outcome(tab)).facts;
-        for (const id of ['scans', 'keyframes', 'loops', 'way_m']) assert.equal(after[id], before[id], id);
+        for (const id of ['scans', 'keyframes', 'loops', 'path_length_m']) assert.equal(after[id], before[id], id);
         await press(tab, 'turn');
         await says(tab, /is out of the graph/);
         const [, changed] = await saved(tab, 'session');
@@ -374,7 +374,7 @@ describe('a log of one’s own', () => {
         for (const [bytes, said] of [
           [session.subarray(0, session.length / 2), /no map: bad\.slam2d ends at byte \d+ of \d+/],
           [spoilt, /no map: bad\.slam2d is damaged/],
-          [newer, /no map: bad\.slam2d is a session of version 9, and this program reads version 2/],
+          [newer, /no map: bad\.slam2d is a session of version 9, and this program reads version 3/],
           [Buffer.from('hello'), /no map: bad\.slam2d is no session/],
           [Buffer.alloc(0), /no map: bad\.slam2d is empty/],
         ]) {
@@ -396,11 +396,11 @@ describe('a log of one’s own', () => {
       await says(tab, /^(mapped|loops contradict): .*The robot of ring-another-day\.log is found at its scan \d+: of \d+ scans/);
       const { facts } = await outcome(tab);
       const scans = OTHER_DAY.trim().split('\n').length;
-      assert.equal(facts.where_believed + facts.where_doubtful + facts.where_lost, scans);
-      assert.ok(facts.where_believed > scans / 2, JSON.stringify(facts));
+      assert.equal(facts.where_localized + facts.where_doubtful + facts.where_lost, scans);
+      assert.ok(facts.where_localized > scans / 2, JSON.stringify(facts));
       const rows = await table(tab, 'where');
       assert.equal(rows.length, scans + 1);
-      assert.equal(rows.filter((row) => row[2] === 'found' || row[2] === 'followed').length, facts.where_believed);
+      assert.equal(rows.filter((row) => row[2] === 'found' || row[2] === 'followed').length, facts.where_localized);
 
       // Every scan can be asked for, and the next change of the verdict.
       const first = rows.slice(1).find((row) => row[2] === 'found');
@@ -413,7 +413,7 @@ describe('a log of one’s own', () => {
 
       const [name, tum] = await saved(tab, 'where');
       assert.equal(name, 'where.tum');
-      assert.equal(tum.toString().trim().split('\n').length, facts.where_believed);
+      assert.equal(tum.toString().trim().split('\n').length, facts.where_localized);
 
       // What the reader moves moves the places, and a worker that breaks finds them again.
       await press(tab, 'turn');
@@ -460,13 +460,13 @@ describe('a log of one’s own', () => {
       await says(tab, /(mapped|contradict): plain\.mcap: 24 scans/);
       const taken = async () => (await table(tab, 'offers')).find(([label]) => label === 'body frame')[1];
       const before = await taken();
-      const way = (await outcome(tab)).facts.way_m;
+      const way = (await outcome(tab)).facts.path_length_m;
       await tab.evaluate(() => Object.assign(document.querySelector('slam-widget'), { option: 'body-frame' }));
       await press(tab, 'other');
       // Another frame makes another map: the keyframes stand elsewhere.
       await tab.waitForFunction((way) => {
         const { verdict, facts } = document.querySelector('slam-widget').outcome;
-        return /mapped|contradict/.test(verdict) && facts.way_m !== way;
+        return /mapped|contradict/.test(verdict) && facts.path_length_m !== way;
       }, way);
       assert.notEqual(await taken(), before);
       assert.match((await outcome(tab)).sentence, /plain\.mcap: 24 scans/);

@@ -6,7 +6,7 @@ import * as h from './harness.mjs';
 
 const visit = h.visitor();
 const reading = (test, options = {}) => visit('', test, { path: '/index.html', options });
-const NAMES = ['nearest', 'slide', 'bells', 'ellipse', 'gate', 'push', 'ancestor'];
+const NAMES = ['nearest', 'slide', 'bells', 'ellipse', 'gate', 'push', 'incremental'];
 const figure = (tab, name) => tab.locator(`[data-sketch="${name}"]`);
 /** Some stand in a fold. */
 const unfold = (tab, name) => tab.evaluate(

@@ -69,7 +69,7 @@ fn check_all_runs<M: NearestMap>(map: impl Fn(&PointCloud) -> M) {
         assert_close(&format!("{name}: y"), found.pose.y(), run.pose[1], 1e-9);
         let turn = SE2::new(0.0, 0.0, found.pose.theta() - run.pose[2]).theta();
         assert_close(&format!("{name}: θ"), turn, 0.0, 1e-9);
-        assert_close(&format!("{name}: rmse"), found.rmse, run.rmse, 1e-9);
+        assert_close(&format!("{name}: rmse"), found.rmse_m, run.rmse, 1e-9);
         assert_eq!(found.trace.len() - 1, run.iterations, "{name}");
         assert_eq!(found.stop.converged(), run.converged, "{name}");
         assert_eq!(found.inliers, run.inliers, "{name}");

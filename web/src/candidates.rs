@@ -45,7 +45,7 @@ fn candidates() -> &'static [Candidate] {
                 missing[kind] > 0 && missing[kind] >= missing[1 - kind]
             });
             if let Some(attempt) = wanted {
-                let candidate = Candidate::of(&record, attempt);
+                let candidate = Candidate::new(&record, attempt);
                 missing[usize::from(!candidate.is_right)] -= 1;
                 found.push(candidate);
             }
@@ -55,7 +55,7 @@ fn candidates() -> &'static [Candidate] {
 }
 
 impl Candidate {
-    fn of(record: &LapRecord, attempt: &LoopAttempt) -> Self {
+    fn new(record: &LapRecord, attempt: &LoopAttempt) -> Self {
         let loop_ = &attempt.verification;
         let lap = &record.lap;
         let poses = lap.poses(attempt.tick - 1);

@@ -307,8 +307,8 @@ impl Widget {
 
     /// Finishes what the picture waits for, so that outcome, words and tables are those of the values;
     /// says whether there was anything.
-    pub fn settle(&self) -> bool {
-        self.shared.shell.borrow_mut().settle()
+    pub fn finish_work(&self) -> bool {
+        self.shared.shell.borrow_mut().finish_work()
     }
 
     /// Does all the work that fills in piece by piece: for a picture of the finished state.
@@ -319,7 +319,7 @@ impl Widget {
 
     /// The picture as SVG, for print and for pages where the widget cannot run.
     pub fn picture(&self, width_px: f32, theme: &str) -> String {
-        self.settle();
+        self.finish_work();
         self.shared
             .shell
             .borrow()

@@ -16,7 +16,7 @@ impl Outcomes {
     /// The numbers of one lap.
     pub fn of(&mut self, seed: u32, noise_factor: f64) -> [f64; NUMBERS] {
         let config = LapConfig::with_seed_and_noise(seed, noise_factor);
-        let outcome = LapOutcome::of(&self.runner.run(&config));
+        let outcome = LapOutcome::from_record(&self.runner.run(&config));
         let end_error = |column| outcome.entry(column, Row::EndError).unwrap_or(f64::NAN);
         let columns = [Column::Odometry, Column::FrontEnd, Column::WithLoops];
         let [wheels, front_end, with_loops] = columns.map(end_error);

@@ -3,10 +3,10 @@
 //! They show one idea where no widget stands. Each is computed by the core for every place of its slider,
 //! and drawn by the kit as the widgets are.
 
-mod ancestor;
 mod bells;
 mod ellipse;
 mod gate;
+mod incremental;
 mod nearest;
 mod push;
 mod slide;
@@ -64,7 +64,7 @@ pub const SKETCHES: [Sketch; 7] = [
     ellipse::SKETCH,
     gate::SKETCH,
     push::SKETCH,
-    ancestor::SKETCH,
+    incremental::SKETCH,
 ];
 
 /// The figure of that name.

@@ -23,7 +23,7 @@ pub fn after_each_preset(maker: fn() -> Shell) -> String {
         let mut shell = maker();
         let model = shell.model_mut();
         let pressed = model.press(preset.id).is_ok();
-        model.settle();
+        model.finish_work();
         let line = json!({
             "preset": preset.id,
             "pressed": pressed,

@@ -158,7 +158,7 @@ export class SlamWidget extends HTMLElement {
     if (problem !== undefined) throw new RangeError(problem);
     await this.#life.ensureInstance();
     // A button acts on the values that are set, not on what the picture still waits for.
-    this.#settle();
+    this.#finishWork();
     this.#life.ask((widget) => widget.press(button));
     this.#sync();
     this.#showTimeline();
@@ -167,19 +167,19 @@ export class SlamWidget extends HTMLElement {
 
   /** The result of the values that are set, once the widget has run with them. */
   get outcome(): Outcome | undefined {
-    this.#settle();
+    this.#finishWork();
     return this.#shownOutcome();
   }
 
   /** The run that can be scrubbed, while the widget runs. */
   get timeline(): Timeline | null {
-    this.#settle();
+    this.#finishWork();
     return this.#shownTimeline();
   }
 
   /** The text that stands for the picture. */
   get summary(): string {
-    this.#settle();
+    this.#finishWork();
     return this.#life.ask((widget) => widget.summary()) ?? this.#state?.spec.summary ?? '';
   }
 
@@ -196,7 +196,7 @@ export class SlamWidget extends HTMLElement {
   /** Every plot and table as CSV. */
   async tables(): Promise<CsvFile[]> {
     await this.#ensureInstance();
-    this.#settle();
+    this.#finishWork();
     return this.#life.ask((_, instance) => instance.tables()) ?? [];
   }
 
@@ -307,7 +307,7 @@ export class SlamWidget extends HTMLElement {
       text: (id) => this.#state?.text(id) ?? '',
       press: (id) => void this.press(id).catch((error: unknown) => this.#pressFailed(error)),
       finishRun: () => {
-        this.#settle();
+        this.#finishWork();
         this.#showTimeline();
       },
       focus: (id) => this.#looks.showFocus(id),
@@ -475,8 +475,8 @@ export class SlamWidget extends HTMLElement {
   }
 
   /** Figures are read of the values that are set: what the picture still waits for is finished. */
-  #settle(): void {
-    if (this.#life.ask((widget) => widget.settle()) === true) this.#life.wake();
+  #finishWork(): void {
+    if (this.#life.ask((widget) => widget.finish_work()) === true) this.#life.wake();
   }
 
   /** The result of what the picture shows, which may wait for newer values. */

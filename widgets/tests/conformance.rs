@@ -78,7 +78,7 @@ fn the_ends_of_every_parameter_have_a_finite_picture() {
                         || format!("{} {state:?}, {} at {value}", spec.id, param.id),
                         || {
                             model.set(param.id, value).unwrap();
-                            model.settle();
+                            model.finish_work();
                             model.work();
                             assert_values(model.as_ref());
                             assert_reports(model.as_ref());
@@ -95,7 +95,7 @@ fn the_ends_of_every_parameter_have_a_finite_picture() {
 fn no_line_is_broken_where_nothing_is_missing() {
     for name in ["w16.5", "w16.7", "w16.8"] {
         let mut shell = find(name).unwrap()();
-        shell.settle();
+        shell.finish_work();
         shell.model_mut().work();
         for panel in shell.model().scene().panels {
             for layer in &panel.layers {
@@ -122,7 +122,7 @@ fn told(model: &dyn Model) -> String {
 fn a_wrong_value_or_button_is_refused_and_changes_nothing() {
     for make in MODELS {
         let mut model = make();
-        model.settle();
+        model.finish_work();
         let before = told(model.as_ref());
         let spec = model.spec();
         for param in spec.params {
@@ -146,7 +146,7 @@ fn a_wrong_value_or_button_is_refused_and_changes_nothing() {
 fn playing_goes_on_to_the_end_and_stops_there() {
     for make in MODELS {
         let mut model = make();
-        model.settle();
+        model.finish_work();
         let name = model.spec().id;
         // The run of w16.10 is a reader's log, and it has none yet.
         if name == "w16.10" {
@@ -186,7 +186,7 @@ fn playing_goes_on_to_the_end_and_stops_there() {
         let plays = |preset: &&Preset| preset.then.contains(&"play");
         for preset in model.spec().presets.iter().filter(plays) {
             model.press(preset.id).unwrap();
-            model.settle();
+            model.finish_work();
             let end = model.timeline().unwrap();
             let ends = at(model.as_ref()) >= end.last && !end.playing;
             assert!(ends, "{name} after {}", preset.id);
@@ -211,7 +211,7 @@ fn a_preset_sets_what_it_names_and_can_be_pressed_again() {
             let mut told_first = None;
             for _ in 0..2 {
                 shell.model_mut().press(preset.id).unwrap();
-                shell.settle();
+                shell.finish_work();
                 let values = shell.model().values();
                 // What it starts may go on from there at once.
                 let moved = shell.model().timeline().map(|timeline| timeline.param);
@@ -238,7 +238,7 @@ fn no_text_overlaps_or_is_cut_off() {
         let name = shell.model().spec().id;
         for state in pressed_states(&shell) {
             shell.model_mut().press(state).expect("the widget has it");
-            shell.settle();
+            shell.finish_work();
             for more in [0.0, 1.0] {
                 let model = shell.model_mut();
                 model.set(MORE.id, more).expect("every widget has layers");
@@ -279,7 +279,7 @@ fn no_widget_is_higher_than_two_screens_of_a_phone_until_more_is_asked_for() {
         let name = shell.model().spec().id;
         for state in pressed_states(&shell) {
             shell.model_mut().press(state).expect("the widget has it");
-            shell.settle();
+            shell.finish_work();
             let height = height_on_a_phone(&ctx, &mut shell);
             assert!(height <= TWO_SCREENS, "{name} after {state}: {height}");
         }
@@ -340,7 +340,7 @@ fn still(name: &str, width: f32) -> Harness<'static, Shell> {
         shell.set_motion(Motion::Reduced);
         let more = shell.model_mut().set(MORE.id, 1.0);
         more.expect("every widget has layers");
-        shell.settle();
+        shell.finish_work();
     })
 }
 
@@ -436,7 +436,7 @@ fn every_slider_takes_an_arrow_key_by_its_own_step() {
                         .model_mut()
                         .set(param.id, before)
                         .unwrap();
-                    harness.state_mut().settle();
+                    harness.state_mut().finish_work();
                 },
             );
         }

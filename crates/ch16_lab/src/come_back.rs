@@ -167,11 +167,11 @@ impl Morning {
         Some(position_error_m(&pose, &self.drive.truth(tick)))
     }
 
-    /// The first frame whose pose is believed.
+    /// The first frame whose pose is localized.
     #[must_use]
     pub fn found(&self) -> Option<usize> {
         let mut reports = self.reports.iter();
-        reports.position(|report| report.verdict.is_believed())
+        reports.position(|report| report.verdict.is_localized())
     }
 
     fn keep(&mut self, pending: &PendingFix) {

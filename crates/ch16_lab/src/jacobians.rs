@@ -170,7 +170,7 @@ pub fn optimum(problem: &Problem) -> (Vec<SE2>, f64) {
 #[must_use]
 pub fn descend(start: &Problem, recipe: Recipe, optimum: &[SE2], max_steps: usize) -> Descent {
     let mut problem = start.clone();
-    let mut solver = Solver::of(recipe);
+    let mut solver = Solver::new(recipe);
     let mut moments = vec![moment(&problem, optimum)];
     let mut rests = false;
     while !rests && moments.len() <= max_steps {
@@ -204,7 +204,7 @@ enum Solver {
 }
 
 impl Solver {
-    fn of(recipe: Recipe) -> Self {
+    fn new(recipe: Recipe) -> Self {
         let own = |jacobians| {
             let settings = Settings {
                 jacobians,

@@ -5,7 +5,7 @@
 
 use ch16_slam2d::metrics::{position_error_m, rms};
 use ch16_slam2d::scan::PreparedFrame;
-use ch16_slam2d::slam::{Slam, SlamConfig, Upkeep, UpkeepConfig};
+use ch16_slam2d::slam::{MapPruning, MapPruningConfig, Slam, SlamConfig};
 use pr_geom::{Point2, SE2};
 use pr_sim::{Course, Wall, World};
 use std::sync::Arc;
@@ -25,7 +25,7 @@ pub struct LapsConfig {
     /// The estimator.
     pub slam: SlamConfig,
     /// How the map is kept up; none lets it grow.
-    pub upkeep: Option<UpkeepConfig>,
+    pub map_pruning: Option<MapPruningConfig>,
     /// A wardrobe stands in the flat, and is moved before this lap, counted from 1.
     pub wardrobe: Option<usize>,
 }
@@ -55,7 +55,7 @@ impl LapsConfig {
                 ..drive
             },
             slam,
-            upkeep: Some(UpkeepConfig::default()),
+            map_pruning: Some(MapPruningConfig::default()),
             wardrobe: None,
         }
     }
@@ -92,7 +92,7 @@ pub struct LapNumbers {
 pub struct LapUnderWay {
     tick: usize,
     loops: usize,
-    done: Upkeep,
+    done: MapPruning,
     errors_m: Vec<f64>,
 }
 
@@ -169,7 +169,7 @@ impl Laps {
         LapUnderWay {
             tick: usize::from(self.lap > 0),
             loops: 0,
-            done: Upkeep::default(),
+            done: MapPruning::default(),
             errors_m: Vec::new(),
         }
     }
@@ -190,8 +190,8 @@ impl Laps {
         lap.errors_m
             .push(position_error_m(&report.estimate, &drive.truth(tick)));
         lap.loops += usize::from(report.closed_loop().is_some());
-        if let (Some(_), Some(upkeep)) = (report.new_keyframe, &self.config.upkeep) {
-            let step = self.slam.keep_up(upkeep);
+        if let (Some(_), Some(map_pruning)) = (report.new_keyframe, &self.config.map_pruning) {
+            let step = self.slam.prune_map(map_pruning);
             lap.done.removed.extend(step.removed);
             lap.done.divergence += step.divergence;
             lap.done.points_gone += step.points_gone;

@@ -3,10 +3,10 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 
-pub mod ancestor;
 pub mod basin;
 pub mod buildings;
 pub mod come_back;
+pub mod incremental;
 pub mod jacobians;
 pub mod lap;
 pub mod laps;

@@ -83,8 +83,8 @@ impl BoxMethods {
     pub fn configs(&self) -> [IcpConfig; 3] {
         let plain = IcpConfig {
             variant: self.variant,
-            tau: self.tau_m,
-            max_iters: 30,
+            tau_m: self.tau_m,
+            max_iterations: 30,
             ..IcpConfig::default()
         };
         [

@@ -6,7 +6,7 @@
 use pr_geom::sort_numbers;
 use serde::{Deserialize, Serialize};
 
-use crate::ancestor::{Ancestor, AncestorOutcome, AncestorTrace};
+use crate::incremental::{IncrementalKind, IncrementalOutcome, IncrementalTrace};
 use crate::lap::{LapRecord, LapSummary, WAY_SHARES, WayErrors};
 
 /// A column of the results table: whose errors.
@@ -57,10 +57,10 @@ impl Column {
 
     /// The column of an ancestor.
     #[must_use]
-    pub fn of_ancestor(ancestor: Ancestor) -> Self {
+    pub fn of_incremental(ancestor: IncrementalKind) -> Self {
         match ancestor {
-            Ancestor::MaximumLikelihood => Self::MaximumLikelihood,
-            Ancestor::WithCycles => Self::MaximumLikelihoodCycles,
+            IncrementalKind::MaximumLikelihood => Self::MaximumLikelihood,
+            IncrementalKind::WithCycles => Self::MaximumLikelihoodCycles,
         }
     }
 }
@@ -96,14 +96,14 @@ pub struct LapOutcome {
     /// numbers end at 2⁵³.
     #[serde(with = "hexadecimal")]
     pub digest: u64,
-    /// The ancestors on the same drive, those that were run.
-    pub ancestors: [Option<AncestorOutcome>; Ancestor::ALL.len()],
+    /// The incremental_runs on the same drive, those that were run.
+    pub incremental_runs: [Option<IncrementalOutcome>; IncrementalKind::ALL.len()],
 }
 
 impl LapOutcome {
     /// The outcome of a finished lap.
     #[must_use]
-    pub fn of(record: &LapRecord) -> Self {
+    pub fn from_record(record: &LapRecord) -> Self {
         Self {
             lap: record.lap.summary,
             front_end: record.front_end.summary,
@@ -111,15 +111,15 @@ impl LapOutcome {
             front_end_way: record.front_end_way_errors(),
             false_acceptances: record.lap.false_acceptances().count(),
             digest: record.digest(),
-            ancestors: [None; Ancestor::ALL.len()],
+            incremental_runs: [None; IncrementalKind::ALL.len()],
         }
     }
 
     /// The same with an ancestor run on the drive of `record`.
     #[must_use]
-    pub fn with_ancestor(mut self, ancestor: Ancestor, record: &LapRecord) -> Self {
-        let trace = AncestorTrace::run(ancestor, &record.config, &record.drive);
-        self.ancestors[ancestor as usize] = Some(trace.outcome);
+    pub fn with_incremental(mut self, ancestor: IncrementalKind, record: &LapRecord) -> Self {
+        let trace = IncrementalTrace::run(ancestor, &record.config, &record.drive);
+        self.incremental_runs[ancestor as usize] = Some(trace.outcome);
         self
     }
 
@@ -131,10 +131,10 @@ impl LapOutcome {
             Column::FrontEnd => (&self.front_end, &self.front_end_way),
             Column::WithLoops => (&self.lap, &self.lap_way),
             Column::MaximumLikelihood => {
-                return self.ancestor_entry(Ancestor::MaximumLikelihood, row);
+                return self.incremental_entry(IncrementalKind::MaximumLikelihood, row);
             }
             Column::MaximumLikelihoodCycles => {
-                return self.ancestor_entry(Ancestor::WithCycles, row);
+                return self.incremental_entry(IncrementalKind::WithCycles, row);
             }
         };
         match row {
@@ -143,22 +143,23 @@ impl LapOutcome {
             Row::LastKeyframesMin => Some(summary.last_keyframes_m.0),
             Row::LastKeyframesMax => Some(summary.last_keyframes_m.1),
             Row::KeyframeMax => Some(summary.keyframe_max_m),
-            Row::HalfWay => Some(way.half_way_m()),
+            Row::HalfWay => Some(way.half_path_length_m()),
             Row::HalfWaySigma => way.half_way_sigma_m,
             Row::MapDisagreement => summary.map_disagreement_m,
         }
     }
 
     /// An ancestor has no graph that knows its deviation.
-    fn ancestor_entry(&self, ancestor: Ancestor, row: Row) -> Option<f64> {
-        let AncestorOutcome { summary, way } = self.ancestors[ancestor as usize].as_ref()?;
+    fn incremental_entry(&self, ancestor: IncrementalKind, row: Row) -> Option<f64> {
+        let IncrementalOutcome { summary, way } =
+            self.incremental_runs[ancestor as usize].as_ref()?;
         match row {
             Row::EndError => Some(summary.keyframe_end_error_m),
             Row::Rms => Some(summary.keyframe_rms_m),
             Row::LastKeyframesMin => Some(summary.last_keyframes_m.0),
             Row::LastKeyframesMax => Some(summary.last_keyframes_m.1),
             Row::KeyframeMax => Some(summary.keyframe_max_m),
-            Row::HalfWay => Some(way.half_way_m()),
+            Row::HalfWay => Some(way.half_path_length_m()),
             Row::HalfWaySigma => way.half_way_sigma_m,
             Row::MapDisagreement => summary.map_disagreement_m,
         }
@@ -200,24 +201,26 @@ impl LapStatistics {
     #[must_use]
     pub fn spread(&self, column: Column, row: Row) -> Option<Spread> {
         let entries = self.outcomes.iter();
-        Spread::of(entries.filter_map(|outcome| outcome.entry(column, row)))
+        Spread::from_values(entries.filter_map(|outcome| outcome.entry(column, row)))
     }
 
     /// Medians of the position errors along the way, m, at the ends of its shares; wheels have none,
     /// and no laps have none.
     #[must_use]
-    pub fn along_the_way_m(&self, column: Column) -> Option<[f64; WAY_SHARES + 1]> {
+    pub fn along_path_m(&self, column: Column) -> Option<[f64; WAY_SHARES + 1]> {
         let way = |outcome: &LapOutcome| match column {
             Column::Odometry => None,
             Column::FrontEnd => Some(outcome.front_end_way),
             Column::WithLoops => Some(outcome.lap_way),
-            Column::MaximumLikelihood => outcome.ancestors[0].map(|outcome| outcome.way),
-            Column::MaximumLikelihoodCycles => outcome.ancestors[1].map(|outcome| outcome.way),
+            Column::MaximumLikelihood => outcome.incremental_runs[0].map(|outcome| outcome.way),
+            Column::MaximumLikelihoodCycles => {
+                outcome.incremental_runs[1].map(|outcome| outcome.way)
+            }
         };
         let ways: Vec<WayErrors> = self.outcomes.iter().filter_map(way).collect();
         let mut medians = [0.0; WAY_SHARES + 1];
         for (k, median) in medians.iter_mut().enumerate() {
-            *median = Spread::of(ways.iter().map(|way| way.errors_m[k]))?.median;
+            *median = Spread::from_values(ways.iter().map(|way| way.errors_m[k]))?.median;
         }
         Some(medians)
     }
@@ -269,7 +272,7 @@ pub struct Spread {
 impl Spread {
     /// The spread of some values; none of none.
     #[must_use]
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+    pub fn from_values(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut sorted: Vec<f64> = values.into_iter().collect();
         sort_numbers(&mut sorted);
         Some(Self {
@@ -302,15 +305,15 @@ mod tests {
         assert_eq!(quantile(&values, 1.0), Some(16.0));
         // Position 0.05 · 4 = 0.2 between 1 and 2.
         assert_eq!(quantile(&values, 0.05), Some(1.2));
-        assert_eq!(Spread::of([]), None);
-        let spread = Spread::of([8.0, 1.0, 16.0, 4.0, 2.0]).unwrap();
+        assert_eq!(Spread::from_values([]), None);
+        let spread = Spread::from_values([8.0, 1.0, 16.0, 4.0, 2.0]).unwrap();
         assert_eq!((spread.p05, spread.median), (1.2, 4.0));
     }
 
     #[test]
     fn shares_and_counts_are_of_laps_and_of_loops() {
         let record = LapRunner::new().run(&LapConfig::default());
-        let right = LapOutcome::of(&record);
+        let right = LapOutcome::from_record(&record);
         let mut wrong = right;
         wrong.lap.loops = 4;
         wrong.false_acceptances = 2;
@@ -327,13 +330,13 @@ mod tests {
     #[test]
     fn odometry_has_the_two_entries_that_need_no_keyframes_and_an_ancestor_all_but_the_graphs() {
         let record = LapRunner::new().run(&LapConfig::default());
-        let outcome = LapOutcome::of(&record);
+        let outcome = LapOutcome::from_record(&record);
         let entries_of = |column| {
             let rows = Row::ALL.into_iter();
             rows.filter_map(|row| outcome.entry(column, row)).count()
         };
         assert_eq!(Column::ALL.map(entries_of), [2, 8, 8, 0, 0]);
-        let outcome = outcome.with_ancestor(Ancestor::WithCycles, &record);
+        let outcome = outcome.with_incremental(IncrementalKind::WithCycles, &record);
         let entries = Row::ALL.map(|row| outcome.entry(Column::MaximumLikelihoodCycles, row));
         // All but the deviation, which only a graph knows.
         assert_eq!(entries.iter().flatten().count(), 7);

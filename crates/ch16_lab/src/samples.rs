@@ -122,7 +122,7 @@ mod tests {
             for variant in [IcpVariant::PointToPoint, IcpVariant::PointToPlane] {
                 let config = IcpConfig {
                     variant,
-                    tau: 0.5,
+                    tau_m: 0.5,
                     ..IcpConfig::default()
                 };
                 let mut workspace = IcpWorkspace::new();

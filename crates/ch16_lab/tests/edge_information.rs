@@ -7,7 +7,7 @@ use ch16_slam2d::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
 use ch16_slam2d::matching::TrustConfig;
 use pr_geom::{Matrix3, SE2, Vector3};
 
-/// `½ Σ r² / (σ² · inflate)` after the edge's target is moved to `T exp(δ)` with the pairs kept: along the
+/// `½ Σ r² / (σ² · covariance_scale)` after the edge's target is moved to `T exp(δ)` with the pairs kept: along the
 /// normal where a pair has one, along both axes where it has none.
 fn cost(pairs: &[Pair], target_from_body: &SE2, delta: &Vector3<f64>, trust: &TrustConfig) -> f64 {
     let moved = target_from_body.boxplus(delta) * target_from_body.inverse();
@@ -20,7 +20,7 @@ fn cost(pairs: &[Pair], target_from_body: &SE2, delta: &Vector3<f64>, trust: &Tr
             None => gap.norm_squared(),
         }
     });
-    0.5 * squares.sum::<f64>() / (trust.sigma_m * trust.sigma_m * trust.inflate)
+    0.5 * squares.sum::<f64>() / (trust.sigma_m * trust.sigma_m * trust.covariance_scale)
 }
 
 fn numerical_hessian(pairs: &[Pair], target_from_body: &SE2, trust: &TrustConfig) -> Matrix3<f64> {

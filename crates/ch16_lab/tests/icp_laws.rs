@@ -58,7 +58,7 @@ proptest! {
         target in any::<u32>(), source in any::<u32>(), init in pose(0.8, 1.0), tau in 0.1..1.6,
     ) {
         let map = VoxelMap::from_cloud(&walls(target), 0.25, 8);
-        let config = IcpConfig { tau, ..IcpConfig::default() };
+        let config = IcpConfig { tau_m: tau, ..IcpConfig::default() };
         let found = icp(&walls(source), &map, init, &config);
         for step in found.trace.windows(2) {
             let (before, after) = (step[0].truncated_cost_m2, step[1].truncated_cost_m2);
@@ -86,7 +86,7 @@ proptest! {
             let difference = (gauge * here.pose).between(&there.pose);
             // 1e-9: 25 iterations of rounding; a pair that flipped would show as 1e-3.
             prop_assert!(difference.step_size() < 1e-9, "{difference:?}");
-            prop_assert!((here.rmse - there.rmse).abs() < 1e-9);
+            prop_assert!((here.rmse_m - there.rmse_m).abs() < 1e-9);
         }
     }
 
@@ -187,11 +187,11 @@ fn a_registration_says_why_it_ended() {
     assert_eq!(near.minimum, Minimum::Right);
     assert!(matches!(near.stop, StopReason::SmallStep { step, tolerance } if step < tolerance));
     let short = IcpConfig {
-        max_iters: 3,
+        max_iterations: 3,
         ..config
     };
     let cut = scene.register_from(&start(10.0), &short, &mut workspace);
-    assert_eq!(cut.stop, StopReason::IterationLimit { max_iters: 3 });
+    assert_eq!(cut.stop, StopReason::IterationLimit { max_iterations: 3 });
     assert_eq!(cut.iterations, 3);
     let far = icp(
         scene.source(),
@@ -201,7 +201,7 @@ fn a_registration_says_why_it_ended() {
     );
     let (pairs, min_pairs) = (0, 8);
     assert_eq!(far.stop, StopReason::TooFewPairs { pairs, min_pairs });
-    assert_eq!((far.rmse, far.trace.len()), (f64::INFINITY, 1));
+    assert_eq!((far.rmse_m, far.trace.len()), (f64::INFINITY, 1));
 }
 
 #[test]
@@ -268,7 +268,7 @@ fn information_turns_with_the_body_and_counts_both_axes_without_a_normal() {
 fn information_moved_to_the_body_is_the_hessian_of_the_cost_under_perturbations_there() {
     let scene = TerrainScene::new(SceneKind::Room, TerrainScene::DEFAULT_NDT_CELL_M);
     let map_from_body = SE2::new(3.0, -1.0, 2.0);
-    let (sigma, inflate) = (0.05_f64, 12.0);
+    let (sigma, covariance_scale) = (0.05_f64, 12.0);
     let config = IcpConfig::default();
     let mut pairs = correspondences(scene.cloud(), scene.map(), SE2::identity(), &config);
     pairs.retain(|pair| pair.normal.is_some());
@@ -276,7 +276,7 @@ fn information_moved_to_the_body_is_the_hessian_of_the_cost_under_perturbations_
         let in_body = map_from_body.inverse().transform(pair.source);
         let moved = map_from_body.boxplus(delta).transform(in_body);
         let normal = pair.normal.expect("pairs without one were left out");
-        normal.dot(&(moved - pair.target)) / (sigma * sigma * inflate).sqrt()
+        normal.dot(&(moved - pair.target)) / (sigma * sigma * covariance_scale).sqrt()
     };
     let step = 1e-4;
     let mut hessian = Matrix3::zeros();
@@ -290,14 +290,14 @@ fn information_moved_to_the_body_is_the_hessian_of_the_cost_under_perturbations_
 
     let center = centroid(&pairs);
     let body_from_center = map_from_body.inverse() * SE2::translation(center.x, center.y);
-    let at_center = icp_information(&pairs, sigma, inflate);
+    let at_center = icp_information(&pairs, sigma, covariance_scale);
     let at_body = move_information(&at_center, &body_from_center.inverse());
     // 1e-6: central differences over 1e-4 leave 1e-8 of an arm of a few metres.
     assert!((at_body - hessian).norm() < 1e-6 * hessian.norm());
     // The other way round is another matrix, and so is the one about the centroid.
     let wrong_way = move_information(&at_center, &body_from_center);
     assert!((wrong_way - hessian).norm() > 0.1 * hessian.norm());
-    let along = icp_information_along(&pairs, sigma, inflate, map_from_body.theta());
+    let along = icp_information_along(&pairs, sigma, covariance_scale, map_from_body.theta());
     assert!((along - hessian).norm() > 0.1 * hessian.norm());
     let turned = move_information(&at_center, &SE2::new(0.0, 0.0, map_from_body.theta()));
     assert!((along - turned).norm() < 1e-12 * turned.norm());
@@ -323,16 +323,16 @@ fn the_threshold_adapts_after_three_deviations() {
     threshold.update(&SE2::identity(), &SE2::translation(0.02, 0.0));
     for _ in 0..2 {
         threshold.update(&SE2::identity(), &shifted);
-        assert_eq!(threshold.tau(), 0.5);
+        assert_eq!(threshold.tau_m(), 0.5);
     }
     threshold.update(&SE2::identity(), &shifted);
-    assert!((threshold.tau() - 0.3).abs() < 1e-12);
+    assert!((threshold.tau_m() - 0.3).abs() < 1e-12);
     // A turn counts by how far it moves the farthest point: 2·6·sin(0.05).
     let mut threshold = AdaptiveThreshold::new(0.5, 0.03, 6.0);
     for _ in 0..3 {
         threshold.update(&SE2::identity(), &SE2::new(0.0, 0.0, -0.1));
     }
-    assert!((threshold.tau() - 36.0 * 0.05_f64.sin()).abs() < 1e-12);
+    assert!((threshold.tau_m() - 36.0 * 0.05_f64.sin()).abs() < 1e-12);
 }
 
 #[test]

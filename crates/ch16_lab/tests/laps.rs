@@ -24,7 +24,7 @@ fn a_dozen_laps_of_the_flat_leave_a_map_no_larger_and_no_worse_than_three() {
     // A cell of the thinned scans.
     assert!(last.map_rms_m < third.map_rms_m + 0.065, "{laps:#?}");
     let mut growing = LapsConfig::new(&Course::apartment(), 7, 1.0);
-    growing.upkeep = None;
+    growing.map_pruning = None;
     let growing = driven(growing, 4);
     assert!(growing[3].nodes > 3 * growing[0].nodes, "{growing:#?}");
 }

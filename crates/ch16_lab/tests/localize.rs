@@ -74,7 +74,7 @@ fn error_m(report: &LocalizeReport, truth: &SE2) -> f64 {
         .map_or(f64::INFINITY, |pose| position_error_m(&pose, truth))
 }
 
-/// Of twenty starts along the way: how many were found within ten seconds, how many frames were believed
+/// Of twenty starts along the way: how many were found within ten seconds, how many frames were localized
 /// and wrong by half a metre, and the median error of those that were right.
 fn switched_on(place: &Place) -> (usize, usize, f64) {
     let (mut found, mut wrong) = (0, 0);
@@ -87,7 +87,7 @@ fn switched_on(place: &Place) -> (usize, usize, f64) {
         for tick in first..first + 40 {
             let frame = at(&drive, tick, tick as f64);
             let report = localizer.step_prepared(&frame).unwrap();
-            if !report.verdict.is_believed() {
+            if !report.verdict.is_localized() {
                 continue;
             }
             is_found = true;
@@ -130,31 +130,31 @@ fn a_robot_that_is_carried_away_notices_and_is_found_again() {
         stamp_s += 0.25;
         let report = localizer.step_prepared(&at(&drive, tick, stamp_s)).unwrap();
         let error_m = error_m(&report, &drive.truth(tick));
-        (report.verdict.is_believed(), error_m)
+        (report.verdict.is_localized(), error_m)
     };
     let mut followed = 0;
     for tick in 20..40 {
-        let (is_believed, error_m) = step(&mut localizer, tick);
+        let (is_localized, error_m) = step(&mut localizer, tick);
         assert!(error_m < place.map_rms_m + 0.1, "{tick}: {error_m}");
-        followed += usize::from(is_believed);
+        followed += usize::from(is_localized);
     }
     // Along the corridor a scan may slide by a step. The next one then contradicts the wheels and is doubted,
     // with a pose that is right all the same.
     assert!(followed >= 18, "{followed} of 20");
     // Somebody carries it three metres on.
-    let mut believed = Vec::new();
+    let mut localized = Vec::new();
     for tick in 60..100 {
-        let (is_believed, error_m) = step(&mut localizer, tick);
-        if is_believed {
+        let (is_localized, error_m) = step(&mut localizer, tick);
+        if is_localized {
             assert!(error_m < 0.5, "{tick}: {error_m}");
-            believed.push(tick);
+            localized.push(tick);
         }
     }
     assert!(
-        believed.first().is_some_and(|tick| *tick > 60),
-        "{believed:?}"
+        localized.first().is_some_and(|tick| *tick > 60),
+        "{localized:?}"
     );
-    assert!(believed.len() > 15, "{believed:?}");
+    assert!(localized.len() > 15, "{localized:?}");
 }
 
 /// Two rooms that are the same to a hair, on one corridor.
@@ -211,7 +211,7 @@ fn in_one_of_two_rooms_that_are_the_same_nobody_is_found_before_the_door() {
         // In the first room, standing; on the way out; and in the second room, standing.
         for ticks in [vec![0; 12], (0..end).collect(), vec![end; 12]] {
             let mut localizer = place.localizer(StartPose::Anywhere);
-            let mut believed = 0;
+            let mut localized = 0;
             for (number, &tick) in ticks.iter().enumerate() {
                 let mut frame = at(&drive, tick, 0.25 * number as f64);
                 let stands = ticks.len() == 12;
@@ -221,17 +221,17 @@ fn in_one_of_two_rooms_that_are_the_same_nobody_is_found_before_the_door() {
                     frame.odometry
                 };
                 let report = localizer.step_prepared(&frame).unwrap();
-                if report.verdict.is_believed() {
+                if report.verdict.is_localized() {
                     let error_m = error_m(&report, &drive.truth(tick));
                     assert!(error_m < 0.5, "seed {seed}, tick {tick}: {error_m}");
-                    believed += 1;
+                    localized += 1;
                 }
             }
             let is_whole = ticks.len() > 12;
             assert_eq!(
-                believed > 0,
+                localized > 0,
                 is_whole,
-                "seed {seed}: {believed} of {}",
+                "seed {seed}: {localized} of {}",
                 ticks.len()
             );
         }

@@ -1,15 +1,15 @@
 //! The experiments together with what they judge: one binary, one module for each.
 
-mod ancestor;
 mod any_sensor;
 mod edge_information;
 mod exact_gate;
 mod icp_laws;
+mod incremental;
 mod laps;
 mod local_map;
 mod localize;
 mod map;
-mod patience;
+mod pending_loops;
 mod plane_step;
 mod random_laps;
 mod ring;

@@ -82,7 +82,7 @@ const DIFFERENCES: f64 = 1e-7;
 /// The pairs at a guess, and the step that one iteration makes from there.
 fn frozen_pairs_and_step(scene: &BasinScene, init: SE2, tau: f64) -> (FrozenPairs, Vector3<f64>) {
     let config = IcpConfig {
-        max_iters: 1,
+        max_iterations: 1,
         ..BasinScene::config(IcpVariant::PointToPlane, tau)
     };
     let (source, map) = (scene.source(), scene.map());

@@ -14,7 +14,7 @@ fn the_way_begins_at_the_start_and_half_of_it_is_the_turn() {
     // its error stays as it was.
     let turn = record.lap.turn_node.expect("the lap turns");
     let errors: Vec<f64> = record.lap.keyframe_errors_m(record.ticks()).collect();
-    assert!((way.half_way_m() - errors[turn]).abs() < 0.1);
+    assert!((way.half_path_length_m() - errors[turn]).abs() < 0.1);
 }
 
 #[test]

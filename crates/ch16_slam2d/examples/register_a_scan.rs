@@ -32,7 +32,7 @@ pub fn register(variant: IcpVariant) -> (IcpResult, Matrix3<f64>) {
     let guess = map_from_robot() * SE2::new(0.2, -0.05, 0.1);
     let cfg = IcpConfig {
         variant,
-        tau: 0.5,
+        tau_m: 0.5,
         ..Default::default()
     };
     let found = icp(&scan, &map, guess, &cfg);
@@ -51,7 +51,7 @@ pub fn main() {
     for variant in [IcpVariant::PointToPoint, IcpVariant::PointToPlane] {
         let (found, information) = register(variant);
         let steps = found.trace.len() - 1;
-        println!("{variant:?}: {steps} steps, rmse {:.4} m", found.rmse);
+        println!("{variant:?}: {steps} steps, rmse {:.4} m", found.rmse_m);
         println!("off by {:.4}; information{information:.0}", error(&found));
     }
 }

@@ -28,7 +28,7 @@ impl Matcher for ManyHeadings {
 
 /// The estimator with this matcher in front, and everything else as it was.
 pub fn slam(config: SlamConfig, matcher: ManyHeadings) -> Slam {
-    let mut parts = SlamParts::of(&config);
+    let mut parts = SlamParts::from_config(&config);
     parts.front_end = Box::new(matcher);
     Slam::with_parts(config, parts)
 }
@@ -47,7 +47,7 @@ pub fn off_rad(matcher: &mut dyn Matcher) -> f64 {
 /// Prints by how much the matcher above misses a heading.
 pub fn main() {
     let config = SlamConfig::default();
-    let mut many = ManyHeadings(IcpMatcher::of(
+    let mut many = ManyHeadings(IcpMatcher::with_variant(
         IcpVariant::PointToPoint,
         &config.chapter.local_map,
     ));

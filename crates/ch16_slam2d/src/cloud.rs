@@ -18,7 +18,7 @@ mod voxel_map;
 
 pub use csv::CsvError;
 pub use dense_map::DenseMap;
-pub use nearest::{Memory, NearestMap, Neighbor};
+pub use nearest::{NearestMap, Neighbor, QueryCache};
 pub use nearest_table::NearestTable;
 pub use normals::NormalEstimator;
 pub use point_cloud::{Downsampler, PointCloud};

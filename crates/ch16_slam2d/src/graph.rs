@@ -19,7 +19,7 @@ mod marginalize;
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
-use pr_optim::robust::{Belief, GncSettings, believe};
+use pr_optim::robust::{GncSettings, InlierSelection, select_inliers};
 use pr_optim::{Between, FactorUse, Method, OptimizeError, Optimizer, Problem, Report, Settings};
 
 pub use ids::{EdgeId, NodeId};
@@ -79,8 +79,8 @@ pub struct EdgeView {
     pub edge: PoseEdge,
 }
 
-/// What [`PoseGraph::believed`] says.
-pub type LoopBeliefs = Result<Belief, OptimizeError>;
+/// What [`PoseGraph::inlier_edges`] says.
+pub type InlierEdges = Result<InlierSelection, OptimizeError>;
 
 /// Poses and measurements, with the solver's workspace beside them.
 #[derive(Debug)]
@@ -139,7 +139,7 @@ impl PoseGraph {
     /// # Panics
     /// Where an edge's end does not exist, or both are the same.
     #[must_use]
-    pub fn of<'a>(
+    pub fn from_parts<'a>(
         nodes: impl IntoIterator<Item = &'a PoseNode>,
         edges: impl IntoIterator<Item = &'a EdgeView>,
     ) -> Self {
@@ -244,13 +244,13 @@ impl PoseGraph {
 
     /// How many edges there were when a node was last moved: later ones wait for the next optimization.
     #[must_use]
-    pub fn settled_edges(&self) -> usize {
-        self.problem.settled()
+    pub fn optimized_edges(&self) -> usize {
+        self.problem.optimized_factors()
     }
 
     /// Says so of a graph whose nodes were moved and moved back.
-    pub fn settle(&mut self, edges: usize) {
-        self.problem.settle(edges);
+    pub fn mark_optimized(&mut self, edges: usize) {
+        self.problem.mark_optimized(edges);
     }
 
     /// All nodes with their handles, in the order in which they were added.
@@ -297,26 +297,30 @@ impl PoseGraph {
     ///
     /// The step rule is `‖(v_x, v_y)‖ + |ω| < tolerance`. The report says why it stopped; where a
     /// step could not be computed, the poses are those before it.
-    pub fn optimize(&mut self, max_iters: usize, tolerance: f64) -> Report {
-        self.optimize_robust(max_iters, tolerance, f64::INFINITY)
+    pub fn optimize(&mut self, max_iterations: usize, tolerance: f64) -> Report {
+        self.optimize_robust(max_iterations, tolerance, f64::INFINITY)
     }
 
     /// [`PoseGraph::optimize`] where an edge beyond `huber` standard deviations pulls less.
     ///
     /// Where the Mahalanobis norm `m` of a residual exceeds `huber`, Ω is scaled by `huber / m`.
-    pub fn optimize_robust(&mut self, max_iters: usize, tolerance: f64, huber: f64) -> Report {
-        self.optimize_with(max_iters, tolerance, RobustKernel::Huber { width: huber })
+    pub fn optimize_robust(&mut self, max_iterations: usize, tolerance: f64, huber: f64) -> Report {
+        self.optimize_with(
+            max_iterations,
+            tolerance,
+            RobustKernel::Huber { width: huber },
+        )
     }
 
     /// [`PoseGraph::optimize`] under any robust kernel.
     pub fn optimize_with(
         &mut self,
-        max_iters: usize,
+        max_iterations: usize,
         tolerance: f64,
         kernel: RobustKernel,
     ) -> Report {
         self.optimizer.settings.kernel = kernel;
-        self.optimizer.settings.max_iterations = max_iters;
+        self.optimizer.settings.max_iterations = max_iterations;
         self.optimizer.settings.step_tolerance = tolerance;
         let report = self.optimizer.run(&mut self.problem);
         self.chi2 = Some(report.chi2);
@@ -333,11 +337,11 @@ impl PoseGraph {
         step.map_or(f64::NAN, |step| step.largest_step)
     }
 
-    /// Which edges are believed where each loop may be false: see [`believe`].
+    /// Which edges are believed where each loop may be false: see [`select_inliers`].
     ///
     /// # Errors
     /// Where the normal equations cannot be solved.
-    pub fn believed(&self) -> LoopBeliefs {
+    pub fn inlier_edges(&self) -> InlierEdges {
         let trusted: Vec<bool> = self
             .kinds
             .iter()
@@ -347,7 +351,7 @@ impl PoseGraph {
             jacobians: JacobianModel::Exact,
             ..Settings::default()
         };
-        believe(&self.problem, &trusted, solver, &GncSettings::default())
+        select_inliers(&self.problem, &trusted, solver, &GncSettings::default())
     }
 
     /// The same graph with only those edges for which `keep` says so.
@@ -355,7 +359,7 @@ impl PoseGraph {
     pub fn with_edges(&self, keep: impl FnMut(&EdgeView) -> bool) -> Self {
         let nodes: Vec<PoseNode> = self.nodes().map(|(_, node)| node).collect();
         let edges: Vec<EdgeView> = self.edges().filter(keep).collect();
-        Self::of(&nodes, &edges).solved_with(self.jacobians())
+        Self::from_parts(&nodes, &edges).solved_with(self.jacobians())
     }
 }
 

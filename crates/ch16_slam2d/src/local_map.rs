@@ -116,13 +116,16 @@ impl LocalMap {
         map_from_scan: &SE2,
         config: &MapRegistrationConfig,
     ) -> MapFit {
-        let miss_m2 = config.fit_m * config.fit_m;
+        let miss_m2 = config.inlier_distance_m * config.inlier_distance_m;
         let (mut cost, mut squares_m2) = (0.0, 0.0);
         let (mut inliers, mut contradicting) = (0_usize, 0_usize);
         let mut last_found = None;
         for point in scan.iter() {
             let at = map_from_scan.transform(point);
-            match self.points.neighbor_from(at, config.fit_m, last_found) {
+            match self
+                .points
+                .neighbor_from(at, config.inlier_distance_m, last_found)
+            {
                 Some(nearest) => {
                     squares_m2 += nearest.distance_squared_m2;
                     inliers += 1;

@@ -6,7 +6,7 @@
 //! it gathers the sweeps of the last metres and searches for them: keyframes that look alike
 //! ([`ScanContext`](crate::places::ScanContext)) say how well a good place fits, branch and bound
 //! ([`search`](crate::search)) finds the best place of the whole map and the best other one, and
-//! registration with its fit decides. A place that another one is too close to is not believed: with
+//! registration with its fit decides. A place that another one is too close to is not localized: with
 //! more metres in the trail one of them wins.
 //!
 //! What it cannot do: two places that look the same for as long as the trail is remain two places,

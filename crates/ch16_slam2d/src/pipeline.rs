@@ -104,7 +104,7 @@ impl Pipeline {
         odometry_use: OdometryUse,
     ) -> Self {
         Self {
-            slam: Some(slam.with_outlier_test(PoseGraph::believed)),
+            slam: Some(slam.with_outlier_test(PoseGraph::inlier_edges)),
             scans,
             last_odometry,
             ..Self::new(odometry_use)
@@ -133,7 +133,7 @@ impl Pipeline {
         let robot = self.robot;
         let slam = self.slam.get_or_insert_with(|| {
             let robot = robot.unwrap_or_else(|| RobotConfig::for_scan(&frame.scan));
-            Slam::new(SlamConfig::from_robot(robot)).with_outlier_test(PoseGraph::believed)
+            Slam::new(SlamConfig::from_robot(robot)).with_outlier_test(PoseGraph::inlier_edges)
         });
         let report = slam.step(&frame)?;
         self.last_odometry = recorded.odometry;

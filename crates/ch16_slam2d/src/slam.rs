@@ -24,6 +24,7 @@ mod map_matching;
 mod mapper;
 mod motion_noise;
 
+mod map_pruning;
 mod pending;
 mod refinement;
 mod report;
@@ -32,7 +33,6 @@ mod snapshot;
 #[cfg(test)]
 pub(crate) mod test_room;
 mod uncertainty;
-mod upkeep;
 
 use std::sync::Arc;
 
@@ -46,11 +46,11 @@ pub use loop_closer::LoopCloser;
 pub use mapper::{LoopOutlierTest, Mapper};
 pub use motion_noise::MotionNoise;
 
+pub use map_pruning::{MapPruning, MapPruningConfig};
 pub use pending::PendingFrame;
 pub use report::{Change, Conclusion, Keyframe, LoopAttempt, LoopEffect, SlamReport};
 pub use robots::{RobotConfig, SubmapLoopConfig};
 pub use snapshot::{FrontEndSnapshot, SlamSnapshot, SnapshotError};
-pub use upkeep::{Upkeep, UpkeepConfig};
 
 use crate::chapter::SlamParts;
 use crate::graph::{EdgeKind, PoseGraph};
@@ -74,7 +74,7 @@ impl Slam {
     /// An estimator that has seen nothing, with the parts that `config` names.
     #[must_use]
     pub fn new(config: SlamConfig) -> Self {
-        let parts = SlamParts::of(&config);
+        let parts = SlamParts::from_config(&config);
         Self::with_parts(config, parts)
     }
 
@@ -195,7 +195,7 @@ impl Slam {
         let tried = self.loop_closer.conclude(&mut self.mapper, &self.config);
         pending.add(self.frames.saturating_sub(1), tried);
         self.close_loop(&mut pending);
-        let correction = self.mapper.settle(&self.config);
+        let correction = self.mapper.optimize_pending(&self.config);
         self.front_end.correct(&correction);
         let is_on = self.config.loop_closure == LoopClosure::On;
         let robot = self.config.robot.filter(|_| is_on);
@@ -207,9 +207,9 @@ impl Slam {
 
     /// Drops what is gone and takes out what was replaced around the newest keyframe; call it after a
     /// frame that became one.
-    pub fn keep_up(&mut self, config: &UpkeepConfig) -> Upkeep {
+    pub fn prune_map(&mut self, config: &MapPruningConfig) -> MapPruning {
         let radius_m = self.config.scan.normal_radius_m;
-        upkeep::keep_up(&mut self.mapper, &mut self.loop_closer, config, radius_m)
+        map_pruning::prune_map(&mut self.mapper, &mut self.loop_closer, config, radius_m)
     }
 
     /// The parameters.

@@ -101,7 +101,7 @@ fn the_walk_of_the_frames_is_followed_although_the_wheels_turn_too_far() {
 #[test]
 fn a_matcher_that_looks_around_finds_the_heading_that_icp_misses() {
     let config = SlamConfig::default();
-    let mut icp = IcpMatcher::of(IcpVariant::PointToPoint, &config.chapter.local_map);
+    let mut icp = IcpMatcher::with_variant(IcpVariant::PointToPoint, &config.chapter.local_map);
     let alone = write_your_own_matcher::off_rad(&mut icp);
     let mut many = write_your_own_matcher::ManyHeadings(icp);
     let around = write_your_own_matcher::off_rad(&mut many);

@@ -54,23 +54,22 @@ fn the_listings_on_registration_compile() {
     let cloud: PointCloud = target.transformed(&offset.inverse());
     assert_eq!(cloud.stamp_s(), 0.25);
     for variant in [IcpVariant::PointToPoint, IcpVariant::PointToPlane] {
-        let tau = 0.5;
         let cfg = IcpConfig {
             variant,
-            tau,
+            tau_m: 0.5,
             ..Default::default()
         };
         let result: IcpResult = icp(&cloud, &map, SE2::identity(), &cfg);
         let IcpResult {
             pose,
-            rmse,
+            rmse_m,
             inliers,
             ref trace,
             ..
         } = result;
         // 1e-4: the run ends at a step of that size, which the damping leaves to be made.
         assert!(pose.between(&offset).step_size() < 1e-4, "{variant:?}");
-        assert!(rmse < 1e-4 && inliers == cloud.len(), "{variant:?}");
+        assert!(rmse_m < 1e-4 && inliers == cloud.len(), "{variant:?}");
         assert_eq!(trace[0].pose, SE2::identity());
 
         let information: Matrix3<f64> = icp_information(&result.pairs, 0.02, 10.0);

@@ -167,7 +167,7 @@ fn a_registration_takes_the_same_steps_and_knows_the_same() {
                 assert_same_pose(*pose, step.pose);
             }
             assert_eq!(found.inliers, core.inliers);
-            assert!((found.rmse - core.rmse).abs() < SAME);
+            assert!((found.rmse - core.rmse_m).abs() < SAME);
 
             if trim == 0.0 {
                 let pairs = associate(&source, &map, &found.pose, cfg.tau);
@@ -289,7 +289,7 @@ fn verdicts_after(drift: f64) -> Vec<bool> {
         for (&old, candidate) in found.iter().zip(core_found) {
             let LoopCandidate { node: number, .. } = candidate;
             let listing = verify_loop(&graph, &sweeps, NodeIndex::new(node), old, &cfg);
-            let matcher = IcpMatcher::of(CoreVariant::PointToPoint, &core_cfg.submap);
+            let matcher = IcpMatcher::with_variant(CoreVariant::PointToPoint, &core_cfg.submap);
             let core = loops::verify_loop(
                 view,
                 node,

@@ -1,6 +1,6 @@
 //! Every map finds the nearest point that a look at all points finds.
 
-use ch16_slam2d::cloud::{DenseMap, Memory, NearestMap, NearestTable, PointCloud, VoxelMap};
+use ch16_slam2d::cloud::{DenseMap, NearestMap, NearestTable, PointCloud, QueryCache, VoxelMap};
 use pr_geom::{Point2, Vector2};
 use proptest::prelude::*;
 
@@ -84,13 +84,13 @@ proptest! {
         radius_m in 0.05..1.0,
     ) {
         let dense = DenseMap::from_cloud(&PointCloud::new(points, 0.0), 0.25, 8);
-        let mut memory = Memory::default();
+        let mut cache = QueryCache::default();
         let mut query = start;
         for (k, (dx, dy)) in steps.into_iter().enumerate() {
             // Steps of every size: large ones make it search, small ones make it remember.
             let size = 0.1_f64.powi(k as i32 % 4);
             query += Vector2::new(dx, dy) * size;
-            let again = dense.neighbor_again(query, radius_m, &mut memory);
+            let again = dense.neighbor_cached(query, radius_m, &mut cache);
             prop_assert_eq!(again, dense.neighbor(query, radius_m));
         }
     }

@@ -40,7 +40,7 @@ pub struct CycleConfig {
 
 /// The parameters of an [`IncrementalMapper`](super::IncrementalMapper).
 #[derive(Clone, Debug, PartialEq)]
-pub struct AncestorConfig {
+pub struct IncrementalConfig {
     /// Pose of the first frame: it lays down the map's frame.
     pub start: SE2,
     /// How a scan becomes a cloud.
@@ -63,17 +63,17 @@ pub struct AncestorConfig {
     pub cycles: Option<CycleConfig>,
 }
 
-impl Default for AncestorConfig {
+impl Default for IncrementalConfig {
     fn default() -> Self {
-        Self::of(&SlamConfig::default())
+        Self::from_slam_config(&SlamConfig::default())
     }
 }
 
-impl AncestorConfig {
+impl IncrementalConfig {
     /// The incremental mapper with the lengths of a pose-graph system: its cells, its keyframes, its
     /// noise of the wheels.
     #[must_use]
-    pub fn of(slam: &SlamConfig) -> Self {
+    pub fn from_slam_config(slam: &SlamConfig) -> Self {
         Self {
             start: slam.start,
             scan: slam.scan,
@@ -107,7 +107,7 @@ impl AncestorConfig {
                 sigma_m: 2.0 * self.map.sigma_m,
                 ..self.map
             },
-            weight: 2.0 / slam.chapter.loops.trust.inflate,
+            weight: 2.0 / slam.chapter.loops.trust.covariance_scale,
             min_known: 0.6,
             max_spread_m: 2.5 * cell_m,
             max_spread_rad: 0.1,

@@ -3,8 +3,8 @@
 use pr_geom::{Point2, SE2};
 
 use super::{
-    AncestorConfig, CycleClosure, CycleConfig, CycleTest, CycleVerdict, LikelihoodMap, PoseBelief,
-    push_backwards,
+    CycleClosure, CycleConfig, CycleTest, CycleVerdict, IncrementalConfig, LikelihoodMap,
+    PoseBelief, push_backwards,
 };
 use crate::field::ScanClimb;
 use ch16_slam2d::cloud::PointCloud;
@@ -23,7 +23,7 @@ pub struct CycleWatch {
     /// Keyframes in the old map.
     old_nodes: usize,
     /// The newest node at which a cycle was closed or confirmed: what lies before stays.
-    settled_node: usize,
+    last_known_node: usize,
 }
 
 impl CycleWatch {
@@ -35,7 +35,7 @@ impl CycleWatch {
             belief: PoseBelief::new(start, config.particles, config.seed),
             old_map: LikelihoodMap::new(config.field),
             old_nodes: 0,
-            settled_node: 0,
+            last_known_node: 0,
         }
     }
 
@@ -56,7 +56,7 @@ impl CycleWatch {
         &mut self,
         poses: &mut [SE2],
         keyframes: &[Keyframe],
-        mapper: &AncestorConfig,
+        mapper: &IncrementalConfig,
     ) -> CycleTest {
         let node = poses.len() - 1;
         let config = self.config;
@@ -101,20 +101,20 @@ impl CycleWatch {
         test.verdict = if fit < config.min_fit || is_far {
             CycleVerdict::PoorFit
         } else {
-            self.settle(poses, pose)
+            self.close_or_confirm(poses, pose)
         };
         test
     }
 
     /// The place is known: the pose is right, or the path is corrected.
-    fn settle(&mut self, poses: &mut [SE2], pose: SE2) -> CycleVerdict {
+    fn close_or_confirm(&mut self, poses: &mut [SE2], pose: SE2) -> CycleVerdict {
         let node = poses.len() - 1;
         let before = poses[node];
         let off = before.between(&pose);
         let is_off = position_error_m(&before, &pose) >= self.config.min_shift_m
             || off.theta().abs() >= self.config.min_turn_rad;
-        let first = self.settled_node.max(self.nearest_old(poses, &pose));
-        self.settled_node = node;
+        let first = self.last_known_node.max(self.nearest_old(poses, &pose));
+        self.last_known_node = node;
         if !is_off {
             return CycleVerdict::Confirmed;
         }

@@ -31,9 +31,9 @@ mod push;
 mod report;
 
 pub use belief::{BeliefSpread, PoseBelief};
-pub use config::{AncestorConfig, CycleConfig};
+pub use config::{CycleConfig, IncrementalConfig};
 pub use cycles::CycleWatch;
 pub use likelihood_map::{LikelihoodField, LikelihoodMap, LikelihoodMapConfig, MAX_MAP_CELLS};
 pub use mapper::IncrementalMapper;
 pub use push::push_backwards;
-pub use report::{AncestorReport, CycleClosure, CycleTest, CycleVerdict};
+pub use report::{CycleClosure, CycleTest, CycleVerdict, IncrementalReport};

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use pr_geom::SE2;
 
-use super::{AncestorConfig, AncestorReport, CycleTest, CycleVerdict, CycleWatch, LikelihoodMap};
+use super::{
+    CycleTest, CycleVerdict, CycleWatch, IncrementalConfig, IncrementalReport, LikelihoodMap,
+};
 use crate::field::{Climb, PosePrior, ScanClimb};
 use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::scan::{Frame, FrameError, PreparedFrame, ScanPreparer, is_finite};
@@ -14,7 +16,7 @@ use ch16_slam2d::slam::Keyframe;
 /// Incremental maximum likelihood mapping over the frames of [`Slam`](ch16_slam2d::slam::Slam).
 #[derive(Clone)]
 pub struct IncrementalMapper {
-    config: AncestorConfig,
+    config: IncrementalConfig,
     preparer: ScanPreparer,
     frames: usize,
     last_stamp_s: f64,
@@ -30,7 +32,7 @@ pub struct IncrementalMapper {
 impl IncrementalMapper {
     /// A mapper that has seen nothing.
     #[must_use]
-    pub fn new(config: AncestorConfig) -> Self {
+    pub fn new(config: IncrementalConfig) -> Self {
         Self {
             preparer: ScanPreparer::new(),
             frames: 0,
@@ -52,7 +54,7 @@ impl IncrementalMapper {
     ///
     /// # Errors
     /// Where the frame cannot be used; the mapper stays as it was.
-    pub fn step(&mut self, frame: &Frame) -> Result<AncestorReport, FrameError> {
+    pub fn step(&mut self, frame: &Frame) -> Result<IncrementalReport, FrameError> {
         let prepared = self.preparer.prepare_frame(
             frame,
             self.last_stamp_s,
@@ -66,11 +68,14 @@ impl IncrementalMapper {
     ///
     /// # Errors
     /// Where the frame cannot be used; the mapper stays as it was.
-    pub fn step_prepared(&mut self, frame: &PreparedFrame) -> Result<AncestorReport, FrameError> {
+    pub fn step_prepared(
+        &mut self,
+        frame: &PreparedFrame,
+    ) -> Result<IncrementalReport, FrameError> {
         let dt_s = frame.seconds_after(self.last_stamp_s, &self.estimate)?;
         self.last_stamp_s = frame.stamp_s;
         self.frames += 1;
-        let mut report = AncestorReport {
+        let mut report = IncrementalReport {
             frame: self.frames - 1,
             stamp_s: frame.stamp_s,
             prediction: self.estimate,
@@ -98,7 +103,7 @@ impl IncrementalMapper {
 
     /// The parameters.
     #[must_use]
-    pub fn config(&self) -> &AncestorConfig {
+    pub fn config(&self) -> &IncrementalConfig {
         &self.config
     }
 

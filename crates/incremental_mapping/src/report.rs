@@ -52,7 +52,7 @@ pub struct CycleClosure {
 
 /// Everything that one frame did.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AncestorReport {
+pub struct IncrementalReport {
     /// Number of the frame, counted from 0.
     pub frame: usize,
     /// Its time, s.
@@ -69,7 +69,7 @@ pub struct AncestorReport {
     pub cycle: Option<CycleTest>,
 }
 
-impl AncestorReport {
+impl IncrementalReport {
     /// The cycle that was closed, if one was.
     #[must_use]
     pub fn closure(&self) -> Option<&CycleClosure> {

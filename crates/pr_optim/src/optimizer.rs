@@ -192,12 +192,12 @@ impl Optimizer {
                 break stop;
             }
         };
-        self.settle(problem, steps, stop)
+        self.final_report(problem, steps, stop)
     }
 
     /// The report on steps that ended for that reason, with the poses that [`run`](Self::run)
     /// promises in `problem`.
-    pub(crate) fn settle(
+    pub(crate) fn final_report(
         &mut self,
         problem: &mut Problem,
         steps: Vec<StepReport>,

@@ -15,7 +15,7 @@ pub struct Problem {
     fixed: Vec<bool>,
     factors: Vec<Between>,
     prepared: Vec<PreparedFactor>,
-    settled: usize,
+    optimized: usize,
 }
 
 impl Problem {
@@ -68,7 +68,7 @@ impl Problem {
     pub fn pop_factor(&mut self) -> Option<Between> {
         self.prepared.pop();
         let factor = self.factors.pop();
-        self.settled = self.settled.min(self.factors.len());
+        self.optimized = self.optimized.min(self.factors.len());
         factor
     }
 
@@ -76,13 +76,13 @@ impl Problem {
     ///
     /// A solver that is asked for covariances adds what was measured since to the factor of what was before.
     #[must_use]
-    pub fn settled(&self) -> usize {
-        self.settled
+    pub fn optimized_factors(&self) -> usize {
+        self.optimized
     }
 
     /// Says so of a problem that was built anew; more than there are count as all.
-    pub fn settle(&mut self, factors: usize) {
-        self.settled = factors.min(self.factors.len());
+    pub fn mark_optimized(&mut self, factors: usize) {
+        self.optimized = factors.min(self.factors.len());
     }
 
     /// Number of poses.
@@ -99,14 +99,14 @@ impl Problem {
 
     /// The poses, to be moved from outside.
     pub fn poses_mut(&mut self) -> &mut [SE2] {
-        self.settled = self.factors.len();
+        self.optimized = self.factors.len();
         &mut self.poses
     }
 
     /// Takes other poses for the same nodes, and leaves the present ones in `poses`.
     pub(crate) fn swap_poses(&mut self, poses: &mut Vec<SE2>) {
         debug_assert_eq!(poses.len(), self.poses.len());
-        self.settled = self.factors.len();
+        self.optimized = self.factors.len();
         core::mem::swap(&mut self.poses, poses);
     }
 
@@ -135,7 +135,7 @@ impl Problem {
             fixed: self.fixed[..nodes].to_vec(),
             factors: self.factors[..factors].to_vec(),
             prepared: self.prepared[..factors].to_vec(),
-            settled: self.settled.min(factors),
+            optimized: self.optimized.min(factors),
         }
     }
 

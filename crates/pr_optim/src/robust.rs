@@ -1,29 +1,29 @@
-//! Solving where some measurements are false: which ones to believe, and the poses by those.
+//! Solving where some measurements are false: which ones to select_inliers, and the poses by those.
 //!
 //! A kernel judges every measurement by itself, from where the poses happen to be, and from a poor
 //! guess it switches right ones off. Three methods look at more:
 //!
-//! - [`believe`] takes loops along the way, as a robot meets them, and lets each stand or fall by what
+//! - [`select_inliers`] takes loops along the way, as a robot meets them, and lets each stand or fall by what
 //!   the exact covariance of all others says; where that is not clear it asks [`Gnc`] as well.
 //! - [`Gnc`] begins with a cost that hardly discriminates and bends it step by step into one that
 //!   keeps a measurement whole or drops it.
 //! - [`consistent_set`] looks for the largest set of loops that agree with each other along the
-//!   trusted path, before anything is solved; [`believe_consistent`] begins there and lets each stand or
-//!   fall as [`believe`] does.
+//!   trusted path, before anything is solved; [`select_consistent`] begins there and lets each stand or
+//!   fall as [`select_inliers`] does.
 //!
 //! All take the measurements between neighbours in time as true: [`is_sequential`]. What stands or
 //! falls is the loops. None can tell a false loop that fits the rest from a right one.
 
-mod belief;
+mod along_path;
 mod consistency;
 mod gnc;
-mod growth;
+mod inliers;
 mod path;
 mod refutation;
 
-pub use belief::{Belief, BeliefStart, believe, believe_consistent};
 pub use consistency::{ConsistencySettings, consistent_set};
 pub use gnc::{Gnc, GncLoss, GncOutcome, GncRound, GncSettings, GncStop};
+pub use inliers::{InlierSelection, InlierStart, select_consistent, select_inliers};
 
 use crate::factor::Between;
 use crate::problem::Problem;

@@ -263,7 +263,7 @@ impl<'a> Session<'a> {
     fn end_attempt(&mut self, stop: StopReason) {
         let steps = core::mem::take(&mut self.steps);
         let attempt = Attempt {
-            report: self.optimizer.settle(self.problem, steps, stop),
+            report: self.optimizer.final_report(self.problem, steps, stop),
             start: self.start,
             poses: self.problem.poses().to_vec(),
         };

@@ -216,7 +216,7 @@ fn loops_that_were_closed_since_are_taken_off_the_covariances_before() {
     let mut problem = grid_with_loops();
     // Some of its loops belong to the beginning, and the last ones, and those of the grid's end, do not.
     for settled in [0, 31, problem.factors().len() - 4, problem.factors().len()] {
-        problem.settle(settled);
+        problem.mark_optimized(settled);
         assert_that_every_pair_equals_the_dense_inverse(&problem);
     }
 }
@@ -224,7 +224,7 @@ fn loops_that_were_closed_since_are_taken_off_the_covariances_before() {
 #[test]
 fn a_measurement_that_knows_far_more_than_the_graph_is_a_part_of_the_factor() {
     let mut problem = grid_with_tail();
-    problem.settle(problem.factors().len());
+    problem.mark_optimized(problem.factors().len());
     let measurement = problem.poses()[3].between(&problem.poses()[28]);
     let nearly_sure = Between {
         from: 3,
@@ -242,7 +242,7 @@ fn a_measurement_that_knows_far_more_than_the_graph_is_a_part_of_the_factor() {
     let known = relative(&problem);
     let far = Optimizer::new(Settings::default()).largest_move_since(&problem);
     assert_eq!(far, Ok(f64::INFINITY), "nobody can say");
-    problem.settle(problem.factors().len());
+    problem.mark_optimized(problem.factors().len());
     assert_eq!(known, relative(&problem));
     // What is not positive definite is told where it is added, as it is where it is factorized.
     problem.pop_factor();
@@ -286,7 +286,7 @@ fn how_far_loops_would_move_a_graph_is_what_a_step_moves_it() {
 fn a_covariance_has_the_same_bits_whatever_was_asked_for_before() {
     let whole = grid_with_loops();
     let mut problem = grid(24);
-    problem.settle(problem.factors().len());
+    problem.mark_optimized(problem.factors().len());
     let mut kept = Optimizer::new(Settings::default());
     let fresh = |problem: &Problem, a, b| {
         Optimizer::new(Settings::default()).joint_covariance(problem, a, b)

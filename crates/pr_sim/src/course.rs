@@ -16,7 +16,7 @@ use crate::driver::DriverConfig;
 use crate::world::World;
 
 use clearance::{nearest_wall, nearest_wall_to_leg};
-pub use error::{CourseError, Place};
+pub use error::{CourseError, CoursePoint};
 pub(crate) use file::extent;
 
 /// Walls, way points and coordinates beyond these are refused: a lap has to fit into memory and
@@ -176,7 +176,7 @@ impl Course {
         };
         for (index, wall) in self.world.walls().iter().enumerate() {
             if !within(&wall.start) || !within(&wall.end) {
-                return Err(out(Place::Wall(index + 1)));
+                return Err(out(CoursePoint::Wall(index + 1)));
             }
             if wall.start == wall.end {
                 return Err(CourseError::NoLength { wall: index + 1 });
@@ -233,10 +233,10 @@ impl Course {
     }
 
     /// The start and every way point.
-    fn stops(&self) -> impl Iterator<Item = (Place, Point2<f64>)> {
+    fn stops(&self) -> impl Iterator<Item = (CoursePoint, Point2<f64>)> {
         let way_points = self.way_points.iter().enumerate();
-        core::iter::once((Place::Start, self.start.position()))
-            .chain(way_points.map(|(index, &point)| (Place::WayPoint(index + 1), point)))
+        core::iter::once((CoursePoint::Start, self.start.position()))
+            .chain(way_points.map(|(index, &point)| (CoursePoint::WayPoint(index + 1), point)))
     }
 }
 

@@ -42,7 +42,7 @@ pub struct Sketch {
 impl Sketch {
     /// A course to the nearest centimetre; walls that are shorter than one are left out.
     #[must_use]
-    pub fn of(course: &Course) -> Self {
+    pub fn from_course(course: &Course) -> Self {
         let walls = course.world().walls().iter();
         let walls = walls.map(|wall| [to_cm(wall.start), to_cm(wall.end)]);
         let degrees = course.start().theta().to_degrees().round() as i32;
@@ -60,7 +60,7 @@ impl Sketch {
     /// # Errors
     /// Those of [`Course::from_json`].
     pub fn from_json(text: &[u8]) -> Result<Self, CourseError> {
-        Course::from_json(text).map(|course| Self::of(&course))
+        Course::from_json(text).map(|course| Self::from_course(&course))
     }
 
     /// The course, where it can be driven.

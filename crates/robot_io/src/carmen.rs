@@ -69,7 +69,7 @@ impl LineFormat for Carmen {
         if text.is_empty() || text.starts_with('#') {
             return Ok(None);
         }
-        let mut fields = Fields::of(text);
+        let mut fields = Fields::parse(text);
         let kind = fields.word();
         let records = notes.records.len();
         if ["FLASER", "ROBOTLASER1", "RAWLASER1", "ODOM", "PARAM"].contains(&kind) {

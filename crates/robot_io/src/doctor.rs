@@ -117,7 +117,7 @@ impl Checkup {
             rate_hz: per_second(info.scans),
             valid: self.valid as f64 / self.beams.max(1) as f64,
         };
-        let odometry = info.odometry_way_m.map(|path_m| {
+        let odometry = info.odometry_path_length_m.map(|path_m| {
             let taken = notes
                 .offers
                 .iter()

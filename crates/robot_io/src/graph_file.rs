@@ -89,7 +89,7 @@ pub enum GraphError {
 
 impl GraphFile {
     /// The graph of a problem whose nodes have these ids.
-    fn of(problem: &pr_optim::Problem, id_of: impl Fn(usize) -> i64) -> Self {
+    fn from_problem(problem: &pr_optim::Problem, id_of: impl Fn(usize) -> i64) -> Self {
         let nodes = problem.poses().iter().zip(problem.fixed()).enumerate();
         let nodes = nodes.map(|(node, (pose, &fixed))| GraphNode {
             id: id_of(node),
@@ -137,7 +137,7 @@ impl GraphFile {
                 information: view.edge.information,
             });
         }
-        Self::of(&problem, |node| node as i64)
+        Self::from_problem(&problem, |node| node as i64)
     }
 
     /// Reads a graph of g2o, TORO or JSON, told apart by what stands in it.
@@ -166,7 +166,7 @@ impl GraphFile {
             problem,
         })?;
         let file = G2oFile::parse(&prepared.text).map_err(told)?;
-        Ok(Self::of(&file.problem, |node| file.id_of(node)))
+        Ok(Self::from_problem(&file.problem, |node| file.id_of(node)))
     }
 
     /// The graph in the format of g2o.

@@ -25,7 +25,7 @@ pub struct LogInfo {
     /// Scans whose stamp is not after the one before.
     pub late: usize,
     /// Length of the way by odometry, m; none without odometry.
-    pub odometry_way_m: Option<f64>,
+    pub odometry_path_length_m: Option<f64>,
     /// Longest way from one scan to the next, m.
     pub longest_step_m: f64,
     /// Largest turn from one scan to the next, degrees.
@@ -71,11 +71,11 @@ impl LogInfo {
         self.scans_with[returns] += 1;
         self.median_returns = self.median();
         if let Some(now) = frame.odometry {
-            let way_m = self.odometry_way_m.get_or_insert(0.0);
+            let path_length_m = self.odometry_path_length_m.get_or_insert(0.0);
             if let Some(last) = self.last_odometry {
                 let step = last.between(&now);
                 let step_m = math::norm2(step.x(), step.y());
-                *way_m += step_m;
+                *path_length_m += step_m;
                 self.longest_step_m = self.longest_step_m.max(step_m);
                 let turn_deg = step.theta().abs().to_degrees();
                 self.largest_turn_deg = self.largest_turn_deg.max(turn_deg);
@@ -117,7 +117,7 @@ mod tests {
         }
         assert_eq!((info.scans, info.late, info.median_returns), (3, 1, 3));
         assert_eq!((info.duration_s, info.longest_return_m), (1.0, 3.0));
-        assert_eq!(info.odometry_way_m, Some(1.0));
+        assert_eq!(info.odometry_path_length_m, Some(1.0));
         assert!((info.field_of_view_deg - 180.0).abs() < 1e-12);
     }
 }

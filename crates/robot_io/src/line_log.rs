@@ -6,7 +6,7 @@
 use std::io::BufRead;
 
 use crate::lines::{LineEnd, next_line};
-use crate::log::{BrokenRecord, LogError, LogFrame, LogNotes, LogReader, Place};
+use crate::log::{BrokenRecord, FilePosition, LogError, LogFrame, LogNotes, LogReader};
 
 /// What the lines of a format mean, one after the other.
 pub trait LineFormat: Default {
@@ -106,7 +106,7 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
             let read =
                 next_line(&mut self.source, &mut self.line).map_err(|source| LogError::Io {
                     name: self.name.clone(),
-                    place: Place::Line(self.notes.lines + 1),
+                    place: FilePosition::Line(self.notes.lines + 1),
                     source,
                 })?;
             let Some((end, bytes)) = read else {
@@ -115,7 +115,7 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
             };
             self.notes.lines += 1;
             self.notes.bytes += bytes;
-            let place = Place::Line(self.notes.lines);
+            let place = FilePosition::Line(self.notes.lines);
             let taken = if end == LineEnd::TooLong {
                 Err("a line has to be shorter than 4 MB".to_owned())
             } else {

@@ -94,14 +94,14 @@ impl LocalizeRun {
         self.refused
     }
 
-    /// The poses that are believed, in the frame of the session's map.
+    /// The poses that are localized, in the frame of the session's map.
     #[must_use]
     pub fn trajectory(&self) -> Trajectory {
-        let believed = self
+        let localized = self
             .reports
             .iter()
-            .filter(|report| report.verdict.is_believed());
-        let poses = believed.filter_map(|report| {
+            .filter(|report| report.verdict.is_localized());
+        let poses = localized.filter_map(|report| {
             report.pose.map(|pose| StampedPose {
                 stamp_s: report.stamp_s,
                 pose,

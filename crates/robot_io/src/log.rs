@@ -12,14 +12,14 @@ use crate::remark::Remark;
 
 /// A place in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePosition {
     /// Number of the line, counted from 1.
     Line(usize),
     /// Bytes before it, or before the end of the record that it is in.
     Byte(u64),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(line) => write!(f, "line {line}"),
@@ -112,7 +112,7 @@ pub struct LogOffer {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BrokenRecord {
     /// Where it is.
-    pub place: Place,
+    pub place: FilePosition,
     /// What was expected, and what stands there.
     pub problem: String,
 }
@@ -151,8 +151,8 @@ impl LogNotes {
         let mut said = Vec::new();
         if let Some(first) = &self.first_broken {
             let thing = match first.place {
-                Place::Line(_) => "line",
-                Place::Byte(_) => "record",
+                FilePosition::Line(_) => "line",
+                FilePosition::Byte(_) => "record",
             };
             let count = match self.broken {
                 1 => format!("one {thing} was left out"),
@@ -160,7 +160,7 @@ impl LogNotes {
             };
             let rest = self.ended_early.as_ref();
             let rest = rest.map_or(String::new(), |rest| format!("; {rest}"));
-            let at = if first.place == Place::Byte(0) || thing == "line" {
+            let at = if first.place == FilePosition::Byte(0) || thing == "line" {
                 "is"
             } else {
                 "ends at"
@@ -172,11 +172,11 @@ impl LogNotes {
         }
         if let Some(last) = &self.half_written {
             said.push(match last.place {
-                Place::Line(line) => format!(
+                FilePosition::Line(line) => format!(
                     "{name}: the last line, {line}, is half written and was left out: {}",
                     last.problem
                 ),
-                Place::Byte(byte) => format!(
+                FilePosition::Byte(byte) => format!(
                     "{name}: the file is cut off at byte {byte}, and what stood there was left out: {}",
                     last.problem
                 ),
@@ -187,7 +187,7 @@ impl LogNotes {
         said
     }
 
-    pub(crate) fn leave_out(&mut self, place: Place, problem: String) {
+    pub(crate) fn leave_out(&mut self, place: FilePosition, problem: String) {
         self.broken += 1;
         if self.first_broken.is_none() {
             self.first_broken = Some(BrokenRecord { place, problem });
@@ -204,7 +204,7 @@ pub enum LogError {
         /// The log's name.
         name: String,
         /// Where it happened.
-        place: Place,
+        place: FilePosition,
         /// What the system says.
         source: io::Error,
     },

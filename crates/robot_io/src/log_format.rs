@@ -3,7 +3,7 @@
 use crate::carmen::CarmenReader;
 use crate::json_log::JsonLogReader;
 use crate::laser_mount::PlacedReader;
-use crate::log::{LogError, LogOptions, LogReader, Place};
+use crate::log::{FilePosition, LogError, LogOptions, LogReader};
 use crate::log_bytes::{LogBytes, packs};
 use crate::restamped::restamped;
 use crate::ros::RosReader;
@@ -110,7 +110,7 @@ impl LogFormat {
     ) -> Result<Box<dyn LogReader + 'a>, LogError> {
         let io = |source| LogError::Io {
             name: name.to_owned(),
-            place: Place::Byte(0),
+            place: FilePosition::Byte(0),
             source,
         };
         let Some(first) = parts.first().cloned() else {

@@ -86,7 +86,7 @@ pub struct LinkQuality {
 
 impl Quality {
     /// The quality of the graph as it is; nothing where there is none.
-    pub(crate) fn of(
+    pub(crate) fn new(
         slam: Option<&mut Slam>,
         tried: &[TriedLoop],
         links: &[LoopVerification],
@@ -121,13 +121,13 @@ impl Quality {
             });
         }
         quality.refuted_ways = refuted_ways(&tests);
-        quality.doubts = doubts::of(&quality, &doubts::disputed(slam, tried), poor);
+        quality.doubts = doubts::sentences(&quality, &doubts::disputed(slam, tried), poor);
         quality
     }
 
     /// Length of the way over the keyframes, m.
     #[must_use]
-    pub fn way_m(&self) -> f64 {
+    pub fn path_length_m(&self) -> f64 {
         let steps = self.keyframes.windows(2);
         let steps = steps.map(|two| {
             let [[ax, ay, _], [bx, by, _]] = [two[0].pose, two[1].pose];

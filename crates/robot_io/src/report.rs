@@ -75,7 +75,7 @@ impl Report<'_> {
                  in the graph at the end: {}.</p>",
                 counted(self.scans, "scan"),
                 counted(quality.keyframes.len(), "keyframe"),
-                quality.way_m(),
+                quality.path_length_m(),
                 quality.tried.len(),
                 closed.clone().count(),
                 quality.links.len()

@@ -98,7 +98,7 @@ fn mended_stamps(stamps_s: &[f64]) -> Option<MendedStamps> {
     if !moved.windows(2).any(is_late) {
         return None;
     }
-    let mut mended = MendedStamps::of(&moved, &[]);
+    let mut mended = MendedStamps::new(&moved, &[]);
     if mended.is_unchanged() && mended.swapped == 0 {
         return None;
     }

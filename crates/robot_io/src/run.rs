@@ -259,7 +259,7 @@ impl LogRun {
         let graph = slam.map(Slam::graph);
         Some(Session {
             driven: self.pipeline.driven()?,
-            mapped: graph.map(MappedGraph::of),
+            mapped: graph.map(MappedGraph::from_graph),
             places: places_kept(self.pipeline.scans()),
             sensor: self.sensor.clone(),
             last_odometry: self.pipeline.last_odometry(),
@@ -268,7 +268,7 @@ impl LogRun {
 
     /// What is known of the map's quality.
     pub fn quality(&mut self) -> Quality {
-        Quality::of(
+        Quality::new(
             self.pipeline.slam_mut(),
             &self.loops,
             &self.links,

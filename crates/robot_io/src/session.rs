@@ -31,7 +31,7 @@ use bytes::{Cursor, Writer};
 /// The first bytes of a session.
 pub const MAGIC: [u8; 8] = *b"SLAM2D\r\n";
 /// The version that is written and read; version 1 belongs to an estimator that is no more.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 /// The usual name of a session in the folder of a run.
 pub const FILE_NAME: &str = "session.slam2d";
 /// Larger files are refused before they are read, bytes: 150,000 keyframes.
@@ -89,7 +89,7 @@ pub struct MappedGraph {
 impl MappedGraph {
     /// What refinement changes of a graph; its loops are numbered from 0.
     #[must_use]
-    pub fn of(graph: &PoseGraph) -> Self {
+    pub fn from_graph(graph: &PoseGraph) -> Self {
         let loops = graph
             .edges()
             .filter(|view| view.edge.kind == EdgeKind::Loop);
@@ -127,8 +127,8 @@ impl Session {
     pub fn graph(&self) -> PoseGraph {
         let jacobians = self.driven.config.jacobians;
         let Some(mapped) = &self.mapped else {
-            let mut graph = PoseGraph::of(&self.driven.nodes, &self.driven.edges);
-            graph.settle(self.driven.settled_edges);
+            let mut graph = PoseGraph::from_parts(&self.driven.nodes, &self.driven.edges);
+            graph.mark_optimized(self.driven.optimized_edges);
             return graph.solved_with(jacobians);
         };
         let poses = self.driven.nodes.iter().zip(&mapped.poses);
@@ -137,9 +137,9 @@ impl Session {
             .collect();
         let edges = self.driven.edges.iter();
         let driven = edges.filter(|view| view.edge.kind == EdgeKind::Odometry);
-        let mut graph = PoseGraph::of(&nodes, driven.chain(&mapped.loops));
+        let mut graph = PoseGraph::from_parts(&nodes, driven.chain(&mapped.loops));
         // The map was optimized after its last loop.
-        graph.settle(graph.edge_count());
+        graph.mark_optimized(graph.edge_count());
         graph.solved_with(jacobians)
     }
 
@@ -282,7 +282,7 @@ impl Session {
                 .map(|(node, &pose)| PoseNode { pose, ..*node })
                 .collect(),
             edges: mapped.loops.clone(),
-            settled_edges: mapped.loops.len(),
+            optimized_edges: mapped.loops.len(),
             ..self.driven.clone()
         };
         as_driven

@@ -61,12 +61,12 @@ pub const SETTINGS: &[Setting] = &[
         "radius for normals in the local map",
     ),
     setting(
-        "reach_m",
+        "max_correspondence_m",
         "m",
         "largest distance of a pair in the first stage",
     ),
     setting(
-        "fit_m",
+        "inlier_distance_m",
         "m",
         "the same in the last stage, and of a point that fits",
     ),
@@ -144,7 +144,7 @@ pub const SETTINGS: &[Setting] = &[
         "lead that it needs over the best other place",
     ),
     setting(
-        "loops.sure_m",
+        "loops.unconfirmed_gate_radius_m",
         "m",
         "half width of a window within which it needs no other loop",
     ),
@@ -277,12 +277,12 @@ mod tests {
     #[test]
     fn what_cannot_be_set_is_refused_in_a_sentence() {
         assert!(Setting::named("radius").is_err());
-        let reach = Setting::named("reach_m").unwrap();
+        let reach = Setting::named("max_correspondence_m").unwrap();
         assert!(reach.set(&RobotConfig::default(), f64::NAN).is_err());
         let said = reach.set(&RobotConfig::default(), -1.0).unwrap_err();
         assert_eq!(
             said.to_string(),
-            "reach_m has to be a finite number that is not negative, not -1"
+            "max_correspondence_m has to be a finite number that is not negative, not -1"
         );
     }
 }

@@ -61,7 +61,7 @@ impl MendedStamps {
     /// Mends the stamps (s) of messages in the order of the file; `recorded_s` is when each was recorded,
     /// NaN where the file does not say. A stamp that is not above zero was not set.
     #[must_use]
-    pub fn of(stamps_s: &[f64], recorded_s: &[f64]) -> Self {
+    pub fn new(stamps_s: &[f64], recorded_s: &[f64]) -> Self {
         // Times of recording that are all the same say nothing.
         let is_same = recorded_s.windows(2).all(|two| two[0] == two[1]);
         let recorded_s = if is_same && recorded_s.len() > 1 {

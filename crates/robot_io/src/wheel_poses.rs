@@ -47,7 +47,7 @@ impl WheelPoses {
     /// Also returns the stamps at which odometry jumped, as where it started again at zero: what follows is moved
     /// back, so that the path goes on.
     #[must_use]
-    pub fn of(mut poses: Vec<(f64, SE2)>, period_s: f64) -> (Self, Vec<f64>) {
+    pub fn new(mut poses: Vec<(f64, SE2)>, period_s: f64) -> (Self, Vec<f64>) {
         poses.sort_by(|a, b| a.0.total_cmp(&b.0));
         poses.dedup_by(|later, first| later.0 <= first.0);
         let jumps = take_jumps_out(&mut poses);
@@ -177,7 +177,7 @@ mod tests {
     fn odometry_that_starts_again_goes_on_where_it_was() {
         let pose = |k: u32| SE2::translation(5.0 + 0.1 * f64::from(k % 30), 0.0);
         let poses = (0..60).map(|k| (0.1 * f64::from(k), pose(k)));
-        let (wheels, jumps) = WheelPoses::of(poses.collect(), 0.1);
+        let (wheels, jumps) = WheelPoses::new(poses.collect(), 0.1);
         assert_eq!(jumps.len(), 1);
         // 29 steps before and 29 after it.
         assert!((wheels.at(5.9).unwrap().x() - 10.8).abs() < 1e-9);

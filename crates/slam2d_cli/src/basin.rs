@@ -106,7 +106,7 @@ pub fn run(args: &BasinArgs) {
             pose: outcome.pose.to_array(),
             iterations: outcome.iterations,
             converged: outcome.stop.converged(),
-            rmse: outcome.rmse.is_finite().then_some(outcome.rmse),
+            rmse: outcome.rmse_m.is_finite().then_some(outcome.rmse_m),
             inliers: outcome.inliers,
             error_m: outcome.error_m,
             error_deg: outcome.error_deg,
@@ -137,7 +137,7 @@ pub fn run(args: &BasinArgs) {
             outcome.minimum.name(),
             outcome.error_m,
             outcome.error_deg,
-            outcome.rmse,
+            outcome.rmse_m,
             outcome.inliers,
             outcome.iterations,
             match outcome.stop {

@@ -75,7 +75,7 @@ enum Kind {
 }
 
 impl Kind {
-    fn of(extension: &str) -> Self {
+    fn from_extension(extension: &str) -> Self {
         match extension {
             "clf" | "log" | "mcap" | "bag" | "jsonl" => Self::Log,
             "g2o" | "graph" | "toro" | "json" => Self::Graph,
@@ -113,7 +113,7 @@ struct PoseJson {
 /// Where a file cannot be used, or one does not become the other.
 pub fn run(args: &ConvertArgs) -> Result<(), ConvertError> {
     let [from, to] = [&args.input, &args.output].map(|path| extension(path));
-    let kind = match Kind::of(&from) {
+    let kind = match Kind::from_extension(&from) {
         // The folder of a run is its session.
         Kind::Other if args.input.is_dir() && is_session(&args.input) => Kind::Session,
         kind => kind,

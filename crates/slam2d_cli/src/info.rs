@@ -101,8 +101,8 @@ pub fn run(args: &InfoArgs) -> Result<(), InfoError> {
             format!("{} are not after the one before", info.late)
         }
     );
-    match info.odometry_way_m {
-        Some(way_m) => say!("odometry         {way_m:.1} m"),
+    match info.odometry_path_length_m {
+        Some(path_length_m) => say!("odometry         {path_length_m:.1} m"),
         None => say!("odometry         none"),
     }
     Ok(())

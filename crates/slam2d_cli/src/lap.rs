@@ -1,6 +1,6 @@
 //! `slam2d lap`: a lap at one seed and noise factor, through the Apartment or another world.
 
-mod ancestor;
+mod incremental;
 mod laps;
 
 use std::fs::File;
@@ -170,14 +170,14 @@ pub fn run(args: &LapArgs) -> Result<(), LapError> {
             source,
         })?;
     }
-    if let LapEstimator::Ancestor(ancestor) = args.estimator {
+    if let LapEstimator::IncrementalKind(ancestor) = args.estimator {
         if let Some(argument) = args.trial.of_the_graph() {
             return Err(LapError::OfTheGraph {
                 argument,
                 estimator: args.estimator.name(),
             });
         }
-        ancestor::print(ancestor, &config, args);
+        incremental::print(ancestor, &config, args);
         return Ok(());
     }
     let record = LapRunner::new().run(&config);

@@ -42,7 +42,7 @@ pub struct LocalizeArgs {
     /// Leave the wheels out: scans alone.
     #[arg(long)]
     no_odometry: bool,
-    /// Write the poses that are believed into this file, in the TUM format.
+    /// Write the poses that are localized into this file, in the TUM format.
     #[arg(short = 'o', long, value_name = "FILE.tum")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -119,7 +119,7 @@ struct LocalizeJson {
     tracking: usize,
     doubtful: usize,
     lost: usize,
-    /// Time of the first scan whose pose is believed, s.
+    /// Time of the first scan whose pose is localized, s.
     first_found_s: Option<f64>,
     cpu_s: f64,
     peak_mb: Option<f64>,
@@ -142,7 +142,7 @@ struct PoseJson {
 }
 
 impl PoseJson {
-    fn of(report: &LocalizeReport) -> Self {
+    fn from_report(report: &LocalizeReport) -> Self {
         let rows = |m: pr_geom::Matrix3<f64>| {
             core::array::from_fn(|i| core::array::from_fn(|j| m[(i, j)]))
         };
@@ -227,19 +227,19 @@ pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
             .filter(|report| report.verdict == verdict)
             .count()
     };
-    let believed = trajectory.poses().first();
+    let localized = trajectory.poses().first();
     let result = LocalizeJson {
         scans: reports.len(),
         found: count(Verdict::Found),
         tracking: count(Verdict::Tracking),
         doubtful: count(Verdict::Doubtful),
         lost: count(Verdict::Lost),
-        first_found_s: believed.map(|first| first.stamp_s),
+        first_found_s: localized.map(|first| first.stamp_s),
         cpu_s: process::cpu_s(),
         peak_mb: process::peak_mb(),
         relations: of(true),
         truth: of(false),
-        poses: reports.iter().map(PoseJson::of).collect(),
+        poses: reports.iter().map(PoseJson::from_report).collect(),
     };
     if args.json {
         print_json(&result);
@@ -275,7 +275,7 @@ fn print_text(result: &LocalizeJson, reports: &[LocalizeReport]) {
     }
     say!("scans            {}", result.scans);
     say!(
-        "poses            {} believed, {} doubtful, {} lost",
+        "poses            {} localized, {} doubtful, {} lost",
         result.found + result.tracking,
         result.doubtful,
         result.lost

@@ -58,7 +58,7 @@ fn heights(text: &str) -> Result<(f64, f64), String> {
 
 impl TopicArgs {
     /// The same choice for a log that goes on with a session whose laser sits so.
-    pub fn going_on_with(&self, laser: Option<LaserMount>) -> Self {
+    pub fn resuming_with(&self, laser: Option<LaserMount>) -> Self {
         Self {
             laser_before: laser,
             ..self.clone()

@@ -185,7 +185,7 @@ impl Bench {
         Row {
             log: self.name.clone(),
             measure,
-            path_m: quality.way_m(),
+            path_m: quality.path_length_m(),
             error_m: [
                 self.error_m(&trajectory),
                 self.error_m(&worse.trajectory()),

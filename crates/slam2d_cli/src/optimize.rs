@@ -15,7 +15,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 pub use self::args::OptimizeArgs;
-use self::robust::Believed;
+use self::robust::InlierCounts;
 use self::solve::solve_repeatedly;
 use self::tried::{Tried, start_name};
 pub use self::whole_file::{WholeFile, check_file, check_folder, write_whole};
@@ -97,9 +97,9 @@ struct Summary {
     stop: String,
     /// Every start that was looked at, in this order.
     tried: Vec<Tried>,
-    /// What `--robust` believed; χ² is that of the measurements that are.
+    /// What `--robust` inliers; χ² is that of the measurements that are.
     #[serde(skip_serializing_if = "Option::is_none")]
-    robust: Option<Believed>,
+    robust: Option<InlierCounts>,
     cpu_ms: f64,
     cpu_ms_first: f64,
 }
@@ -166,7 +166,7 @@ fn solve_file(args: &OptimizeArgs) -> Result<(G2oFile, Summary), OptimizeFailure
         cost: report.cost,
         stop: report.stop.to_string(),
         tried: solved.outcome.tried.iter().map(Tried::from).collect(),
-        robust: solved.believed,
+        robust: solved.inliers,
         cpu_ms: solved.best_ms,
         cpu_ms_first: solved.first_ms,
     };
@@ -221,11 +221,8 @@ fn print_summary(summary: &Summary, args: &OptimizeArgs) {
     if args.kernel.0 != RobustKernel::None {
         say!("cost          {:.6}, by the kernel", summary.cost);
     }
-    if let Some(Believed {
-        loops, believed, ..
-    }) = summary.robust
-    {
-        say!("believed      {believed} of {loops} loops");
+    if let Some(InlierCounts { loops, inliers, .. }) = summary.robust {
+        say!("inliers      {inliers} of {loops} loops");
     }
     say!("stop          {}", summary.stop);
     say!(

@@ -100,7 +100,7 @@ pub fn run(args: &RegisterArgs) -> Result<(), RegisterFailure> {
     };
     let config = IcpConfig {
         variant,
-        tau: args.tau,
+        tau_m: args.tau,
         ..IcpConfig::default()
     };
     let needs_normals = variant == IcpVariant::PointToPlane && !map_points.has_normals();
@@ -129,7 +129,7 @@ pub fn run(args: &RegisterArgs) -> Result<(), RegisterFailure> {
             pose: found.pose.to_array(),
             iterations: found.iterations,
             converged: found.stop.converged(),
-            rmse: found.rmse.is_finite().then_some(found.rmse),
+            rmse: found.rmse_m.is_finite().then_some(found.rmse_m),
             inliers: found.inliers,
             us,
             us_build,
@@ -138,8 +138,8 @@ pub fn run(args: &RegisterArgs) -> Result<(), RegisterFailure> {
     }
     say!("pose        {}", pose(&found.pose));
     say!("pairs       {} of {}", found.inliers, scan.len());
-    if found.rmse.is_finite() {
-        say!("rmse        {:.5} m", found.rmse);
+    if found.rmse_m.is_finite() {
+        say!("rmse        {:.5} m", found.rmse_m);
     } else {
         say!("rmse        none, without pairs");
     }
@@ -155,8 +155,8 @@ fn why(stop: &StopReason) -> String {
         StopReason::SmallStep { step, tolerance } => {
             format!("converged: the last step, {step:.1e}, is below {tolerance:.1e}")
         }
-        StopReason::IterationLimit { max_iters } => {
-            format!("not converged after {max_iters} iterations")
+        StopReason::IterationLimit { max_iterations } => {
+            format!("not converged after {max_iterations} iterations")
         }
         StopReason::TooFewPairs { pairs, min_pairs } => format!(
             "too few pairs within tau: {pairs} where {min_pairs} are needed; \

@@ -140,7 +140,7 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
         })?;
     }
     let (mut run, mut recorder, laser_before) = start(args)?;
-    let topics = args.topics.going_on_with(laser_before);
+    let topics = args.topics.resuming_with(laser_before);
     let (reader, mut progress) = open_compared(&args.log, &topics)?;
     let mut reader = reader.for_scans_alone(args.no_odometry);
     let mut broken = None;

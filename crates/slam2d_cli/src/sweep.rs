@@ -9,7 +9,7 @@ mod shard;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use ch16_lab::ancestor::Ancestor;
+use ch16_lab::incremental::IncrementalKind;
 use ch16_lab::lap::{Choice, LapEstimator, LapRunner};
 use ch16_lab::results::{Column, LapOutcome, LapStatistics};
 use clap::Args;
@@ -199,7 +199,7 @@ fn print(args: &SweepArgs, by_seed: &[Vec<LapOutcome>]) {
 }
 
 /// A part of a sweep has no distribution of its own: it says where its rows are.
-fn say_driven(driven: &shard::Driven, path: &Path, json: bool) {
+fn say_driven(driven: &shard::ShardResult, path: &Path, json: bool) {
     let file = path.display();
     if json {
         print_json(&serde_json::json!({
@@ -255,13 +255,13 @@ impl SweepArgs {
             Column::WithLoops => self.has(LapEstimator::Graph),
             Column::MaximumLikelihood | Column::MaximumLikelihoodCycles => self
                 .ancestors()
-                .any(|ancestor| Column::of_ancestor(ancestor) == column),
+                .any(|ancestor| Column::of_incremental(ancestor) == column),
         }
     }
 
-    fn ancestors(&self) -> impl Iterator<Item = Ancestor> + '_ {
-        let all = Ancestor::ALL.into_iter();
-        all.filter(|&ancestor| self.has(LapEstimator::Ancestor(ancestor)))
+    fn ancestors(&self) -> impl Iterator<Item = IncrementalKind> + '_ {
+        let all = IncrementalKind::ALL.into_iter();
+        all.filter(|&ancestor| self.has(LapEstimator::IncrementalKind(ancestor)))
     }
 
     fn outcome(&self, runner: &mut LapRunner, trial: &Trial, seed: u32, noise: f64) -> LapOutcome {
@@ -270,9 +270,9 @@ impl SweepArgs {
             config = config.without_loops();
         }
         let record = runner.run(&config);
-        let outcome = LapOutcome::of(&record);
+        let outcome = LapOutcome::from_record(&record);
         self.ancestors().fold(outcome, |outcome, ancestor| {
-            outcome.with_ancestor(ancestor, &record)
+            outcome.with_incremental(ancestor, &record)
         })
     }
 }

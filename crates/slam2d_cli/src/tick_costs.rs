@@ -38,14 +38,14 @@ impl TickCosts {
     pub fn summary(&self) -> Option<TickSummary> {
         let tenth = self.ms.len() / 10;
         (tenth > 0).then(|| TickSummary {
-            first: Tenth::of(&self.ms[..tenth]),
-            last: Tenth::of(&self.ms[self.ms.len() - tenth..]),
+            first: Tenth::from_ticks(&self.ms[..tenth]),
+            last: Tenth::from_ticks(&self.ms[self.ms.len() - tenth..]),
         })
     }
 }
 
 impl Tenth {
-    fn of(ticks_ms: &[f64]) -> Self {
+    fn from_ticks(ticks_ms: &[f64]) -> Self {
         let mut sorted = ticks_ms.to_vec();
         sorted.sort_by(f64::total_cmp);
         Self {

@@ -335,7 +335,7 @@ fn wrong_arguments_end_in_one_line_and_exit_code_2() {
         (&["optimize", "a.g2o", "--kernel", "cauchy:1"], "dcs:PHI"),
         (&["optimize", "a.g2o", "--init", "zero"], "zero"),
         (&["optimize", "a.g2o", "--method", "sgd"], "sgd"),
-        (&["optimize", "a.g2o", "--max-iters", "-1"], "-1"),
+        (&["optimize", "a.g2o", "--max-iterations", "-1"], "-1"),
         (&["optimize", "a.g2o", "--tolerance", "nan"], "finite"),
         (&["optimize", "a.g2o", "--tolerance", "-1"], "0 to 1"),
         (&["optimize", "a.g2o", "--repeat", "0"], "0"),

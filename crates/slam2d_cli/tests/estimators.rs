@@ -79,7 +79,7 @@ fn what_says_nothing_to_an_estimator_is_refused() {
 }
 
 #[test]
-fn the_estimator_for_logs_drives_another_lap_and_is_no_matter_of_the_ancestor() {
+fn the_estimator_for_logs_drives_another_lap_and_is_not_of_incremental_mapping() {
     let window = json(&["lap", "--json"]);
     let said = json(&["lap", "--front-end", "window", "--json"]);
     assert_eq!(window["digest"], said["digest"]);

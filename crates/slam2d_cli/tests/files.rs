@@ -139,9 +139,15 @@ fn a_log_in_another_format_has_the_same_frames() {
     runs(&["convert", &recording("lz4.mcap"), &tum]);
     let facts = |log: &str| {
         let info = json(&["info", log, "--json"]);
-        ["scans", "most_beams", "median_returns", "odometry_way_m"].map(|name| info[name].clone())
+        [
+            "scans",
+            "most_beams",
+            "median_returns",
+            "odometry_path_length_m",
+        ]
+        .map(|name| info[name].clone())
     };
-    let [scans, beams, returns, way_m] = facts(&recording("lz4.mcap"));
+    let [scans, beams, returns, path_length_m] = facts(&recording("lz4.mcap"));
     for log in [&carmen, &lines] {
         let [other_scans, other_beams, other_returns, other_m] = facts(log);
         assert_eq!(
@@ -149,7 +155,7 @@ fn a_log_in_another_format_has_the_same_frames() {
             (&other_scans, &other_beams, &other_returns)
         );
         // 1e-9: the shortest text of a number reads back to its bits.
-        assert!((way_m.as_f64().unwrap() - other_m.as_f64().unwrap()).abs() < 1e-9);
+        assert!((path_length_m.as_f64().unwrap() - other_m.as_f64().unwrap()).abs() < 1e-9);
     }
     assert_eq!(fs::read_to_string(&tum).unwrap().lines().count(), 24);
     let poses = in_folder(&folder, "poses.json");

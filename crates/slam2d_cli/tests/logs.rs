@@ -194,7 +194,7 @@ fn what_is_in_a_log_is_told() {
         (&Value::from(5), &Value::from(90))
     );
     assert_eq!(info["records"]["FLASER"], 5);
-    assert!((info["odometry_way_m"].as_f64().unwrap() - 0.44).abs() < 1e-9);
+    assert!((info["odometry_path_length_m"].as_f64().unwrap() - 0.44).abs() < 1e-9);
 }
 
 #[test]

@@ -177,10 +177,13 @@ fn a_log_is_found_on_the_map_of_a_session() {
         ];
         let run = json(&[&arguments[..], init].concat());
         let count = |name: &str| run[name].as_u64().unwrap();
-        let believed = count("found") + count("tracking");
-        assert_eq!(believed + count("doubtful") + count("lost"), count("scans"));
-        assert!(2 * believed > count("scans"), "{init:?}: {believed}");
-        assert_eq!(lines(Path::new(&found)).len() as u64, believed);
+        let localized = count("found") + count("tracking");
+        assert_eq!(
+            localized + count("doubtful") + count("lost"),
+            count("scans")
+        );
+        assert!(2 * localized > count("scans"), "{init:?}: {localized}");
+        assert_eq!(lines(Path::new(&found)).len() as u64, localized);
         // The log is the one that the map was made of. 0.1: between keyframes a scan stands where the front
         // end put it, and that slides along the corridor by up to 0.2 m.
         let ate = &run["truth"]["ate"];
@@ -194,7 +197,7 @@ fn a_log_is_found_on_the_map_of_a_session() {
     }
     let said = String::from_utf8(slam2d(&["localize", &folder, &log]).stdout).unwrap();
     assert!(
-        said.contains("found at ") && said.contains("believed, "),
+        said.contains("found at ") && said.contains("localized, "),
         "{said}"
     );
     for (arguments, said) in [

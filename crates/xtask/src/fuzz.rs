@@ -1,6 +1,6 @@
 //! `cargo xtask fuzz`: every door from outside under libFuzzer, one after the other, by cargo-fuzz.
 //!
-//! The doors are functions in `tests/doors`; `fuzz/` gives each a target. What a run finds new goes
+//! The doors are functions in `tests/fuzz_targets`; `fuzz/` gives each a target. What a run finds new goes
 //! to `target/fuzz/corpus`, what makes a door panic to `fuzz/artifacts`.
 
 use std::fs;

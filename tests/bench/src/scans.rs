@@ -43,7 +43,7 @@ impl Basin {
     fn add_to(&self, digest: &mut Digest) {
         for outcome in &self.outcomes {
             digest.add_pose(&outcome.pose);
-            digest.add_all(&[outcome.error_m, outcome.error_deg, outcome.rmse]);
+            digest.add_all(&[outcome.error_m, outcome.error_deg, outcome.rmse_m]);
             digest.add_bits(outcome.inliers as u64);
             digest.add_bits(outcome.iterations as u64);
         }

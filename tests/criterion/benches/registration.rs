@@ -29,7 +29,7 @@ pub fn register(c: &mut Criterion) {
     for (name, variant) in VARIANTS {
         let config = IcpConfig {
             variant,
-            tau: 2.0 * CELL_M,
+            tau_m: 2.0 * CELL_M,
             ..IcpConfig::default()
         };
         c.bench_function(&format!("register 720 on 5000 points {name}"), |b| {

@@ -30,7 +30,7 @@ impl Widgets {
                 .unwrap_or_else(|error| panic!("{id}: {error}"));
         }
         // A lap is driven in pieces between frames; here nobody draws any.
-        model.settle();
+        model.finish_work();
         model
     }
 }

@@ -166,7 +166,7 @@ fn given(names: Vec<String>, sizes: &[f64], read: &Function) -> Result<Given<'st
             bytes: LogBytes::new(open),
         }
     });
-    Given::of(files.collect())
+    Given::new(files.collect())
 }
 
 fn to_js(update: &Update) -> JsValue {

@@ -50,7 +50,7 @@ impl<'a> Given<'a> {
     ///
     /// # Errors
     /// One sentence if a file is missing or cannot be read.
-    pub fn of(files: Vec<GivenFile<'a>>) -> Result<Self, String> {
+    pub fn new(files: Vec<GivenFile<'a>>) -> Result<Self, String> {
         let names: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
         let described = names.iter().position(|name| name == rosbag2::METADATA);
         let mut metadata = None;

@@ -18,7 +18,7 @@ use crate::given::{Choices, Given, compared};
 use crate::update::Update;
 
 /// Share done, whether it is over, and the scans of each verdict: found, tracking, doubtful, lost; then
-/// the first scan that is believed, counted from 0, NaN where none is.
+/// the first scan that is localized, counted from 0, NaN where none is.
 pub const HEAD: usize = 7;
 /// Number of the scan, stamp (s), x, y (m), θ (rad), verdict, share that fits, then the half axes of the
 /// 1σ ellipse, long and short (m), and the heading of the long one (rad); NaN where there is none.
@@ -124,12 +124,12 @@ impl<'a> Whereabouts<'a> {
         self.is_new = true;
     }
 
-    /// The poses that are believed, on the map as it is now.
+    /// The poses that are localized, on the map as it is now.
     #[must_use]
     pub fn trajectory(&self, map: &[SE2]) -> Trajectory {
         let placed = self.run.reports().iter().zip(&self.places);
-        let believed = placed.filter(|(report, _)| report.verdict.is_believed());
-        let poses = believed.filter_map(|(report, place)| {
+        let localized = placed.filter(|(report, _)| report.verdict.is_localized());
+        let poses = localized.filter_map(|(report, place)| {
             Some(StampedPose {
                 stamp_s: report.stamp_s,
                 pose: place.and_then(|place| on(map, place))?,
@@ -151,7 +151,7 @@ impl<'a> Whereabouts<'a> {
         };
         let first = reports
             .iter()
-            .position(|report| report.verdict.is_believed());
+            .position(|report| report.verdict.is_localized());
         let mut numbers = vec![
             self.share(),
             f64::from(u8::from(self.is_over)),

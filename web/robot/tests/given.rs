@@ -27,14 +27,14 @@ fn the_files_of_a_folder_are_one_recording_in_the_order_of_its_metadata() {
             file("b_1.db3", "11"),
         ]
     };
-    let given = Given::of(folder(listed)).unwrap();
+    let given = Given::new(folder(listed)).unwrap();
     assert_eq!(
         (given.name.as_str(), given.size_bytes),
         ("b_1.db3 and 1 more", 3)
     );
-    let given = Given::of(folder("")).unwrap();
+    let given = Given::new(folder("")).unwrap();
     assert_eq!(given.name, "b_0.db3 and 1 more");
-    let missing = Given::of(folder("relative_file_paths:\n  - b_2.db3\n"))
+    let missing = Given::new(folder("relative_file_paths:\n  - b_2.db3\n"))
         .err()
         .unwrap();
     assert!(
@@ -43,7 +43,9 @@ fn the_files_of_a_folder_are_one_recording_in_the_order_of_its_metadata() {
     );
     // Alone it is for the reader of logs to refuse.
     assert_eq!(
-        Given::of(vec![file("metadata.yaml", listed)]).unwrap().name,
+        Given::new(vec![file("metadata.yaml", listed)])
+            .unwrap()
+            .name,
         "metadata.yaml"
     );
 }

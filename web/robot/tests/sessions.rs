@@ -201,7 +201,7 @@ fn a_start_that_is_given_is_where_the_robot_is_looked_for() {
     let mut engine = opened(&session);
     let told = look(&mut engine, &day, StartPose::Anywhere);
     let places: Vec<&[f64]> = told.numbers[HEAD..].chunks(PLACE).collect();
-    // The best place of the whole map at the first scan, believed or not.
+    // The best place of the whole map at the first scan, localized or not.
     let found = places.iter().find(|place| place[2].is_finite()).unwrap();
     let at = SE2::new(found[2], found[3], found[4]);
     // Three metres beside it nobody is found at the first scan; there one is.

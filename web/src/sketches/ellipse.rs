@@ -65,7 +65,7 @@ fn known(world_from_body: &SE2) -> Known {
     before.estimate_normals(NORMAL_RADIUS_M);
     let now = samples::sweep(world_from_body, BEAMS, &mut rng);
     let config = IcpConfig::default();
-    let map = DenseMap::from_cloud(&before, config.tau, usize::MAX);
+    let map = DenseMap::from_cloud(&before, config.tau_m, usize::MAX);
     let mut pairs = correspondences(&now, &map, SE2::identity(), &config);
     // Point to plane leaves out what has no normal.
     pairs.retain(|pair| pair.normal.is_some());

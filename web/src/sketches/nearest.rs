@@ -140,7 +140,7 @@ struct Grown {
 }
 
 impl Grown {
-    fn of(count: usize) -> Self {
+    fn with_count(count: usize) -> Self {
         let mut map = VoxelMap::new(TAU_M, MOST_IN_A_CELL);
         sweeps()
             .iter()
@@ -196,7 +196,7 @@ fn block() -> Bounds {
 
 fn at(sweeps: f64) -> Shown {
     let count = sweeps as usize;
-    let grown = Grown::of(count);
+    let grown = Grown::with_count(count);
     let compared = grown.compared();
     let (_, asked) = grown.tree.nearest(QUERY);
     Shown {
@@ -292,7 +292,7 @@ mod tests {
 
     #[test]
     fn the_tree_finds_what_the_map_finds() {
-        let grown = Grown::of(20);
+        let grown = Grown::with_count(20);
         let mut answers = 0;
         for k in 0..400 {
             let query = Point2::new(0.37 * f64::from(k % 20), 0.29 * f64::from(k / 20));
@@ -309,7 +309,7 @@ mod tests {
     /// gets leaves is lopsided.
     #[test]
     fn the_map_grows_and_the_nine_cells_do_not_while_the_tree_gets_lopsided() {
-        let (few, all) = (Grown::of(8), Grown::of(41));
+        let (few, all) = (Grown::with_count(8), Grown::with_count(41));
         let points = |grown: &Grown| grown.tree.points.len();
         assert!(
             points(&all) > 2 * points(&few),
@@ -331,7 +331,7 @@ mod tests {
     #[test]
     fn the_partner_lies_in_the_nine_cells() {
         for count in [1, 8, 41] {
-            let grown = Grown::of(count);
+            let grown = Grown::with_count(count);
             let (found, _) = grown.tree.nearest(QUERY);
             let partner = grown.tree.points[found.expect("a wall is near")];
             assert!(grown.compared().contains(&partner), "{count}");

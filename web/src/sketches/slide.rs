@@ -59,7 +59,7 @@ impl Wall {
 
     fn pairs(&self, shift_m: f64) -> Vec<Pair> {
         let config = IcpConfig {
-            tau: TAU_M,
+            tau_m: TAU_M,
             ..IcpConfig::default()
         };
         correspondences(

@@ -40,7 +40,7 @@ pub enum Layer {
 impl Layer {
     /// The layer that the values ask for.
     #[must_use]
-    pub fn of(opening: Opening, values: &Values) -> Self {
+    pub fn visible(opening: Opening, values: &Values) -> Self {
         match values.find(MORE.id) {
             Some((_, 0.0)) => Self::First(opening),
             _ => Self::All,

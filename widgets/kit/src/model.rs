@@ -20,7 +20,7 @@ pub trait Model {
 
     /// What is shown of the widget.
     fn layer(&self) -> Layer {
-        Layer::of(self.spec().opening, self.values())
+        Layer::visible(self.spec().opening, self.values())
     }
 
     /// Sets one parameter and recomputes what depends on it.
@@ -56,7 +56,7 @@ pub trait Model {
 
     /// Finishes what [`Model::work`] has begun and the picture waits for, so that figures and picture
     /// are those of the values; what only fills in goes on later. Idle where nothing was to be done.
-    fn settle(&mut self) -> Activity {
+    fn finish_work(&mut self) -> Activity {
         Activity::Idle
     }
 
@@ -344,7 +344,7 @@ pub fn apply_preset(model: &mut dyn Model, preset: &Preset) -> Result<(), ParamE
     Ok(())
 }
 
-/// Does all the [`Model::work`] that is left: a [`Model::settle`] where the picture waits for all of it.
+/// Does all the [`Model::work`] that is left: a [`Model::finish_work`] where the picture waits for all of it.
 pub fn finish_work(model: &mut dyn Model) -> Activity {
     let first = model.work();
     while model.work().goes_on() {}

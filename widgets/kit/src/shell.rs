@@ -85,7 +85,7 @@ struct Shown {
 }
 
 impl Shown {
-    fn of(model: &dyn Model) -> Self {
+    fn new(model: &dyn Model) -> Self {
         Self {
             scene: model.scene(),
             outcome: model.outcome(),
@@ -99,7 +99,7 @@ impl Shell {
     #[must_use]
     pub fn new(model: Box<dyn Model>, view: Box<dyn View>) -> Self {
         Self {
-            shown: Shown::of(model.as_ref()),
+            shown: Shown::new(model.as_ref()),
             model,
             view,
             theme: Theme::default(),
@@ -136,9 +136,9 @@ impl Shell {
         self.model.take_orders()
     }
 
-    /// Finishes what the picture waits for, see [`Model::settle`]; says whether there was anything.
-    pub fn settle(&mut self) -> bool {
-        let settled = self.model.settle().goes_on();
+    /// Finishes what the picture waits for, see [`Model::finish_work`]; says whether there was anything.
+    pub fn finish_work(&mut self) -> bool {
+        let settled = self.model.finish_work().goes_on();
         if settled {
             self.touch();
         }
@@ -153,7 +153,7 @@ impl Shell {
 
     /// What the host has for all of it, in points: until more is asked for, the plots of the scene give way.
     pub fn set_room(&mut self, height: f32) {
-        self.room = Room::of(height);
+        self.room = Room::from_height(height);
     }
 
     /// Light or dark.
@@ -339,7 +339,7 @@ impl Shell {
     /// Asks the model anew, where something changed.
     fn refresh(&mut self) {
         if self.stale {
-            self.shown = Shown::of(self.model.as_ref());
+            self.shown = Shown::new(self.model.as_ref());
             self.stale = false;
             self.revision += 1;
         }

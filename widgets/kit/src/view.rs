@@ -53,7 +53,7 @@ pub struct Row {
 impl Row {
     /// Panels of equal width beside each other.
     #[must_use]
-    pub fn of(slots: &[Slot]) -> Self {
+    pub fn new(slots: &[Slot]) -> Self {
         let columns = slots.iter().map(|slot| Column {
             share: 1.0,
             slots: vec![*slot],
@@ -102,7 +102,7 @@ impl Arrangement {
                 .filter(|panel| panel.weight == weight)
                 .map(|panel| default_slot(panel, column_width))
                 .collect();
-            slots.chunks(columns).map(Row::of).collect::<Vec<_>>()
+            slots.chunks(columns).map(Row::new).collect::<Vec<_>>()
         };
         let pair = if width >= SIDE_BY_SIDE { 2 } else { 1 };
         let mut stage = slots(Weight::Main, 1);

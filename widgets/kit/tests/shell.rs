@@ -454,7 +454,7 @@ fn the_audit_finds_what_is_cut_off_and_what_overlaps() {
                 height: PlotHeight::Fixed(6.0),
             };
             Arrangement {
-                stage: vec![Row::of(&[slot])],
+                stage: vec![Row::new(&[slot])],
                 below: Vec::new(),
             }
         }

@@ -131,7 +131,7 @@ impl OwnRobot {
         Some((shown, &places[shown]))
     }
 
-    /// Goes to the next scan of the other log that is believed otherwise than the one before it.
+    /// Goes to the next scan of the other log that is localized otherwise than the one before it.
     fn go_to_change(&mut self) {
         let Some(((here, _), whereabouts)) = self.place().zip(self.robot.whereabouts.as_ref())
         else {
@@ -141,8 +141,8 @@ impl OwnRobot {
         let is_change = |k: &usize| {
             let before = k
                 .checked_sub(1)
-                .map(|before| places[before].belief.is_believed());
-            before != Some(places[*k].belief.is_believed())
+                .map(|before| places[before].belief.is_localized());
+            before != Some(places[*k].belief.is_localized())
         };
         let next = (here + 1..places.len()).find(is_change).unwrap_or(0);
         let scan = places[next].scan;

@@ -16,12 +16,12 @@ impl View for RobotView {
         let map = slot(panel::MAP, PlotHeight::Natural { most: 620.0 });
         let plots = [panel::FIT, panel::SURE].map(|id| slot(id, PlotHeight::Fixed(130.0)));
         let below = if width < SIDE_BY_SIDE {
-            plots.iter().map(|plot| Row::of(&[*plot])).collect()
+            plots.iter().map(|plot| Row::new(&[*plot])).collect()
         } else {
-            vec![Row::of(&plots)]
+            vec![Row::new(&plots)]
         };
         Arrangement {
-            stage: vec![Row::of(&[map])],
+            stage: vec![Row::new(&[map])],
             below,
         }
     }

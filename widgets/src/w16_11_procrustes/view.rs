@@ -24,11 +24,11 @@ impl View for TraceView {
         let maps = [panel::MAP_TURN, panel::MAP_UNCHECKED]
             .map(|panel| slot(panel, PlotHeight::Natural { most: map }));
         let mut stage = if wide {
-            vec![Row::of(&[points, trace])]
+            vec![Row::new(&[points, trace])]
         } else {
-            vec![Row::of(&[points]), Row::of(&[trace])]
+            vec![Row::new(&[points]), Row::new(&[trace])]
         };
-        stage.push(Row::of(&maps));
+        stage.push(Row::new(&maps));
         Arrangement {
             stage,
             below: Vec::new(),

@@ -23,8 +23,8 @@ impl View for JacobiansView {
         };
         let maps = panel::MAPS.map(|panel| slot(panel, PlotHeight::Natural { most }));
         let in_row = if width >= ONE_ROW { 4 } else { 2 };
-        let mut stage: Vec<_> = maps.chunks(in_row).map(Row::of).collect();
-        stage.push(Row::of(&[slot(panel::CURVE, PlotHeight::Fixed(plot))]));
+        let mut stage: Vec<_> = maps.chunks(in_row).map(Row::new).collect();
+        stage.push(Row::new(&[slot(panel::CURVE, PlotHeight::Fixed(plot))]));
         Arrangement {
             stage,
             below: Vec::new(),

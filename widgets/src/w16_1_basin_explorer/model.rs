@@ -194,7 +194,7 @@ impl Model for BasinExplorer {
             Phase::Off => SPEC.opening,
             Phase::Marking | Phase::Swept => edge::OPENING,
         };
-        Layer::of(opening, &self.values)
+        Layer::visible(opening, &self.values)
     }
 
     fn set(&mut self, id: &str, value: f64) -> Result<(), ParamError> {
@@ -266,7 +266,7 @@ impl Model for BasinExplorer {
         self.basins.work(&self.scene, &mut self.workspace)
     }
 
-    fn settle(&mut self) -> Activity {
+    fn finish_work(&mut self) -> Activity {
         let mut done = Activity::Idle;
         while self.values.get(&EDGE) == Phase::Swept
             && self.edges.work(&self.scene, &mut self.workspace) == Activity::Busy

@@ -29,12 +29,12 @@ impl View for BasinView {
             vec![Row { columns }]
         } else {
             let rows = core::iter::once(sweeps).chain(basins);
-            rows.map(|slot| Row::of(&[slot])).collect()
+            rows.map(|slot| Row::new(&[slot])).collect()
         };
         let curve = slot(panel::CURVE, PlotHeight::Fixed(120.0));
         Arrangement {
             stage,
-            below: vec![Row::of(&[curve])],
+            below: vec![Row::new(&[curve])],
         }
     }
 }

@@ -88,7 +88,7 @@ impl Default for FullLap {
             playback: Playback::default(),
             transition: None,
             own: Own::default(),
-            flat: Flat::new(Sketch::of(&Course::apartment())),
+            flat: Flat::new(Sketch::from_course(&Course::apartment())),
             hovered: None,
         }
     }
@@ -226,7 +226,7 @@ impl Model for FullLap {
 
     fn layer(&self) -> Layer {
         match (
-            Layer::of(SPEC.opening, &self.values),
+            Layer::visible(SPEC.opening, &self.values),
             Tool::chosen(&self.values),
         ) {
             (Layer::First(_), Some(_)) => Layer::First(EDITING),
@@ -320,7 +320,7 @@ impl Model for FullLap {
         }
     }
 
-    fn settle(&mut self) -> Activity {
+    fn finish_work(&mut self) -> Activity {
         let Some(record) = self.laps.finish() else {
             return Activity::Idle;
         };

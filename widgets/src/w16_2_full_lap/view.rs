@@ -43,11 +43,11 @@ impl View for FullLapView {
                 stage: vec![Row {
                     columns: vec![column(2.0, &[MAP]), column(1.0, &[LOOP, ERRORS])],
                 }],
-                below: vec![Row::of(&[DISAGREEMENT, GATE, STRAIN])],
+                below: vec![Row::new(&[DISAGREEMENT, GATE, STRAIN])],
             }
         } else if width >= SIDE_BY_SIDE {
             Arrangement {
-                stage: vec![Row::of(&[MAP])],
+                stage: vec![Row::new(&[MAP])],
                 below: vec![Row {
                     columns: vec![
                         column(1.0, &[LOOP, DISAGREEMENT]),
@@ -58,8 +58,8 @@ impl View for FullLapView {
         } else {
             let below = [LOOP, ERRORS, DISAGREEMENT, GATE, STRAIN];
             Arrangement {
-                stage: vec![Row::of(&[MAP])],
-                below: below.iter().map(|slot| Row::of(&[*slot])).collect(),
+                stage: vec![Row::new(&[MAP])],
+                below: below.iter().map(|slot| Row::new(&[*slot])).collect(),
             }
         }
     }

@@ -181,7 +181,7 @@ impl Model for CostTerraces {
         self.rests.work(&self.terrains)
     }
 
-    fn settle(&mut self) -> Activity {
+    fn finish_work(&mut self) -> Activity {
         finish_work(self)
     }
 

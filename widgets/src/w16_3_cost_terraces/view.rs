@@ -43,7 +43,7 @@ impl View for TerracesView {
                 pairs
                     .iter()
                     .flatten()
-                    .map(|slot| Row::of(&[*slot]))
+                    .map(|slot| Row::new(&[*slot]))
                     .collect()
             } else {
                 let pairs = pairs.into_iter();
@@ -51,7 +51,7 @@ impl View for TerracesView {
             }
         };
         let rows_of_h = slot("rows", PlotHeight::Fixed(190.0));
-        let mut below = vec![Row::of(&[rests]), Row::of(&[rows_of_h])];
+        let mut below = vec![Row::new(&[rests]), Row::new(&[rows_of_h])];
         below.extend(rows(slices, [1.0, 1.0]));
         Arrangement {
             stage: rows(stage, [MAP_SHARE, MATCHED_SHARE]),

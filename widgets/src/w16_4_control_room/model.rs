@@ -225,7 +225,7 @@ impl Model for ControlRoom {
         }
     }
 
-    fn settle(&mut self) -> Activity {
+    fn finish_work(&mut self) -> Activity {
         let Some(record) = self.laps.finish() else {
             return Activity::Idle;
         };

@@ -24,7 +24,7 @@ impl View for ControlRoomView {
             height: PlotHeight::Fixed(130.0),
         };
         if width < SIDE_BY_SIDE {
-            let rows = |slots: &[Slot]| slots.iter().map(|slot| Row::of(&[*slot])).collect();
+            let rows = |slots: &[Slot]| slots.iter().map(|slot| Row::new(&[*slot])).collect();
             return Arrangement {
                 stage: rows(&[natural("map"), natural("registration"), lanes]),
                 below: rows(&[plot("tau"), plot("errors")]),
@@ -39,9 +39,9 @@ impl View for ControlRoomView {
                 Row {
                     columns: vec![column(3.0, "map"), column(2.0, "registration")],
                 },
-                Row::of(&[lanes]),
+                Row::new(&[lanes]),
             ],
-            below: vec![Row::of(&[plot("tau"), plot("errors")])],
+            below: vec![Row::new(&[plot("tau"), plot("errors")])],
         }
     }
 }

@@ -25,11 +25,11 @@ impl View for ToyView {
                 columns: vec![column(1.5, graph), column(1.0, bars)],
             }]
         } else {
-            vec![Row::of(&[graph]), Row::of(&[bars])]
+            vec![Row::new(&[graph]), Row::new(&[bars])]
         };
         Arrangement {
             stage,
-            below: vec![Row::of(&[steps])],
+            below: vec![Row::new(&[steps])],
         }
     }
 }

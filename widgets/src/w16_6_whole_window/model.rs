@@ -169,7 +169,7 @@ impl Model for WholeWindow {
         let plays = id == PLAY.id && self.played.motion() == Motion::Full;
         if [PLAY.id, STEP.id].contains(&id) && !plays {
             // The end has to be known.
-            self.settle();
+            self.finish_work();
         }
         let last = self.last() as f64;
         match self.played.press(&mut self.values, id, last) {
@@ -210,7 +210,7 @@ impl Model for WholeWindow {
         self.hunt.fill()
     }
 
-    fn settle(&mut self) -> Activity {
+    fn finish_work(&mut self) -> Activity {
         if self.hunt.is_settled() {
             return Activity::Idle;
         }
@@ -269,7 +269,7 @@ impl Model for WholeWindow {
 
     fn set_motion(&mut self, motion: Motion) {
         if self.played.is_playing() {
-            self.settle();
+            self.finish_work();
         }
         let last = self.last() as f64;
         self.played.set_motion(&mut self.values, motion, last);

@@ -28,17 +28,17 @@ impl View for WindowView {
                 Row {
                     columns: vec![column(sweeps), column(places)],
                 },
-                Row::of(&[bounds]),
+                Row::new(&[bounds]),
             ]
         } else {
             [sweeps, places, bounds]
                 .iter()
-                .map(|slot| Row::of(&[*slot]))
+                .map(|slot| Row::new(&[*slot]))
                 .collect()
         };
         Arrangement {
             stage,
-            below: vec![Row::of(&[gap])],
+            below: vec![Row::new(&[gap])],
         }
     }
 }

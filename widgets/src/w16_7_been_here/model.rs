@@ -173,7 +173,7 @@ impl Model for BeenHere {
         Activity::Busy
     }
 
-    fn settle(&mut self) -> Activity {
+    fn finish_work(&mut self) -> Activity {
         finish_work(self)
     }
 

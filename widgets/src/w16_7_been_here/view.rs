@@ -36,12 +36,12 @@ impl View for PlacesView {
         } else {
             [matrix, scans, looks, curves]
                 .iter()
-                .map(|slot| Row::of(&[*slot]))
+                .map(|slot| Row::new(&[*slot]))
                 .collect()
         };
         Arrangement {
             stage,
-            below: vec![Row::of(&[map])],
+            below: vec![Row::new(&[map])],
         }
     }
 }

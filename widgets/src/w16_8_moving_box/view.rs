@@ -22,11 +22,11 @@ impl View for BoxView {
         let sweeps = panel::SWEEPS.map(|panel| slot(panel, PlotHeight::Natural { most }));
         let bias = slot(panel::BIAS, PlotHeight::Fixed(plot));
         let mut stage = if width >= SIDE_BY_SIDE {
-            vec![Row::of(&sweeps)]
+            vec![Row::new(&sweeps)]
         } else {
-            sweeps.iter().map(|slot| Row::of(&[*slot])).collect()
+            sweeps.iter().map(|slot| Row::new(&[*slot])).collect()
         };
-        stage.push(Row::of(&[bias]));
+        stage.push(Row::new(&[bias]));
         Arrangement {
             stage,
             below: Vec::new(),

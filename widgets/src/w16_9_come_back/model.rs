@@ -28,7 +28,7 @@ use known::{Known, Work};
 
 /// Names of the panels.
 pub mod panel {
-    /// The saved map, and what is believed on it.
+    /// The saved map, and what is localized on it.
     pub const MAP: &str = "map";
     /// How well the best place and the next one fit, scan by scan.
     pub const SCORES: &str = "scores";
@@ -178,7 +178,7 @@ impl Model for ComeBack {
         Activity::Busy
     }
 
-    fn settle(&mut self) -> Activity {
+    fn finish_work(&mut self) -> Activity {
         finish_work(self)
     }
 
@@ -228,7 +228,7 @@ impl Model for ComeBack {
 
     fn set_motion(&mut self, motion: Motion) {
         if self.played.is_playing() {
-            self.settle();
+            self.finish_work();
         }
         let end = self.end();
         self.played.set_motion(&mut self.values, motion, end);

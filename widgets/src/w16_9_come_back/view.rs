@@ -26,7 +26,7 @@ impl View for ComeBackView {
                 columns: vec![column(3.0, map), column(2.0, scores(300.0))],
             }]
         } else {
-            vec![Row::of(&[map]), Row::of(&[scores(150.0)])]
+            vec![Row::new(&[map]), Row::new(&[scores(150.0)])]
         };
         Arrangement {
             stage,

@@ -133,7 +133,7 @@ fn a_loop_that_contradicts_is_said_and_shown_first() {
         (1.0, 1.0, 1.0)
     );
     assert_eq!(
-        (fact("scans"), fact("way_m"), fact("worst_sigma_m")),
+        (fact("scans"), fact("path_length_m"), fact("worst_sigma_m")),
         (40.0, 4.0, 0.04)
     );
     let tables = robot.shown_tables();

@@ -69,7 +69,7 @@ fn another_log_is_asked_for_anywhere_or_at_the_keyframe_that_is_shown() {
 fn its_verdicts_are_said_in_words_and_numbers_and_walked_through() {
     let mut robot = with_visitor(true);
     let said = |robot: &OwnRobot| robot.outcome().sentence;
-    let whole = "The robot of tuesday.log is found at its scan 2: of 5 scans 2 are believed, 1 doubtful, 2 lost.";
+    let whole = "The robot of tuesday.log is found at its scan 2: of 5 scans 2 are localized, 1 doubtful, 2 lost.";
     assert!(said(&robot).contains(whole), "{}", said(&robot));
     assert!(said(&robot).contains("At scan 4 it is lost."));
     robot.press("change").unwrap();
@@ -90,7 +90,7 @@ fn its_verdicts_are_said_in_words_and_numbers_and_walked_through() {
     let fact = |id: &str| facts.iter().find(|fact| fact.id == id).unwrap().value;
     assert_eq!(
         (
-            fact("where_believed"),
+            fact("where_localized"),
             fact("where_doubtful"),
             fact("where_lost")
         ),
@@ -141,7 +141,7 @@ fn its_way_lies_over_the_map_and_what_is_doubtful_is_dotted() {
     assert!(
         legend
             .iter()
-            .any(|entry| entry.label == "the other log, believed")
+            .any(|entry| entry.label == "the other log, localized")
     );
     let faults =
         kit::audit::text_faults(&robot, &widgets::w16_10_own_robot::view::RobotView, 390.0);
@@ -203,7 +203,7 @@ fn a_log_with_nothing_to_look_for_is_answered_and_wrong_numbers_change_nothing()
     let mut robot = with_visitor(true);
     tell(&mut robot, "opening", "other.log", &[]);
     assert!(robot.robot().whereabouts.is_none());
-    assert!(Belief::Found.is_believed() && !Belief::Doubtful.is_believed());
+    assert!(Belief::Found.is_localized() && !Belief::Doubtful.is_localized());
 }
 
 #[test]

@@ -18,7 +18,7 @@ fn swept(marks: [f64; 2]) -> BasinExplorer {
     model.set("edge-p2p", marks[0]).unwrap();
     model.set("edge-p2l", marks[1]).unwrap();
     model.press("sweep").unwrap();
-    model.settle();
+    model.finish_work();
     model
 }
 
@@ -110,9 +110,9 @@ fn the_sweep_goes_piece_by_piece_and_begins_anew_with_another_tau() {
     assert_eq!(f64::from(pieces), point + plane + 4.0);
     model.set("tau", 1.4).unwrap();
     assert!(fact(&model, "edge_p2p_deg").is_nan());
-    model.settle();
+    model.finish_work();
     assert!(fact(&model, "edge_p2p_deg") > point);
-    assert_eq!(model.settle(), Activity::Idle);
+    assert_eq!(model.finish_work(), Activity::Idle);
 }
 
 #[test]

@@ -23,13 +23,13 @@ fn fact(harness: &Harness<'_, Shell>, id: &str) -> f64 {
 fn press(harness: &mut Harness<'_, Shell>, label: &str) {
     harness.get_by_role_and_label(Role::Button, label).click();
     harness.run_steps(2);
-    harness.state_mut().settle();
+    harness.state_mut().finish_work();
     harness.run_steps(2);
 }
 
 fn key(harness: &mut Harness<'_, Shell>, slider: &str, key: egui::Key) {
     press_key(harness, slider, key);
-    harness.state_mut().settle();
+    harness.state_mut().finish_work();
     harness.run_steps(2);
 }
 
@@ -131,7 +131,7 @@ fn no_label_overlaps_another_while_the_lap_by_ndt_runs() {
     for (id, value) in [("more", 1.0), ("matcher", 2.0)] {
         shell.model_mut().set(id, value).unwrap();
     }
-    shell.settle();
+    shell.finish_work();
     for tick in [92.0, 104.0, 110.0, 116.0, 122.0, 129.0] {
         shell.model_mut().set("t", tick).unwrap();
         for width in [390.0, 700.0, 1100.0] {

@@ -324,7 +324,7 @@ fn the_extremes_of_every_parameter_have_every_figure_and_a_cell_on_the_truth() {
         for value in [min, max] {
             let mut model = CostTerraces::default();
             model.set(spec.id, value).unwrap();
-            model.settle();
+            model.finish_work();
             let outcome = model.outcome();
             for fact in &outcome.facts {
                 assert!(fact.value.is_finite(), "{} at {value}: {fact:?}", spec.id);

@@ -199,7 +199,7 @@ fn along_the_corridor_the_answer_is_unknown() {
 fn a_hundred_sweeps_rest_round_in_the_room_and_in_a_streak_in_the_corridor() {
     let spread = |id| {
         let mut model = preset(id);
-        model.settle();
+        model.finish_work();
         assert_eq!(fact(&model, "rests"), 100.0);
         ["rests_std_x_cm", "rests_std_y_cm"].map(|axis| fact(&model, axis))
     };
@@ -256,7 +256,7 @@ fn drop_100_works_in_pieces_and_its_points_fly_to_rest() {
     let mut still = with(&[("scene", 1.0)]);
     still.set_motion(Motion::Reduced);
     still.press("drop-100").unwrap();
-    still.settle();
+    still.finish_work();
     assert_eq!(flying(&still), rests);
     assert_eq!(still.advance(1.0), Activity::Idle);
 }
@@ -270,10 +270,10 @@ fn the_newest_scene_is_the_one_whose_sweeps_are_dropped() {
     }
     model.set("scene", 1.0).unwrap();
     assert_eq!(fact(&model, "rests"), 0.0, "those of the room are gone");
-    model.settle();
+    model.finish_work();
     let at_once = with(&[("scene", 1.0), ("drops", 100.0)]);
     let mut at_once = at_once;
-    at_once.settle();
+    at_once.finish_work();
     assert_eq!(model.outcome(), at_once.outcome());
     // Fewer are the first ones, and a slider of another matter drops none anew.
     model.set("drops", 7.0).unwrap();

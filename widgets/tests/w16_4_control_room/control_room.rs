@@ -22,12 +22,12 @@ fn reference(seed: u64, noise: f64, loops: bool) -> serde_json::Value {
 
 fn set(room: &mut ControlRoom, id: &str, value: f64) {
     room.set(id, value).unwrap();
-    room.settle();
+    room.finish_work();
 }
 
 fn press(room: &mut ControlRoom, id: &str) {
     room.press(id).unwrap();
-    room.settle();
+    room.finish_work();
 }
 
 fn revision(room: &ControlRoom) -> u64 {
@@ -196,7 +196,7 @@ fn the_next_event_is_one_of_the_run_that_is_asked_for() {
     room.set("seed", 6.0).unwrap();
     room.press("next-event").unwrap();
     assert_eq!(room.values().number("t"), 60.0);
-    room.settle();
+    room.finish_work();
     let mut at_once = ControlRoom::default();
     set(&mut at_once, "t", 60.0);
     set(&mut at_once, "seed", 6.0);

@@ -9,7 +9,7 @@ use crate::support::fact;
 fn after(preset: &str) -> ControlRoom {
     let mut room = ControlRoom::default();
     room.press(preset).unwrap();
-    room.settle();
+    room.finish_work();
     room
 }
 
@@ -62,7 +62,7 @@ fn four_times_the_noise_opens_the_threshold() {
     let noisy = after("noisy");
     let mut quiet = after("noisy");
     quiet.set("noise", 1.0).unwrap();
-    quiet.settle();
+    quiet.finish_work();
     let (from, to) = (fact(&quiet, "tau_m"), fact(&noisy, "tau_m"));
     assert!(from < to);
     assert_promised("noisy", &format!("from {from:.2} m to {to:.2} m"));

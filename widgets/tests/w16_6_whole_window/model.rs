@@ -11,7 +11,7 @@ fn with(values: &[(&str, f64)]) -> WholeWindow {
     for (id, value) in values {
         window.set(id, *value).unwrap();
     }
-    window.settle();
+    window.finish_work();
     window
 }
 
@@ -51,9 +51,9 @@ fn the_search_goes_on_in_pieces_and_its_end_does_not_depend_on_them() {
         count += 1;
     }
     assert!(count > 20, "{count} pieces");
-    pieces.settle();
+    pieces.finish_work();
     let whole = with(&[]);
-    assert_eq!(pieces.settle(), Activity::Idle);
+    assert_eq!(pieces.finish_work(), Activity::Idle);
     assert_eq!(pieces.outcome(), whole.outcome());
 }
 
@@ -120,7 +120,7 @@ fn every_preset_does_what_its_button_says() {
     ] {
         let mut window = WholeWindow::default();
         window.press(id).unwrap();
-        window.settle();
+        window.finish_work();
         assert_eq!(window.outcome().verdict, verdict, "{id}");
         assert_eq!(window.outcome().standing, standing, "{id}");
     }

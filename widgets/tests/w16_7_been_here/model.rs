@@ -13,7 +13,7 @@ fn set(been: &mut BeenHere, values: &[(&str, f64)]) {
     for (id, value) in values {
         been.set(id, *value).unwrap();
     }
-    been.settle();
+    been.finish_work();
 }
 
 fn with(values: &[(&str, f64)]) -> BeenHere {
@@ -72,7 +72,7 @@ fn the_lap_is_driven_and_compared_in_pieces() {
     }
     // 129 ticks of the drive and of the lap each, and the pairs.
     assert!(count > 300, "{count} pieces");
-    assert_eq!(pieces.settle(), Activity::Idle);
+    assert_eq!(pieces.finish_work(), Activity::Idle);
     assert_eq!(pieces.outcome(), with(&[]).outcome());
 }
 
@@ -108,7 +108,7 @@ fn playing_drives_the_lap_from_its_start_to_its_end() {
         Activity::Busy,
         "the lap is not there yet"
     );
-    been.settle();
+    been.finish_work();
     let mut newest = 0.0;
     while been.advance(0.1) == Activity::Busy {
         assert!(been.values().number("new") >= newest);
@@ -149,7 +149,7 @@ fn every_preset_shows_a_lap_with_its_grades() {
     let mut been = BeenHere::default();
     for preset in SPEC.presets {
         been.press(preset.id).unwrap();
-        been.settle();
+        been.finish_work();
         assert!(fact(&been, "same") > 10.0, "{}", preset.id);
         assert_ne!(been.outcome().standing, Standing::Neutral, "{}", preset.id);
     }

@@ -8,7 +8,7 @@ use crate::support::{drawn, value};
 fn a_press_drives_to_the_next_keyframe() {
     for width in [390.0, 1100.0] {
         let mut harness = drawn("w16.7", width, |shell| {
-            shell.settle();
+            shell.finish_work();
             shell.model_mut().set("new", 30.0).unwrap();
         });
         harness.get_by_label("Next keyframe").click();

@@ -16,7 +16,7 @@ fn told(back: &ComeBack) -> String {
 fn pressed(id: &str) -> ComeBack {
     let mut back = ComeBack::default();
     back.press(id).unwrap();
-    back.settle();
+    back.finish_work();
     back
 }
 
@@ -50,10 +50,10 @@ fn in_one_of_two_rooms_alike_no_pose_is_told_from_within() {
 #[test]
 fn another_lap_forgets_the_wardrobe_where_it_stood() {
     let mut back = ComeBack::default();
-    back.settle();
+    back.finish_work();
     assert!(fact(&back, "wardrobe_points") > 20.0);
     back.press("forget").unwrap();
-    back.settle();
+    back.finish_work();
     assert_eq!(fact(&back, "wardrobe_points"), 0.0);
     assert_eq!(back.outcome().verdict, "found");
 }
@@ -79,16 +79,16 @@ fn everything_is_computed_in_pieces() {
     }
     // The ticks of the lap, driven and mapped, and the morning's.
     assert!(count > 300, "{count} pieces");
-    assert_eq!(pieces.settle(), Activity::Idle);
+    assert_eq!(pieces.finish_work(), Activity::Idle);
     let mut whole = ComeBack::default();
-    whole.settle();
+    whole.finish_work();
     assert_eq!(told(&pieces), told(&whole));
 }
 
 #[test]
 fn the_robot_is_put_and_turned_on_the_map_and_the_map_stays() {
     let mut back = ComeBack::default();
-    back.settle();
+    back.finish_work();
     let keyframes = fact(&back, "keyframes");
     let (x, y) = (back.values().number("x"), back.values().number("y"));
     let place = back.grab(panel::MAP, [x, y], [0.1, 0.1]).unwrap();
@@ -126,7 +126,7 @@ fn playing_goes_through_the_boxes_and_the_scans_to_the_end() {
     let mut back = ComeBack::default();
     back.press("room").unwrap();
     assert_eq!(back.advance(0.1), Activity::Busy, "it is not there yet");
-    back.settle();
+    back.finish_work();
     let mut at = 0.0;
     let mut waited = 0;
     while back.advance(0.1) == Activity::Busy {

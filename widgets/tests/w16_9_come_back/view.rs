@@ -8,7 +8,7 @@ use crate::support::{drawn, value};
 fn a_press_goes_to_the_next_moment() {
     for width in [390.0, 1100.0] {
         let mut harness = drawn("w16.9", width, |shell| {
-            shell.settle();
+            shell.finish_work();
             shell.model_mut().set("moment", 5.0).unwrap();
         });
         harness.get_by_label("Next moment").click();

@@ -61,7 +61,7 @@ impl Minimum {
 
     /// Those that a place has, for legends.
     #[must_use]
-    pub fn of(place: BasinPlace) -> [Self; 5] {
+    pub fn at_place(place: BasinPlace) -> [Self; 5] {
         let [next, farther] = match place {
             BasinPlace::Room => [Self::QuarterTurn, Self::HalfTurn],
             BasinPlace::Fence => [Self::OnePost, Self::MorePosts],
@@ -84,7 +84,7 @@ pub struct BasinOutcome {
     /// Its rotation, degrees, with sign.
     pub error_deg: f64,
     /// Root mean square residual of the pairs, m. Small at false minima, too.
-    pub rmse: f64,
+    pub rmse_m: f64,
     /// Number of pairs.
     pub inliers: usize,
     /// Increments made.
@@ -106,7 +106,7 @@ impl BasinOutcome {
             ending: classify(error_m, error_deg, HOME_HEADING_DEG),
             error_m,
             error_deg,
-            rmse: found.rmse,
+            rmse_m: found.rmse_m,
             inliers: found.inliers,
             iterations: found.iterations,
             stop: found.stop,

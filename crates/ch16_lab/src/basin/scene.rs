@@ -152,11 +152,11 @@ impl BasinScene {
 
     /// The scene's settings for a registration: 30 iterations, everything else the chapter's.
     #[must_use]
-    pub fn config(variant: IcpVariant, tau: f64) -> IcpConfig {
+    pub fn config(variant: IcpVariant, tau_m: f64) -> IcpConfig {
         IcpConfig {
             variant,
-            tau,
-            max_iters: Self::MAX_ITERS,
+            tau_m,
+            max_iterations: Self::MAX_ITERS,
             ..IcpConfig::default()
         }
     }
@@ -278,7 +278,7 @@ mod tests {
             let off_m = f64::from(posts.abs()) * FENCE_SPACING_M;
             // 3 cm: noise of 1.2 cm a point, and posts that only one of the sweeps sees.
             assert!((end.error_m - off_m).abs() < 0.03, "{posts}: {end:?}");
-            assert!(end.rmse < 0.06, "it fits as well as at home: {end:?}");
+            assert!(end.rmse_m < 0.06, "it fits as well as at home: {end:?}");
         }
     }
 }

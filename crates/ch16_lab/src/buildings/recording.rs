@@ -250,13 +250,13 @@ impl Wheels {
             jumps,
             ..
         } = self.recorder;
-        let way_m = math::norm2(motion.x(), motion.y());
+        let path_length_m = math::norm2(motion.x(), motion.y());
         let share = self.scale + rng.normal(0.0, slip);
-        let turn = motion.theta() * (1.0 + rng.normal(0.0, slip)) + drift_rad * way_m;
+        let turn = motion.theta() * (1.0 + rng.normal(0.0, slip)) + drift_rad * path_length_m;
         let mut rolled = SE2::new(
             motion.x() * share,
             motion.y() * share,
-            turn + rng.normal(0.0, 0.2 * slip * way_m + 0.002),
+            turn + rng.normal(0.0, 0.2 * slip * path_length_m + 0.002),
         );
         if rng.unit() < jumps {
             let heading = rng.normal(0.0, 0.35);

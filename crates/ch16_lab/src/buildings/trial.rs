@@ -57,7 +57,7 @@ impl Trial {
             start: frames[0].truth,
             ..SlamConfig::from_robot(robot)
         })
-        .with_outlier_test(PoseGraph::believed);
+        .with_outlier_test(PoseGraph::inlier_edges);
         let (mut tried, mut closed) = (0, TrialLoops::default());
         for number in 0..frames.len() {
             let Ok(report) = slam.step(&recording.frame(number, with_wheels)) else {

@@ -11,7 +11,7 @@ use ch16_slam2d::slam::SlamConfig;
 use pr_sim::Course;
 
 use super::config::LapConfig;
-use crate::ancestor::Ancestor;
+use crate::incremental::IncrementalKind;
 
 /// One of a short list of things with names.
 pub trait Choice: Copy + PartialEq + Sized + 'static {
@@ -225,23 +225,23 @@ pub enum LapEstimator {
     /// Scan matching alone.
     FrontEnd,
     /// Incremental maximum likelihood mapping or its variant for cycles.
-    Ancestor(Ancestor),
+    IncrementalKind(IncrementalKind),
 }
 
 impl Choice for LapEstimator {
     const ALL: &'static [Self] = &[
         Self::Graph,
         Self::FrontEnd,
-        Self::Ancestor(Ancestor::MaximumLikelihood),
-        Self::Ancestor(Ancestor::WithCycles),
+        Self::IncrementalKind(IncrementalKind::MaximumLikelihood),
+        Self::IncrementalKind(IncrementalKind::WithCycles),
     ];
 
     fn name(self) -> &'static str {
         match self {
             Self::Graph => "graph",
             Self::FrontEnd => "front-end",
-            Self::Ancestor(Ancestor::MaximumLikelihood) => "ml",
-            Self::Ancestor(Ancestor::WithCycles) => "ml-cycles",
+            Self::IncrementalKind(IncrementalKind::MaximumLikelihood) => "ml",
+            Self::IncrementalKind(IncrementalKind::WithCycles) => "ml-cycles",
         }
     }
 
@@ -249,8 +249,10 @@ impl Choice for LapEstimator {
         match self {
             Self::Graph => "pose graph with loops",
             Self::FrontEnd => "scan matching alone",
-            Self::Ancestor(Ancestor::MaximumLikelihood) => "incremental maximum likelihood",
-            Self::Ancestor(Ancestor::WithCycles) => {
+            Self::IncrementalKind(IncrementalKind::MaximumLikelihood) => {
+                "incremental maximum likelihood"
+            }
+            Self::IncrementalKind(IncrementalKind::WithCycles) => {
                 "incremental maximum likelihood with particles for cycles"
             }
         }

@@ -275,7 +275,7 @@ impl Recorder {
         LapTrace {
             edges: edges.collect(),
             turn_node: lap.turn_node(),
-            summary: LapSummary::of(lap, &self.reports),
+            summary: LapSummary::from_lap(lap, &self.reports),
             keyframes,
             reports: self.reports,
             epochs: self.epochs,
@@ -286,7 +286,7 @@ impl Recorder {
 impl LapSummary {
     /// The summary of a lap: its present state and the reports of its ticks.
     #[must_use]
-    pub fn of(lap: &Lap, reports: &[TickReport]) -> Self {
+    pub fn from_lap(lap: &Lap, reports: &[TickReport]) -> Self {
         Self::so_far(&lap.keyframe_errors_m().collect::<Vec<_>>(), reports)
     }
 

@@ -55,13 +55,13 @@ impl LapTrace {
             slam.chapter.local_map.cell_m,
             slam.chapter.local_map.max_per_cell,
         );
-        let (init, max_iters) = match slam.chapter.matcher.icp() {
+        let (init, max_iterations) = match slam.chapter.matcher.icp() {
             Some(_) => (recorded.prediction, slam.chapter.max_iterations),
             None => (recorded.matched.pose, 0),
         };
         let settings = IcpConfig {
-            max_iters,
-            tau: recorded.tau_m,
+            max_iterations,
+            tau_m: recorded.tau_m,
             ..slam.chapter.matcher.icp().unwrap_or_default()
         };
         Some(RegistrationView {
@@ -115,7 +115,7 @@ pub(super) fn graph_of<'a>(
             edge.kind,
         );
     }
-    graph.settle(graph.edge_count());
+    graph.mark_optimized(graph.edge_count());
     graph
 }
 
@@ -133,7 +133,7 @@ mod tests {
             let view = record.registration(tick).unwrap();
             let recorded = record.lap.report(tick).unwrap().registration;
             assert_eq!(view.icp.pose, recorded.matched.pose, "tick {tick}");
-            assert_eq!(view.icp.rmse, recorded.matched.rmse_m, "tick {tick}");
+            assert_eq!(view.icp.rmse_m, recorded.matched.rmse_m, "tick {tick}");
         }
         assert_eq!(record.registration(0), None);
     }

@@ -25,7 +25,7 @@ pub struct WayErrors {
 impl WayErrors {
     /// Position error at half of the way, m.
     #[must_use]
-    pub fn half_way_m(&self) -> f64 {
+    pub fn half_path_length_m(&self) -> f64 {
         self.errors_m[WAY_SHARES / 2]
     }
 }
@@ -51,14 +51,14 @@ impl LapRecord {
             let positions = covariances.iter().map(|c| math::sqrt(c.m11 + c.m22));
             positions.collect::<Vec<f64>>()
         });
-        WayErrors::of(&self.drive, &ticks, &errors_m, sigmas_m.ok().as_deref())
+        WayErrors::along_path(&self.drive, &ticks, &errors_m, sigmas_m.ok().as_deref())
     }
 }
 
 impl WayErrors {
     /// Errors of keyframes along a drive: the tick and the error (m) of each, in order, and what the
     /// estimator takes for its deviation (m) where it says.
-    pub(crate) fn of(
+    pub(crate) fn along_path(
         drive: &Drive,
         ticks: &[usize],
         errors_m: &[f64],
@@ -77,14 +77,23 @@ impl WayErrors {
 /// Share of the way at which each keyframe was taken, ascending from 0.
 fn shares_of_the_way(drive: &Drive, ticks: &[usize]) -> Vec<f64> {
     let place = |tick: usize| drive.truth(tick).position();
-    let mut way_m = vec![0.0];
+    let mut path_length_m = vec![0.0];
     for tick in 1..=drive.ticks().len() {
         let step = place(tick) - place(tick - 1);
-        way_m.push(way_m[tick - 1] + math::norm2(step.x, step.y));
+        path_length_m.push(path_length_m[tick - 1] + math::norm2(step.x, step.y));
     }
-    let whole_m = way_m[drive.ticks().len()];
-    let share = |way_m: f64| if whole_m > 0.0 { way_m / whole_m } else { 0.0 };
-    ticks.iter().map(|&tick| share(way_m[tick])).collect()
+    let whole_m = path_length_m[drive.ticks().len()];
+    let share = |path_length_m: f64| {
+        if whole_m > 0.0 {
+            path_length_m / whole_m
+        } else {
+            0.0
+        }
+    };
+    ticks
+        .iter()
+        .map(|&tick| share(path_length_m[tick]))
+        .collect()
 }
 
 /// The value at `share`, linear between keyframes; beyond the last one it is that one's.

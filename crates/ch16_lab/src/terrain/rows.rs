@@ -48,9 +48,9 @@ pub struct RowsKnow {
 impl PlaneRows {
     /// The rows of a scene with pairs up to `tau_m`.
     #[must_use]
-    pub fn of(scene: &TerrainScene, tau_m: f64) -> Self {
+    pub fn from_scene(scene: &TerrainScene, tau_m: f64) -> Self {
         let config = IcpConfig {
-            tau: tau_m,
+            tau_m: tau_m,
             ..IcpConfig::default()
         };
         let pairs = correspondences(scene.cloud(), scene.map(), SE2::identity(), &config);
@@ -113,7 +113,7 @@ mod tests {
 
     fn rows(kind: SceneKind) -> PlaneRows {
         let scene = TerrainScene::new(kind, TerrainScene::DEFAULT_NDT_CELL_M);
-        PlaneRows::of(&scene, 0.6)
+        PlaneRows::from_scene(&scene, 0.6)
     }
 
     #[test]

@@ -36,7 +36,7 @@ impl AdaptiveThreshold {
 
     /// The current τ, m.
     #[must_use]
-    pub fn tau(&self) -> f64 {
+    pub fn tau_m(&self) -> f64 {
         if self.samples < MIN_SAMPLES {
             return self.initial_m;
         }

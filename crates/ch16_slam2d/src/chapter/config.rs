@@ -67,7 +67,7 @@ impl Default for ChapterConfig {
             information_frame: InformationFrame::Chapter,
             odometry_trust: TrustConfig {
                 sigma_m: 0.05,
-                inflate: 12.0,
+                covariance_scale: 12.0,
             },
             odometry_noise: MotionNoise::default(),
             prediction_noise: MotionNoise::without_odometry(),

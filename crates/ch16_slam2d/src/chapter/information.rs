@@ -25,5 +25,5 @@ pub enum InformationFrame {
 /// The information of `pairs` as [`InformationFrame::Chapter`] turns it, by the heading `theta_rad`.
 #[must_use]
 pub fn chapter_information(pairs: &[Pair], theta_rad: f64, trust: &TrustConfig) -> Matrix3<f64> {
-    icp_information_along(pairs, trust.sigma_m, trust.inflate, theta_rad)
+    icp_information_along(pairs, trust.sigma_m, trust.covariance_scale, theta_rad)
 }

@@ -19,7 +19,7 @@ pub struct SlamParts {
 impl SlamParts {
     /// The parts that `config` names.
     #[must_use]
-    pub fn of(config: &SlamConfig) -> Self {
+    pub fn from_config(config: &SlamConfig) -> Self {
         let chapter = &config.chapter;
         Self {
             front_end: chapter.matcher.build(&chapter.local_map),

@@ -42,7 +42,7 @@ impl WindowMatching {
         prediction: &SE2,
         config: &ChapterConfig,
     ) -> MatchSummary {
-        let request = MatchRequest::new(*prediction, self.threshold.tau(), config.max_iterations);
+        let request = MatchRequest::new(*prediction, self.threshold.tau_m(), config.max_iterations);
         let found = self.matcher.register(scan, &request);
         self.pairs = found.pairs;
         found.summary

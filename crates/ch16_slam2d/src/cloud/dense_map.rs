@@ -5,15 +5,15 @@ use pr_geom::math;
 use rustc_hash::FxHashMap;
 
 use super::cell_table::{CellTable, finite_range, free_cell_m};
-use super::{Memory, NearestMap, Neighbor, PointCloud, cell_index};
+use super::{NearestMap, Neighbor, PointCloud, QueryCache, cell_index};
 
 /// Marks "no point" where an index would stand.
-const NONE: u32 = Memory::NO_POINT;
+const NONE: u32 = QueryCache::NO_POINT;
 
 /// A remembered search looked this share of the radius beyond it, so that "nothing there" lasts.
 const LOOK_AHEAD: f64 = 0.25;
 
-/// Distances that differ by less than this, m, are compared by a new search, not from memory.
+/// Distances that differ by less than this, m, are compared by a new search, not from cache.
 const ROUNDING_M: f64 = 1e-9;
 
 /// A [`VoxelMap`](super::VoxelMap) frozen for queries: built at once, the same answers, no hashing.
@@ -86,7 +86,7 @@ impl DenseMap {
         map
     }
 
-    /// Replaces the contents by the points of `cloud` and keeps the memory.
+    /// Replaces the contents by the points of `cloud` and keeps the cache.
     pub fn rebuild(&mut self, cloud: &PointCloud) {
         let kept = self.sort_into_cells(cloud);
         self.xs.clear();
@@ -352,32 +352,32 @@ impl NearestMap for DenseMap {
     /// After the query moved by m, the point it remembers is still the nearest if its distance
     /// plus m is below the clearance: every other point was at least that far from the anchor.
     #[inline]
-    fn neighbor_again(
+    fn neighbor_cached(
         &self,
         query: Point2<f64>,
         radius_m: f64,
-        memory: &mut Memory,
+        cache: &mut QueryCache,
     ) -> Option<Neighbor> {
-        let moved = math::norm2(query.x - memory.anchor.0, query.y - memory.anchor.1);
-        let clear_m = memory.clearance_m - moved - ROUNDING_M;
+        let moved = math::norm2(query.x - cache.anchor.0, query.y - cache.anchor.1);
+        let clear_m = cache.clearance_m - moved - ROUNDING_M;
         let within = |index: u32, distance_squared_m2: f64| {
             (distance_squared_m2 < radius_m * radius_m).then_some(Neighbor {
                 index: index as usize,
                 distance_squared_m2,
             })
         };
-        if let Some(&x) = self.xs.get(memory.index as usize) {
-            let (dx, dy) = (x - query.x, self.ys[memory.index as usize] - query.y);
+        if let Some(&x) = self.xs.get(cache.index as usize) {
+            let (dx, dy) = (x - query.x, self.ys[cache.index as usize] - query.y);
             let distance_squared_m2 = dx * dx + dy * dy;
             if clear_m > 0.0 && distance_squared_m2 < clear_m * clear_m {
-                return within(memory.index, distance_squared_m2);
+                return within(cache.index, distance_squared_m2);
             }
         } else if clear_m >= radius_m {
             return None;
         }
         let reach = radius_m * (1.0 + LOOK_AHEAD);
-        let found = self.find(query.x, query.y, reach, memory.index);
-        *memory = Memory {
+        let found = self.find(query.x, query.y, reach, cache.index);
+        *cache = QueryCache {
             index: found.index,
             anchor: (query.x, query.y),
             clearance_m: found.clearance_m,

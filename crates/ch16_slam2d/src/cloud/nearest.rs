@@ -15,8 +15,8 @@ pub struct Neighbor {
 ///
 /// A memory belongs to one query point and one map. It changes the time, never the answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Memory {
-    /// The nearest point found then, or [`Memory::NO_POINT`].
+pub struct QueryCache {
+    /// The nearest point found then, or [`QueryCache::NO_POINT`].
     pub(super) index: u32,
     /// Where the query was then.
     pub(super) anchor: (f64, f64),
@@ -24,7 +24,7 @@ pub struct Memory {
     pub(super) clearance_m: f64,
 }
 
-impl Memory {
+impl QueryCache {
     pub(super) const NO_POINT: u32 = u32::MAX;
 
     /// A memory of no search, but of a point of the map that is likely to be near.
@@ -37,7 +37,7 @@ impl Memory {
     }
 }
 
-impl Default for Memory {
+impl Default for QueryCache {
     /// Remembers nothing.
     fn default() -> Self {
         Self {
@@ -73,13 +73,13 @@ pub trait NearestMap {
 
     /// As [`NearestMap::neighbor`], for a query that moves a little from call to call.
     #[inline]
-    fn neighbor_again(
+    fn neighbor_cached(
         &self,
         query: Point2<f64>,
         radius_m: f64,
-        memory: &mut Memory,
+        cache: &mut QueryCache,
     ) -> Option<Neighbor> {
-        let _ = memory;
+        let _ = cache;
         self.neighbor(query, radius_m)
     }
 }

@@ -5,7 +5,7 @@ use core::hint::select_unpredictable;
 use nalgebra::{Point2, Vector2};
 use pr_geom::math;
 
-use super::{DenseMap, Memory, NearestMap, Neighbor};
+use super::{DenseMap, NearestMap, Neighbor, QueryCache};
 
 /// Squared distances that differ by less than this, m², count as equal when a point is ruled out.
 const ROUNDING_M2: f64 = 1e-12;
@@ -218,7 +218,7 @@ impl NearestMap for NearestTable {
             self.starts[square] as usize,
             self.starts[square + 1] as usize,
         );
-        let (mut best, mut least) = (Memory::NO_POINT, radius_m * radius_m);
+        let (mut best, mut least) = (QueryCache::NO_POINT, radius_m * radius_m);
         for pair in &self.candidates[start..end] {
             for candidate in pair {
                 let (dx, dy) = (candidate.x - query.x, candidate.y - query.y);
@@ -230,7 +230,7 @@ impl NearestMap for NearestTable {
                 best = select_unpredictable(nearer, candidate.index, best);
             }
         }
-        (best != Memory::NO_POINT).then_some(Neighbor {
+        (best != QueryCache::NO_POINT).then_some(Neighbor {
             index: best as usize,
             distance_squared_m2: least,
         })

@@ -105,12 +105,12 @@ impl PoseGraph {
         for view in &mut edges {
             (view.from, view.to) = (moved_up(view.from), moved_up(view.to));
         }
-        let mut graph = Self::of(&nodes, &edges);
+        let mut graph = Self::from_parts(&nodes, &edges);
         graph.optimizer.settings = self.optimizer.settings;
         // A loop that is yet to correct the graph may be a part of any edge now.
-        let newer = &self.kinds[self.settled_edges()..];
+        let newer = &self.kinds[self.optimized_edges()..];
         if newer.iter().all(|kind| *kind == EdgeKind::Odometry) {
-            graph.settle(graph.edge_count());
+            graph.mark_optimized(graph.edge_count());
         }
         *self = graph;
         Ok(Marginalized {

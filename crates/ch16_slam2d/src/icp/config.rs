@@ -16,9 +16,9 @@ pub struct IcpConfig {
     /// Which error the increments reduce.
     pub variant: IcpVariant,
     /// At most so many increments.
-    pub max_iters: usize,
+    pub max_iterations: usize,
     /// Points farther than this from the map have no pair, m.
-    pub tau: f64,
+    pub tau_m: f64,
     /// An increment smaller than this, `‖(v_x, v_y)‖ + |ω|` of its log, ends the run.
     pub tolerance: f64,
     /// With fewer pairs than this the run ends.
@@ -34,8 +34,8 @@ impl Default for IcpConfig {
     fn default() -> Self {
         Self {
             variant: IcpVariant::default(),
-            max_iters: 25,
-            tau: 0.6,
+            max_iterations: 25,
+            tau_m: 0.6,
             tolerance: 1e-4,
             min_pairs: 8,
             trim: 0.0,

@@ -11,16 +11,16 @@ pub const INFORMATION_RIDGE: f64 = 1.0;
 /// The cap with which the chapter calls [`regularize`]: no direction is known better than to 2 cm.
 pub const INFORMATION_CAP: f64 = 2500.0;
 
-/// The information of a registration, `Σ J Jᵀ / (σ² · inflate)`, 3×3, translation first.
+/// The information of a registration, `Σ J Jᵀ / (σ² · covariance_scale)`, 3×3, translation first.
 ///
 /// A pair with a normal contributes the row `J = (n, lever)`, one without the rows of both axes.
 /// `lever` is the turn of the moved point about the centroid of all pairs, seen along the row's
 /// direction (m). So the matrix belongs to motions along the axes of the map, about
 /// [`centroid`]`(pairs)`; [`move_information`] expresses it elsewhere. `sigma` is the range noise in
-/// metres. `inflate` accounts for pairs that are not independent.
+/// metres. `covariance_scale` accounts for pairs that are not independent.
 #[must_use]
-pub fn icp_information(pairs: &[Pair], sigma: f64, inflate: f64) -> Matrix3<f64> {
-    icp_information_along(pairs, sigma, inflate, 0.0)
+pub fn icp_information(pairs: &[Pair], sigma: f64, covariance_scale: f64) -> Matrix3<f64> {
+    icp_information_along(pairs, sigma, covariance_scale, 0.0)
 }
 
 /// [`icp_information`] along the axes of heading `axes_theta` (rad) in place of the map's.
@@ -31,13 +31,13 @@ pub fn icp_information(pairs: &[Pair], sigma: f64, inflate: f64) -> Matrix3<f64>
 pub fn icp_information_along(
     pairs: &[Pair],
     sigma: f64,
-    inflate: f64,
+    covariance_scale: f64,
     axes_theta: f64,
 ) -> Matrix3<f64> {
     let centroid = centroid(pairs);
     let axes = Rotation::new(axes_theta);
     let mut hessian = PlaneHessian::default();
-    let weight = 1.0 / (sigma * sigma * inflate);
+    let weight = 1.0 / (sigma * sigma * covariance_scale);
     for pair in pairs {
         let arm = pair.source - centroid;
         let mut add = |direction: Vector2<f64>| {

@@ -5,7 +5,7 @@ use pr_geom::{SE2, math};
 
 use super::align::{PlanePair, PointPair, point_to_plane, point_to_point};
 use super::{IcpConfig, IcpTrace, IcpVariant, PairRejection, Trimmed};
-use crate::cloud::{Memory, NearestMap, PointCloud};
+use crate::cloud::{NearestMap, PointCloud, QueryCache};
 
 /// A moved cloud point and the map point nearest to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +41,7 @@ impl Pair {
 
 /// The pairs that a registration would use with the cloud at `target_from_source`.
 ///
-/// Pairs are closer than `config.tau`; trimming has dropped the longest share of them.
+/// Pairs are closer than `config.tau_m`; trimming has dropped the longest share of them.
 #[must_use]
 pub fn correspondences<M: NearestMap>(
     cloud: &PointCloud,
@@ -94,7 +94,7 @@ impl RawPair {
 #[derive(Clone, Default)]
 pub struct IcpWorkspace {
     /// What is known of the neighbour of each cloud point; empty where nothing is.
-    memory: Vec<Memory>,
+    cache: Vec<QueryCache>,
     pairs: Vec<RawPair>,
     distances: Vec<f64>,
     pub(super) trace: Vec<IcpTrace>,
@@ -136,7 +136,7 @@ impl IcpWorkspace {
 
     /// Forgets the neighbours: another cloud follows, or another map.
     pub(crate) fn forget(&mut self) {
-        self.memory.clear();
+        self.cache.clear();
     }
 
     /// Pairs every cloud point, moved by `target_from_source`, with its nearest map point.
@@ -148,23 +148,23 @@ impl IcpWorkspace {
         config: &IcpConfig,
     ) {
         let rotation = target_from_source.rotation();
-        let tau_squared = config.tau * config.tau;
+        let tau_squared = config.tau_m * config.tau_m;
         let with_normals = config.variant == IcpVariant::PointToPlane;
         let (mut cost, mut last_found) = (0.0, None);
-        let is_first = self.memory.is_empty();
-        self.memory.resize(cloud.len(), Memory::default());
+        let is_first = self.cache.is_empty();
+        self.cache.resize(cloud.len(), QueryCache::default());
         self.pairs.clear();
         self.sum_of_squares_m2 = 0.0;
-        let points = cloud.xs().iter().zip(cloud.ys()).zip(&mut self.memory);
-        for (source_index, ((&x, &y), memory)) in (0..cloud.len()).zip(points) {
+        let points = cloud.xs().iter().zip(cloud.ys()).zip(&mut self.cache);
+        for (source_index, ((&x, &y), cache)) in (0..cloud.len()).zip(points) {
             let (x, y) = rotation.rotate(x, y);
             let source = (x + target_from_source.x(), y + target_from_source.y());
             if let (true, Some(index)) = (is_first, last_found) {
                 // Neighbours in a sweep are neighbours in the map.
-                *memory = Memory::near(index);
+                *cache = QueryCache::near(index);
             }
             let query = Point2::new(source.0, source.1);
-            let Some(nearest) = map.neighbor_again(query, config.tau, memory) else {
+            let Some(nearest) = map.neighbor_cached(query, config.tau_m, cache) else {
                 cost += tau_squared;
                 continue;
             };

@@ -13,7 +13,7 @@ pub struct IcpTrace {
     /// Number of pairs at this pose.
     pub pairs: usize,
     /// Root mean square residual of the pairs, m; infinite without pairs.
-    pub rmse: f64,
+    pub rmse_m: f64,
     /// Mean over the cloud of `min(d², τ²)`, m²: what point-to-point ICP never raises.
     pub truncated_cost_m2: f64,
 }
@@ -30,8 +30,8 @@ pub enum StopReason {
     },
     /// All the iterations were used up.
     IterationLimit {
-        /// [`IcpConfig::max_iters`].
-        max_iters: usize,
+        /// [`IcpConfig::max_iterations`].
+        max_iterations: usize,
     },
     /// Too little of the cloud is near the map.
     TooFewPairs {
@@ -67,7 +67,7 @@ pub struct IcpSummary {
     /// `target_from_source`.
     pub pose: SE2,
     /// Root mean square residual of the last pairs, m; infinite without pairs.
-    pub rmse: f64,
+    pub rmse_m: f64,
     /// Number of the last pairs.
     pub inliers: usize,
     /// Increments made.
@@ -82,7 +82,7 @@ pub struct IcpResult {
     /// `target_from_source`.
     pub pose: SE2,
     /// Root mean square residual of the last pairs, m; infinite without pairs.
-    pub rmse: f64,
+    pub rmse_m: f64,
     /// Number of the last pairs.
     pub inliers: usize,
     /// The initial guess and the state after each increment: iterations = length − 1.
@@ -118,7 +118,7 @@ pub fn icp<M: NearestMap>(cloud: &PointCloud, map: &M, init: SE2, config: &IcpCo
     let summary = Icp::new(cloud, map, init, config, &mut workspace).run();
     IcpResult {
         pose: summary.pose,
-        rmse: summary.rmse,
+        rmse_m: summary.rmse_m,
         inliers: summary.inliers,
         pairs: workspace.pairs(map).collect(),
         trace: workspace.trace,
@@ -152,7 +152,7 @@ impl<'a, M: NearestMap> Icp<'a, M> {
         let current = IcpTrace {
             pose: init,
             pairs: 0,
-            rmse: f64::INFINITY,
+            rmse_m: f64::INFINITY,
             truncated_cost_m2: 0.0,
         };
         let mut registration = Self {
@@ -194,7 +194,7 @@ impl<'a, M: NearestMap> Icp<'a, M> {
             if let Some(stop) = self.step().stop {
                 return IcpSummary {
                     pose: self.current.pose,
-                    rmse: self.current.rmse,
+                    rmse_m: self.current.rmse_m,
                     inliers: self.current.pairs,
                     iterations: self.workspace.trace.len() - 1,
                     stop,
@@ -210,13 +210,13 @@ impl<'a, M: NearestMap> Icp<'a, M> {
 
     fn advance(&mut self) -> Option<StopReason> {
         let IcpConfig {
-            max_iters,
+            max_iterations,
             min_pairs,
             tolerance,
             ..
         } = self.config;
-        if self.workspace.trace.len() > max_iters {
-            return Some(StopReason::IterationLimit { max_iters });
+        if self.workspace.trace.len() > max_iterations {
+            return Some(StopReason::IterationLimit { max_iterations });
         }
         let pairs = self.workspace.pair_count();
         if pairs < min_pairs {
@@ -232,7 +232,8 @@ impl<'a, M: NearestMap> Icp<'a, M> {
         if step < tolerance {
             return Some(StopReason::SmallStep { step, tolerance });
         }
-        (self.workspace.trace.len() > max_iters).then_some(StopReason::IterationLimit { max_iters })
+        (self.workspace.trace.len() > max_iterations)
+            .then_some(StopReason::IterationLimit { max_iterations })
     }
 
     fn associate_at(&mut self, pose: SE2) {
@@ -244,7 +245,7 @@ impl<'a, M: NearestMap> Icp<'a, M> {
         self.current = IcpTrace {
             pose,
             pairs: workspace.pair_count(),
-            rmse: workspace.rmse_m(),
+            rmse_m: workspace.rmse_m(),
             truncated_cost_m2: workspace.truncated_cost_m2,
         };
         workspace.trace.push(self.current);

@@ -31,7 +31,7 @@ impl LocalMap {
         others: &[SE2],
         config: &MapRegistrationConfig,
     ) -> MapRegistration {
-        let stages = [config.reach_m, config.fit_m];
+        let stages = [config.max_correspondence_m, config.inlier_distance_m];
         let near = &stages[1..];
         let mut best = self.register(scan, prior.pose, &stages, Some(prior), config);
         // A registration from afar slides along a wall where the scan fits better at the prediction.
@@ -48,7 +48,7 @@ impl LocalMap {
                 self.register(scan, prior.pose, &[], Some(prior), config),
             );
         }
-        let is_vague = 2.0 * prior.sigma_m > config.reach_m;
+        let is_vague = 2.0 * prior.sigma_m > config.max_correspondence_m;
         if is_vague && best.fit.score < GOOD_WITHOUT_WHEELS {
             for turn_rad in STARTS.1 {
                 for ahead_m in STARTS.0 {

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use pr_geom::{SE2, math};
 
 use super::{LocalMap, MapFit, MotionPrior};
-use crate::cloud::{Memory, NearestMap, PointCloud};
+use crate::cloud::{NearestMap, PointCloud, QueryCache};
 
 /// A step below this, m and rad added, is the last.
 const TOLERANCE: f64 = 1e-4;
@@ -21,9 +21,9 @@ pub struct MapRegistrationConfig {
     /// Radius within which points of the map give each other normals, m.
     pub normal_radius_m: f64,
     /// Largest distance of a pair in the first stage, m.
-    pub reach_m: f64,
+    pub max_correspondence_m: f64,
     /// Largest distance of a pair in the last stage, and of a point that fits, m.
-    pub fit_m: f64,
+    pub inlier_distance_m: f64,
     /// Standard deviation of a point across its wall, m.
     pub point_sigma_m: f64,
     /// A scan counts as so many independent points at most: errors of neighbours are alike.
@@ -78,7 +78,7 @@ impl MapRegistrationConfig {
 
     /// What the misfit of a scan costs, as a negative logarithm of its likelihood.
     ///
-    /// A miss is as unlikely as a distance of `fit_m` with a standard deviation of a third of that.
+    /// A miss is as unlikely as a distance of `inlier_distance_m` with a standard deviation of a third of that.
     #[must_use]
     pub fn misfit_cost(&self, scan: &PointCloud, score: f64) -> f64 {
         let points = math::min(self.independent_points, scan.len() as f64);
@@ -102,8 +102,8 @@ impl LocalMap {
             information: Matrix3::zeros(),
             iterations: 0,
         };
-        for &reach_m in reaches_m {
-            let stage = self.minimize(scan, registered.pose, reach_m, prior, config);
+        for &max_correspondence_m in reaches_m {
+            let stage = self.minimize(scan, registered.pose, max_correspondence_m, prior, config);
             registered = Registered {
                 iterations: registered.iterations + stage.iterations,
                 ..stage
@@ -118,27 +118,28 @@ impl LocalMap {
         }
     }
 
-    /// Gauss–Newton on the pairs within `reach_m` and the prior, reweighted at every step.
+    /// Gauss–Newton on the pairs within `max_correspondence_m` and the prior, reweighted at every step.
     ///
     /// A pair's row is `J = (Rᵀn, p × Rᵀn)` with the point p in the body's frame: right perturbations.
     fn minimize(
         &mut self,
         scan: &PointCloud,
         start: SE2,
-        reach_m: f64,
+        max_correspondence_m: f64,
         prior: Option<&MotionPrior>,
         config: &MapRegistrationConfig,
     ) -> Registered {
         let weight = config.pair_information(scan);
-        let mut memory = vec![Memory::default(); scan.len()];
+        let mut cache = vec![QueryCache::default(); scan.len()];
         let mut pose = start;
         let mut iterations = 0;
         loop {
             let rotation = pose.rotation();
             let (mut information, mut gradient) = (Matrix3::zeros(), Vector3::zeros());
-            for (point, memory) in scan.iter().zip(&mut memory) {
+            for (point, cache) in scan.iter().zip(&mut cache) {
                 let at = pose.transform(point);
-                let Some(nearest) = self.points.neighbor_again(at, reach_m, memory) else {
+                let Some(nearest) = self.points.neighbor_cached(at, max_correspondence_m, cache)
+                else {
                     continue;
                 };
                 let Some(normal) = self.normal(nearest.index, config.normal_radius_m) else {

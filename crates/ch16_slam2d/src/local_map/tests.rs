@@ -31,8 +31,8 @@ fn map_of(scan: &PointCloud) -> LocalMap {
 
 const CONFIG: MapRegistrationConfig = MapRegistrationConfig {
     normal_radius_m: 0.3,
-    reach_m: 0.3,
-    fit_m: 0.15,
+    max_correspondence_m: 0.3,
+    inlier_distance_m: 0.15,
     point_sigma_m: 0.025,
     independent_points: 28.0,
     unseen_cost: 0.4,

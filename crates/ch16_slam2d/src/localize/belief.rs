@@ -1,9 +1,9 @@
-//! What is believed of the pose of a robot that is followed.
+//! What is localized of the pose of a robot that is followed.
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
-/// What is believed of the pose.
+/// What is localized of the pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Belief {
     pub pose: SE2,

@@ -14,7 +14,7 @@ pub enum StartPose {
     Near(SE2),
 }
 
-/// When a place is believed, and for how long; lengths are those of rooms and corridors.
+/// When a place is localized, and for how long; lengths are those of rooms and corridors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocalizeConfig {
     /// Keyframes within this distance of the prediction are what a scan is registered on, m.
@@ -45,16 +45,16 @@ pub struct LocalizeConfig {
     pub neighborhood: SearchNeighborhood,
     /// A search whose best score is lower found nothing, 0 to 1.
     pub min_score: f64,
-    /// A best place with a lower score is told and not believed, 0 to 1: walls stand as far apart in
+    /// A best place with a lower score is told and not localized, 0 to 1: walls stand as far apart in
     /// other buildings, too.
     pub found_score: f64,
     /// Where scans usually fit worse, the robot is doubted and looked for everywhere, 0 to 1.
     pub usual_score: f64,
-    /// A best place is believed if the best other one is behind by so much, and the next search
+    /// A best place is localized if the best other one is behind by so much, and the next search
     /// finds it again.
     pub min_margin: f64,
-    /// With this margin it is believed at once.
-    pub sure_margin: f64,
+    /// With this margin it is localized at once.
+    pub unconfirmed_margin: f64,
     /// Sweeps of the trail, at most.
     pub trail_sweeps: usize,
     /// Way between two sweeps of the trail, m.
@@ -93,7 +93,7 @@ impl Default for LocalizeConfig {
             found_score: 0.85,
             usual_score: 0.8,
             min_margin: 0.05,
-            sure_margin: 0.15,
+            unconfirmed_margin: 0.15,
             trail_sweeps: 20,
             trail_step_m: 0.4,
             trail_turn_rad: 0.5,

@@ -48,7 +48,7 @@ pub struct Localizer {
     last_stamp_s: f64,
     start: StartPose,
     belief: Option<Belief>,
-    /// The place that the last search found, moved on since, while it is not believed.
+    /// The place that the last search found, moved on since, while it is not localized.
     candidate: Option<SE2>,
     searched_ago: usize,
     /// Sweeps that still have to join the trail before the next search, and how many it was told to
@@ -271,12 +271,12 @@ impl Localizer {
         let square = |sigma: f64| 1.0 / (sigma * sigma);
         let xy = square(self.config.start_sigma_m);
         let theta = square(self.config.start_sigma_rad);
-        let believed = Matrix3::from_diagonal(&Vector3::new(xy, xy, theta));
+        let localized = Matrix3::from_diagonal(&Vector3::new(xy, xy, theta));
         let found = self.register(&pending.scan, result.best.pose);
         let innovation = start.between(&found.registered.pose).log();
-        let gate = chi_squared_gate(&innovation, &believed, self.config.gate_chi2);
+        let gate = chi_squared_gate(&innovation, &localized, self.config.gate_chi2);
         if gate.passes() {
-            self.take(&found, Some(believed), &mut pending.report);
+            self.take(&found, Some(localized), &mut pending.report);
         }
         pending.report.search = Some(result);
     }
@@ -324,11 +324,11 @@ impl Localizer {
         }
         let is_again = self.candidate.as_ref().is_some_and(is_best);
         self.candidate = Some(best);
-        let is_believed = result.best.score >= self.config.found_score
-            && (margin >= self.config.sure_margin
+        let is_localized = result.best.score >= self.config.found_score
+            && (margin >= self.config.unconfirmed_margin
                 || (margin >= self.config.min_margin && is_again));
         let found = self.register(&pending.scan, best);
-        if (is_believed && self.take(&found, None, report)) || self.belief.is_some() {
+        if (is_localized && self.take(&found, None, report)) || self.belief.is_some() {
             return;
         }
         report.verdict = Verdict::Doubtful;
@@ -372,7 +372,10 @@ impl Localizer {
     /// Registers a scan around a pose that a search has found.
     fn register(&mut self, scan: &PointCloud, guess: SE2) -> MapRegistration {
         self.approach(&guess);
-        let stages = [self.registration.reach_m, self.registration.fit_m];
+        let stages = [
+            self.registration.max_correspondence_m,
+            self.registration.inlier_distance_m,
+        ];
         self.local
             .register(scan, guess, &stages, None, &self.registration)
     }

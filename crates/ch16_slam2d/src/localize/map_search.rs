@@ -113,7 +113,7 @@ impl MapSearch {
         let search = map.search(&self.trail, &window, &config.neighborhood);
         self.under_way = search.ok().map(|search| {
             let search = search.with_min_score(floor);
-            search.with_margin(config.sure_margin)
+            search.with_margin(config.unconfirmed_margin)
         });
         self.under_way.is_some() || self.asked.is_some()
     }

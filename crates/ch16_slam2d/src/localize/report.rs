@@ -5,7 +5,7 @@ use pr_geom::SE2;
 
 use crate::search::{ScoredPose, SearchResult};
 
-/// How far a pose is to be believed.
+/// How far a pose is to be localized.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// The place was searched for and found in this frame.
@@ -33,7 +33,7 @@ impl Verdict {
 
     /// Whether the pose is one to drive by.
     #[must_use]
-    pub fn is_believed(self) -> bool {
+    pub fn is_localized(self) -> bool {
         matches!(self, Self::Found | Self::Tracking)
     }
 }
@@ -45,7 +45,7 @@ pub struct LocalizeReport {
     pub frame: usize,
     /// Its time, s.
     pub stamp_s: f64,
-    /// How far the pose is to be believed.
+    /// How far the pose is to be localized.
     pub verdict: Verdict,
     /// `map_from_body`; none where it is lost.
     pub pose: Option<SE2>,

@@ -64,7 +64,7 @@ fn a_rectangular_room_looks_the_same_after_half_a_turn_and_is_doubted() {
     let mut localizer = localizer(&map, &config, StartPose::Anywhere);
     for step in 40..60 {
         let report = localizer.step(&frame(step)).unwrap();
-        assert!(!report.verdict.is_believed(), "{step}: {report:?}");
+        assert!(!report.verdict.is_localized(), "{step}: {report:?}");
         if let Some(result) = report.search {
             let turn = result
                 .best

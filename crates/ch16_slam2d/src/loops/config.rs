@@ -102,7 +102,7 @@ impl Default for LoopConfig {
             min_score: 0.0,
             trust: TrustConfig {
                 sigma_m: 0.05,
-                inflate: 25.0,
+                covariance_scale: 25.0,
             },
             gate_model: GateModel::PathApproximation,
             drift_sigma_m: 0.045,

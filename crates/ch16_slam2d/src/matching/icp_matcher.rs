@@ -28,7 +28,7 @@ impl IcpMatcher {
 
     /// A matcher of this variant with the chapter's settings.
     #[must_use]
-    pub fn of(variant: IcpVariant, map: &MapConfig) -> Self {
+    pub fn with_variant(variant: IcpVariant, map: &MapConfig) -> Self {
         let config = IcpConfig {
             variant,
             ..IcpConfig::default()
@@ -40,8 +40,8 @@ impl IcpMatcher {
     #[must_use]
     pub fn settings(&self, request: &MatchRequest) -> IcpConfig {
         IcpConfig {
-            max_iters: request.max_iterations,
-            tau: request.tau_m,
+            max_iterations: request.max_iterations,
+            tau_m: request.tau_m,
             ..self.config
         }
     }
@@ -70,7 +70,7 @@ impl Matcher for IcpMatcher {
         Match {
             summary: MatchSummary {
                 pose: found.pose,
-                rmse_m: found.rmse,
+                rmse_m: found.rmse_m,
                 inliers: found.inliers,
                 iterations: found.iterations,
                 score: None,

@@ -5,20 +5,20 @@ use pr_geom::SE2;
 
 use crate::icp::{Pair, centroid, icp_information, move_information};
 
-/// How far matched points are trusted: `1/(σ² · inflate)` a pair.
+/// How far matched points are trusted: `1/(σ² · covariance_scale)` a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrustConfig {
     /// Standard deviation of a point in metres.
     pub sigma_m: f64,
     /// Pairs are not independent: the variance is multiplied by this.
-    pub inflate: f64,
+    pub covariance_scale: f64,
 }
 
 /// The information of `pairs` about the pose `target_from_body`, 3×3, translation first.
 ///
 /// With `p` the point in the body's frame, `R` the rotation of the pose and `n` the direction that a
-/// pair measures, `Σ J Jᵀ / (σ² · inflate)` with `J = (Rᵀ n, p × Rᵀ n)`: the Gauss–Newton Hessian of
-/// `½ Σ (n · (T exp(δ) p − q))² / (σ² · inflate)` at δ = 0. A pair with a normal measures along it,
+/// pair measures, `Σ J Jᵀ / (σ² · covariance_scale)` with `J = (Rᵀ n, p × Rᵀ n)`: the Gauss–Newton Hessian of
+/// `½ Σ (n · (T exp(δ) p − q))² / (σ² · covariance_scale)` at δ = 0. A pair with a normal measures along it,
 /// one without along both axes.
 #[must_use]
 pub fn match_information(
@@ -29,7 +29,7 @@ pub fn match_information(
     let middle = centroid(pairs);
     let middle_from_body = SE2::translation(middle.x, middle.y).between(target_from_body);
     move_information(
-        &icp_information(pairs, trust.sigma_m, trust.inflate),
+        &icp_information(pairs, trust.sigma_m, trust.covariance_scale),
         &middle_from_body,
     )
 }
@@ -43,7 +43,7 @@ mod tests {
 
     const TRUST: TrustConfig = TrustConfig {
         sigma_m: 0.05,
-        inflate: 3.0,
+        covariance_scale: 3.0,
     };
 
     /// Pairs that fit without a residual: the body sees a corner of two walls and a post.
@@ -73,7 +73,7 @@ mod tests {
     /// The cost whose Hessian is asked for, at the pose `T exp(δ)`.
     fn cost(pairs: &[Pair], pose: &SE2, delta: &Vector3<f64>) -> f64 {
         let moved = pose.boxplus(delta) * pose.inverse();
-        let weight = 1.0 / (TRUST.sigma_m * TRUST.sigma_m * TRUST.inflate);
+        let weight = 1.0 / (TRUST.sigma_m * TRUST.sigma_m * TRUST.covariance_scale);
         let squares = pairs.iter().map(|pair| {
             let (x, y) = moved.rotation().rotate(pair.source.x, pair.source.y);
             let gap = Vector2::new(x + moved.x() - pair.target.x, y + moved.y() - pair.target.y);

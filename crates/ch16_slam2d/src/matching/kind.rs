@@ -42,8 +42,8 @@ impl MatcherKind {
     #[must_use]
     pub fn build(&self, map: &MapConfig) -> Box<dyn Matcher> {
         match *self {
-            Self::PointToPoint => Box::new(IcpMatcher::of(IcpVariant::PointToPoint, map)),
-            Self::PointToPlane => Box::new(IcpMatcher::of(IcpVariant::PointToPlane, map)),
+            Self::PointToPoint => Box::new(IcpMatcher::with_variant(IcpVariant::PointToPoint, map)),
+            Self::PointToPlane => Box::new(IcpMatcher::with_variant(IcpVariant::PointToPlane, map)),
             Self::Icp(config) => Box::new(IcpMatcher::new(config, map)),
             Self::Ndt(config) => Box::new(NdtMatcher::new(config, map)),
             Self::Search(config) => Box::new(SearchMatcher::new(config, map)),

@@ -45,7 +45,7 @@ impl NdtMatcher {
         Self {
             config,
             gaussians: None,
-            ruler: IcpMatcher::of(IcpVariant::PointToPoint, map),
+            ruler: IcpMatcher::with_variant(IcpVariant::PointToPoint, map),
         }
     }
 }
@@ -64,7 +64,7 @@ impl Matcher for NdtMatcher {
             return self.ruler.fit(source, request.guess, request.tau_m);
         };
         let solver = NdtConfig {
-            max_iters: request.max_iterations,
+            max_iterations: request.max_iterations,
             ..self.config.solver
         };
         let mut registration = NdtAlign::new(source, gaussians, request.guess, &solver);

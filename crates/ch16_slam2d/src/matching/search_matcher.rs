@@ -41,7 +41,7 @@ impl Default for SearchMatcherConfig {
             neighborhood: SearchNeighborhood::default(),
             min_score: 0.5,
             refine: IcpConfig {
-                tau: 0.3,
+                tau_m: 0.3,
                 ..IcpConfig::default()
             },
         }
@@ -114,7 +114,7 @@ impl Matcher for SearchMatcher {
         };
         let near = MatchRequest {
             guess: found.best.pose,
-            tau_m: self.config.refine.tau,
+            tau_m: self.config.refine.tau_m,
             ..*request
         };
         let refined = self.icp.register(source, &near).summary;

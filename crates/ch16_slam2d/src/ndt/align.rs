@@ -17,7 +17,7 @@ const MIN_TERM: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NdtConfig {
     /// At most so many steps.
-    pub max_iters: usize,
+    pub max_iterations: usize,
     /// Gradient below which the run ends, `‖g_xy‖ + |g_θ|`.
     pub gradient_tolerance: f64,
     /// First damping λ: diagonal entries grow by the factor 1 + λ.
@@ -29,7 +29,7 @@ pub struct NdtConfig {
 impl Default for NdtConfig {
     fn default() -> Self {
         Self {
-            max_iters: 25,
+            max_iterations: 25,
             gradient_tolerance: 1e-6,
             initial_damping: 1e-4,
             max_tries: 10,
@@ -54,8 +54,8 @@ pub enum NdtStop {
     },
     /// All the steps were used up.
     IterationLimit {
-        /// [`NdtConfig::max_iters`].
-        max_iters: usize,
+        /// [`NdtConfig::max_iterations`].
+        max_iterations: usize,
     },
 }
 
@@ -171,13 +171,13 @@ impl<'a> NdtAlign<'a> {
 
     fn advance(&mut self) -> Option<NdtStop> {
         let NdtConfig {
-            max_iters,
+            max_iterations,
             gradient_tolerance: tolerance,
             max_tries,
             ..
         } = self.config;
-        if max_iters == 0 {
-            return Some(NdtStop::IterationLimit { max_iters });
+        if max_iterations == 0 {
+            return Some(NdtStop::IterationLimit { max_iterations });
         }
         self.iterations += 1;
         let at_pose = self.slope.take();
@@ -214,8 +214,8 @@ impl<'a> NdtAlign<'a> {
                     self.score = score;
                     self.slope = slope;
                     self.damping = (0.5 * self.damping).max(MIN_DAMPING);
-                    return (self.iterations >= max_iters)
-                        .then_some(NdtStop::IterationLimit { max_iters });
+                    return (self.iterations >= max_iterations)
+                        .then_some(NdtStop::IterationLimit { max_iterations });
                 }
             }
             self.damping *= 6.0;

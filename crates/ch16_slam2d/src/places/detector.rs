@@ -77,7 +77,7 @@ enum Look {
 }
 
 impl Look {
-    fn of(scan: &PointCloud, descriptor: &PlaceDescriptor) -> Self {
+    fn new(scan: &PointCloud, descriptor: &PlaceDescriptor) -> Self {
         match descriptor {
             PlaceDescriptor::Histogram(config) => {
                 Self::Histogram(RangeHistogram::new(scan, config))
@@ -130,7 +130,9 @@ impl PlaceDetector {
     /// How different two scans look, 0 to 1.
     #[must_use]
     pub fn distance(descriptor: &PlaceDescriptor, a: &PointCloud, b: &PointCloud) -> f64 {
-        Look::of(a, descriptor).compare(&Look::of(b, descriptor)).0
+        Look::new(a, descriptor)
+            .compare(&Look::new(b, descriptor))
+            .0
     }
 }
 
@@ -138,7 +140,7 @@ impl LoopDetector for PlaceDetector {
     fn detect(&mut self, query: &mut LoopQuery<'_>) -> Vec<LoopCandidate> {
         let node = query.node();
         for known in self.looks.len()..query.keyframes().len() {
-            let look = Look::of(query.scan(known), &self.config.descriptor);
+            let look = Look::new(query.scan(known), &self.config.descriptor);
             self.looks.push(look);
         }
         let Some(here) = self.looks.get(node) else {

@@ -94,7 +94,9 @@ impl BundleLoops {
         for window in windows {
             let found = self.verify(mapper, &window, &bundle, &lengths_m);
             let is_expected = found.gate.passes();
-            if !found.accepted() || (is_expected && window.half_m <= self.config.sure_m) {
+            if !found.accepted()
+                || (is_expected && window.half_m <= self.config.unconfirmed_gate_radius_m)
+            {
                 tried.push(found);
                 continue;
             }
@@ -238,15 +240,20 @@ impl BundleLoops {
     ) -> LoopVerification {
         self.build_submap(mapper, window, lengths_m);
         let Self { config, .. } = *self;
-        let is_sure = window.half_m <= config.sure_m;
+        let is_sure = window.half_m <= config.unconfirmed_gate_radius_m;
         let (start, margin) = if is_sure {
             (Some(window.belief), None)
         } else {
             self.search(window, bundle)
         };
         let settings = self.registration;
-        let (reach_m, fit_m) = (settings.reach_m, settings.fit_m);
-        let stages = [2.0 * reach_m, reach_m, fit_m];
+        let (max_correspondence_m, inlier_distance_m) =
+            (settings.max_correspondence_m, settings.inlier_distance_m);
+        let stages = [
+            2.0 * max_correspondence_m,
+            max_correspondence_m,
+            inlier_distance_m,
+        ];
         let stages = if is_sure { &stages[..] } else { &stages[1..] };
         let from = start.unwrap_or(window.belief);
         let stages = if start.is_some() { stages } else { &[] };

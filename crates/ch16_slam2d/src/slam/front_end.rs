@@ -103,7 +103,7 @@ impl FrontEnd {
     #[must_use]
     pub fn tau_m(&self) -> f64 {
         self.window_matching()
-            .map_or(0.0, |matching| matching.threshold.tau())
+            .map_or(0.0, |matching| matching.threshold.tau_m())
     }
 
     /// The sweeps of the next local map, oldest first.

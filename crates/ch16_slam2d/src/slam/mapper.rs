@@ -6,14 +6,14 @@ use pr_optim::{OptimizeError, StopReason};
 
 use super::config::SlamConfig;
 use super::report::{Change, Keyframe, LoopEffect};
-use crate::graph::{EdgeKind, LoopBeliefs, PoseGraph};
+use crate::graph::{EdgeKind, InlierEdges, PoseGraph};
 use crate::loops::{LoopRejection, LoopVerification};
 use crate::metrics::position_error_m;
 
-/// Which edges of a graph are inliers where each loop may be false, such as [`PoseGraph::believed`].
+/// Which edges of a graph are inliers where each loop may be false, such as [`PoseGraph::inliers`].
 ///
 /// A function that whoever maps a log hands over: a program that never does so does not carry it.
-pub type LoopOutlierTest = fn(&PoseGraph) -> LoopBeliefs;
+pub type LoopOutlierTest = fn(&PoseGraph) -> InlierEdges;
 
 /// How the graph takes new loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,7 +133,7 @@ impl Mapper {
         poses_before: &[SE2],
         config: &SlamConfig,
     ) -> Result<usize, LoopRejection> {
-        let settled = self.graph.settled_edges();
+        let optimized = self.graph.optimized_edges();
         let report = self.graph.optimize_robust(
             config.optimizer_iterations,
             config.optimizer_tolerance,
@@ -162,33 +162,33 @@ impl Mapper {
         for (node, pose) in poses_before.iter().enumerate() {
             self.graph.set_pose(node, *pose);
         }
-        self.graph.settle(settled);
+        self.graph.mark_optimized(optimized);
         Err(rejection)
     }
 
     /// Keeps the loops that agree with each other best, by the truncated cost; whether that could be told.
     fn judge(&mut self) -> bool {
-        let Some(Ok(belief)) = self.outlier_test.map(|test| test(&self.graph)) else {
+        let Some(Ok(selection)) = self.outlier_test.map(|test| test(&self.graph)) else {
             return false;
         };
         let mut graph = self
             .graph
-            .with_edges(|view| belief.believed[view.id.index()]);
-        for (node, pose) in belief.poses.iter().enumerate() {
+            .with_edges(|view| selection.inliers[view.id.index()]);
+        for (node, pose) in selection.poses.iter().enumerate() {
             graph.set_pose(node, *pose);
         }
-        graph.settle(graph.edge_count());
+        graph.mark_optimized(graph.edge_count());
         self.graph = graph;
         true
     }
 
     /// Corrects the graph by the loops that wait for a correction; the motion of the newest node.
-    pub(super) fn settle(&mut self, config: &SlamConfig) -> SE2 {
+    pub(super) fn optimize_pending(&mut self, config: &SlamConfig) -> SE2 {
         let Some(newest) = self.keyframes.len().checked_sub(1) else {
             return SE2::identity();
         };
         let before = self.graph.poses().to_vec();
-        if self.graph.settled_edges() < self.graph.edge_count() {
+        if self.graph.optimized_edges() < self.graph.edge_count() {
             // A graph that cannot be solved stays as it is.
             let _ = self.optimize(0, &before, config);
             self.chi2 = self.graph.chi2();

@@ -180,7 +180,7 @@ impl Mapper {
             (pose, &*self.keyframes[near].scan, profile)
         }));
         let belief = poses[center].between(&poses[node]);
-        let stages = [settings.reach_m, settings.fit_m];
+        let stages = [settings.max_correspondence_m, settings.inlier_distance_m];
         let scan = &self.keyframes[node].scan;
         let mut found = map.register(scan, belief, &stages, None, &settings);
         if let Some((half_m, half_rad)) = allowed.window

@@ -53,9 +53,9 @@ pub struct RobotConfig {
     /// Radius within which points of the local map give each other normals, m.
     pub normal_radius_m: f64,
     /// Largest distance of a pair in the first stage of a registration, m.
-    pub reach_m: f64,
+    pub max_correspondence_m: f64,
     /// Largest distance of a pair in the last stage, and of a point that fits, m.
-    pub fit_m: f64,
+    pub inlier_distance_m: f64,
     /// Standard deviation of a point across its wall, m.
     pub point_sigma_m: f64,
     /// A scan counts as so many independent points.
@@ -99,7 +99,7 @@ pub struct SubmapLoopConfig {
     /// The best place has to be ahead of the best other one by so much, 0 to 1.
     pub min_margin: f64,
     /// A loop within a window of this half width needs no other one that agrees, m.
-    pub sure_m: f64,
+    pub unconfirmed_gate_radius_m: f64,
     /// Else it waits for one on so much of the path, m.
     pub pending_distance_m: f64,
 }
@@ -114,7 +114,7 @@ impl Default for SubmapLoopConfig {
             max_turn_rad: 0.5,
             min_score: 0.6,
             min_margin: 0.03,
-            sure_m: 1.0,
+            unconfirmed_gate_radius_m: 1.0,
             pending_distance_m: 20.0,
         }
     }
@@ -128,8 +128,8 @@ impl Default for RobotConfig {
             window_sweeps: 16,
             window_distance_m: 0.16,
             normal_radius_m: 0.3,
-            reach_m: 0.3,
-            fit_m: 0.15,
+            max_correspondence_m: 0.3,
+            inlier_distance_m: 0.15,
             point_sigma_m: 0.025,
             independent_points: 28.0,
             unseen_cost: 0.4,
@@ -170,8 +170,8 @@ impl RobotConfig {
     pub fn registration(&self) -> MapRegistrationConfig {
         MapRegistrationConfig {
             normal_radius_m: self.normal_radius_m,
-            reach_m: self.reach_m,
-            fit_m: self.fit_m,
+            max_correspondence_m: self.max_correspondence_m,
+            inlier_distance_m: self.inlier_distance_m,
             point_sigma_m: self.point_sigma_m,
             independent_points: self.independent_points,
             unseen_cost: self.unseen_cost,

@@ -32,7 +32,7 @@ pub struct SlamSnapshot {
     /// The graph's edges, in the order in which they were added.
     pub edges: Vec<EdgeView>,
     /// How many edges there were when a node was last moved; later loops are yet to correct the graph.
-    pub settled_edges: usize,
+    pub optimized_edges: usize,
     /// The keyframes in order.
     pub keyframes: Vec<Keyframe>,
     /// The newest node at which loops were looked for.
@@ -156,7 +156,7 @@ impl SlamSnapshot {
         if !newest.into_iter().flatten().all(is_node) {
             return Err(SnapshotError::Counter("newest node with a loop"));
         }
-        if self.settled_edges > self.edges.len() {
+        if self.optimized_edges > self.edges.len() {
             return Err(SnapshotError::Counter("number of settled edges"));
         }
         for (number, waiting) in self.pending.iter().enumerate() {
@@ -233,7 +233,7 @@ impl Slam {
             last_stamp_s: self.last_stamp_s,
             nodes: self.mapper.graph.nodes().map(|(_, node)| node).collect(),
             edges: self.mapper.graph.edges().collect(),
-            settled_edges: self.mapper.graph.settled_edges(),
+            optimized_edges: self.mapper.graph.optimized_edges(),
             keyframes: self.mapper.keyframes.clone(),
             last_attempt_node: self.loop_closer.last_attempt_node,
             last_loop_node: self.mapper.last_loop_node,
@@ -247,7 +247,7 @@ impl Slam {
     /// # Errors
     /// Where the snapshot contradicts itself.
     pub fn restore(snapshot: &SlamSnapshot) -> Result<Self, SnapshotError> {
-        let parts = SlamParts::of(&snapshot.config);
+        let parts = SlamParts::from_config(&snapshot.config);
         Self::restore_with_parts(snapshot, parts)
     }
 
@@ -264,9 +264,9 @@ impl Slam {
         slam.frames = snapshot.frames;
         slam.last_stamp_s = snapshot.last_stamp_s;
         let mapper = &mut slam.mapper;
-        mapper.graph =
-            PoseGraph::of(&snapshot.nodes, &snapshot.edges).solved_with(snapshot.config.jacobians);
-        mapper.graph.settle(snapshot.settled_edges);
+        mapper.graph = PoseGraph::from_parts(&snapshot.nodes, &snapshot.edges)
+            .solved_with(snapshot.config.jacobians);
+        mapper.graph.mark_optimized(snapshot.optimized_edges);
         mapper.keyframes = snapshot.keyframes.clone();
         mapper.last_loop_node = snapshot.last_loop_node;
         mapper.chi2 = mapper.graph.chi2();
@@ -294,7 +294,7 @@ mod tests {
         let scan = frame(0).scan;
         // Never sure: every loop waits for others.
         let mut doubting = RobotConfig::for_scan(&scan);
-        doubting.loops.sure_m = 0.0;
+        doubting.loops.unconfirmed_gate_radius_m = 0.0;
         doubting.loops.min_margin = 0.0;
         doubting.loops.pending_distance_m = 0.0;
         doubting.loops.min_path_m = 4.0;
@@ -319,7 +319,7 @@ mod tests {
                 driven(&mut first, 0..stop);
                 waited += first.snapshot().pending.len();
                 let graph = first.graph();
-                let newer = graph.edges().skip(graph.settled_edges());
+                let newer = graph.edges().skip(graph.optimized_edges());
                 unspread += newer
                     .filter(|view| view.edge.kind == EdgeKind::Loop)
                     .count();
@@ -349,7 +349,7 @@ mod tests {
                 "node 1 holds",
             ),
             (|s| s.last_loop_node = 999, "newest node with a loop"),
-            (|s| s.settled_edges = 999, "number of settled edges"),
+            (|s| s.optimized_edges = 999, "number of settled edges"),
             (|s| drop(s.front_end.scans.pop()), "window of sweeps"),
             (
                 |s| s.front_end.driven[(0, 0)] = f64::INFINITY,

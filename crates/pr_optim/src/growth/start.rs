@@ -28,7 +28,7 @@ impl GrowthStart {
     }
 
     /// The beginning of a graph; all of it where what follows would not be as described.
-    pub fn of(problem: &Problem) -> Self {
+    pub fn from_problem(problem: &Problem) -> Self {
         let whole = Self::whole(problem);
         let Some(last_fixed) = problem.fixed().iter().rposition(|&fixed| fixed) else {
             return whole;
@@ -51,7 +51,7 @@ impl GrowthStart {
                 met.nodes = later + 1;
                 continue;
             }
-            closings = if met.factors > problem.settled() {
+            closings = if met.factors > problem.optimized_factors() {
                 closings + 1
             } else {
                 0
@@ -93,7 +93,7 @@ mod tests {
     }
 
     fn start(nodes: usize, ends: &[(usize, usize)]) -> (usize, usize) {
-        let GrowthStart { nodes, factors } = GrowthStart::of(&graph(nodes, ends));
+        let GrowthStart { nodes, factors } = GrowthStart::from_problem(&graph(nodes, ends));
         (nodes, factors)
     }
 
@@ -108,7 +108,7 @@ mod tests {
         let mut held = graph(4, &[(0, 1), (1, 2), (2, 3)]);
         held.fix(2);
         assert_eq!(
-            GrowthStart::of(&held),
+            GrowthStart::from_problem(&held),
             GrowthStart::whole(&held),
             "held later"
         );
@@ -128,8 +128,8 @@ mod tests {
         ];
         let of = |settled: usize| {
             let mut problem = graph(6, &ends);
-            problem.settle(settled);
-            let GrowthStart { nodes, factors } = GrowthStart::of(&problem);
+            problem.mark_optimized(settled);
+            let GrowthStart { nodes, factors } = GrowthStart::from_problem(&problem);
             (nodes, factors)
         };
         assert_eq!([of(0), of(2)], [(1, 0); 2], "no loop was closed then");
@@ -138,9 +138,9 @@ mod tests {
         assert_eq!([of(7), of(100)], [(5, 7); 2], "all were");
         let mut moved = graph(6, &ends);
         moved.poses_mut()[3] = SE2::translation(1.0, 0.0);
-        assert_eq!(moved.settled(), 8);
+        assert_eq!(moved.optimized_factors(), 8);
         moved.pop_factor();
-        assert_eq!(moved.settled(), 7);
+        assert_eq!(moved.optimized_factors(), 7);
     }
 
     #[test]

@@ -30,7 +30,7 @@ impl Optimizer {
         second: usize,
     ) -> Result<JointCovariance, OptimizeError> {
         self.held.lose();
-        self.follow(problem, GrowthStart::of(problem))?;
+        self.follow(problem, GrowthStart::from_problem(problem))?;
         let growth = self.growth.as_ref().expect("it follows the problem");
         let linear = self.linear.as_mut().expect("it was factorized");
         Ok(growth.joint_covariance(linear, first, second))
@@ -45,8 +45,8 @@ impl Optimizer {
     /// # Errors
     /// Where the normal equations are not positive definite.
     pub fn largest_move_since(&mut self, problem: &Problem) -> Result<f64, OptimizeError> {
-        let is_later = |start: GrowthStart| start.factors > problem.settled();
-        let start = GrowthStart::of(problem);
+        let is_later = |start: GrowthStart| start.factors > problem.optimized_factors();
+        let start = GrowthStart::from_problem(problem);
         if is_later(start) {
             return Ok(f64::INFINITY);
         }

@@ -113,7 +113,7 @@ impl Agreement {
         let order: Vec<usize> = by_degree.iter().map(|(_, a)| *a).collect();
         let mut best: Vec<usize> = Vec::new();
         for &first in order.iter().take(beginnings) {
-            let clique = self.grown(first, &order);
+            let clique = self.select_along_path(first, &order);
             if clique.len() > best.len() {
                 best = clique;
             }
@@ -124,7 +124,7 @@ impl Agreement {
     }
 
     /// Adds what agrees with all so far, in that order.
-    fn grown(&self, first: usize, order: &[usize]) -> Vec<usize> {
+    fn select_along_path(&self, first: usize, order: &[usize]) -> Vec<usize> {
         let mut clique = vec![first];
         let mut common = self.row(first).to_vec();
         for &next in order {

@@ -11,8 +11,8 @@ use crate::problem::Problem;
 use crate::report::{Report, StopReason};
 use crate::settings::Settings;
 
-/// A measurement with at least this weight was believed.
-const BELIEVED: f64 = 0.5;
+/// A measurement with at least this weight was inliers.
+const INLIER_WEIGHT: f64 = 0.5;
 
 /// Weights that changed by no more in a round of the final shape have settled.
 const SETTLED: f64 = 0.01;
@@ -35,7 +35,7 @@ pub enum GncLoss {
 pub struct GncSettings {
     /// Which cost is reached.
     pub loss: GncLoss,
-    /// c²: the largest `eᵀΩe` of a measurement that is believed.
+    /// c²: the largest `eᵀΩe` of a measurement that is inliers.
     pub max_chi2: f64,
     /// Factor by which the control parameter μ changes from round to round, above 1.
     pub growth: f64,
@@ -62,8 +62,8 @@ impl Default for GncSettings {
 pub struct GncRound {
     /// The control parameter.
     pub mu: f64,
-    /// Measurements that are believed, the trusted ones among them.
-    pub believed: usize,
+    /// Measurements that are inliers, the trusted ones among them.
+    pub inliers: usize,
     /// Measurements whose weight is neither 0 nor 1 yet.
     pub undecided: usize,
 }
@@ -71,7 +71,7 @@ pub struct GncRound {
 /// Why the rounds ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GncStop {
-    /// Every measurement is believed or not.
+    /// Every measurement is inliers or not.
     Decided,
     /// The cost has its final shape, and the weights have settled.
     FullShape,
@@ -88,15 +88,15 @@ pub struct GncOutcome {
     pub rounds: usize,
     /// Why they ended.
     pub stop: GncStop,
-    /// The last solve, with the measurements that are believed.
+    /// The last solve, with the measurements that are inliers.
     pub report: Report,
 }
 
 impl GncOutcome {
-    /// Whether the measurement of that index is believed.
+    /// Whether the measurement of that index is inliers.
     #[must_use]
-    pub fn is_believed(&self, factor: usize) -> bool {
-        self.weights[factor] >= BELIEVED
+    pub fn is_inlier(&self, factor: usize) -> bool {
+        self.weights[factor] >= INLIER_WEIGHT
     }
 }
 
@@ -198,13 +198,13 @@ impl Gnc {
         let is_undecided = |w: &&f64| **w > 0.0 && **w < 1.0;
         let round = GncRound {
             mu,
-            believed: self.weights.iter().filter(|w| **w >= BELIEVED).count(),
+            inliers: self.weights.iter().filter(|w| **w >= INLIER_WEIGHT).count(),
             undecided: self.weights.iter().filter(is_undecided).count(),
         };
         Ok((round, self.stop_after(&round)))
     }
 
-    /// All rounds, and then a solve with what is believed; `problem` gets its poses.
+    /// All rounds, and then a solve with what is inliers; `problem` gets its poses.
     ///
     /// # Errors
     /// Where the weighted normal equations cannot be solved; the poses stay.
@@ -216,7 +216,7 @@ impl Gnc {
         };
         if self.settings.loss == GncLoss::TruncatedLeastSquares {
             for weight in &mut self.weights {
-                *weight = f64::from(u8::from(*weight >= BELIEVED));
+                *weight = f64::from(u8::from(*weight >= INLIER_WEIGHT));
             }
         }
         let limit = self.optimizer.settings.max_iterations;

@@ -128,7 +128,7 @@ fn gnc_drops_false_loops_and_keeps_right_ones_up_to_as_many_false_as_right() {
             // Geman–McClure leaves a false loop some thousandths of its weight.
             assert!(robust_m < 0.02, "{loss:?} {share}: {robust_m}");
             assert!(share == 0.0 || plain_m > 1.0, "{share}: {plain_m}");
-            let wrong = (last_true..problem.factors().len()).filter(|&k| outcome.is_believed(k));
+            let wrong = (last_true..problem.factors().len()).filter(|&k| outcome.is_inlier(k));
             assert_eq!(wrong.count(), 0, "{loss:?} {share}");
         }
     }
@@ -168,7 +168,7 @@ fn gnc_keeps_right_loops_where_the_path_ends_so_far_off_that_all_weights_begin_a
         GncSettings::default(),
     );
     let outcome = gnc.run(&mut problem).unwrap();
-    assert!((0..problem.factors().len()).all(|factor| outcome.is_believed(factor)));
+    assert!((0..problem.factors().len()).all(|factor| outcome.is_inlier(factor)));
     let ends = problem.poses()[0].between(&problem.poses()[2 * lap]);
     assert!(math::norm2(ends.x(), ends.y()) < 0.01, "{ends:?}");
 }
@@ -306,8 +306,8 @@ fn exact() -> Settings {
     }
 }
 
-fn belief(problem: &Problem) -> Belief {
-    believe(problem, &trusted(problem), exact(), &GncSettings::default()).unwrap()
+fn selection(problem: &Problem) -> InlierSelection {
+    select_inliers(problem, &trusted(problem), exact(), &GncSettings::default()).unwrap()
 }
 
 fn at(problem: &Problem, poses: &[SE2]) -> Problem {
@@ -322,16 +322,13 @@ fn loops_taken_along_the_way_hold_where_graduated_non_convexity_alone_is_led_ast
     for (share, seed) in [(0.0, 1), (0.1, 2), (0.3, 3), (0.5, 4)] {
         let clean = at(
             &streets(600, 0.0, seed).0,
-            &belief(&streets(600, 0.0, seed).0).poses,
+            &selection(&streets(600, 0.0, seed).0).poses,
         );
         let (spoilt, last_true) = streets(600, share, seed);
-        let believed = belief(&spoilt);
-        assert!(believed.believed[..last_true].iter().all(|b| *b), "{share}");
-        assert!(
-            believed.believed[last_true..].iter().all(|b| !*b),
-            "{share}"
-        );
-        let off_m = apart_m(&at(&spoilt, &believed.poses), &clean);
+        let inliers = selection(&spoilt);
+        assert!(inliers.inliers[..last_true].iter().all(|b| *b), "{share}");
+        assert!(inliers.inliers[last_true..].iter().all(|b| !*b), "{share}");
+        let off_m = apart_m(&at(&spoilt, &inliers.poses), &clean);
         // 1e-4: both solves end where a step is below 1e-6.
         assert!(off_m < 1e-4, "{share}: {off_m}");
         let mut alone = spoilt.clone();
@@ -359,10 +356,10 @@ fn what_agrees_in_pairs_is_settled_by_what_all_of_it_says() {
         misjudged += (0..pairs.len())
             .filter(|&k| pairs[k] != is_right(k))
             .count();
-        let found = believe_consistent(&problem, &trusted(&problem), exact(), &settings).unwrap();
-        assert_eq!(found.start, BeliefStart::PairwiseConsistency);
+        let found = select_consistent(&problem, &trusted(&problem), exact(), &settings).unwrap();
+        assert_eq!(found.start, InlierStart::PairwiseConsistency);
         let wrong = (0..pairs.len())
-            .filter(|&k| found.believed[k] != is_right(k))
+            .filter(|&k| found.inliers[k] != is_right(k))
             .count();
         assert_eq!(wrong, 0, "{share}");
     }
@@ -373,15 +370,15 @@ fn what_agrees_in_pairs_is_settled_by_what_all_of_it_says() {
 fn no_loop_can_change_sides_and_lower_the_truncated_cost() {
     for (share, seed) in [(0.0, 1), (0.3, 3), (1.0, 5)] {
         let (problem, _) = graph(share, seed);
-        let belief = belief(&problem);
+        let selection = selection(&problem);
         for k in (0..problem.factors().len()).filter(|&k| !is_sequential(&problem.factors()[k])) {
-            let other = |factor: usize| belief.believed[factor] != (factor == k);
-            let mut flipped = with_factors(&at(&problem, &belief.poses), other);
+            let other = |factor: usize| selection.inliers[factor] != (factor == k);
+            let mut flipped = with_factors(&at(&problem, &selection.poses), other);
             crate::Optimizer::new(Settings::default()).run(&mut flipped);
             let dropped = (0..problem.factors().len()).filter(|&f| !other(f)).count();
             let cost = flipped.chi2() + LOOP_CHI2 * dropped as f64;
             assert!(
-                cost > belief.cost - 1e-6 * belief.cost,
+                cost > selection.cost - 1e-6 * selection.cost,
                 "{share}, loop {k}: {cost}"
             );
         }
@@ -404,14 +401,14 @@ fn a_way_from_its_end_leads_to_the_same_belief() {
             ..*factor
         });
     }
-    assert_eq!(belief(&turned).believed, belief(&problem).believed);
+    assert_eq!(selection(&turned).inliers, selection(&problem).inliers);
 }
 
 #[test]
 fn a_graph_whose_path_is_torn_is_judged_by_graduated_non_convexity() {
     let (problem, last_true) = graph(0.3, 3);
     let torn = with_factors(&problem, |k| k != 60);
-    let belief = belief(&torn);
-    assert_eq!(belief.start, BeliefStart::GraduatedNonConvexity);
-    assert!(belief.believed[last_true - 1..].iter().all(|b| !*b));
+    let selection = selection(&torn);
+    assert_eq!(selection.start, InlierStart::GraduatedNonConvexity);
+    assert!(selection.inliers[last_true - 1..].iter().all(|b| !*b));
 }

@@ -9,7 +9,7 @@ use crate::world::Bounds;
 
 /// A part of a course, counted from 1 as in its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum CoursePoint {
     /// Where the robot starts.
     Start,
     /// A way point.
@@ -18,7 +18,7 @@ pub enum Place {
     Wall(usize),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for CoursePoint {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Start => formatter.write_str("the start"),
@@ -95,7 +95,7 @@ pub enum CourseError {
     #[error("{place} is more than {limit_m} m from the origin: give coordinates in metres near it")]
     TooFar {
         /// What is there.
-        place: Place,
+        place: CoursePoint,
         /// How far it may be along an axis, m.
         limit_m: f64,
     },
@@ -109,7 +109,7 @@ pub enum CourseError {
     )]
     Outside {
         /// What is there.
-        place: Place,
+        place: CoursePoint,
         /// What the walls enclose.
         bounds: Bounds,
     },
@@ -119,7 +119,7 @@ pub enum CourseError {
     )]
     AtWall {
         /// What is there.
-        place: Place,
+        place: CoursePoint,
         /// Which wall.
         wall: usize,
         /// How far from it, m.
@@ -131,9 +131,9 @@ pub enum CourseError {
     )]
     Blocked {
         /// Where it begins.
-        from: Place,
+        from: CoursePoint,
         /// Where it ends.
-        to: Place,
+        to: CoursePoint,
         /// Which wall.
         wall: usize,
         /// How near it comes, m; 0 is through it.

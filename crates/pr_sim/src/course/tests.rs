@@ -277,14 +277,14 @@ fn numbers_that_are_not_finite_are_refused() {
     assert!(matches!(
         with(SE2::new(f64::NAN, 4.4, 0.0), way),
         Err(CourseError::TooFar {
-            place: Place::Start,
+            place: CoursePoint::Start,
             ..
         })
     ));
     assert!(matches!(
         with(course.start(), vec![Point2::new(2.0, f64::INFINITY)]),
         Err(CourseError::TooFar {
-            place: Place::WayPoint(1),
+            place: CoursePoint::WayPoint(1),
             ..
         })
     ));

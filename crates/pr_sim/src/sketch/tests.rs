@@ -15,7 +15,7 @@ fn courses() -> [Course; 5] {
 #[test]
 fn a_world_is_the_same_course_by_file_and_by_link() {
     for course in courses() {
-        let sketch = Sketch::of(&course);
+        let sketch = Sketch::from_course(&course);
         let drawn = sketch.course().expect("a built-in world can be driven");
         // Half a centimetre along each axis, which the corners of the round hall are off.
         let near = |a: Point2<f64>, b: Point2<f64>| (a - b).norm() < 0.0071;
@@ -27,10 +27,10 @@ fn a_world_is_the_same_course_by_file_and_by_link() {
         assert_eq!(by_file, drawn, "by the file");
         let by_link = Sketch::from_text(&sketch.to_text()).expect("our own text");
         assert_eq!(by_link, sketch, "by the link");
-        assert_eq!(Sketch::of(&drawn), sketch, "and round again");
+        assert_eq!(Sketch::from_course(&drawn), sketch, "and round again");
     }
     assert_eq!(
-        Sketch::of(&Course::apartment()).course(),
+        Sketch::from_course(&Course::apartment()).course(),
         Ok(Course::apartment())
     );
 }
@@ -38,7 +38,7 @@ fn a_world_is_the_same_course_by_file_and_by_link() {
 #[test]
 fn the_apartment_takes_a_tenth_of_what_a_link_may() {
     // The commission allows 2 kB.
-    let text = Sketch::of(&Course::apartment()).to_text();
+    let text = Sketch::from_course(&Course::apartment()).to_text();
     assert!(text.len() < 200, "{} characters: {text}", text.len());
     let letters = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_';
     assert!(text.bytes().all(letters), "{text}");
@@ -46,7 +46,7 @@ fn the_apartment_takes_a_tenth_of_what_a_link_may() {
 
 #[test]
 fn a_text_that_lost_or_changed_a_character_is_refused() {
-    let text = Sketch::of(&Course::twin_rooms()).to_text();
+    let text = Sketch::from_course(&Course::twin_rooms()).to_text();
     for at in 0..text.len() {
         let (before, after) = (&text[..at], &text[at + 1..]);
         for damaged in [format!("{before}{after}"), before.to_owned()] {

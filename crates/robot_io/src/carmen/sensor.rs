@@ -125,7 +125,7 @@ impl FrontLaser {
     /// The oldest scan that waits, once the mounting is known or no line follows.
     pub fn pop(&mut self, is_done: bool) -> Option<LogFrame> {
         if self.mount.is_none() && is_done && !self.held.is_empty() {
-            self.settle();
+            self.choose_mount();
         }
         let mount = self.mount?;
         let mut frame = self.held.pop_front()?.frame;
@@ -157,7 +157,7 @@ impl FrontLaser {
                 && (0.0..=FARTHEST_MOUNT_M).contains(&mount.x());
             self.mount = is_mount.then_some(mount);
         } else if !self.is_one_mount() || self.has_told() || self.held.len() >= MOST_HELD {
-            self.settle();
+            self.choose_mount();
         }
     }
 
@@ -167,8 +167,8 @@ impl FrontLaser {
             return false;
         };
         let way = first.odometry.between(&last.odometry);
-        let [way_m, turn_rad] = TELLING_WAY;
-        math::norm2(way.x(), way.y()) >= way_m && way.theta().abs() >= turn_rad
+        let [path_length_m, turn_rad] = TELLING_WAY;
+        math::norm2(way.x(), way.y()) >= path_length_m && way.theta().abs() >= turn_rad
     }
 
     /// Whether all lines that wait agree on one place of the laser on the robot.
@@ -185,7 +185,7 @@ impl FrontLaser {
             && self.held.iter().all(is_same)
     }
 
-    fn settle(&mut self) {
+    fn choose_mount(&mut self) {
         let is_mount = self.is_one_mount();
         let first = self.held.front().map(|held| held.mount);
         self.mount = first.filter(|_| is_mount).or(Some(SE2::identity()));

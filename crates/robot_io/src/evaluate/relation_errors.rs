@@ -71,10 +71,10 @@ impl RelationErrors {
         let squares = |errors: &[f64]| errors.iter().map(|e| e * e).collect::<Vec<_>>();
         RelationReport {
             n: self.translations_m.len(),
-            trans: Spread::of(&self.translations_m),
-            rot_deg: Spread::of(&self.rotations_deg),
-            trans2: Spread::of(&squares(&self.translations_m)),
-            rot2: Spread::of(&squares(&self.rotations_deg)),
+            trans: Spread::from_values(&self.translations_m),
+            rot_deg: Spread::from_values(&self.rotations_deg),
+            trans2: Spread::from_values(&squares(&self.translations_m)),
+            rot2: Spread::from_values(&squares(&self.rotations_deg)),
         }
     }
 }

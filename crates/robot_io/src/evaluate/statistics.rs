@@ -19,7 +19,7 @@ pub struct Spread {
 impl Spread {
     /// The numbers of some errors; zero of none.
     #[must_use]
-    pub fn of(errors: &[f64]) -> Self {
+    pub fn from_values(errors: &[f64]) -> Self {
         let mut sorted = errors.to_vec();
         sort_numbers(&mut sorted);
         let (mean, std) = mean_and_std(errors);
@@ -54,7 +54,7 @@ pub struct PoseErrors {
 impl PoseErrors {
     /// The numbers of some errors; zero of none.
     #[must_use]
-    pub fn of(errors: &[f64]) -> Self {
+    pub fn from_errors(errors: &[f64]) -> Self {
         let mut sorted = errors.to_vec();
         sort_numbers(&mut sorted);
         let (mean, std) = mean_and_std(errors);
@@ -98,11 +98,11 @@ mod tests {
 
     #[test]
     fn one_to_five_have_the_mean_and_median_of_three() {
-        let found = Spread::of(&[5.0, 1.0, 4.0, 2.0, 3.0]);
+        let found = Spread::from_values(&[5.0, 1.0, 4.0, 2.0, 3.0]);
         assert_eq!((found.mean, found.median), (3.0, 3.0));
         assert!((found.std - 2.0_f64.sqrt()).abs() < 1e-15);
         assert!((found.p95 - 4.8).abs() < 1e-12);
-        let none = PoseErrors::of(&[]);
+        let none = PoseErrors::from_errors(&[]);
         assert_eq!((none.rmse, none.max), (0.0, 0.0));
     }
 }

@@ -94,10 +94,10 @@ pub fn truth_errors(
         .collect();
     Ok(TruthReport {
         n: pairs.len(),
-        ate: PoseErrors::of(&absolute),
+        ate: PoseErrors::from_errors(&absolute),
         rpe: RelativeErrors {
-            trans: PoseErrors::of(&shifts),
-            rot_deg: PoseErrors::of(&turns),
+            trans: PoseErrors::from_errors(&shifts),
+            rot_deg: PoseErrors::from_errors(&turns),
         },
     })
 }

@@ -103,7 +103,7 @@ pub struct Motion {
 
 impl Motion {
     /// What stretches show of a laser that is said to sit so.
-    pub(super) fn of(stretches: &[Stretch], mount: SE2) -> Self {
+    pub(super) fn from_stretches(stretches: &[Stretch], mount: SE2) -> Self {
         let mut motion = Self {
             stretches: stretches.len(),
             moved_m: stretches

@@ -46,7 +46,7 @@ pub fn lag_s(headings: &[Heading]) -> Option<f64> {
     if headings.len() < LEAST_SCANS {
         return None;
     }
-    let turns = Turns::of(headings);
+    let turns = Turns::from_headings(headings);
     let pairs = 0..turns.by_scans.len() - SPAN;
     let half = pairs.len() / 2;
     let period_s = median(
@@ -81,7 +81,7 @@ struct Turns {
 }
 
 impl Turns {
-    fn of(headings: &[Heading]) -> Self {
+    fn from_headings(headings: &[Heading]) -> Self {
         let unwrapped = |of: fn(&Heading) -> f64| {
             let mut sum = 0.0;
             let steps = headings

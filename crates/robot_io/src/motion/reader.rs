@@ -160,7 +160,7 @@ impl<'a> ComparedReader<'a> {
             .map(|first| first.scan.body_from_sensor);
         let found = self.known.take().or_else(|| {
             let compared = comparison.filter(|_| has_odometry)?;
-            let mut motion = Motion::of(&compared.stretches, said?);
+            let mut motion = Motion::from_stretches(&compared.stretches, said?);
             motion.compare_turns(&compared.headings);
             if self.is_alone {
                 motion.keep_mounting();

@@ -50,7 +50,7 @@ pub(super) fn disputed(slam: &Slam, tried: &[TriedLoop]) -> Vec<Disputed> {
 }
 
 /// A sentence each, the worst of a kind first, and at most ten of a kind.
-pub(super) fn of(quality: &Quality, disputed: &[Disputed], poor: &[PoorFit]) -> Vec<String> {
+pub(super) fn sentences(quality: &Quality, disputed: &[Disputed], poor: &[PoorFit]) -> Vec<String> {
     let mut doubts = Vec::new();
     for kind in [
         unsure(&quality.keyframes),
@@ -182,7 +182,7 @@ mod tests {
         };
         let disputed = [taken_back(31, 0.5), taken_back(30, 2.345)];
         assert_eq!(
-            of(&quality, &disputed, &[poor]),
+            sentences(&quality, &disputed, &[poor]),
             [
                 "keyframes 3 to 4 are known to 0.50 m only, the median one to 0.02 m",
                 "the loop from keyframe 9 to 2 contradicts the rest of the graph: chi-squared 40.0 above 16.3",
@@ -202,7 +202,7 @@ mod tests {
             score: f64::from(share) / 100.0,
         };
         let poor: Vec<PoorFit> = (0..13).map(poor).collect();
-        let doubts = of(&Quality::default(), &[], &poor);
+        let doubts = sentences(&Quality::default(), &[], &poor);
         assert_eq!(doubts.len(), 11);
         assert_eq!(doubts[10], "and 3 more of this kind");
     }

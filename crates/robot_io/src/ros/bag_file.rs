@@ -68,11 +68,11 @@ impl<R: BufRead> BagFile<R> {
         }
         let header_end = taken.len();
         let header = taken[4..].to_vec();
-        let fields = match Fields::of(&header).and_then(|fields| fields.op().map(|op| (op, fields)))
-        {
-            Ok(fields) => fields,
-            Err(problem) => return self.go_on(&taken, false, problem),
-        };
+        let fields =
+            match Fields::parse(&header).and_then(|fields| fields.op().map(|op| (op, fields))) {
+                Ok(fields) => fields,
+                Err(problem) => return self.go_on(&taken, false, problem),
+            };
         let (op, fields) = fields;
         if !self.with_length("a record's data", &mut taken)? {
             return self.go_on(&taken, true, "a record's data was expected".to_owned());
@@ -136,7 +136,7 @@ impl<R: BufRead> BagFile<R> {
         let header = piece(&mut rest, "a record's header inside of a chunk")?;
         let data = piece(&mut rest, "a record's data inside of a chunk")?;
         self.chunk_at = self.chunk.len() - rest.len();
-        self.connections.take(&Fields::of(header)?, data)
+        self.connections.take(&Fields::parse(header)?, data)
     }
 }
 

@@ -11,7 +11,7 @@ use super::messages::{laser_scan, multi_echo_scan};
 use super::plan::PlannedScans;
 use super::point_cloud::{cloud_points, point_cloud};
 use super::survey::{SCANS, is_repeated, named, reader};
-use crate::log::{LogNotes, Place};
+use crate::log::{FilePosition, LogNotes};
 
 /// A scan waits for so many others at most that stand after it in the file and before it in time.
 const MOST_WAITING: usize = 1024;
@@ -157,7 +157,7 @@ impl<'a> ScanCursor<'a> {
                 }
             }
             Err(problem) => {
-                let place = Place::Byte(self.container.offset());
+                let place = FilePosition::Byte(self.container.offset());
                 notes.leave_out(place, named(message, problem));
             }
         }

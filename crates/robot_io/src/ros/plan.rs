@@ -62,17 +62,17 @@ pub struct Plan {
 impl Plan {
     /// What is taken of a recording in which `survey` found what it holds.
     #[must_use]
-    pub fn of(survey: &Survey, options: &LogOptions) -> Self {
+    pub fn new(survey: &Survey, options: &LogOptions) -> Self {
         let mut plan = Self {
             without_scans: without_scans(survey, options),
             ..Self::default()
         };
         let chosen = chosen_scans(survey, options);
         let Some((topic, stream)) = chosen.first().copied() else {
-            plan.offers = offers::of(survey, None, None, None);
+            plan.offers = offers::list(survey, None, None, None);
             return plan;
         };
-        let mut clocks = vec![MendedStamps::of(&stream.stamps_s, &stream.recorded_s)];
+        let mut clocks = vec![MendedStamps::new(&stream.stamps_s, &stream.recorded_s)];
         let wheels = wheels::chosen(survey, options, &stream.frame, &clocks[0]);
         let ground = wheels.as_ref().map(|wheels| wheels.track.above.as_str());
         let told_body = options
@@ -106,7 +106,7 @@ impl Plan {
             if other_mount.is_known && found.is_known && stream.frame != chosen[0].1.frame
                 || is_asked_for
             {
-                let clock = MendedStamps::of(&stream.stamps_s, &stream.recorded_s);
+                let clock = MendedStamps::new(&stream.stamps_s, &stream.recorded_s);
                 plan.about.push(format!(
                     "scans of {other}, in frame {}, are merged with them: {}",
                     stream.frame,
@@ -138,7 +138,7 @@ impl Plan {
         for (parent, child) in survey.transforms.edges().take(100) {
             plan.about.push(format!("frame {child} hangs on {parent}"));
         }
-        plan.offers = offers::of(survey, Some(topic), wheels.as_ref(), Some(&found.body));
+        plan.offers = offers::list(survey, Some(topic), wheels.as_ref(), Some(&found.body));
         plan.missing = offers::missing(survey, options, &plan.offers, wheels.as_ref());
         plan
     }

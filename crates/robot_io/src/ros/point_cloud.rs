@@ -69,7 +69,7 @@ pub fn point_cloud(fields: &mut WireReader<'_>) -> Result<(Header, LaserScan), S
 /// # Errors
 /// Where the message ends early, or has no coordinates.
 pub fn cloud_points(fields: &mut WireReader<'_>) -> Result<Vec<Point3<f64>>, String> {
-    let cloud = Cloud::of(fields)?;
+    let cloud = Cloud::parse(fields)?;
     let z = cloud
         .z
         .ok_or("a cloud has to have a field z to be cut by heights")?;
@@ -98,7 +98,7 @@ struct Cloud<'a> {
 }
 
 impl<'a> Cloud<'a> {
-    fn of(fields: &mut WireReader<'a>) -> Result<Self, String> {
+    fn parse(fields: &mut WireReader<'a>) -> Result<Self, String> {
         let told = |error: WireError| error.to_string();
         let header = header(fields).map_err(told)?;
         let height = fields.u32("height").map_err(told)?;
@@ -156,7 +156,7 @@ fn ring(fields: &mut WireReader<'_>) -> Result<(Header, Vec<(f64, f64)>), String
         is_big,
         step,
         data,
-    } = Cloud::of(fields)?;
+    } = Cloud::parse(fields)?;
     if height > 1 {
         return Err(format!(
             "the cloud has {height} rows; give the heights to cut it by: --heights LOW,HIGH"

@@ -11,7 +11,7 @@ use super::cursor::{ScanCursor, StampedScan};
 use super::file::{Messages, RosFiles};
 use super::plan::Plan;
 use super::survey::Survey;
-use crate::log::{BrokenRecord, LogError, LogFrame, LogNotes, LogOptions, LogReader, Place};
+use crate::log::{BrokenRecord, FilePosition, LogError, LogFrame, LogNotes, LogOptions, LogReader};
 use crate::log_bytes::LogBytes;
 use crate::remark::{Part, Remark};
 
@@ -64,13 +64,13 @@ impl<'a> RosReader<'a> {
             match messages.next_message() {
                 Ok(Some(message)) => {
                     if let Err(problem) = survey.take(&message, &self.options) {
-                        let place = Place::Byte(messages.offset());
+                        let place = FilePosition::Byte(messages.offset());
                         self.notes.leave_out(place, problem);
                     }
                 }
                 Ok(None) => break,
                 Err(error) => {
-                    let place = Place::Byte(messages.offset());
+                    let place = FilePosition::Byte(messages.offset());
                     if !self.take_error(error, place)? {
                         break;
                     }
@@ -89,7 +89,7 @@ impl<'a> RosReader<'a> {
             (survey, messages) = self.look_through()?;
         }
         self.notes.bytes = messages.offset();
-        let plan = Plan::of(&survey, &self.options);
+        let plan = Plan::new(&survey, &self.options);
         plan.tell(&survey, &mut self.notes);
         if let Some((option, wanted)) = plan.missing.clone().filter(|_| !plan.scans.is_empty()) {
             return Err(LogError::Missing {
@@ -122,7 +122,7 @@ impl<'a> RosReader<'a> {
 
     /// Takes what is wrong with a container: an error of the system ends the reading, all else is a note.
     /// Returns whether messages may follow.
-    fn take_error(&mut self, error: ContainerError, place: Place) -> Result<bool, LogError> {
+    fn take_error(&mut self, error: ContainerError, place: FilePosition) -> Result<bool, LogError> {
         match error {
             // Packed bytes that break off are no fault of the system.
             ContainerError::Io(source)

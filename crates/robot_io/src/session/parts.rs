@@ -66,7 +66,7 @@ pub fn write(session: &Session, out: &mut Writer) {
         out.f64(driven.last_stamp_s);
         out.maybe(driven.last_attempt_node, Writer::count);
         out.count(driven.last_loop_node);
-        out.count(driven.settled_edges);
+        out.count(driven.optimized_edges);
     });
     out.section(b"NODE", |out| {
         out.count(driven.nodes.len());
@@ -238,7 +238,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
             frames: counters.frames,
             last_stamp_s: counters.last_stamp_s,
             nodes: places.into_iter().map(|(node, ..)| node).collect(),
-            settled_edges: counters.settled_edges,
+            optimized_edges: counters.optimized_edges,
             edges,
             keyframes,
             last_attempt_node: counters.last_attempt_node,
@@ -259,7 +259,7 @@ struct Counters {
     last_stamp_s: f64,
     last_attempt_node: Option<usize>,
     last_loop_node: usize,
-    settled_edges: usize,
+    optimized_edges: usize,
 }
 
 impl Counters {
@@ -270,7 +270,7 @@ impl Counters {
             last_stamp_s: from.f64()?,
             last_attempt_node: from.maybe(node)?,
             last_loop_node: node(from)?,
-            settled_edges: node(from)?,
+            optimized_edges: node(from)?,
         })
     }
 }

@@ -111,7 +111,7 @@ fn a_log_of_another_scanner_is_told() {
 fn loops_that_wait_are_saved_and_wait_on() {
     // Never sure: every loop waits for others.
     let settings = [
-        ("loops.sure_m", 0.0),
+        ("loops.unconfirmed_gate_radius_m", 0.0),
         ("loops.min_margin", 0.0),
         ("loops.pending_distance_m", 0.0),
         ("loops.min_path_m", 4.0),
@@ -234,8 +234,16 @@ fn with_section(bytes: &[u8], name: &[u8; 4], change: impl Fn(&[u8]) -> Vec<u8>)
 fn a_session_with_other_parameters_is_refused_by_their_name() {
     let bytes = saved(&run(120, 0..20));
     for (from, to, said) in [
-        ("\"reach_m\"", "\"reach_k\"", "missing field `reach_m`"),
-        ("\"fit_m\":0.15", "\"fit_m\":-0.1", "fit_m cannot be -0.1"),
+        (
+            "\"max_correspondence_m\"",
+            "\"max_correspondence_k\"",
+            "missing field `max_correspondence_m`",
+        ),
+        (
+            "\"inlier_distance_m\":0.15",
+            "\"inlier_distance_m\":-0.1",
+            "inlier_distance_m cannot be -0.1",
+        ),
     ] {
         let other = with_section(&bytes, b"CONF", |content| {
             let (start, json) = content.split_at(24);
@@ -304,10 +312,10 @@ fn a_map_may_have_lost_every_loop_that_was_driven() {
     let mut session = run.session().unwrap();
     let mapped = session.mapped.as_mut().unwrap();
     mapped.loops.clear();
-    session.driven.settled_edges = session.driven.edges.len();
+    session.driven.optimized_edges = session.driven.edges.len();
     let read = Session::of_bytes(&session.to_bytes(), "x").unwrap();
     assert_eq!(read, session);
-    assert_eq!(read.graph().settled_edges(), read.graph().edge_count());
+    assert_eq!(read.graph().optimized_edges(), read.graph().edge_count());
 }
 
 #[test]
@@ -356,11 +364,11 @@ fn what_is_no_session_is_told_from_what_was_one() {
         (b"SLAM2D\r\n", "x ends at byte 8 of 20"),
         (
             &newer,
-            "x is a session of version 7, and this program reads version 2",
+            "x is a session of version 7, and this program reads version 3",
         ),
         (
             &older,
-            "x is a session of version 1, and this program reads version 2",
+            "x is a session of version 1, and this program reads version 3",
         ),
         (&longer, "x goes on after its end at byte"),
     ] {

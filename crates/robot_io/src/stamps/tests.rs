@@ -32,7 +32,7 @@ fn good_stamps_stay_as_they_are_through_a_pause_and_with_late_recording() {
     }
     let none = vec![f64::NAN; 60];
     for recorded in [&recorded, &stamps, &none] {
-        let mended = MendedStamps::of(&stamps, recorded);
+        let mended = MendedStamps::new(&stamps, recorded);
         assert!(mended.is_unchanged(), "{:?}", mended.steps);
         assert_eq!(mended.stamps_s, stamps);
         assert!((mended.period_s - 0.05).abs() < 1e-9);
@@ -46,11 +46,11 @@ fn single_stamps_from_another_world_are_replaced() {
             let (good, recorded) = stream(60);
             let mut stamps = good.clone();
             stamps[at] += off_s;
-            let mended = MendedStamps::of(&stamps, &recorded);
+            let mended = MendedStamps::new(&stamps, &recorded);
             assert_eq!(mended.outliers + mended.unset, 1, "{off_s} {at}");
             assert_near(&mended, &good, 1e-6);
             if at > 0 && at < 58 {
-                let alone = MendedStamps::of(&stamps, &vec![f64::NAN; 60]);
+                let alone = MendedStamps::new(&stamps, &vec![f64::NAN; 60]);
                 assert_near(&alone, &good, 1e-6);
             }
         }
@@ -60,11 +60,11 @@ fn single_stamps_from_another_world_are_replaced() {
 #[test]
 fn stamps_of_zero_are_those_of_the_recording() {
     let (good, recorded) = stream(30);
-    let mended = MendedStamps::of(&[0.0; 30], &recorded);
+    let mended = MendedStamps::new(&[0.0; 30], &recorded);
     assert_eq!((mended.unset, &mended.stamps_s), (30, &recorded));
     let mut some = good.clone();
     some[7] = 0.0;
-    let mended = MendedStamps::of(&some, &recorded);
+    let mended = MendedStamps::new(&some, &recorded);
     assert_eq!(mended.unset, 1);
     assert_near(&mended, &good, 1e-6);
 }
@@ -75,7 +75,7 @@ fn a_clock_that_steps_is_put_back() {
         let (good, recorded) = stream(60);
         let mut stamps = good.clone();
         stamps[33..].iter_mut().for_each(|stamp_s| *stamp_s += by_s);
-        let mended = MendedStamps::of(&stamps, &recorded);
+        let mended = MendedStamps::new(&stamps, &recorded);
         assert_eq!(mended.steps.len(), 1, "{by_s}");
         assert_eq!(mended.steps[0].at, 33);
         assert_near(&mended, &good, 1e-6);
@@ -86,7 +86,7 @@ fn a_clock_that_steps_is_put_back() {
     stamps[33..]
         .iter_mut()
         .for_each(|stamp_s| *stamp_s -= 100.0);
-    let mended = MendedStamps::of(&stamps, &vec![f64::NAN; 60]);
+    let mended = MendedStamps::new(&stamps, &vec![f64::NAN; 60]);
     assert_near(&mended, &good, 1e-6);
 }
 
@@ -96,7 +96,7 @@ fn neighbours_that_changed_places_keep_their_stamps() {
     for pair in stamps.chunks_exact_mut(2) {
         pair.swap(0, 1);
     }
-    let mended = MendedStamps::of(&stamps, &recorded);
+    let mended = MendedStamps::new(&stamps, &recorded);
     assert!(mended.is_unchanged());
     assert_eq!((mended.swapped, &mended.stamps_s), (20, &stamps));
 }
@@ -106,12 +106,12 @@ fn coarse_stamps_are_spread_in_their_order() {
     let stamps: Vec<f64> = (0..40)
         .map(|k| 1.13486e9 + if k < 25 { 0.0 } else { 1e4 })
         .collect();
-    let mended = MendedStamps::of(&stamps, &[f64::NAN; 40]);
+    let mended = MendedStamps::new(&stamps, &[f64::NAN; 40]);
     assert_eq!(mended.equal, 38);
     assert!(mended.stamps_s.windows(2).all(|two| two[0] < two[1]));
     // Ten a second in whole seconds.
     let stamps: Vec<f64> = (0..40).map(|k| f64::from(100 + k / 10)).collect();
-    let mended = MendedStamps::of(&stamps, &[f64::NAN; 40]);
+    let mended = MendedStamps::new(&stamps, &[f64::NAN; 40]);
     let expected: Vec<f64> = (0..30).map(|k| 100.0 + 0.1 * f64::from(k)).collect();
     assert_near(&mended, &expected, 1e-9);
 }

@@ -23,7 +23,7 @@ struct SessionJson {
     loops: usize,
     /// Whether the map was linked once more after the last scan.
     refined: bool,
-    way_m: f64,
+    path_length_m: f64,
     first_stamp_s: Option<f64>,
     last_stamp_s: Option<f64>,
     last_pose: [f64; 3],
@@ -31,7 +31,7 @@ struct SessionJson {
 }
 
 impl SessionJson {
-    fn of(session: &Session, bytes: u64) -> Self {
+    fn new(session: &Session, bytes: u64) -> Self {
         let driven = &session.driven;
         let graph = session.graph();
         let steps = graph.poses().windows(2);
@@ -49,7 +49,7 @@ impl SessionJson {
             edges: graph.edge_count(),
             loops: loops.count(),
             refined: session.mapped.is_some(),
-            way_m: steps.map(|two| position_error_m(&two[0], &two[1])).sum(),
+            path_length_m: steps.map(|two| position_error_m(&two[0], &two[1])).sum(),
             first_stamp_s: driven.keyframes.first().map(|keyframe| keyframe.stamp_s),
             last_stamp_s: driven
                 .last_stamp_s
@@ -73,7 +73,7 @@ impl SessionJson {
 /// Where it cannot be used.
 pub fn run(path: &Path, as_json: bool) -> Result<(), SessionFileError> {
     let (session, bytes) = read_session(path)?;
-    let info = SessionJson::of(&session, bytes);
+    let info = SessionJson::new(&session, bytes);
     if as_json {
         print_json(&info);
         return Ok(());
@@ -93,7 +93,7 @@ pub fn run(path: &Path, as_json: bool) -> Result<(), SessionFileError> {
         info.edges,
         info.loops
     );
-    say!("way              {:.1} m", info.way_m);
+    say!("path             {:.1} m", info.path_length_m);
     if let (Some(first_s), Some(last_s)) = (info.first_stamp_s, info.last_stamp_s) {
         say!("stamps           {first_s} s to {last_s} s");
     }

@@ -79,7 +79,7 @@ pub fn run(
     let mut config = LapsConfig::new(course, seed, noise);
     config.wardrobe = args.wardrobe;
     if args.keep_all {
-        config.upkeep = None;
+        config.map_pruning = None;
     }
     let mut laps = Laps::new(config);
     let mut done = Vec::new();
@@ -103,7 +103,7 @@ pub fn run(
             last_odometry: None,
         };
         let bytes = saved.to_bytes();
-        let lap = LapJson::of(&numbers, bytes.len(), ms_per_tick);
+        let lap = LapJson::new(&numbers, bytes.len(), ms_per_tick);
         session = Some(bytes);
         if !as_json {
             lap.print();
@@ -127,7 +127,7 @@ pub fn run(
 }
 
 impl LapJson {
-    fn of(numbers: &LapNumbers, bytes: usize, ms_per_tick: f64) -> Self {
+    fn new(numbers: &LapNumbers, bytes: usize, ms_per_tick: f64) -> Self {
         let LapNumbers {
             lap,
             ticks,

@@ -28,13 +28,13 @@ pub struct OptimizeArgs {
     /// Robust kernel: none, huber:W (Mahalanobis norm) or dcs:PHI (squared norm).
     #[arg(long, value_parser = KernelName::from_str, default_value = "none")]
     pub kernel: KernelName,
-    /// Which loops are believed: none doubts no measurement; gnc and gnc-gm are graduated
+    /// Which loops are inliers: none keeps every measurement; gnc and gnc-gm are graduated
     /// non-convexity, pcm is pairwise consistency. What is between neighbours in time always is.
     #[arg(long, value_enum, default_value_t = RobustName::None)]
     pub robust: RobustName,
     /// Largest number of iterations of one attempt.
-    #[arg(long, value_name = "N", default_value_t = 100)]
-    pub max_iters: usize,
+    #[arg(long, alias = "max-iters", value_name = "N", default_value_t = 100)]
+    pub max_iterations: usize,
     /// Stop where less than this share of χ² is estimated to be left to win.
     #[arg(long, value_name = "T", default_value = "1e-8", value_parser = numbers::share, allow_hyphen_values = true)]
     pub tolerance: f64,

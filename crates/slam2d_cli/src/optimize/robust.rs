@@ -1,9 +1,9 @@
-//! `--robust`: which loops are believed before the graph is solved.
+//! `--robust`: which loops are inliers before the graph is solved.
 
 use clap::ValueEnum;
 use pr_optim::robust::{
-    BeliefStart, ConsistencySettings, Gnc, GncLoss, GncSettings, believe, believe_consistent,
-    is_sequential, with_factors,
+    ConsistencySettings, Gnc, GncLoss, GncSettings, InlierStart, is_sequential, select_consistent,
+    select_inliers, with_factors,
 };
 use pr_optim::{OptimizeError, Problem, Settings};
 use serde::Serialize;
@@ -11,7 +11,7 @@ use serde::Serialize;
 /// `--robust`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum RobustName {
-    /// Every loop is believed.
+    /// Every loop is inliers.
     None,
     /// Loops along the way and graduated non-convexity, by truncated least squares.
     Gnc,
@@ -23,11 +23,11 @@ pub enum RobustName {
 
 /// What `--robust` found.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Believed {
+pub struct InlierCounts {
     /// Measurements that are not between neighbours in time.
     pub loops: usize,
-    /// Those among them that are believed.
-    pub believed: usize,
+    /// Those among them that are inliers.
+    pub inliers: usize,
     /// Rounds of graduated non-convexity.
     pub rounds: usize,
     /// The start that won.
@@ -36,13 +36,13 @@ pub struct Believed {
 
 /// What is to be solved, from where it is.
 pub struct Selected {
-    /// The poses of the belief, with the measurements that are believed.
+    /// The poses of the selection, with the measurements that are inliers.
     pub problem: Problem,
-    /// How many are believed.
-    pub believed: Believed,
+    /// How many are inliers.
+    pub inliers: InlierCounts,
 }
 
-/// Chooses the loops of `problem` that are believed; none where all are.
+/// Chooses the loops of `problem` that are inliers; none where all are.
 ///
 /// # Errors
 /// Where a round of graduated non-convexity cannot be solved.
@@ -53,25 +53,27 @@ pub fn select(
 ) -> Result<Option<Selected>, OptimizeError> {
     let trusted: Vec<bool> = problem.factors().iter().map(is_sequential).collect();
     let settings = GncSettings::default();
-    let belief = match robust {
+    let selection = match robust {
         RobustName::None => return Ok(None),
-        RobustName::Gnc | RobustName::GncGm => believe(problem, &trusted, solver, &settings)?,
+        RobustName::Gnc | RobustName::GncGm => {
+            select_inliers(problem, &trusted, solver, &settings)?
+        }
         RobustName::Pcm => {
-            believe_consistent(problem, &trusted, solver, &ConsistencySettings::default())?
+            select_consistent(problem, &trusted, solver, &ConsistencySettings::default())?
         }
     };
     let mut moved = problem.clone();
-    moved.poses_mut().copy_from_slice(&belief.poses);
-    let (mut member, mut rounds) = (belief.believed, belief.rounds);
+    moved.poses_mut().copy_from_slice(&selection.poses);
+    let (mut member, mut rounds) = (selection.inliers, selection.rounds);
     if robust == RobustName::GncGm {
         let settings = GncSettings {
             loss: GncLoss::GemanMcClure,
             ..settings
         };
-        let gnc = Gnc::new(problem, trusted, solver, settings).refining(&belief.poses);
+        let gnc = Gnc::new(problem, trusted, solver, settings).refining(&selection.poses);
         let outcome = gnc.run(&mut moved)?;
         member = (0..member.len())
-            .map(|factor| outcome.is_believed(factor))
+            .map(|factor| outcome.is_inlier(factor))
             .collect();
         rounds += outcome.rounds;
     }
@@ -79,23 +81,23 @@ pub fn select(
         let factors = problem.factors().iter().zip(&member);
         factors.filter(|(factor, _): &(_, &bool)| !is_sequential(factor))
     };
-    let believed = Believed {
+    let inliers = InlierCounts {
         loops: loops().count(),
-        believed: loops().filter(|(_, member)| **member).count(),
+        inliers: loops().filter(|(_, member)| **member).count(),
         rounds,
-        from: name_of(belief.start),
+        from: name_of(selection.start),
     };
     Ok(Some(Selected {
         problem: with_factors(&moved, |factor| member[factor]),
-        believed,
+        inliers,
     }))
 }
 
-fn name_of(start: BeliefStart) -> &'static str {
+fn name_of(start: InlierStart) -> &'static str {
     match start {
-        BeliefStart::Forwards => "way",
-        BeliefStart::Backwards => "way-back",
-        BeliefStart::GraduatedNonConvexity => "gnc",
-        BeliefStart::PairwiseConsistency => "pairs",
+        InlierStart::Forwards => "path",
+        InlierStart::Backwards => "path-back",
+        InlierStart::GraduatedNonConvexity => "gnc",
+        InlierStart::PairwiseConsistency => "pairs",
     }
 }

@@ -8,7 +8,7 @@ use pr_optim::{
 };
 
 use super::args::{MethodName, OptimizeArgs};
-use super::robust::{Believed, select};
+use super::robust::{InlierCounts, select};
 
 /// First damping of `--method lm`, relative to the diagonal.
 const INITIAL_DAMPING: f64 = 1e-6;
@@ -21,8 +21,8 @@ const STEP_TOLERANCE: f64 = 1e-10;
 pub struct Solved {
     /// The last solve; all are the same.
     pub outcome: Outcome,
-    /// What `--robust` believed.
-    pub believed: Option<Believed>,
+    /// What `--robust` inliers.
+    pub inliers: Option<InlierCounts>,
     /// CPU time of the first solve, with ordering and symbolic analysis, ms.
     pub first_ms: f64,
     /// CPU time of the fastest solve, ms.
@@ -38,17 +38,17 @@ pub fn solve_repeatedly(
     args: &OptimizeArgs,
 ) -> Result<Solved, OptimizeError> {
     let mut optimizer = Optimizer::new(settings(args));
-    let bar = progress_bar(u64::from(args.repeat) * args.max_iters as u64);
+    let bar = progress_bar(u64::from(args.repeat) * args.max_iterations as u64);
     let given = problem.poses().to_vec();
     let mut times_ms = Vec::new();
-    let (outcome, believed) = loop {
+    let (outcome, inliers) = loop {
         problem.poses_mut().copy_from_slice(&given);
-        let (outcome, believed, elapsed_ms) = solve_once(&mut optimizer, problem, args, &bar)?;
+        let (outcome, inliers, elapsed_ms) = solve_once(&mut optimizer, problem, args, &bar)?;
         // Every solve takes as many iterations as the first: from now on the share is exact.
         bar.set_length(u64::from(args.repeat) * outcome.total_iterations as u64);
         times_ms.push(elapsed_ms);
         if times_ms.len() >= args.repeat as usize {
-            break (outcome, believed);
+            break (outcome, inliers);
         }
     };
     bar.finish_and_clear();
@@ -60,7 +60,7 @@ pub fn solve_repeatedly(
     }
     Ok(Solved {
         outcome,
-        believed,
+        inliers,
         first_ms: times_ms[0],
         best_ms: times_ms.into_iter().fold(f64::INFINITY, f64::min),
     })
@@ -76,7 +76,7 @@ fn settings(args: &OptimizeArgs) -> Settings {
         },
         jacobians: JacobianModel::Exact,
         kernel: args.kernel.0,
-        max_iterations: args.max_iters,
+        max_iterations: args.max_iterations,
         step_tolerance: STEP_TOLERANCE,
         decrease_tolerance: args.tolerance,
         ..Settings::default()
@@ -89,7 +89,7 @@ fn solve_once(
     problem: &mut Problem,
     args: &OptimizeArgs,
     bar: &ProgressBar,
-) -> Result<(Outcome, Option<Believed>, f64), OptimizeError> {
+) -> Result<(Outcome, Option<InlierCounts>, f64), OptimizeError> {
     let mut clock = CpuClock::start();
     let Some(mut selected) = select(problem, args.robust, settings(args))? else {
         let outcome = solve_session(optimizer, problem, args.init.start(), &mut clock, bar)?;
@@ -104,7 +104,7 @@ fn solve_once(
     )?;
     let solved = selected.problem.poses();
     problem.poses_mut().copy_from_slice(solved);
-    Ok((outcome, Some(selected.believed), clock.elapsed_ms()))
+    Ok((outcome, Some(selected.inliers), clock.elapsed_ms()))
 }
 
 /// The steps of a session; the clock stands still at its end.

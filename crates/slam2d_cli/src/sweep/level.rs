@@ -79,7 +79,7 @@ impl Level {
             false_run_share: statistics.false_run_share(),
             has_loops: args.has(LapEstimator::Graph),
             entries: entries(args, statistics),
-            along_the_way: AlongTheWay::of(statistics),
+            along_the_way: AlongTheWay::from_statistics(statistics),
             samples: samples(args.seeds.first, statistics),
         }
     }
@@ -112,9 +112,9 @@ impl Level {
 }
 
 impl AlongTheWay {
-    fn of(statistics: &LapStatistics) -> Self {
+    fn from_statistics(statistics: &LapStatistics) -> Self {
         let medians = |column| {
-            let medians = statistics.along_the_way_m(column);
+            let medians = statistics.along_path_m(column);
             medians.map(Vec::from).unwrap_or_default()
         };
         Self {

@@ -111,7 +111,7 @@ pub enum RowsFailure {
 
 impl Header {
     /// That of the sweep that `args` ask for, over such laps.
-    pub fn of(args: &SweepArgs, trial: &Trial) -> Self {
+    pub fn new(args: &SweepArgs, trial: &Trial) -> Self {
         let mut digest = Digest::new();
         for &noise in &args.noise {
             let words = format!("{:?}", trial.lap(args.seeds.first, noise));

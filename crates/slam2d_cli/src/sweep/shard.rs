@@ -50,7 +50,7 @@ pub fn shard(text: &str) -> Result<Shard, String> {
 }
 
 /// What a shard came to.
-pub struct Driven {
+pub struct ShardResult {
     /// Laps that are in the file now.
     pub laps: usize,
     /// Of them, those that were there before.
@@ -68,8 +68,8 @@ pub fn drive(
     trial: &Trial,
     part: Shard,
     path: &Path,
-) -> Result<Driven, RowsFailure> {
-    let header = Header::of(args, trial);
+) -> Result<ShardResult, RowsFailure> {
+    let header = Header::new(args, trial);
     let (file, rows) = RowsFile::open(path, &header)?;
     let file = Mutex::new(file);
     let seeds: Vec<u32> = (0..)
@@ -103,7 +103,7 @@ pub fn drive(
     let laps = by_seed.iter().map(Vec::len).sum();
     let kept = by_seed.iter().flatten().filter(|(_, kept)| *kept).count();
     let outcomes = |laps: Vec<(LapOutcome, bool)>| laps.into_iter().map(|(lap, _)| lap).collect();
-    Ok(Driven {
+    Ok(ShardResult {
         laps,
         kept,
         by_seed: by_seed.into_iter().map(outcomes).collect(),

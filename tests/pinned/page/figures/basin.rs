@@ -91,7 +91,7 @@ fn registration(found: &BasinOutcome, what: &str) -> Option<f64> {
     Some(match what {
         "error_m" => found.error_m,
         "error_deg" => found.error_deg.abs(),
-        "rmse" => found.rmse,
+        "rmse" => found.rmse_m,
         "iterations" => found.iterations as f64,
         _ => return None,
     })

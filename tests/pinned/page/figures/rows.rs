@@ -13,7 +13,7 @@ pub fn value(path: &[&str]) -> Option<f64> {
         return None;
     };
     let scene = TerrainScene::new(scene_kind(place)?, TerrainScene::DEFAULT_NDT_CELL_M);
-    let rows = PlaneRows::of(&scene, TerrainSettings::default().tau_m);
+    let rows = PlaneRows::from_scene(&scene, TerrainSettings::default().tau_m);
     let (taken, sigma_m) = match taken {
         "all" => (rows.rows.len(), None),
         "wheels" => (rows.rows.len(), Some(WHEELS_SIGMA_M)),

@@ -51,13 +51,13 @@ pub fn value(path: &[&str]) -> Option<f64> {
         ["loop", "min_inliers"] => loops.min_inliers as f64,
         ["loop", "drift_m"] => loops.drift_sigma_m,
         ["loop", "drift_rad"] => loops.drift_sigma_rad,
-        ["loop", "inflate"] => loops.trust.inflate,
-        ["odometry", "inflate"] => config.slam.chapter.odometry_trust.inflate,
+        ["loop", "inflate"] => loops.trust.covariance_scale,
+        ["odometry", "inflate"] => config.slam.chapter.odometry_trust.covariance_scale,
         ["lap", "tau_deviations"] => tau_deviations(),
         ["information", "ridge"] => INFORMATION_RIDGE,
         ["information", "cap"] => INFORMATION_CAP,
         ["information", "cap_std_m"] => 1.0 / INFORMATION_CAP.sqrt(),
-        ["basin", "tau"] => basin.tau,
+        ["basin", "tau"] => basin.tau_m,
         ["basin", "tau_wide"] => WIDE_TAU_M,
         ["normals", "min_neighbors"] => min_neighbors() as f64,
         _ => return None,
@@ -106,7 +106,7 @@ fn tau_deviations() -> f64 {
     for _ in 0..8 {
         threshold.update(&SE2::identity(), &SE2::translation(DIFFERENCE_M, 0.0));
     }
-    threshold.tau() / DIFFERENCE_M
+    threshold.tau_m() / DIFFERENCE_M
 }
 
 /// The test of an innovation: its threshold, and what that lets through.

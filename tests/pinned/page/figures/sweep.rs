@@ -66,7 +66,7 @@ impl Sweep {
             nudged: NudgeStatistics {
                 moved_m: by_seed.iter().filter_map(|laps| laps.moved_m).collect(),
             },
-            canonical: LapOutcome::of(&LapRunner::new().run(&LapConfig::default())),
+            canonical: LapOutcome::from_record(&LapRunner::new().run(&LapConfig::default())),
         }
     }
 
@@ -150,9 +150,9 @@ fn laps(seeds: &[u32]) -> Vec<OfSeed> {
             .clone()
             .with_gate(GateModel::ExactMarginal);
         OfSeed {
-            outcomes: records.each_ref().map(LapOutcome::of),
+            outcomes: records.each_ref().map(LapOutcome::from_record),
             moved_m,
-            exact_gate: LapOutcome::of(&runner.run(&exact)),
+            exact_gate: LapOutcome::from_record(&runner.run(&exact)),
         }
     };
     seeds.iter().map(of_seed).collect()

@@ -39,7 +39,7 @@ impl Default for Room {
 
 impl Room {
     /// Of so many points.
-    pub(super) fn of(height: f32) -> Self {
+    pub(super) fn from_height(height: f32) -> Self {
         Self {
             height,
             ..Self::default()

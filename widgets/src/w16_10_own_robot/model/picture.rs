@@ -102,7 +102,7 @@ fn legend(own: &OwnRobot) -> Vec<LegendEntry> {
         legend.push(chosen);
     }
     if own.place().is_some() {
-        let way = LegendEntry::line("the other log, believed", OTHER, Stroke::Solid);
+        let way = LegendEntry::line("the other log, localized", OTHER, Stroke::Solid);
         let doubted = LegendEntry::line("doubtful", OTHER, Stroke::Dotted);
         legend.extend([way, doubted]);
     }
@@ -217,7 +217,7 @@ fn links(own: &OwnRobot) -> Vec<Layer> {
 /// The way in its colours over a line of ink, and what the colours mean.
 fn way(own: &OwnRobot) -> (Vec<Layer>, Option<ColorBar>) {
     let robot = &own.robot;
-    let colour = Colour::of(&own.values);
+    let colour = Colour::from_values(&own.values);
     let values = colour.values(robot);
     let mut known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     sort_numbers(&mut known);

@@ -31,7 +31,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    fn of(number: f64) -> Option<Self> {
+    fn from_number(number: f64) -> Option<Self> {
         let stages = [
             Self::Reading,
             Self::Finishing,
@@ -245,7 +245,7 @@ impl Robot {
             "errors" => self.errors_m = numbers.to_vec(),
             "offers" => self.offers = text.lines().filter_map(offer).collect(),
             "where" => {
-                if let Some(told) = Whereabouts::of(delivery) {
+                if let Some(told) = Whereabouts::from_delivery(delivery) {
                     self.whereabouts = Some(told);
                 }
                 self.paused &= self.is_under_way();
@@ -259,7 +259,7 @@ impl Robot {
         let &[stage, share, scans, tried, closed] = numbers else {
             return;
         };
-        let Some(stage) = Stage::of(stage) else {
+        let Some(stage) = Stage::from_number(stage) else {
             return;
         };
         self.stage = stage;

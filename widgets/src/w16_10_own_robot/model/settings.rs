@@ -19,7 +19,7 @@ pub enum Colour {
 
 impl Colour {
     /// The one that is chosen.
-    pub fn of(values: &Values) -> Self {
+    pub fn from_values(values: &Values) -> Self {
         match values.number("colour") as usize {
             0 => Self::Time,
             1 => Self::Fit,

@@ -10,7 +10,7 @@ const HEAD: usize = 7;
 /// Numbers of a scan.
 const PLACE: usize = 10;
 
-/// How far a pose is believed.
+/// How far a pose is localized.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Belief {
     /// The place was looked for and found in this scan.
@@ -24,14 +24,14 @@ pub enum Belief {
 }
 
 impl Belief {
-    fn of(number: f64) -> Option<Self> {
+    fn from_number(number: f64) -> Option<Self> {
         let all = [Self::Found, Self::Tracking, Self::Doubtful, Self::Lost];
         all.get(number as usize).copied()
     }
 
     /// Whether the pose is one to drive by.
     #[must_use]
-    pub fn is_believed(self) -> bool {
+    pub fn is_localized(self) -> bool {
         matches!(self, Self::Found | Self::Tracking)
     }
 
@@ -56,7 +56,7 @@ pub struct Place {
     pub stamp_s: f64,
     /// `[x, y, θ]` on the map, m and rad.
     pub pose: [f64; 3],
-    /// How far that is believed.
+    /// How far that is localized.
     pub belief: Belief,
     /// Share of the scan that fits there.
     pub fit: f64,
@@ -65,12 +65,12 @@ pub struct Place {
 }
 
 impl Place {
-    fn of(numbers: &[f64]) -> Option<Self> {
+    fn from_numbers(numbers: &[f64]) -> Option<Self> {
         (0.0..=MOST_SCANS).contains(&numbers[0]).then_some(Self {
             scan: numbers[0],
             stamp_s: numbers[1],
             pose: [numbers[2], numbers[3], numbers[4]],
-            belief: Belief::of(numbers[5])?,
+            belief: Belief::from_number(numbers[5])?,
             fit: numbers[6],
             ellipse: [numbers[7], numbers[8], numbers[9]],
         })
@@ -88,7 +88,7 @@ pub struct Whereabouts {
     pub is_over: bool,
     /// Scans found, followed, doubtful, lost.
     pub counts: [f64; 4],
-    /// The first scan that is believed, from 0; NaN where none is.
+    /// The first scan that is localized, from 0; NaN where none is.
     pub first: f64,
     /// What its owner should know, a sentence each.
     pub remarks: Vec<String>,
@@ -99,7 +99,7 @@ pub struct Whereabouts {
 impl Whereabouts {
     /// What a delivery tells; none where it does not hold what it has to.
     #[must_use]
-    pub fn of(delivery: &Delivery<'_>) -> Option<Self> {
+    pub fn from_delivery(delivery: &Delivery<'_>) -> Option<Self> {
         let (head, places) = delivery.numbers.split_first_chunk::<HEAD>()?;
         let &[share, over, found, tracking, doubtful, lost, first] = head;
         let mut lines = delivery.text.lines().map(str::to_owned);
@@ -110,13 +110,16 @@ impl Whereabouts {
             counts: [found, tracking, doubtful, lost],
             first,
             remarks: lines.collect(),
-            places: places.chunks_exact(PLACE).filter_map(Place::of).collect(),
+            places: places
+                .chunks_exact(PLACE)
+                .filter_map(Place::from_numbers)
+                .collect(),
         })
     }
 
-    /// Scans whose pose is believed.
+    /// Scans whose pose is localized.
     #[must_use]
-    pub fn believed(&self) -> f64 {
+    pub fn localized(&self) -> f64 {
         self.counts[0] + self.counts[1]
     }
 }

@@ -103,7 +103,7 @@ fn visitor(own: &OwnRobot) -> String {
     } else {
         format!(", {:.0} % done", (100.0 * told.share).floor())
     };
-    let scans = told.believed() + doubtful + lost;
+    let scans = told.localized() + doubtful + lost;
     let [x, y, theta] = shown.pose;
     let at = if x.is_finite() {
         let sigma_m = shown.ellipse[0];
@@ -120,8 +120,8 @@ fn visitor(own: &OwnRobot) -> String {
         String::new()
     };
     format!(
-        " The robot of {name} {first}{done}: of {scans:.0} scans {:.0} are believed, {doubtful:.0} doubtful, {lost:.0} lost. At scan {:.0} it is {}{at}.",
-        told.believed(),
+        " The robot of {name} {first}{done}: of {scans:.0} scans {:.0} are localized, {doubtful:.0} doubtful, {lost:.0} lost. At scan {:.0} it is {}{at}.",
+        told.localized(),
         shown.scan,
         shown.belief.name()
     )
@@ -147,13 +147,13 @@ fn finished(robot: &Robot) -> String {
     format!(
         "{}: {source} on a way of {:.0} m with {}; {doubted}.",
         robot.name,
-        way_m(robot),
+        path_length_m(robot),
         counted(closed, "loop")
     )
 }
 
 /// Length of the way over the keyframes, m.
-fn way_m(robot: &Robot) -> f64 {
+fn path_length_m(robot: &Robot) -> f64 {
     let steps = robot.keyframes.windows(2);
     let steps = steps.map(|two| {
         let [a, b] = [two[0].pose, two[1].pose];
@@ -216,7 +216,7 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
         Fact::count("done_percent", "done, %", done.floor()),
         Fact::count("scans", "scans", robot.scans),
         Fact::count("keyframes", "keyframes", robot.keyframes.len() as f64),
-        Fact::new("way_m", "way", way_m(robot), "m", 1),
+        Fact::new("path_length_m", "path", path_length_m(robot), "m", 1),
         Fact::count("loops", "loops in the graph", count(&Link::is_in_graph)),
         Fact::count(
             "loops_refused",
@@ -236,7 +236,7 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
     if let Some(told) = &robot.whereabouts {
         let [.., doubtful, lost] = told.counts;
         facts.extend([
-            Fact::count("where_believed", "other log: believed", told.believed()),
+            Fact::count("where_localized", "other log: localized", told.localized()),
             Fact::count("where_doubtful", "other log: doubtful", doubtful),
             Fact::count("where_lost", "other log: lost", lost),
         ]);

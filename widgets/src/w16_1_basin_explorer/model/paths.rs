@@ -57,7 +57,7 @@ impl Paths {
 
     /// Starts over where the settings changed.
     pub fn follow(&mut self, values: &Values) {
-        let key = Key::of(values);
+        let key = Key::from_values(values);
         if key == self.key {
             return;
         }
@@ -91,7 +91,7 @@ impl Paths {
 }
 
 impl Key {
-    fn of(values: &Values) -> Option<Self> {
+    fn from_values(values: &Values) -> Option<Self> {
         let other = match values.get(&AXIS) {
             OffsetAxis::Dx => &DY,
             OffsetAxis::Dy => &DX,

@@ -121,7 +121,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
             "Iteration {iteration} of {}: {} pairs, rmse {:.3} m",
             explorer.last(),
             shown.pairs,
-            shown.rmse
+            shown.rmse_m
         ),
         weight: Weight::Main,
         aspect: Aspect::Equal,
@@ -281,7 +281,7 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
     }
     let mut legend = edge::legend(&explorer.values);
     if !covered {
-        let minima = Minimum::of(explorer.scene.place());
+        let minima = Minimum::at_place(explorer.scene.place());
         legend.extend(minima.map(|minimum| LegendEntry {
             label: format!("{} {}", minimum.letter(), minimum.name()),
             tone: Tone::Class(class(minimum)),
@@ -359,7 +359,7 @@ fn ways(explorer: &BasinExplorer) -> Vec<Layer> {
 fn curve(explorer: &BasinExplorer) -> Panel {
     let trace = &explorer.run.trace;
     let truth = explorer.scene.truth();
-    let rmse: Vec<f64> = trace.iter().map(|state| state.rmse).collect();
+    let rmse: Vec<f64> = trace.iter().map(|state| state.rmse_m).collect();
     let error: Vec<f64> = trace
         .iter()
         .map(|state| error_m(&truth, &state.pose))

@@ -31,7 +31,7 @@ fn variants(explorer: &BasinExplorer) -> Table {
             end.ending.name().to_owned(),
             format!("{:.3}", end.error_m),
             signed(end.error_deg, 1),
-            format!("{:.3}", end.rmse),
+            format!("{:.3}", end.rmse_m),
             end.iterations.to_string(),
         ]
     };
@@ -60,7 +60,7 @@ fn iterations(explorer: &BasinExplorer) -> Table {
         vec![
             k.to_string(),
             state.pairs.to_string(),
-            state.rmse.to_string(),
+            state.rmse_m.to_string(),
             error_m(&truth, &pose).to_string(),
             pose.x().to_string(),
             pose.y().to_string(),

@@ -36,7 +36,7 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
             variant_name(variant(&explorer.values)),
             end.error_m,
             end.error_deg.abs(),
-            end.rmse,
+            end.rmse_m,
             end.inliers,
             stop_words(&end.stop),
             counted(end.iterations, "iteration"),
@@ -44,7 +44,7 @@ pub fn outcome(explorer: &BasinExplorer) -> Outcome {
         facts: vec![
             Fact::new("error_m", "position error", end.error_m, "m", 3),
             Fact::new("error_deg", "heading error", end.error_deg, "°", 1),
-            Fact::new("rmse_m", "rmse of the pairs", end.rmse, "m", 3),
+            Fact::new("rmse_m", "rmse of the pairs", end.rmse_m, "m", 3),
             Fact::new("pairs", "pairs", end.inliers as f64, "", 0),
             Fact::new("iterations", "iterations", end.iterations as f64, "", 0),
             Fact::yes_or_no("converged", "converged", end.stop.converged()),
@@ -75,7 +75,7 @@ pub fn summary(explorer: &BasinExplorer) -> String {
         explorer.last(),
         error_m(&truth, &shown.pose),
         shown.pairs,
-        shown.rmse,
+        shown.rmse_m,
         outcome(explorer).sentence,
     )
 }

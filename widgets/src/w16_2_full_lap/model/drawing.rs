@@ -44,7 +44,7 @@ impl FullLap {
     /// A built-in world is chosen.
     fn leave_own(&mut self, world: BuiltInWorld) {
         self.values.store(FLAT.id, 0.0);
-        self.flat.become_of(Sketch::of(&world.course()));
+        self.flat.become_of(Sketch::from_course(&world.course()));
         self.recompute();
     }
 
@@ -57,7 +57,7 @@ impl FullLap {
             return Ok(());
         }
         let sketch = if text.is_empty() {
-            Sketch::of(&Course::apartment())
+            Sketch::from_course(&Course::apartment())
         } else {
             Sketch::from_text(text).map_err(|error| ParamError::Refused {
                 id: param.id,

@@ -39,7 +39,7 @@ pub struct Region {
 
 impl Gates {
     /// Both gates over an attempt of `lap`.
-    pub fn of(lap: &LapTrace, attempt: &LoopAttempt, config: &LoopConfig) -> Self {
+    pub fn new(lap: &LapTrace, attempt: &LoopAttempt, config: &LoopConfig) -> Self {
         Self::on(&mut lap.graph_before(attempt), attempt, config)
     }
 

@@ -2,7 +2,7 @@
 
 mod closeup;
 mod flat;
-mod look;
+mod loop_style;
 mod map;
 mod parts;
 mod plots;

@@ -47,7 +47,7 @@ impl Piece {
     pub fn chosen(values: &Values, sketch: &Sketch) -> Option<Self> {
         let kind = values.get(&PIECE)?;
         let index = values.get(&PIECE_NUMBER).checked_sub(1);
-        Self::of(kind, index.unwrap_or(0)).filter(|piece| piece.is_in(sketch))
+        Self::from_index(kind, index.unwrap_or(0)).filter(|piece| piece.is_in(sketch))
     }
 
     /// Makes the settings choose it.
@@ -56,7 +56,7 @@ impl Piece {
         values.put(&PIECE_NUMBER, piece.map_or(0, Self::index) + 1);
     }
 
-    fn of(kind: usize, index: usize) -> Option<Self> {
+    fn from_index(kind: usize, index: usize) -> Option<Self> {
         [
             Self::Wall(index),
             Self::FirstEnd(index),
@@ -107,7 +107,7 @@ impl Piece {
     /// The piece before or after it of its kind; from nothing, the last or the first wall.
     pub fn stepped(piece: Option<Self>, step: Step, sketch: &Sketch) -> Option<Self> {
         let kind = piece.map_or(0, Self::kind);
-        let count = Self::of(kind, 0)?.count(sketch);
+        let count = Self::from_index(kind, 0)?.count(sketch);
         let last = count.checked_sub(1)?;
         let index = match (piece.map(Self::index), step) {
             (None, Step::On) => 0,
@@ -115,13 +115,13 @@ impl Piece {
             (Some(index), Step::On) => (index + 1) % count,
             (Some(index), Step::Back) => index.checked_sub(1).unwrap_or(last),
         };
-        Self::of(kind, index)
+        Self::from_index(kind, index)
     }
 
     /// The piece that a handle holds.
     pub fn held(handle: Handle) -> Option<Self> {
         let kind = KINDS.iter().position(|name| *name == handle.id)?;
-        Self::of(kind, handle.offset[0] as usize)
+        Self::from_index(kind, handle.offset[0] as usize)
     }
 
     /// The handle that holds it.

@@ -53,7 +53,7 @@ impl Runs {
         let start = config.drive.start;
         let gates = lap
             .loop_attempts()
-            .map(|attempt| Gates::of(&lap, attempt, &config.slam.chapter.loops))
+            .map(|attempt| Gates::new(&lap, attempt, &config.slam.chapter.loops))
             .collect();
         Self {
             odometry_errors_m: core::iter::once(0.0).chain(errors).collect(),

@@ -29,18 +29,18 @@ fn at(settings: &[(&str, f64)]) -> FullLap {
     for (id, value) in settings {
         model.set(id, *value).unwrap();
     }
-    model.settle();
+    model.finish_work();
     model
 }
 
 fn set(model: &mut FullLap, id: &str, value: f64) {
     model.set(id, value).unwrap();
-    model.settle();
+    model.finish_work();
 }
 
 fn press(model: &mut FullLap, id: &str) {
     model.press(id).unwrap();
-    model.settle();
+    model.finish_work();
 }
 
 /// The results table at the end of the lap.

@@ -128,7 +128,7 @@ impl Terrains {
         let mut terrains = Self {
             icp: Landscape::flat(),
             ndt: Landscape::flat(),
-            information: Hold::of(&scene),
+            information: Hold::from_scene(&scene),
             rows: rows_of(&scene),
             settings,
             scene,
@@ -146,7 +146,7 @@ impl Terrains {
         self.settings = settings;
         if stale.place {
             self.scene = scene_of(&settings);
-            self.information = Hold::of(&self.scene);
+            self.information = Hold::from_scene(&self.scene);
             self.rows = rows_of(&self.scene);
         } else if stale.ndt_map {
             self.scene.set_ndt_cell(settings.ndt_cell_m);
@@ -238,7 +238,7 @@ impl Terrains {
         let width_m = ndt.cell_m();
         ndt.cells()
             .iter()
-            .map(|cell| Bell::of(cell, width_m))
+            .map(|cell| Bell::from_cell(cell, width_m))
             .collect()
     }
 
@@ -321,11 +321,11 @@ fn roll(probe: &TerrainProbe<'_>, objective: Objective, [x, y]: [f64; 2]) -> Bal
 
 /// Of pairs up to the chapter's τ, as the information is.
 fn rows_of(scene: &TerrainScene) -> PlaneRows {
-    PlaneRows::of(scene, TerrainSettings::default().tau_m)
+    PlaneRows::from_scene(scene, TerrainSettings::default().tau_m)
 }
 
 impl Bell {
-    fn of(cell: &NdtCell, width_m: f64) -> Self {
+    fn from_cell(cell: &NdtCell, width_m: f64) -> Self {
         let [(xx, xy), (_, yy)] =
             [0, 1].map(|k| (cell.covariance[(k, 0)], cell.covariance[(k, 1)]));
         let center = 0.5 * (xx + yy);
@@ -347,7 +347,7 @@ impl Bell {
 
 impl Hold {
     /// Of a shift at the truth, with pairs up to the chapter's τ, whatever that of the map is.
-    fn of(scene: &TerrainScene) -> Self {
+    fn from_scene(scene: &TerrainScene) -> Self {
         let pose = scene.information(TerrainSettings::default().tau_m);
         let shift = pose.of_shift();
         // An axis has no sign: towards positive x.

@@ -33,7 +33,7 @@ impl Source {
         loops: 0,
     };
 
-    fn of(record: &LapRecord, tick: usize) -> Self {
+    fn from_record(record: &LapRecord, tick: usize) -> Self {
         let edges = record.lap.edges(tick).iter();
         Self {
             keyframes: record.lap.node_count(tick),
@@ -48,14 +48,14 @@ impl GridView {
         let grid = record.occupancy_grid(tick);
         Self {
             raster: raster(&grid, 0),
-            source: Source::of(record, tick),
+            source: Source::from_record(record, tick),
             grid,
         }
     }
 
     /// Goes to another tick of the run.
     pub fn show(&mut self, record: &LapRecord, tick: usize) {
-        let source = Source::of(record, tick);
+        let source = Source::from_record(record, tick);
         if source != self.source {
             self.source = source;
             self.grid = record.occupancy_grid(tick);

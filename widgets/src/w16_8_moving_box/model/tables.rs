@@ -20,7 +20,7 @@ fn methods(moving: &MovingBox) -> Table {
             format!("{:.3}", error_m(moving, k)),
             signed(x, 3),
             signed(y, 3),
-            format!("{:.3}", run.end.rmse),
+            format!("{:.3}", run.end.rmse_m),
             run.end.inliers.to_string(),
             run.end.iterations.to_string(),
         ]

@@ -52,7 +52,7 @@ pub fn outcome(moving: &MovingBox) -> Outcome {
         .enumerate()
         .map(|(k, name)| format!("{name} {:.3} m off", error_m(moving, k)));
     let told: Vec<_> = told.collect();
-    let rmse = moving.runs[0].end.rmse;
+    let rmse = moving.runs[0].end.rmse_m;
     Outcome {
         standing: standing(moving),
         verdict: verdict(moving).to_owned(),
@@ -84,7 +84,7 @@ fn facts(moving: &MovingBox) -> Vec<Fact> {
         facts.extend([
             Fact::metres(id.0, label.0, error_m(moving, k)),
             Fact::metres(id.1, label.1, bias_m(moving, k)),
-            Fact::metres(id.2, label.2, moving.runs[k].end.rmse),
+            Fact::metres(id.2, label.2, moving.runs[k].end.rmse_m),
         ]);
     }
     facts

@@ -1,4 +1,4 @@
-//! The panels: the map with what is believed, and the scores over the scans.
+//! The panels: the map with what is localized, and the scores over the scans.
 
 use ch16_slam2d::search::PoseBox;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
@@ -68,7 +68,7 @@ fn map(back: &ComeBack) -> Panel {
     }
 }
 
-/// What is believed at the moment that is shown.
+/// What is localized at the moment that is shown.
 fn belief(back: &ComeBack) -> Vec<Layer> {
     let Some(((_, morning), moment)) = back.told().zip(back.moment()) else {
         return Vec::new();
@@ -127,7 +127,7 @@ fn scores(back: &ComeBack) -> Panel {
         last = (reports.len() as f64).max(2.0);
         let at = |tick: usize, score: f64| [tick as f64 + 1.0, score];
         let fits = reports.iter().enumerate().filter_map(|(tick, report)| {
-            let is_told = report.verdict.is_believed();
+            let is_told = report.verdict.is_localized();
             Some(at(tick, report.score.filter(|_| is_told)?))
         });
         let best = reports

@@ -24,9 +24,9 @@ fn ending(back: &ComeBack) -> Ending {
         return Ending::Computing;
     };
     let ticks = 0..morning.reports().len();
-    let is_believed = |tick: &usize| morning.reports()[*tick].verdict.is_believed();
+    let is_localized = |tick: &usize| morning.reports()[*tick].verdict.is_localized();
     let is_off = |tick: usize| morning.error_m(tick).is_some_and(|m| m > ELSEWHERE_M);
-    if ticks.clone().filter(is_believed).any(is_off) {
+    if ticks.clone().filter(is_localized).any(is_off) {
         return Ending::Elsewhere;
     }
     match morning.found() {
@@ -99,14 +99,14 @@ fn found_words(morning: &Morning) -> String {
     format!(
         "Found {scans}, {:.2} m off the truth: {margin}. From there on {} of {} scans follow it, each registered on the map around it.",
         morning.error_m(found).unwrap_or(f64::NAN),
-        believed_after(morning, found),
+        localized_after(morning, found),
         morning.reports().len() - found - 1
     )
 }
 
-fn believed_after(morning: &Morning, found: usize) -> usize {
+fn localized_after(morning: &Morning, found: usize) -> usize {
     let after = morning.reports()[found + 1..].iter();
-    after.filter(|report| report.verdict.is_believed()).count()
+    after.filter(|report| report.verdict.is_localized()).count()
 }
 
 fn facts(back: &ComeBack) -> Vec<Fact> {

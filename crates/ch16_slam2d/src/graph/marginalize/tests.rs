@@ -61,13 +61,13 @@ fn graph() -> PoseGraph {
 fn a_loop_that_is_yet_to_correct_the_graph_does_so_when_a_node_is_gone() {
     let mut corrected = graph();
     corrected.marginalize(1).unwrap();
-    assert_eq!(corrected.settled_edges(), corrected.edge_count());
+    assert_eq!(corrected.optimized_edges(), corrected.edge_count());
     let mut waiting = graph();
     let seen = waiting.pose(0).between(&waiting.pose(3)) * SE2::new(0.0, 0.02, 0.0);
     let omega = information(250.0, 350.0, 900.0);
     waiting.add_edge(0, 3, seen, omega, EdgeKind::Loop);
     waiting.marginalize(1).unwrap();
-    assert_eq!(waiting.settled_edges(), 0);
+    assert_eq!(waiting.optimized_edges(), 0);
 }
 
 #[test]

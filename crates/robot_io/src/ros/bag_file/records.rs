@@ -46,7 +46,7 @@ impl Connections {
     fn take_connection(&mut self, named: &Fields<'_>, data: &[u8]) -> Result<(), String> {
         let number = named.u32("conn")?;
         let topic = named.name("topic")?;
-        let kind = Fields::of(data)?.name("type")?;
+        let kind = Fields::parse(data)?.name("type")?;
         if self.known.len() < MOST_CONNECTIONS {
             let kind = kind_of(&kind);
             self.known.insert(number, Connection { topic, kind });
@@ -89,7 +89,7 @@ pub fn begins(bytes: &[u8]) -> bool {
     let Ok(header) = piece(&mut rest, "a header") else {
         return false;
     };
-    let is_known = Fields::of(header).and_then(|fields| fields.op());
+    let is_known = Fields::parse(header).and_then(|fields| fields.op());
     let length = rest
         .first_chunk::<4>()
         .map(|length| u32::from_le_bytes(*length));
@@ -114,7 +114,7 @@ pub struct Fields<'a> {
 
 impl<'a> Fields<'a> {
     /// The fields of these bytes.
-    pub fn of(mut header: &'a [u8]) -> Result<Self, String> {
+    pub fn parse(mut header: &'a [u8]) -> Result<Self, String> {
         let mut named = BTreeMap::new();
         while !header.is_empty() {
             let field = piece(&mut header, "a field")?;

@@ -11,7 +11,7 @@ use crate::ros::survey::{ODOMETRY, SCANS, Survey};
 const MOST_OFFERED: usize = 100;
 
 /// What each option could choose, and what is taken.
-pub fn of(
+pub fn list(
     survey: &Survey,
     scans: Option<&str>,
     wheels: Option<&Wheels<'_>>,

@@ -53,7 +53,7 @@ pub fn chosen<'a>(
             is_wanted && (!is_transform || track.moves || track.poses.len() > 2)
         });
     let scored = candidates.map(|(topic, track, is_transform)| {
-        let clock = MendedStamps::of(&track.stamps_s, &track.recorded_s);
+        let clock = MendedStamps::new(&track.stamps_s, &track.recorded_s);
         let leads = leads_to(survey, track, sensor);
         let score = (
             track.moves,
@@ -197,7 +197,7 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
     let poses = stamped
         .filter(|(stamp_s, _)| stamp_s.is_finite())
         .map(|(stamp_s, pose)| (stamp_s + wheels_by_s, *pose));
-    let (poses, jumps) = WheelPoses::of(poses.collect(), clock.period_s);
+    let (poses, jumps) = WheelPoses::new(poses.collect(), clock.period_s);
     said.extend(jumps_remark(&jumps));
     Aligned {
         poses,

@@ -14,9 +14,9 @@ pub fn whereabouts(own: &OwnRobot) -> Vec<Layer> {
     let Some(((_, shown), told)) = own.place().zip(own.robot.whereabouts.as_ref()) else {
         return Vec::new();
     };
-    let line = |is_believed: bool, stroke, width_px| {
+    let line = |is_localized: bool, stroke, width_px| {
         let places = told.places.iter().map(|place| {
-            if place.belief.is_believed() == is_believed {
+            if place.belief.is_localized() == is_localized {
                 [place.pose[0], place.pose[1]]
             } else {
                 [f64::NAN; 2]

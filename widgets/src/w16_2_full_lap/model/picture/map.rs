@@ -5,7 +5,7 @@ use kit::scene::{Aspect, Axis, Bounds, Layer, LegendEntry, Mark, Panel, Stroke, 
 use pr_geom::{SE2, math};
 use pr_sim::{Wall, World};
 
-use super::look::LoopLook;
+use super::loop_style::LoopStyle;
 use super::shapes::{arc, xy};
 use super::{flat, parts};
 use crate::w16_2_full_lap::model::flat::extent;
@@ -203,7 +203,7 @@ pub fn loop_mark(moment: &Moment, attempt: &LoopAttempt) -> [f64; 2] {
 
 /// A loop that was accepted is solid and green, a refused one dotted, grey and hollow.
 fn loop_layers(attempt: &LoopAttempt, arc: Vec<[f64; 2]>, top: [f64; 2]) -> [Layer; 2] {
-    let look = LoopLook::of(attempt);
+    let look = LoopStyle::from_attempt(attempt);
     [
         Layer::line(arc, look.stroke, look.tone, 2.5),
         Layer::points(vec![top], look.mark, look.tone, 4.5),
@@ -294,8 +294,8 @@ fn legend(moment: &Moment) -> Vec<LegendEntry> {
         ),
         LegendEntry::mark("map, way out", Tone::Measurement, Mark::Dot),
         LegendEntry::mark("map, way back", Tone::Revisit, Mark::Cross),
-        LoopLook::ACCEPTED.entry("loop accepted"),
-        LoopLook::REFUSED.entry("loop refused"),
+        LoopStyle::ACCEPTED.entry("loop accepted"),
+        LoopStyle::REFUSED.entry("loop refused"),
     ];
     if moment.drawn.as_ref().is_some_and(is_planned) {
         legend.push(flat::legend());

@@ -4,7 +4,7 @@ use ch16_lab::lap::{OwnLoop, RecordedEdge, edge_strain};
 use kit::scene::{Layer, Mark, Stroke, Tone};
 use pr_geom::math;
 
-use super::look::LoopLook;
+use super::loop_style::LoopStyle;
 use super::shapes::{arc, xy};
 use crate::w16_2_full_lap::model::found::{Found, find};
 use crate::w16_2_full_lap::model::moment::Moment;
@@ -102,7 +102,7 @@ pub fn own(moment: &Moment) -> Vec<Layer> {
     let Some(own) = moment.own else {
         return Vec::new();
     };
-    let look = LoopLook::of(&own.attempt);
+    let look = LoopStyle::from_attempt(&own.attempt);
     let arc = arc(moment, &own.attempt);
     let top = arc[arc.len() / 2];
     let name = format!("your loop {}", ends(&own.attempt));

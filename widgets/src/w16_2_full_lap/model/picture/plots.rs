@@ -4,7 +4,7 @@ use ch16_lab::lap::LoopAttempt;
 use kit::chart::{Series, TimeChart, axis_from_zero};
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 
-use super::look::LoopLook;
+use super::loop_style::LoopStyle;
 use crate::w16_2_full_lap::model::moment::Moment;
 use crate::w16_2_full_lap::model::panel;
 use crate::w16_2_full_lap::model::runs::Runs;
@@ -119,8 +119,8 @@ pub fn gate(moment: &Moment) -> Panel {
             Tone::Ink,
             1.5,
         ),
-        look(&LoopLook::ACCEPTED, of(true)),
-        look(&LoopLook::REFUSED, of(false)),
+        look(&LoopStyle::ACCEPTED, of(true)),
+        look(&LoopStyle::REFUSED, of(false)),
     ];
     layers.extend(labels(attempts, y.max));
     with_room_at_the_end(Panel {
@@ -132,15 +132,19 @@ pub fn gate(moment: &Moment) -> Panel {
         y,
         layers,
         legend: vec![
-            LegendEntry::mark("accepted", LoopLook::ACCEPTED.tone, LoopLook::ACCEPTED.mark),
-            LegendEntry::mark("refused", LoopLook::REFUSED.tone, LoopLook::REFUSED.mark),
+            LegendEntry::mark(
+                "accepted",
+                LoopStyle::ACCEPTED.tone,
+                LoopStyle::ACCEPTED.mark,
+            ),
+            LegendEntry::mark("refused", LoopStyle::REFUSED.tone, LoopStyle::REFUSED.mark),
             LegendEntry::line(&format!("gate {gate:.3}"), Tone::Ink, Stroke::Dotted),
         ],
         color_bar: None,
     })
 }
 
-fn look(look: &LoopLook, at: Vec<[f64; 2]>) -> Layer {
+fn look(look: &LoopStyle, at: Vec<[f64; 2]>) -> Layer {
     Layer::points(at, look.mark, look.tone, 5.5)
 }
 

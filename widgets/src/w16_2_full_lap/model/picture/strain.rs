@@ -6,7 +6,7 @@ use kit::chart::axis_from_zero;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Stroke, Tone, Weight};
 use pr_geom::math;
 
-use super::look::LoopLook;
+use super::loop_style::LoopStyle;
 use crate::w16_2_full_lap::model::moment::Moment;
 use crate::w16_2_full_lap::model::panel;
 use crate::w16_2_full_lap::model::pick::Part;
@@ -50,7 +50,7 @@ pub fn strain(moment: &Moment) -> Panel {
     let stems = |points: &[[f64; 2]]| points.iter().map(|at| [[at[0], 0.0], *at]).collect();
     let odometry = marks(&now, EdgeKind::Odometry);
     let loops = marks(&now, EdgeKind::Loop);
-    let look = &LoopLook::ACCEPTED;
+    let look = &LoopStyle::ACCEPTED;
     let mut layers = vec![
         Layer::segments(stems(&odometry), Stroke::Solid, Tone::Posterior, 1.5),
         Layer::points(odometry, Mark::Square, Tone::Posterior, 2.5),

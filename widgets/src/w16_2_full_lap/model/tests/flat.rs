@@ -31,7 +31,7 @@ fn flat(model: &FullLap) -> Sketch {
 }
 
 fn apartment() -> Sketch {
-    Sketch::of(&Course::apartment())
+    Sketch::from_course(&Course::apartment())
 }
 
 #[test]
@@ -51,7 +51,7 @@ fn a_wall_that_is_drawn_is_there_at_once_and_the_lap_follows() {
     };
     assert_eq!(walls(&model), 19);
     assert_eq!(results(&model), before, "the lap is still the old one");
-    model.settle();
+    model.finish_work();
     assert_ne!(results(&model), before);
     // The lap is that of the command line in the file of this flat.
     let course = Course::from_json(flat(&model).to_json().as_bytes()).unwrap();
@@ -202,7 +202,7 @@ fn buttons_choose_move_and_remove_what_the_pointer_does() {
 fn a_flat_that_cannot_be_driven_says_why_and_draws_no_lap_of_another() {
     let mut model = editing(2.0);
     stroke(&mut model, &[[5.0, 3.8], [5.0, 5.0]]);
-    model.settle();
+    model.finish_work();
     let outcome = model.outcome();
     assert_eq!(outcome.verdict, "cannot be driven");
     assert_eq!(outcome.standing, Standing::Bad);
@@ -231,7 +231,7 @@ fn a_flat_that_cannot_be_driven_says_why_and_draws_no_lap_of_another() {
     linked
         .set_text("flat", &model.values().to_text("flat"))
         .unwrap();
-    linked.settle();
+    linked.finish_work();
     assert_eq!(linked.outcome().verdict, "cannot be driven");
     press(&mut model, "take-back");
     assert!(nodes(&model));
@@ -255,14 +255,14 @@ fn while_a_stroke_goes_on_the_picture_keeps_still_under_the_pointer() {
 fn a_link_carries_the_flat_and_a_damaged_one_leaves_it() {
     let mut model = editing(2.0);
     stroke(&mut model, &[[1.0, 1.0], [2.0, 1.0]]);
-    model.settle();
+    model.finish_work();
     let text = model.values().to_text("flat");
     let mut other = FullLap::default();
     // In the order of the list, as a new picture is set up: the world first.
     for (id, text) in [("world", "own"), ("flat", &text)] {
         other.set_text(id, text).unwrap();
     }
-    other.settle();
+    other.finish_work();
     assert_eq!(results(&other), results(&model));
     let before = other.values().clone();
     let cut = &text[..text.len() - 3];
@@ -294,7 +294,7 @@ fn world_and_flat_never_disagree() {
     assert_eq!(model.values().get(&WORLD), None);
     assert_eq!(
         flat(&model).walls_cm.len(),
-        Sketch::of(&Course::twin_rooms()).walls_cm.len() + 1
+        Sketch::from_course(&Course::twin_rooms()).walls_cm.len() + 1
     );
     press(&mut model, "defaults");
     assert_eq!(model.values().number("world"), 0.0);
@@ -322,7 +322,7 @@ fn a_file_is_saved_opened_and_refused_in_one_sentence() {
             bytes: text.as_bytes(),
             ..Delivery::default()
         });
-        model.settle();
+        model.finish_work();
     };
     let mut other = FullLap::default();
     give(&mut other, json);

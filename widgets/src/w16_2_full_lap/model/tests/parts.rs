@@ -157,7 +157,7 @@ fn no_label_on_the_data_lies_on_another_in_any_preset() {
         shell.model_mut().press(preset.id).unwrap();
         shell.model_mut().set("pick", 1.0).unwrap();
         shell.model_mut().set("number", 29.0).unwrap();
-        shell.settle();
+        shell.finish_work();
         for width in [390.0, 768.0, 1024.0, 1440.0] {
             let faults = shell.label_faults(width);
             assert!(faults.is_empty(), "{}: {faults:#?}", preset.id);

@@ -99,7 +99,7 @@ fn of_two_hundred_values_at_once_only_the_newest_lap_is_run() {
         let noise = 0.25 + 3.75 * f64::from((value - 1) % 100) / 99.0;
         model.set("noise", noise).unwrap();
     }
-    model.settle();
+    model.finish_work();
     // The lap, the rest of its front end alone, and the end of each.
     assert!(model.laps.steps() - before <= 2 * model.runs.ticks() + 2);
     assert!(picture(&model) == picture(&at(&[("noise", 4.0)])));
@@ -118,7 +118,7 @@ fn a_preset_goes_to_the_loop_of_the_lap_that_it_asks_for() {
         10,
         "the lap that is asked for is not known yet"
     );
-    model.settle();
+    model.finish_work();
     let mut straight = at(&[("seed", 6.0), ("noise", 4.0), ("t", 10.0)]);
     straight.press("next").unwrap();
     assert_eq!(model.tick(), straight.tick());

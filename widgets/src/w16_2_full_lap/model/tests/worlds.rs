@@ -53,7 +53,7 @@ fn a_moment_asked_for_before_its_lap_is_known_is_kept() {
     model.set("t", 200.0).unwrap();
     assert_eq!(model.values().number("t"), 200.0);
     assert!(model.tick() <= 129, "the old lap is shown until then");
-    model.settle();
+    model.finish_work();
     assert_eq!(model.tick(), 200);
     // A lap that ends before it is shown at its end.
     set(&mut model, "world", 0.0);

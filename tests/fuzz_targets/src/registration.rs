@@ -16,7 +16,7 @@ const MAX_ITERATIONS: usize = 12;
 const NORMAL_RADIUS_M: f64 = 0.5;
 
 /// The result is finite; both maps lead to the same one; nothing panics.
-pub fn door(data: &[u8]) {
+pub fn fuzz(data: &[u8]) {
     // Bytes that end early read as zeros; nothing else can fail to be read.
     let _ = case(&mut Unstructured::new(data));
 }
@@ -70,8 +70,8 @@ fn align_by_icp(
 ) -> Result<()> {
     let config = IcpConfig {
         variant: *bytes.choose(&[IcpVariant::PointToPoint, IcpVariant::PointToPlane])?,
-        max_iters: bytes.int_in_range(0..=MAX_ITERATIONS)?,
-        tau: *bytes.choose(&[0.6, 0.01, 0.1, 2.0, 10.0])?,
+        max_iterations: bytes.int_in_range(0..=MAX_ITERATIONS)?,
+        tau_m: *bytes.choose(&[0.6, 0.01, 0.1, 2.0, 10.0])?,
         tolerance: *bytes.choose(&[1e-4, 0.0])?,
         min_pairs: bytes.int_in_range(0..=8)?,
         trim: *bytes.choose(&[0.0, 0.5, 0.9, 1.0])?,
@@ -100,9 +100,9 @@ pub fn register(
     let found = Icp::new(scan, map, init, config, &mut workspace).run();
     assert_finite(&found.pose, &init);
     assert!(found.inliers <= scan.len());
-    assert!(found.iterations <= config.max_iters);
+    assert!(found.iterations <= config.max_iterations);
     // Infinite without pairs.
-    assert_eq!(found.rmse.is_finite(), found.inliers > 0, "{found:?}");
+    assert_eq!(found.rmse_m.is_finite(), found.inliers > 0, "{found:?}");
     found
 }
 
@@ -120,14 +120,14 @@ fn align_by_ndt(
         assert!(numbers.iter().all(|value| value.is_finite()), "{cell:?}");
     }
     let config = NdtConfig {
-        max_iters: bytes.int_in_range(0..=MAX_ITERATIONS)?,
+        max_iterations: bytes.int_in_range(0..=MAX_ITERATIONS)?,
         ..NdtConfig::default()
     };
     let found = ndt_align(scan, &map, init, &config);
     assert_finite(&found.pose, &init);
     assert!(found.score.is_finite(), "{found:?}");
     assert!(found.score >= map.score(scan, &init), "{found:?}");
-    assert!(found.iterations <= config.max_iters);
+    assert!(found.iterations <= config.max_iterations);
     Ok(())
 }
 

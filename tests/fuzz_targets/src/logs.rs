@@ -12,13 +12,13 @@ use robot_io::run::{LogRun, OdometryUse};
 use crate::runs::{assert_finite, assert_loads, drive};
 use crate::sentences::{NAME, assert_refusal, assert_sentence};
 
-/// More frames are read, but not mapped: the door is about the readers.
+/// More frames are read, but not mapped: the target is about the readers.
 const MAX_MAPPED: usize = 6;
 /// Nor are scans with more beams.
 const MAX_BEAMS: usize = 64;
 
 /// A log is refused in one sentence, or yields frames of finite numbers, which can be written and mapped.
-pub fn door(bytes: &[u8]) {
+pub fn fuzz(bytes: &[u8]) {
     let Some((frames, notes)) = read(bytes, &LogOptions::default()) else {
         return;
     };
@@ -30,7 +30,10 @@ pub fn door(bytes: &[u8]) {
     let mut info = LogInfo::default();
     frames.iter().for_each(|frame| info.take(frame));
     assert!(info.duration_s.is_finite(), "{info:?}");
-    assert!(info.odometry_way_m.is_none_or(f64::is_finite), "{info:?}");
+    assert!(
+        info.odometry_path_length_m.is_none_or(f64::is_finite),
+        "{info:?}"
+    );
     frames.iter().for_each(assert_written);
     let is_small = |frame: &LogFrame| frame.scan.ranges_m.len() <= MAX_BEAMS;
     if frames.len() <= MAX_MAPPED && frames.iter().all(is_small) {

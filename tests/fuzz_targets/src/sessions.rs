@@ -19,7 +19,7 @@ use crate::runs::{assert_finite, assert_loads, drive};
 use crate::sealed::{sealed, with_lengths};
 use crate::sentences::{NAME, assert_refusal, assert_sentence};
 
-/// Larger sessions are loaded and written, but not gone on from: the door is about the file.
+/// Larger sessions are loaded and written, but not gone on from: the target is about the file.
 const MAX_KEYFRAMES: usize = 6;
 /// Nor are those with more points of a scan.
 const MAX_POINTS: usize = 64;
@@ -29,7 +29,7 @@ const MAX_SETTING: f64 = 100.0;
 const CELL_M: f64 = 0.5;
 
 /// A file is refused in one sentence, or writes back to what loads to the same, and can be used.
-pub fn door(data: &[u8]) {
+pub fn fuzz(data: &[u8]) {
     let Some((&how, text)) = data.split_first() else {
         return;
     };

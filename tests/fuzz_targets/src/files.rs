@@ -13,7 +13,7 @@ use robot_io::trajectory::{StampedPose, Trajectory};
 use crate::sentences::{NAME, assert_refusal, assert_sentence};
 
 /// A text is refused in one sentence, or reads back to the same once it was written.
-pub fn door(data: &[u8]) {
+pub fn fuzz(data: &[u8]) {
     let Some((format, text)) = data.split_first() else {
         return;
     };
@@ -129,7 +129,7 @@ fn assert_same(old: &SE2, new: &SE2) {
 
 fn world(text: &[u8]) {
     match Course::from_json(text) {
-        Ok(course) => sketched(&Sketch::of(&course)),
+        Ok(course) => sketched(&Sketch::from_course(&course)),
         Err(refusal) => assert_sentence(&refusal.to_string()),
     }
 }
@@ -147,7 +147,7 @@ fn sketched(sketch: &Sketch) {
     let json = sketch.to_json();
     assert_eq!(Course::from_json(json.as_bytes()), sketch.course());
     match sketch.course() {
-        Ok(course) => assert_eq!(&Sketch::of(&course), sketch),
+        Ok(course) => assert_eq!(&Sketch::from_course(&course), sketch),
         Err(refusal) => assert_sentence(&refusal.to_string()),
     }
 }

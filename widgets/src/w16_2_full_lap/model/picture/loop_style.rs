@@ -4,7 +4,7 @@ use ch16_lab::lap::LoopAttempt;
 use kit::scene::{LegendEntry, Mark, Stroke, Tone};
 
 /// The line and the mark of a loop.
-pub struct LoopLook {
+pub struct LoopStyle {
     /// Its line.
     pub stroke: Stroke,
     /// Its colour.
@@ -13,7 +13,7 @@ pub struct LoopLook {
     pub mark: Mark,
 }
 
-impl LoopLook {
+impl LoopStyle {
     /// Solid and green.
     pub const ACCEPTED: Self = Self {
         stroke: Stroke::Solid,
@@ -28,7 +28,7 @@ impl LoopLook {
     };
 
     /// The look of an attempt.
-    pub fn of(attempt: &LoopAttempt) -> Self {
+    pub fn from_attempt(attempt: &LoopAttempt) -> Self {
         if attempt.accepted() {
             Self::ACCEPTED
         } else {

@@ -8,8 +8,8 @@ use crate::logs;
 const HEADER: usize = 100;
 const PAGE: u16 = 512;
 
-/// Read, not mapped: the door `logs` does that. The header is made valid, which no fuzzer would find.
-pub fn door(bytes: &[u8]) {
+/// Read, not mapped: the target `logs` does that. The header is made valid, which no fuzzer would find.
+pub fn fuzz(bytes: &[u8]) {
     if bytes.len() < HEADER {
         return;
     }

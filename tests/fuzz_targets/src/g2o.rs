@@ -5,13 +5,13 @@ use pr_optim::{JacobianModel, Settings, Start};
 
 use crate::solve::solve;
 
-/// Larger graphs are read and written, but not solved: the door is about the reader.
+/// Larger graphs are read and written, but not solved: the target is about the reader.
 const MAX_SOLVED: usize = 12;
 /// Most steps of an attempt.
 const MAX_ITERATIONS: usize = 8;
 
 /// What is refused names a line of the file. What is read writes back to the same graph.
-pub fn door(text: &[u8]) {
+pub fn fuzz(text: &[u8]) {
     let mut file = match G2oFile::parse(text) {
         Ok(file) => file,
         Err(refusal) => {

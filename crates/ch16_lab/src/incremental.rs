@@ -4,7 +4,7 @@
 
 use ch16_slam2d::metrics::{DisagreementConfig, MapDisagreement, position_error_m, rms};
 use ch16_slam2d::slam::SlamConfig;
-use incremental_mapping::{AncestorConfig, CycleTest, CycleVerdict, IncrementalMapper};
+use incremental_mapping::{CycleTest, CycleVerdict, IncrementalConfig, IncrementalMapper};
 use pr_geom::{SE2, math};
 use serde::{Deserialize, Serialize};
 
@@ -12,27 +12,27 @@ use crate::lap::{Drive, Keyframe, LAST_KEYFRAMES, LapConfig, WayErrors};
 
 /// The two ancestors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Ancestor {
+pub enum IncrementalKind {
     /// Incremental maximum likelihood mapping.
     MaximumLikelihood,
     /// The same with the variant for cycles.
     WithCycles,
 }
 
-impl Ancestor {
+impl IncrementalKind {
     /// Both.
     pub const ALL: [Self; 2] = [Self::MaximumLikelihood, Self::WithCycles];
 
     /// The mapper with the lengths and the noise of a lap's estimator; the particles' seed is the
     /// drive's.
     #[must_use]
-    pub fn config(self, lap: &LapConfig) -> AncestorConfig {
+    pub fn config(self, lap: &LapConfig) -> IncrementalConfig {
         let slam = SlamConfig {
             start: lap.drive.start,
             scan: lap.drive.scan,
             ..lap.slam.clone()
         };
-        let alone = AncestorConfig::of(&slam);
+        let alone = IncrementalConfig::from_slam_config(&slam);
         match self {
             Self::MaximumLikelihood => alone,
             Self::WithCycles => alone.with_cycles(&slam, lap.drive.seed),
@@ -42,7 +42,7 @@ impl Ancestor {
 
 /// The rows of the results table for an ancestor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AncestorSummary {
+pub struct IncrementalSummary {
     /// Ticks of the lap.
     pub ticks: usize,
     /// Keyframes.
@@ -67,16 +67,16 @@ pub struct AncestorSummary {
 
 /// What statistics need of an ancestor's lap.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AncestorOutcome {
+pub struct IncrementalOutcome {
     /// The rows of the results table.
-    pub summary: AncestorSummary,
+    pub summary: IncrementalSummary,
     /// Errors along the way; it has no deviations.
     pub way: WayErrors,
 }
 
 /// The history of an ancestor on a drive.
 #[derive(Clone, Debug, PartialEq)]
-pub struct AncestorTrace {
+pub struct IncrementalTrace {
     /// Keyframes in order, with their truth.
     pub keyframes: Vec<Keyframe>,
     /// Their poses at the end, `world_from_body`.
@@ -86,19 +86,19 @@ pub struct AncestorTrace {
     /// What the particles said, at every keyframe but the first.
     pub tests: Vec<CycleTest>,
     /// Rows of the results table.
-    pub outcome: AncestorOutcome,
+    pub outcome: IncrementalOutcome,
 }
 
-impl AncestorTrace {
+impl IncrementalTrace {
     /// Runs an ancestor over a drive; `lap.drive` must describe it.
     #[must_use]
-    pub fn run(ancestor: Ancestor, lap: &LapConfig, drive: &Drive) -> Self {
-        Self::of(IncrementalMapper::new(ancestor.config(lap)), drive)
+    pub fn run(ancestor: IncrementalKind, lap: &LapConfig, drive: &Drive) -> Self {
+        Self::from_mapper(IncrementalMapper::new(ancestor.config(lap)), drive)
     }
 
     /// Runs a mapper that has seen nothing over a drive.
     #[must_use]
-    pub fn of(mut mapper: IncrementalMapper, drive: &Drive) -> Self {
+    pub fn from_mapper(mut mapper: IncrementalMapper, drive: &Drive) -> Self {
         let ticks = drive.ticks().len();
         let mut estimates = Vec::with_capacity(ticks);
         let mut tests = Vec::new();
@@ -141,7 +141,7 @@ fn outcome(
     keyframes: &[Keyframe],
     tests: &[CycleTest],
     drive: &Drive,
-) -> AncestorOutcome {
+) -> IncrementalOutcome {
     let poses = mapper.poses().iter().zip(keyframes);
     let errors: Vec<f64> = poses
         .map(|(pose, keyframe)| position_error_m(pose, &keyframe.truth))
@@ -154,8 +154,8 @@ fn outcome(
         .collect();
     let ticks: Vec<usize> = keyframes.iter().map(|keyframe| keyframe.tick).collect();
     let is_closed = |test: &&CycleTest| matches!(test.verdict, CycleVerdict::Closed(_));
-    AncestorOutcome {
-        summary: AncestorSummary {
+    IncrementalOutcome {
+        summary: IncrementalSummary {
             ticks: drive.ticks().len(),
             keyframes: keyframes.len(),
             cycles: tests.iter().filter(is_closed).count(),
@@ -170,7 +170,7 @@ fn outcome(
             ),
             map_disagreement_m: disagreement_m(mapper, keyframes, drive),
         },
-        way: WayErrors::of(drive, &ticks, &errors, None),
+        way: WayErrors::along_path(drive, &ticks, &errors, None),
     }
 }
 

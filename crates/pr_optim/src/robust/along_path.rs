@@ -1,4 +1,4 @@
-//! A way and its loops, believed one stretch after the other, as a robot meets them.
+//! A way and its loops, inliers one stretch after the other, as a robot meets them.
 
 use pr_geom::SE2;
 
@@ -18,13 +18,13 @@ const STRETCHES: usize = 100;
 /// Steps of the solver after the loops of a stretch were taken.
 const STEPS: usize = 3;
 
-/// Where the loops lead that are believed in the order of the way.
+/// Where the loops lead that are inliers in the order of the way.
 #[derive(Clone, Debug)]
-pub struct Grown {
+pub struct PathInliers {
     /// The poses, in the frame of the first.
     pub poses: Vec<SE2>,
-    /// Which measurements were believed, the trusted ones among them.
-    pub believed: Vec<bool>,
+    /// Which measurements were inliers, the trusted ones among them.
+    pub inliers: Vec<bool>,
 }
 
 /// Which end of the way comes first.
@@ -39,7 +39,7 @@ pub enum Direction {
 /// Goes along the way and believes the loops that fit what is known by then.
 ///
 /// A loop fits where its residual passes the gate `eᵀ(Σ + Ω⁻¹)⁻¹e ≤ v max_chi2`: Σ is the exact
-/// covariance of the relative pose by the way so far and the loops believed on it, v the share of
+/// covariance of the relative pose by the way so far and the loops inliers on it, v the share of
 /// its stated variance that the noise of loops over short ways has, at most 1. Measurements often
 /// state too much noise. Then the gate of what is stated lets false loops in.
 /// After the solve a loop has to fit by its own information as well. Only loops marked in `candidates` join.
@@ -48,16 +48,16 @@ pub enum Direction {
 ///
 /// # Errors
 /// Where the normal equations of a stretch cannot be solved.
-pub fn grown(
+pub fn select_along_path(
     problem: &Problem,
     trusted: &[bool],
     candidates: &[bool],
     direction: Direction,
     solver: Settings,
     max_chi2: f64,
-) -> Result<Option<Grown>, OptimizeError> {
+) -> Result<Option<PathInliers>, OptimizeError> {
     if direction == Direction::Backwards {
-        let grown = grown(
+        let grown = select_along_path(
             &turned(problem),
             trusted,
             candidates,
@@ -77,10 +77,10 @@ pub fn grown(
         .filter(|&k| candidates[k] && !trusted[k])
         .collect();
     doubted.sort_by_key(|&k| (later_end(&problem.factors()[k]), k));
-    let mut growth = Growth {
+    let mut growth = PathSelection {
         problem,
         path: &path,
-        believed: trusted.to_vec(),
+        inliers: trusted.to_vec(),
         poses: vec![SE2::identity()],
         optimizer: Optimizer::new(Settings {
             max_iterations: STEPS,
@@ -98,9 +98,9 @@ pub fn grown(
         rest = later;
     }
     growth.extend(problem.node_count());
-    Ok(Some(Grown {
+    Ok(Some(PathInliers {
         poses: growth.poses,
-        believed: growth.believed,
+        inliers: growth.inliers,
     }))
 }
 
@@ -125,17 +125,17 @@ fn turned(problem: &Problem) -> Problem {
     turned
 }
 
-struct Growth<'a> {
+struct PathSelection<'a> {
     problem: &'a Problem,
     path: &'a Path,
-    believed: Vec<bool>,
+    inliers: Vec<bool>,
     /// Of the way so far.
     poses: Vec<SE2>,
     optimizer: Optimizer,
     max_chi2: f64,
 }
 
-impl Growth<'_> {
+impl PathSelection<'_> {
     /// Believes those of `loops`, which end before pose `end`, that fit.
     fn take(&mut self, loops: &[usize], end: usize) -> Result<(), OptimizeError> {
         self.extend(end);
@@ -150,8 +150,8 @@ impl Growth<'_> {
             }
         }
         while !fitting.is_empty() {
-            loops.iter().for_each(|&k| self.believed[k] = false);
-            fitting.iter().for_each(|&k| self.believed[k] = true);
+            loops.iter().for_each(|&k| self.inliers[k] = false);
+            fitting.iter().for_each(|&k| self.inliers[k] = true);
             let mut graph = self.so_far(end);
             let report = self.optimizer.run(&mut graph);
             if let StopReason::Failed { error } = report.stop {
@@ -164,7 +164,7 @@ impl Growth<'_> {
                 return Ok(());
             }
         }
-        loops.iter().for_each(|&k| self.believed[k] = false);
+        loops.iter().for_each(|&k| self.inliers[k] = false);
         Ok(())
     }
 
@@ -177,15 +177,15 @@ impl Growth<'_> {
         }
     }
 
-    /// The poses so far with what is believed between them; the first is fixed.
+    /// The poses so far with what is inliers between them; the first is fixed.
     fn so_far(&self, end: usize) -> Problem {
         let mut graph = Problem::new();
         for pose in &self.poses[..end] {
             graph.add_pose(*pose);
         }
         graph.fix(0);
-        for (factor, believed) in self.problem.factors().iter().zip(&self.believed) {
-            if *believed && later_end(factor) < end {
+        for (factor, inliers) in self.problem.factors().iter().zip(&self.inliers) {
+            if *inliers && later_end(factor) < end {
                 graph.add_factor(*factor);
             }
         }

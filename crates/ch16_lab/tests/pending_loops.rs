@@ -152,7 +152,7 @@ fn with_a_liar(config: SlamConfig, proposals: &[SE2]) -> Slam {
         detector: Box::new(Liar {
             proposals: proposals.to_vec(),
         }),
-        ..SlamParts::of(&config)
+        ..SlamParts::from_config(&config)
     };
     Slam::with_parts(config, parts)
 }

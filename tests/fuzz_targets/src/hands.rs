@@ -15,7 +15,7 @@ const MAX_ACTIONS: usize = 8;
 const MAX_WORK: usize = 40;
 
 /// Nothing panics, every value stays in its range, and the picture has finite numbers.
-pub fn door(data: &[u8]) {
+pub fn fuzz(data: &[u8]) {
     let mut bytes = Unstructured::new(data);
     let Ok(maker) = bytes.choose(&MODELS) else {
         return;
@@ -54,8 +54,8 @@ fn act(bytes: &mut Unstructured<'_>, model: &mut dyn Model) -> Result<()> {
             Ok(())
         }
         10 => {
-            model.settle();
-            assert_eq!(model.settle(), Activity::Idle);
+            model.finish_work();
+            assert_eq!(model.finish_work(), Activity::Idle);
             Ok(())
         }
         11 => {

@@ -18,7 +18,7 @@ use crate::metrics::position_error_m;
 
 /// When a keyframe has been replaced, and when a point is gone.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UpkeepConfig {
+pub struct MapPruningConfig {
     /// Keyframes within this distance stand at the same place, m.
     pub place_m: f64,
     /// The newest so many of a place stay.
@@ -42,7 +42,7 @@ pub struct UpkeepConfig {
     pub loop_ago_nodes: usize,
 }
 
-impl Default for UpkeepConfig {
+impl Default for MapPruningConfig {
     fn default() -> Self {
         Self {
             place_m: 1.0,
@@ -61,7 +61,7 @@ impl Default for UpkeepConfig {
 
 /// What was done at one keyframe.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Upkeep {
+pub struct MapPruning {
     /// The keyframes that were taken out, by the numbers that they had, the oldest first.
     pub removed: Vec<usize>,
     /// What the graph lost by it, nats: the sum of the Kullback–Leibler divergences.
@@ -71,7 +71,7 @@ pub struct Upkeep {
 }
 
 /// A scan by bearing, to be asked what it saw in a direction.
-struct Sight {
+struct ScanView {
     world_from_body: SE2,
     /// Bearing (rad) and range (m), by bearing.
     seen: Vec<(f64, f64)>,
@@ -80,14 +80,14 @@ struct Sight {
 
 /// What a scan says of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Testimony {
+enum Visibility {
     Seen,
     LookedThrough,
-    Nothing,
+    Unknown,
 }
 
-impl Sight {
-    fn of(scan: &PointCloud, world_from_body: SE2) -> Self {
+impl ScanView {
+    fn new(scan: &PointCloud, world_from_body: SE2) -> Self {
         let mut seen: Vec<(f64, f64)> = scan
             .iter()
             .map(|point| (math::atan2(point.y, point.x), math::norm2(point.x, point.y)))
@@ -100,15 +100,15 @@ impl Sight {
         }
     }
 
-    fn testimony(&self, world: Point2<f64>, config: &UpkeepConfig) -> Testimony {
+    fn visibility(&self, world: Point2<f64>, config: &MapPruningConfig) -> Visibility {
         let point = self.world_from_body.inverse().transform(world);
         let near =
             |seen: Point2<f64>| (seen - point).norm_squared() < config.same_m * config.same_m;
         if self.points.iter().any(near) {
-            return Testimony::Seen;
+            return Visibility::Seen;
         }
         if self.seen.len() < 2 {
-            return Testimony::Nothing;
+            return Visibility::Unknown;
         }
         let bearing = math::atan2(point.y, point.x);
         let range_m = math::norm2(point.x, point.y);
@@ -121,9 +121,9 @@ impl Sight {
             turn <= config.beam_gap_rad && *seen_m > range_m + config.through_m
         });
         if is_through {
-            Testimony::LookedThrough
+            Visibility::LookedThrough
         } else {
-            Testimony::Nothing
+            Visibility::Unknown
         }
     }
 }
@@ -131,53 +131,53 @@ impl Sight {
 /// Drops what is gone and takes out what was replaced around the newest keyframe.
 ///
 /// `normal_radius_m` is that of the scans: a scan that loses points gets its normals again.
-pub(super) fn keep_up(
+pub(super) fn prune_map(
     mapper: &mut Mapper,
     loop_closer: &mut LoopCloser,
-    config: &UpkeepConfig,
+    config: &MapPruningConfig,
     normal_radius_m: f64,
-) -> Upkeep {
-    let mut upkeep = Upkeep::default();
+) -> MapPruning {
+    let mut pruned = MapPruning::default();
     let Some(newest) = mapper.keyframes.len().checked_sub(1) else {
-        return upkeep;
+        return pruned;
     };
     if newest - mapper.last_loop_node > config.loop_ago_nodes {
-        return upkeep;
+        return pruned;
     }
     let here = mapper.graph.pose(newest);
     let near: Vec<usize> = (0..=newest)
         .filter(|&node| position_error_m(&mapper.graph.pose(node), &here) <= config.reach_m)
         .collect();
-    let sights: Vec<Sight> = near
+    let views: Vec<ScanView> = near
         .iter()
-        .map(|&node| Sight::of(&mapper.keyframes[node].scan, mapper.graph.pose(node)))
+        .map(|&node| ScanView::new(&mapper.keyframes[node].scan, mapper.graph.pose(node)))
         .collect();
     for (k, &node) in near.iter().enumerate() {
-        let newer = &sights[k + 1..];
-        upkeep.points_gone += mapper.drop_what_is_gone(node, newer, config, normal_radius_m);
+        let newer = &views[k + 1..];
+        pruned.points_gone += mapper.drop_what_is_gone(node, newer, config, normal_radius_m);
     }
     let replaced: Vec<usize> = near
         .iter()
         .enumerate()
         .filter(|&(k, &node)| {
-            let (older, newer) = (&sights[..k], &sights[k + 1..]);
+            let (older, newer) = (&views[..k], &views[k + 1..]);
             mapper.is_replaced(node, older, newer, config)
         })
         .map(|(_, &node)| node)
         .collect();
     for node in replaced.into_iter().rev() {
         if let Ok(done) = mapper.graph.marginalize(node) {
-            upkeep.divergence += done.divergence;
-            upkeep.removed.push(node);
+            pruned.divergence += done.divergence;
+            pruned.removed.push(node);
             mapper.forget(node);
             loop_closer.forget(node, &mapper.path_lengths_m());
         }
     }
-    if !upkeep.removed.is_empty() {
+    if !pruned.removed.is_empty() {
         mapper.chi2 = mapper.graph.chi2();
     }
-    upkeep.removed.reverse();
-    upkeep
+    pruned.removed.reverse();
+    pruned
 }
 
 impl Mapper {
@@ -185,8 +185,8 @@ impl Mapper {
     fn drop_what_is_gone(
         &mut self,
         node: usize,
-        newer: &[Sight],
-        config: &UpkeepConfig,
+        newer: &[ScanView],
+        config: &MapPruningConfig,
         normal_radius_m: f64,
     ) -> usize {
         if newer.len() < config.looks_through {
@@ -196,11 +196,11 @@ impl Mapper {
         let is_gone = |point: Point2<f64>| {
             let world = pose.transform(point);
             let mut through = 0;
-            for sight in newer {
-                match sight.testimony(world, config) {
-                    Testimony::Seen => return false,
-                    Testimony::LookedThrough => through += 1,
-                    Testimony::Nothing => {}
+            for view in newer {
+                match view.visibility(world, config) {
+                    Visibility::Seen => return false,
+                    Visibility::LookedThrough => through += 1,
+                    Visibility::Unknown => {}
                 }
             }
             through >= config.looks_through
@@ -220,14 +220,14 @@ impl Mapper {
     fn is_replaced(
         &self,
         node: usize,
-        older: &[Sight],
-        newer: &[Sight],
-        config: &UpkeepConfig,
+        older: &[ScanView],
+        newer: &[ScanView],
+        config: &MapPruningConfig,
     ) -> bool {
         let pose = self.graph.pose(node);
         let is_here =
-            |sight: &&Sight| position_error_m(&sight.world_from_body, &pose) <= config.place_m;
-        let here: Vec<&Sight> = newer.iter().filter(is_here).collect();
+            |view: &&ScanView| position_error_m(&view.world_from_body, &pose) <= config.place_m;
+        let here: Vec<&ScanView> = newer.iter().filter(is_here).collect();
         if here.len() < config.kept || older.iter().filter(is_here).count() < config.anchors {
             return false;
         }
@@ -235,7 +235,7 @@ impl Mapper {
         let is_seen = |point: &Point2<f64>| {
             let world = pose.transform(*point);
             here.iter()
-                .any(|sight| sight.testimony(world, config) == Testimony::Seen)
+                .any(|view| view.visibility(world, config) == Visibility::Seen)
         };
         let seen = scan.iter().filter(is_seen).count();
         seen as f64 >= config.covered * scan.len() as f64
@@ -270,7 +270,7 @@ mod tests {
             }
             let report = slam.step(&frame).unwrap();
             if is_kept_up && report.new_keyframe.is_some() {
-                slam.keep_up(&UpkeepConfig::default());
+                slam.prune_map(&MapPruningConfig::default());
             }
             if step % 105 == 104 {
                 nodes.push(slam.keyframes().len());
@@ -327,7 +327,7 @@ mod tests {
     fn loops_that_wait_follow_their_keyframes() {
         // Never sure: every loop waits for others.
         let mut robot = RobotConfig::for_scan(&frame(0).scan);
-        robot.loops.sure_m = 0.0;
+        robot.loops.unconfirmed_gate_radius_m = 0.0;
         robot.loops.min_margin = 0.0;
         robot.loops.pending_distance_m = 0.0;
         robot.loops.min_path_m = 4.0;

@@ -1,13 +1,13 @@
-//! What the fuzzer keeps and what it found passes through its door, without any fuzzer.
+//! What the fuzzer keeps and what it found passes through its target, without any fuzzer.
 //!
-//! For a report of coverage `DOOR` names one door and `MORE_INPUTS` a folder of further inputs.
+//! For a report of coverage `TARGET` names one target and `MORE_INPUTS` a folder of further inputs.
 
 use std::env;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
-use slam2d_doors::DOORS;
+use slam2d_fuzz_targets::TARGETS;
 
 /// The inputs are part of the repository: hundreds of small files at most.
 const MAX_FILES: usize = 800;
@@ -33,8 +33,8 @@ fn inputs(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 
 #[test]
 fn every_kept_input_passes_through_its_door() {
-    let only = env::var("DOOR").ok();
-    for (name, door) in DOORS {
+    let only = env::var("TARGET").ok();
+    for (name, target) in TARGETS {
         if only.as_deref().is_some_and(|only| only != name) {
             continue;
         }
@@ -46,7 +46,7 @@ fn every_kept_input_passes_through_its_door() {
         let all: Vec<_> = folders.iter().flat_map(|folder| inputs(folder)).collect();
         assert!(!all.is_empty(), "no input for {name}");
         for (path, bytes) in all {
-            let passed = catch_unwind(AssertUnwindSafe(|| door(&bytes))).is_ok();
+            let passed = catch_unwind(AssertUnwindSafe(|| target(&bytes))).is_ok();
             assert!(passed, "{name} does not take {}", path.display());
         }
     }
@@ -59,8 +59,8 @@ fn the_inputs_of_the_repository_stay_small_and_each_belongs_to_a_door() {
         for entry in fs::read_dir(fuzz().join(kind)).expect("the folder is there") {
             let folder = entry.expect("a folder can be listed").path();
             let name = folder.file_name().unwrap_or_default().to_string_lossy();
-            let is_door = DOORS.iter().any(|(known, _)| *known == name);
-            assert!(is_door, "fuzz/{kind}/{name} belongs to no door");
+            let is_target = TARGETS.iter().any(|(known, _)| *known == name);
+            assert!(is_target, "fuzz/{kind}/{name} belongs to no target");
             for (_, input) in inputs(&folder) {
                 files += 1;
                 bytes += input.len();

@@ -1,6 +1,6 @@
 //! `slam2d lap --estimator ml|ml-cycles`: the ancestor on the frames of the lap.
 
-use ch16_lab::ancestor::{Ancestor, AncestorTrace};
+use ch16_lab::incremental::{IncrementalKind, IncrementalTrace};
 use ch16_lab::lap::{Choice, Drive, LapConfig};
 use ch16_slam2d::digest::Digest;
 use ch16_slam2d::metrics::position_error_m;
@@ -12,7 +12,7 @@ use crate::output::{print_json, say};
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct AncestorJson {
+struct IncrementalJson {
     seed: u32,
     noise: f64,
     estimator: &'static str,
@@ -53,18 +53,18 @@ struct TickJson {
 }
 
 /// Runs the ancestor on the lap of `config` and prints it.
-pub fn print(ancestor: Ancestor, config: &LapConfig, args: &LapArgs) {
+pub fn print(ancestor: IncrementalKind, config: &LapConfig, args: &LapArgs) {
     let drive = Drive::simulate(&config.drive);
-    let trace = AncestorTrace::run(ancestor, config, &drive);
+    let trace = IncrementalTrace::run(ancestor, config, &drive);
     if args.json {
-        print_json(&AncestorJson::new(&trace, &drive, args));
+        print_json(&IncrementalJson::new(&trace, &drive, args));
     } else {
         print_text(&trace, args);
     }
 }
 
-impl AncestorJson {
-    fn new(trace: &AncestorTrace, drive: &Drive, args: &LapArgs) -> Self {
+impl IncrementalJson {
+    fn new(trace: &IncrementalTrace, drive: &Drive, args: &LapArgs) -> Self {
         let summary = &trace.outcome.summary;
         let mut digest = Digest::new();
         let poses = trace.poses.iter().chain(&trace.estimates);
@@ -132,7 +132,7 @@ impl TestJson {
     }
 }
 
-fn print_text(trace: &AncestorTrace, args: &LapArgs) {
+fn print_text(trace: &IncrementalTrace, args: &LapArgs) {
     let summary = &trace.outcome.summary;
     let estimator = args.estimator.label();
     say!("seed {:#x}, noise ×{}, {estimator}", args.seed, args.noise);

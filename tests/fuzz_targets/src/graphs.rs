@@ -3,7 +3,7 @@
 use arbitrary::{Result, Unstructured};
 use nalgebra::Matrix3;
 use pr_geom::SE2;
-use pr_optim::robust::{GncSettings, believe, is_sequential};
+use pr_optim::robust::{GncSettings, is_sequential, select_inliers};
 use pr_optim::{
     Between, FactorUse, Factorization, JacobianModel, Method, Problem, RobustKernel, Settings,
     Start,
@@ -17,7 +17,7 @@ const MAX_FACTORS: usize = 16;
 const MAX_ITERATIONS: usize = 10;
 
 /// A finite result that costs no more than its start, or an error that is typed; never a panic.
-pub fn door(data: &[u8]) {
+pub fn fuzz(data: &[u8]) {
     let mut bytes = Unstructured::new(data);
     // Bytes that end early read as zeros.
     if let Ok((mut problem, settings, start)) = case(&mut bytes) {
@@ -29,19 +29,19 @@ pub fn door(data: &[u8]) {
 /// Believes the path and what fits of the loops, or says by type why not.
 fn choose_loops(problem: &Problem, solver: Settings) {
     let trusted: Vec<bool> = problem.factors().iter().map(is_sequential).collect();
-    let Ok(belief) = believe(problem, &trusted, solver, &GncSettings::default()) else {
+    let Ok(selection) = select_inliers(problem, &trusted, solver, &GncSettings::default()) else {
         return;
     };
-    assert!(belief.cost.is_finite());
+    assert!(selection.cost.is_finite());
     let is_finite = |pose: &SE2| {
         [pose.x(), pose.y(), pose.theta()]
             .iter()
             .all(|v| v.is_finite())
     };
-    assert!(belief.poses.iter().all(is_finite));
-    let pairs = trusted.iter().zip(&belief.believed);
-    assert!(pairs.fold(true, |all, (trusted, believed)| all
-        && (!trusted || *believed)));
+    assert!(selection.poses.iter().all(is_finite));
+    let pairs = trusted.iter().zip(&selection.inliers);
+    assert!(pairs.fold(true, |all, (trusted, inliers)| all
+        && (!trusted || *inliers)));
 }
 
 fn case(bytes: &mut Unstructured<'_>) -> Result<(Problem, Settings, Start)> {

@@ -31,7 +31,7 @@ const CLIMB: ClimbConfig = ClimbConfig {
 };
 
 pub(super) const SKETCH: Sketch = Sketch {
-    name: "ancestor",
+    name: "incremental",
     title: "A climb, and an error that it finds",
     slider: Slider {
         label: "error of the wheels, once around",

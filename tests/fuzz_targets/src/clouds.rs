@@ -6,11 +6,11 @@ use pr_geom::SE2;
 
 use crate::registration::register;
 
-/// Larger clouds are read, but not registered: the door is about the reader.
+/// Larger clouds are read, but not registered: the target is about the reader.
 const MAX_REGISTERED: usize = 24;
 
 /// What is refused names a line. What is read has finite points and normals of length 1.
-pub fn door(text: &[u8]) {
+pub fn fuzz(text: &[u8]) {
     let lines = text.split(|&byte| byte == b'\n').count();
     let cloud = match PointCloud::from_csv(text) {
         Ok(cloud) => cloud,
@@ -46,7 +46,7 @@ fn register_on_itself(cloud: &PointCloud) {
     for variant in [IcpVariant::PointToPlane, IcpVariant::PointToPoint] {
         let config = IcpConfig {
             variant,
-            tau: 0.5,
+            tau_m: 0.5,
             ..IcpConfig::default()
         };
         let mut map = DenseMap::new(0.25, usize::MAX);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ch16_lab::ancestor::{Ancestor, AncestorTrace};
+use ch16_lab::incremental::{IncrementalKind, IncrementalTrace};
 use ch16_lab::lap::{BuiltInWorld, Drive, LapConfig, LapMatcher};
 use ch16_slam2d::scan::FrameError;
 use incremental_mapping::{CycleVerdict, IncrementalMapper};
@@ -17,16 +17,16 @@ fn ring(seed: u32, noise: f64) -> LapConfig {
     LapConfig::in_world(BuiltInWorld::Ring, seed, noise).with_matcher(LapMatcher::PointToPlane)
 }
 
-fn run(ancestor: Ancestor, lap: &LapConfig) -> AncestorTrace {
-    AncestorTrace::run(ancestor, lap, &Drive::simulate(&lap.drive))
+fn run(ancestor: IncrementalKind, lap: &LapConfig) -> IncrementalTrace {
+    IncrementalTrace::run(ancestor, lap, &Drive::simulate(&lap.drive))
 }
 
 #[test]
 fn the_cycle_of_the_ring_is_closed_with_particles_and_not_by_climbing_alone() {
     let runs = |ancestor| (1..=SEEDS).map(move |seed| run(ancestor, &ring(seed, NOISE)));
-    let alone: Vec<AncestorTrace> = runs(Ancestor::MaximumLikelihood).collect();
-    let cycles: Vec<AncestorTrace> = runs(Ancestor::WithCycles).collect();
-    let met = |laps: &[AncestorTrace]| {
+    let alone: Vec<IncrementalTrace> = runs(IncrementalKind::MaximumLikelihood).collect();
+    let cycles: Vec<IncrementalTrace> = runs(IncrementalKind::WithCycles).collect();
+    let met = |laps: &[IncrementalTrace]| {
         let disagreements = laps
             .iter()
             .map(|lap| lap.outcome.summary.map_disagreement_m);
@@ -35,7 +35,7 @@ fn the_cycle_of_the_ring_is_closed_with_particles_and_not_by_climbing_alone() {
     };
     assert!(met(&cycles) >= 7, "{}", met(&cycles));
     assert!(met(&alone) <= 2, "{}", met(&alone));
-    let worst_m = |laps: &[AncestorTrace]| {
+    let worst_m = |laps: &[IncrementalTrace]| {
         let errors = laps.iter().map(|lap| lap.outcome.summary.keyframe_rms_m);
         errors.fold(0.0, f64::max)
     };
@@ -50,12 +50,12 @@ fn a_drift_beyond_the_particles_is_not_closed() {
     // Particles that hardly spread, beside a pose that drifts: they never get where the old map is.
     let lap = ring(5, NOISE);
     let drive = Drive::simulate(&lap.drive);
-    let mut config = Ancestor::WithCycles.config(&lap);
+    let mut config = IncrementalKind::WithCycles.config(&lap);
     let cycles = config.cycles.as_mut().unwrap();
     (cycles.drift_sigma_m, cycles.drift_sigma_rad) = (0.002, 0.0005);
-    let narrow = AncestorTrace::of(IncrementalMapper::new(config), &drive);
-    let whole = AncestorTrace::run(Ancestor::WithCycles, &lap, &drive);
-    let error_m = |trace: &AncestorTrace| trace.outcome.summary.keyframe_rms_m;
+    let narrow = IncrementalTrace::from_mapper(IncrementalMapper::new(config), &drive);
+    let whole = IncrementalTrace::run(IncrementalKind::WithCycles, &lap, &drive);
+    let error_m = |trace: &IncrementalTrace| trace.outcome.summary.keyframe_rms_m;
     assert!(error_m(&narrow) > 1.0, "{}", error_m(&narrow));
     assert!(error_m(&whole) < 0.4, "{}", error_m(&whole));
 }
@@ -64,8 +64,8 @@ fn a_drift_beyond_the_particles_is_not_closed() {
 fn the_same_seed_gives_the_same_bits_on_raw_frames_and_on_prepared_ones() {
     let lap = LapConfig::with_seed_and_noise(3, 1.0);
     let drive = Arc::new(Drive::simulate(&lap.drive));
-    let trace = AncestorTrace::run(Ancestor::WithCycles, &lap, &drive);
-    let mut mapper = IncrementalMapper::new(Ancestor::WithCycles.config(&lap));
+    let trace = IncrementalTrace::run(IncrementalKind::WithCycles, &lap, &drive);
+    let mut mapper = IncrementalMapper::new(IncrementalKind::WithCycles.config(&lap));
     mapper.step(&drive.frame(0)).unwrap();
     for (k, estimate) in trace.estimates.iter().enumerate() {
         assert_eq!(
@@ -74,9 +74,9 @@ fn the_same_seed_gives_the_same_bits_on_raw_frames_and_on_prepared_ones() {
         );
     }
     assert_eq!(mapper.poses(), trace.poses);
-    let mut other = Ancestor::WithCycles.config(&lap);
+    let mut other = IncrementalKind::WithCycles.config(&lap);
     other.cycles.as_mut().unwrap().seed = 4;
-    let other = AncestorTrace::of(IncrementalMapper::new(other), &drive);
+    let other = IncrementalTrace::from_mapper(IncrementalMapper::new(other), &drive);
     assert_ne!(other.tests, trace.tests);
     // In the Apartment the way back is a known place from the turn on.
     let known = trace.tests.iter().filter(|test| {
@@ -92,7 +92,7 @@ fn the_same_seed_gives_the_same_bits_on_raw_frames_and_on_prepared_ones() {
 fn a_frame_that_cannot_be_used_is_refused_and_changes_nothing() {
     let lap = LapConfig::with_seed_and_noise(3, 1.0);
     let drive = Drive::simulate(&lap.drive);
-    let mut mapper = IncrementalMapper::new(Ancestor::MaximumLikelihood.config(&lap));
+    let mut mapper = IncrementalMapper::new(IncrementalKind::MaximumLikelihood.config(&lap));
     mapper.step(&drive.frame(0)).unwrap();
     mapper.step(&drive.frame(1)).unwrap();
     let (estimate, map) = (mapper.estimate(), mapper.map().cell_count());

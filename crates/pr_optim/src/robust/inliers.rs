@@ -1,10 +1,10 @@
-//! Which loops to believe, from more than one start.
+//! Which loops to select_inliers, from more than one start.
 
 use pr_geom::{SE2, math};
 
+use super::along_path::{Direction, select_along_path};
 use super::consistency::{ConsistencySettings, consistent_set};
 use super::gnc::{Gnc, GncLoss, GncSettings};
-use super::growth::{Direction, grown};
 use super::refutation::{MarginalGate, Standing};
 use super::with_factors;
 use crate::error::OptimizeError;
@@ -26,9 +26,9 @@ const NEARLY: f64 = 0.25;
 /// Largest number of loops nearly refuted that are left out in earnest.
 const TRIALS: usize = 8;
 
-/// Where a belief came from.
+/// Where a selection came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BeliefStart {
+pub enum InlierStart {
     /// Loops taken along the way, from its first pose on.
     Forwards,
     /// Loops taken along the way, from its last pose back.
@@ -39,27 +39,27 @@ pub enum BeliefStart {
     PairwiseConsistency,
 }
 
-/// Which measurements are believed, and where they lead.
+/// Which measurements are inliers, and where they lead.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Belief {
-    /// Whether each measurement is believed; the trusted ones are.
-    pub believed: Vec<bool>,
+pub struct InlierSelection {
+    /// Whether each measurement is inliers; the trusted ones are.
+    pub inliers: Vec<bool>,
     /// The poses at the least-squares optimum of those.
     pub poses: Vec<SE2>,
-    /// χ² of what is believed, and `max_chi2` for every loop that is not.
+    /// χ² of what is inliers, and `max_chi2` for every loop that is not.
     pub cost: f64,
     /// The start that led there.
-    pub start: BeliefStart,
+    pub start: InlierStart,
     /// Rounds of graduated non-convexity, none where it was not needed.
     pub rounds: usize,
 }
 
 /// Finds a set of loops of low truncated cost `Σ min(eᵀΩe, max_chi2)`.
 ///
-/// Loops are taken along the way by their marginal gate, once from each end, and each belief is
-/// settled: a loop that the believed ones refute by the exact covariance is dropped, one that they do
+/// Loops are taken along the way by their marginal gate, once from each end, and each selection is
+/// settled: a loop that the inliers ones refute by the exact covariance is dropped, one that they do
 /// not refute is taken in, as long as the cost falls. Where both ways lead
-/// to the same belief, and it keeps more loops than it drops, that is the result. Else [`Gnc`] looks
+/// to the same selection, and it keeps more loops than it drops, that is the result. Else [`Gnc`] looks
 /// from where the trusted measurements lead, is settled too, and the lowest cost wins.
 ///
 /// So every loop of the result passes the gate of all others, unless the cost could not fall further.
@@ -70,21 +70,21 @@ pub struct Belief {
 ///
 /// # Panics
 /// Where `trusted` has not as many entries as there are measurements.
-pub fn believe(
+pub fn select_inliers(
     problem: &Problem,
     trusted: &[bool],
     solver: Settings,
     settings: &GncSettings,
-) -> Result<Belief, OptimizeError> {
+) -> Result<InlierSelection, OptimizeError> {
     let search = Search::new(problem, trusted, solver, settings.max_chi2);
     let all = vec![true; trusted.len()];
     let ways = [
-        (Direction::Forwards, BeliefStart::Forwards),
-        (Direction::Backwards, BeliefStart::Backwards),
+        (Direction::Forwards, InlierStart::Forwards),
+        (Direction::Backwards, InlierStart::Backwards),
     ]
     .map(|(direction, start)| search.along(&all, direction, start));
     if let [Some(first), Some(second)] = &ways
-        && first.believed == second.believed
+        && first.inliers == second.inliers
         && search.keeps_most(first)
     {
         return Ok(first.clone());
@@ -94,16 +94,16 @@ pub fn believe(
     cheapest([first, second, third])
 }
 
-/// The belief of lowest cost, the first of equals.
+/// The selection of lowest cost, the first of equals.
 fn cheapest(
-    beliefs: impl IntoIterator<Item = Result<Belief, OptimizeError>>,
-) -> Result<Belief, OptimizeError> {
-    let mut best: Option<Belief> = None;
+    selections: impl IntoIterator<Item = Result<InlierSelection, OptimizeError>>,
+) -> Result<InlierSelection, OptimizeError> {
+    let mut best: Option<InlierSelection> = None;
     let mut failure = OptimizeError::NotFinite;
-    for belief in beliefs {
-        match belief {
-            Ok(belief) if best.as_ref().is_none_or(|best| belief.cost < best.cost) => {
-                best = Some(belief);
+    for selection in selections {
+        match selection {
+            Ok(selection) if best.as_ref().is_none_or(|best| selection.cost < best.cost) => {
+                best = Some(selection);
             }
             Ok(_) => {}
             Err(error) => failure = error,
@@ -115,7 +115,7 @@ fn cheapest(
 /// The same with loops that agree with each other in pairs for candidates: see [`consistent_set`].
 ///
 /// Along a long way the path's covariance lets false loops agree with right ones. So what agrees joins along
-/// the way, from either end, by the exact covariance of what is believed by then, and is settled: right
+/// the way, from either end, by the exact covariance of what is inliers by then, and is settled: right
 /// loops that a clique left out come in. The lower cost wins.
 ///
 /// # Errors
@@ -124,16 +124,16 @@ fn cheapest(
 ///
 /// # Panics
 /// Where `trusted` has not as many entries as there are measurements.
-pub fn believe_consistent(
+pub fn select_consistent(
     problem: &Problem,
     trusted: &[bool],
     solver: Settings,
     settings: &ConsistencySettings,
-) -> Result<Belief, OptimizeError> {
+) -> Result<InlierSelection, OptimizeError> {
     let search = Search::new(problem, trusted, solver, settings.max_chi2);
     let agreeing = consistent_set(problem, settings);
     let ways = [Direction::Forwards, Direction::Backwards].map(|direction| {
-        let way = search.along(&agreeing, direction, BeliefStart::PairwiseConsistency);
+        let way = search.along(&agreeing, direction, InlierStart::PairwiseConsistency);
         way.ok_or(OptimizeError::NotFinite)
     });
     cheapest(ways)
@@ -165,14 +165,14 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The belief along the way; none where there is no such way, or it cannot be solved.
+    /// The selection along the way; none where there is no such way, or it cannot be solved.
     fn along(
         &self,
         candidates: &[bool],
         direction: Direction,
-        start: BeliefStart,
-    ) -> Option<Belief> {
-        let grown = grown(
+        start: InlierStart,
+    ) -> Option<InlierSelection> {
+        let grown = select_along_path(
             self.problem,
             self.trusted,
             candidates,
@@ -193,10 +193,10 @@ impl<'a> Search<'a> {
                 moved * grown.poses[node]
             }
         });
-        self.settled(poses.collect(), grown.believed, start).ok()
+        self.improved(poses.collect(), grown.inliers, start).ok()
     }
 
-    fn graduated(&self, settings: &GncSettings) -> Result<Belief, OptimizeError> {
+    fn graduated(&self, settings: &GncSettings) -> Result<InlierSelection, OptimizeError> {
         let mut problem = self.problem.clone();
         let settings = GncSettings {
             loss: GncLoss::TruncatedLeastSquares,
@@ -204,38 +204,38 @@ impl<'a> Search<'a> {
         };
         let gnc = Gnc::new(self.problem, self.trusted.to_vec(), self.solver, settings);
         let outcome = gnc.run(&mut problem)?;
-        let believed = (0..self.trusted.len())
-            .map(|k| outcome.is_believed(k))
+        let inliers = (0..self.trusted.len())
+            .map(|k| outcome.is_inlier(k))
             .collect();
-        let mut belief = self.settled(
+        let mut selection = self.improved(
             problem.poses().to_vec(),
-            believed,
-            BeliefStart::GraduatedNonConvexity,
+            inliers,
+            InlierStart::GraduatedNonConvexity,
         )?;
-        belief.rounds = outcome.rounds;
-        Ok(belief)
+        selection.rounds = outcome.rounds;
+        Ok(selection)
     }
 
-    fn keeps_most(&self, belief: &Belief) -> bool {
+    fn keeps_most(&self, selection: &InlierSelection) -> bool {
         let doubted = self.trusted.iter().filter(|trusted| !**trusted).count();
-        let dropped = belief
-            .believed
+        let dropped = selection
+            .inliers
             .iter()
-            .filter(|believed| !**believed)
+            .filter(|inliers| !**inliers)
             .count();
         2 * dropped < doubted || doubted == 0
     }
 
     /// Lets loops change sides as long as the cost falls: first all that should, then
     /// fewer, and at last one at a time.
-    fn settled(
+    fn improved(
         &self,
         poses: Vec<SE2>,
-        believed: Vec<bool>,
-        start: BeliefStart,
-    ) -> Result<Belief, OptimizeError> {
+        inliers: Vec<bool>,
+        start: InlierStart,
+    ) -> Result<InlierSelection, OptimizeError> {
         let mut optimizer = Optimizer::new(self.solver);
-        let mut best = self.solved(&mut optimizer, &poses, believed, start)?;
+        let mut best = self.solved(&mut optimizer, &poses, inliers, start)?;
         let mut bars = BARS.into_iter();
         let mut bar = bars.next().unwrap_or(1.0);
         for _ in 0..CHANGES {
@@ -248,15 +248,15 @@ impl<'a> Search<'a> {
                 }
                 continue;
             }
-            let mut believed = best.believed.clone();
-            for (believed, gain) in believed.iter_mut().zip(&gains) {
+            let mut inliers = best.inliers.clone();
+            for (inliers, gain) in inliers.iter_mut().zip(&gains) {
                 // What is refuted may be so by another that is refuted more.
-                let bar = if *believed { math::max(bar, 0.5) } else { bar };
+                let bar = if *inliers { math::max(bar, 0.5) } else { bar };
                 if gain.value > 0.0 && gain.value >= bar * largest {
-                    *believed = !*believed;
+                    *inliers = !*inliers;
                 }
             }
-            match self.solved(&mut optimizer, &best.poses, believed, start) {
+            match self.solved(&mut optimizer, &best.poses, inliers, start) {
                 Ok(next) if next.cost < best.cost => best = next,
                 _ => match bars.next() {
                     Some(higher) => bar = higher,
@@ -267,27 +267,27 @@ impl<'a> Search<'a> {
         Ok(best)
     }
 
-    /// A belief of lower cost without one of the loops that are nearly refuted, or of which the covariance
+    /// A selection of lower cost without one of the loops that are nearly refuted, or of which the covariance
     /// tells nothing.
     ///
     /// A false loop may bend a weak part of the graph so far that first order does not refute it.
     fn without_one(
         &self,
         optimizer: &mut Optimizer,
-        belief: &Belief,
+        selection: &InlierSelection,
         gains: &[Gain],
-    ) -> Result<Option<Belief>, OptimizeError> {
+    ) -> Result<Option<InlierSelection>, OptimizeError> {
         let is_nearly = |gain: &Gain| !gain.is_sure || gain.value > (NEARLY - 1.0) * self.max_chi2;
         let mut nearly: Vec<usize> = (0..gains.len())
-            .filter(|&k| !self.trusted[k] && belief.believed[k] && is_nearly(&gains[k]))
+            .filter(|&k| !self.trusted[k] && selection.inliers[k] && is_nearly(&gains[k]))
             .collect();
         let value = |k: usize| gains[k].value;
         nearly.sort_by(|&a, &b| value(b).total_cmp(&value(a)).then(a.cmp(&b)));
         for &k in nearly.iter().take(TRIALS) {
-            let mut believed = belief.believed.clone();
-            believed[k] = false;
-            let next = self.solved(optimizer, &belief.poses, believed, belief.start)?;
-            if next.cost < belief.cost {
+            let mut inliers = selection.inliers.clone();
+            inliers[k] = false;
+            let next = self.solved(optimizer, &selection.poses, inliers, selection.start)?;
+            if next.cost < selection.cost {
                 return Ok(Some(next));
             }
         }
@@ -299,9 +299,9 @@ impl<'a> Search<'a> {
     fn gains(
         &self,
         optimizer: &mut Optimizer,
-        belief: &Belief,
+        selection: &InlierSelection,
     ) -> Result<Vec<Gain>, OptimizeError> {
-        let graph = self.with_belief(&belief.poses, &belief.believed);
+        let graph = self.with_inliers(&selection.poses, &selection.inliers);
         let mut gate = MarginalGate::new(optimizer, &graph)?;
         let mut kept = gate.all_kept().into_iter();
         let mut gains = Vec::with_capacity(self.trusted.len());
@@ -310,10 +310,10 @@ impl<'a> Search<'a> {
                 value: f64::NEG_INFINITY,
                 is_sure: true,
             };
-            if belief.believed[k] {
+            if selection.inliers[k] {
                 let chi2 = kept.next().unwrap_or(f64::NAN);
                 // (Ω⁻¹ − Σ′)⁻¹ is at least Ω: what is less, or no number, is a difference lost in rounding.
-                let least = self.problem.factor_chi2_at(k, &belief.poses);
+                let least = self.problem.factor_chi2_at(k, &selection.poses);
                 gain.is_sure = chi2 >= least;
                 let chi2 = if gain.is_sure { chi2 } else { least };
                 gain.value = chi2 - self.max_chi2;
@@ -331,26 +331,26 @@ impl<'a> Search<'a> {
         Ok(gains)
     }
 
-    /// The least-squares optimum of what is believed.
+    /// The least-squares optimum of what is inliers.
     fn solved(
         &self,
         optimizer: &mut Optimizer,
         poses: &[SE2],
-        believed: Vec<bool>,
-        start: BeliefStart,
-    ) -> Result<Belief, OptimizeError> {
-        let mut graph = self.with_belief(poses, &believed);
+        inliers: Vec<bool>,
+        start: InlierStart,
+    ) -> Result<InlierSelection, OptimizeError> {
+        let mut graph = self.with_inliers(poses, &inliers);
         let report = optimizer.run(&mut graph);
         if let StopReason::Failed { error } = report.stop {
             return Err(error);
         }
-        let dropped = believed.iter().filter(|believed| !**believed).count();
+        let dropped = inliers.iter().filter(|inliers| !**inliers).count();
         let cost = report.chi2 + self.max_chi2 * dropped as f64;
         if !cost.is_finite() {
             return Err(OptimizeError::NotFinite);
         }
-        Ok(Belief {
-            believed,
+        Ok(InlierSelection {
+            inliers,
             poses: graph.poses().to_vec(),
             cost,
             start,
@@ -358,8 +358,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    fn with_belief(&self, poses: &[SE2], believed: &[bool]) -> Problem {
-        let mut graph = with_factors(self.problem, |k| believed[k]);
+    fn with_inliers(&self, poses: &[SE2], inliers: &[bool]) -> Problem {
+        let mut graph = with_factors(self.problem, |k| inliers[k]);
         graph.poses_mut().copy_from_slice(poses);
         graph
     }

@@ -10,7 +10,7 @@ use crate::listener::Listener;
 use widgets::registry::SPECS;
 
 /// A refused value or press changes nothing; a taken one changes what it names and nothing else.
-pub fn door(data: &[u8]) {
+pub fn fuzz(data: &[u8]) {
     let [widget, message @ ..] = data else {
         return;
     };
