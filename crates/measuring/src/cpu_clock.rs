@@ -1,6 +1,6 @@
-//! Time that this thread spent computing, not waiting for a busy machine.
+//! Measures CPU time, which does not depend on the load of the machine.
 
-/// A stopwatch over the CPU time of the calling thread; wall time where the system has none.
+/// A stopwatch over the CPU time of the calling thread; wall time if the system has no such clock.
 #[derive(Debug)]
 pub struct CpuClock {
     started_s: f64,
@@ -8,7 +8,7 @@ pub struct CpuClock {
 }
 
 impl CpuClock {
-    /// A clock that runs.
+    /// Creates a running clock.
     #[must_use]
     pub fn start() -> Self {
         Self {
@@ -17,24 +17,24 @@ impl CpuClock {
         }
     }
 
-    /// Stops counting.
+    /// Pauses the clock.
     pub fn pause(&mut self) {
         self.elapsed_s += now_s(Whose::Thread) - self.started_s;
     }
 
-    /// Counts again.
+    /// Resumes the clock.
     pub fn resume(&mut self) {
         self.started_s = now_s(Whose::Thread);
     }
 
-    /// Milliseconds counted up to the last pause.
+    /// Returns the milliseconds up to the last pause.
     #[must_use]
     pub fn elapsed_ms(&self) -> f64 {
         1e3 * self.elapsed_s
     }
 }
 
-/// The result of `work`, and the milliseconds that it kept this thread busy.
+/// Returns the result of `work` and the CPU time that it took on this thread, ms.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let mut clock = CpuClock::start();
     let result = work();
@@ -42,16 +42,16 @@ pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     (result, clock.elapsed_ms())
 }
 
-/// Whose time is counted.
+/// Whose CPU time is measured.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Whose {
-    /// That of the calling thread.
+    /// The calling thread.
     Thread,
-    /// That of all threads of the process.
+    /// All threads of the process.
     Process,
 }
 
-/// Seconds of CPU time up to now; wall time where the system has none.
+/// Returns the CPU time up to now, s; wall time if the system has no such clock.
 #[cfg(unix)]
 pub(crate) fn now_s(whose: Whose) -> f64 {
     use rustix::time::{ClockId, clock_gettime};
@@ -74,7 +74,7 @@ pub(crate) fn now_s(_whose: Whose) -> f64 {
 mod tests {
     use super::*;
 
-    /// Keeps the thread busy for at least that long by its own clock.
+    /// Keeps the thread busy for at least this CPU time.
     fn work(milliseconds: f64) {
         let mut clock = CpuClock::start();
         while clock.elapsed_ms() < milliseconds {

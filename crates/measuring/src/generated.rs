@@ -1,12 +1,12 @@
-//! Blocks of a page that a command writes, between two marks.
+//! Writes generated blocks into a document, each between two marks.
 
 use std::fs;
 use std::path::Path;
 
-/// Writes text into a page, between its two marks.
+/// Replaces the text between the two marks of a page.
 ///
 /// # Errors
-/// Where the page cannot be read or written, or has no such marks, in one line.
+/// One line if the page cannot be read or written, or lacks the marks.
 pub fn write_into(page: &Path, marks: [&str; 2], text: &str) -> Result<(), String> {
     let say = |error: &dyn std::fmt::Display| format!("{}: {error}", page.display());
     let old = fs::read_to_string(page).map_err(|error| say(&error))?;
@@ -19,14 +19,14 @@ pub fn write_into(page: &Path, marks: [&str; 2], text: &str) -> Result<(), Strin
     fs::write(page, new).map_err(|error| say(&error))
 }
 
-/// The page with other text between the marks.
+/// Returns the page with new text between the marks.
 fn replaced(page: &str, [start, end]: [&str; 2], text: &str) -> Option<String> {
     let (before, rest) = page.split_once(start)?;
     let (_, after) = rest.split_once(end)?;
     Some(format!("{before}{start}\n{text}\n{end}{after}"))
 }
 
-/// Processor and number of cores, as far as the system tells.
+/// Returns processor, number of cores and system, as far as they are known.
 #[must_use]
 pub fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);

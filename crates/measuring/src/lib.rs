@@ -1,5 +1,5 @@
-//! What the programs that check and measure share: a clock of the thread's own time, the list of what
-//! a run skipped, and the blocks of a page that a command writes.
+//! Shared by tests and benchmarks: a clock of CPU time, the list of skipped tests, and generated
+//! blocks in documents.
 
 pub mod cpu_clock;
 pub mod generated;

@@ -1,16 +1,16 @@
-//! What this process has used of the machine.
+//! CPU time and memory of this process.
 
 use crate::cpu_clock::{Whose, now_s};
 
-/// Seconds that all threads of this process kept a core busy; wall time where the system has no such
+/// Returns the CPU time of all threads of this process, s; wall time if the system has no such
 /// clock.
 #[must_use]
 pub fn cpu_s() -> f64 {
     now_s(Whose::Process)
 }
 
-/// Most memory that this process has held at once, in MB of 10⁶ bytes; none where the system does not
-/// tell.
+/// Returns the peak memory of this process, in MB of 10⁶ bytes; `None` if the system does not report
+/// it.
 #[must_use]
 pub fn peak_mb() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;

@@ -1,38 +1,38 @@
-//! Tests that cannot run here: they say so in one list, and fail where nothing may skip.
+//! Reports tests that cannot run on this machine in one list, or makes them fail.
 //!
-//! Two variables of the environment hold what the suite wants: `SLAM_NO_SKIP`, set to anything but
-//! nothing, `0` and `false`, lets nothing skip; `SLAM_SKIPPED` names the file with the list, one line
-//! for each, `name: reason`. `cargo xtask test` prints it at its end.
+//! Two environment variables control it. If `SLAM_NO_SKIP` is set to anything but an empty text, `0`
+//! or `false`, a skip is a failure. `SLAM_SKIPPED` is the path of the list, which has a line
+//! `name: reason` for each skip. `cargo xtask test` prints it at its end.
 
 use std::env;
 use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::Path;
 
-/// The reason of a test that wants a recorded pose graph.
+/// The reason to skip a test that needs a recorded pose graph.
 pub const NO_RECORDED_GRAPHS: &str = "the graph is not in ../shared/data/graphs, beside the repository; \
      docs/testing.md says where recorded graphs come from";
 
-/// The reason of a test that wants a recorded log.
+/// The reason to skip a test that needs a recorded log.
 pub const NO_RECORDED_LOGS: &str = "the log is not in ../shared/data/logs, beside the repository; \
      docs/testing.md says where recorded logs come from";
 
-/// The reason of what counts instructions.
+/// The reason to skip counting instructions.
 pub const NO_VALGRIND: &str =
     "valgrind is not installed; `sudo apt-get install valgrind` installs it on Debian";
 
-/// Says that a test leaves something out, and why; the test returns after it.
+/// Reports that a test is skipped, and why; the test returns after it.
 ///
 /// # Panics
-/// Where nothing may skip, or where the list cannot be written.
+/// If a skip is a failure, or if the list cannot be written.
 pub fn skip(name: &str, reason: &str) {
     tell(name, reason).unwrap_or_else(|message| panic!("{message}"));
 }
 
-/// As [`skip`], for what is no test.
+/// Does the same as [`skip`] for code that is not a test.
 ///
 /// # Errors
-/// One sentence where nothing may skip, or where the list cannot be written.
+/// One sentence if a skip is a failure, or if the list cannot be written.
 pub fn tell(name: &str, reason: &str) -> Result<(), String> {
     let no_skip = env::var("SLAM_NO_SKIP").ok();
     let list = env::var_os("SLAM_SKIPPED");
@@ -61,7 +61,7 @@ fn record(
         .create(true)
         .append(true)
         .open(list)
-        // One call, so that the lines of tests that run at once do not mix.
+        // One write call, because tests append at the same time.
         .and_then(|mut file| file.write_all(format!("{name}: {reason}\n").as_bytes()))
         .map_err(|error| format!("{}: {error}", list.display()))
 }

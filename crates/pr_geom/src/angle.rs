@@ -2,9 +2,9 @@
 
 use core::f64::consts::{PI, TAU};
 
-/// The angle in (−π, π] that points the same way.
+/// Wraps an angle to (−π, π].
 ///
-/// An angle already in the interval comes back with its bits unchanged.
+/// An angle in the interval is returned with unchanged bits.
 #[inline]
 #[must_use]
 pub fn wrap_angle(angle_rad: f64) -> f64 {

@@ -1,9 +1,9 @@
-//! Rigid motions of the plane (Chapter 3): the group SE(2), its tangent space, and angles; and the seeded
-//! random numbers that all noise comes from.
+//! Rigid motions of the plane (Chapter 3): the group SE(2), its tangent space, angles, and the seeded
+//! random numbers of all noise.
 //!
 //! A pose is `(x, y, θ)`, in metres and radians, with θ in (−π, π]. A tangent vector is
 //! `(v_x, v_y, ω)`: **translation first**, everywhere in this workspace. Perturbations act on the
-//! right: `T ⊞ δ = T exp(δ)`. A place is a `Point2`, a displacement or a direction a `Vector2`.
+//! right: `T ⊞ δ = T exp(δ)`. A position is a `Point2`, a displacement or a direction a `Vector2`.
 //!
 //! Source: Solà, Deray, Atchuthan, "A micro Lie theory for state estimation in robotics", 2018.
 

@@ -1,8 +1,8 @@
-//! The one door to transcendental functions.
+//! The only entry to transcendental functions.
 //!
-//! `f64::sin` and its kin call the platform's C library natively and another one in WebAssembly,
-//! and the two differ in the last bit. The `libm` crate is plain Rust, so what goes through here
-//! gives the same bits everywhere. `sqrt`, `floor`, `abs` are exact by IEEE 754 and need no door.
+//! `f64::sin` and related functions call the platform's C library natively and another one in
+//! WebAssembly, and the two differ in the last bit. The `libm` crate is plain Rust, so these functions
+//! return the same bits everywhere. `sqrt`, `floor`, `abs` are exact by IEEE 754 and are used directly.
 
 /// Sine of an angle in radians.
 #[inline]
@@ -53,7 +53,7 @@ pub fn erf(value: f64) -> f64 {
     libm::erf(value)
 }
 
-/// Square root: exact in IEEE 754, so the processor's own instruction gives the same bits as any.
+/// Square root: exact in IEEE 754, so the processor's instruction gives the same bits everywhere.
 ///
 /// `libm::sqrt` is that instruction natively; in WebAssembly it is a loop over integers.
 #[inline]
@@ -69,10 +69,10 @@ pub fn norm2(x: f64, y: f64) -> f64 {
     sqrt(x * x + y * y)
 }
 
-/// The smaller of two numbers; `b` where they cannot be compared.
+/// The smaller of two numbers; `b` if one of them is NaN.
 ///
-/// One instruction, and no branch. In WebAssembly `f64::min` is a call, because it looks for what is
-/// not a number, and engines turn a comparison with a selection into a branch.
+/// One instruction, and no branch. In WebAssembly `f64::min` is a call, because it handles NaN, and
+/// engines compile a comparison with a selection to a branch.
 #[inline]
 #[must_use]
 pub fn min(a: f64, b: f64) -> f64 {
@@ -85,7 +85,7 @@ pub fn min(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// The larger of two numbers; `b` where they cannot be compared. See [`min`].
+/// The larger of two numbers; `b` if one of them is NaN. See [`min`].
 #[inline]
 #[must_use]
 pub fn max(a: f64, b: f64) -> f64 {

@@ -1,21 +1,20 @@
-//! Numbers in order, alone, in pairs, or as the keys of what is numbered.
+//! Sorts numbers, pairs of numbers, and indices by a key.
 //!
-//! A sort is a kilobyte of code or more, and each crate that calls one with its own types gets its own. Here is
-//! one for all.
+//! Every instance of a sort for another type adds a kilobyte of code or more, so all crates share these.
 
-/// Sorts numbers from the least to the greatest by the total order of IEEE 754: −NaN first, NaN last.
+/// Sorts numbers in ascending order by the total order of IEEE 754: −NaN first, NaN last.
 #[inline(never)]
 pub fn sort_numbers(numbers: &mut [f64]) {
     numbers.sort_unstable_by(f64::total_cmp);
 }
 
-/// Sorts pairs by the first number, and by the second where those are the same.
+/// Sorts pairs by the first number, and by the second if those are equal.
 #[inline(never)]
 pub fn sort_pairs(pairs: &mut [(f64, f64)]) {
     pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
 }
 
-/// Sorts what is numbered by a key, the least first, and by number where the keys are the same.
+/// Sorts indices by a key in ascending order, and by index if the keys are equal.
 #[inline(never)]
 pub fn sort_ranked(ranked: &mut [(f64, usize)]) {
     ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

@@ -1,13 +1,13 @@
-//! The seeded generator: mulberry32 (Tommy Ettinger 2017), and Box–Muller normals on top of it.
+//! The seeded random number generator: mulberry32 (Tommy Ettinger 2017), and Box–Muller normals.
 //!
-//! Small and fast, with a period of 2³²: enough for a lap, which draws about fifty thousand
-//! numbers, and not for cryptography.
+//! Small and fast, with a period of 2³²: sufficient for a lap, which draws about fifty thousand
+//! numbers, but not for cryptography.
 
 use core::f64::consts::TAU;
 
 use crate::math;
 
-/// The state that stands for seed 0.
+/// The state of seed 0.
 const STATE_OF_SEED_ZERO: u32 = 0x9E37_79B9;
 
 /// A mulberry32 generator.
@@ -17,14 +17,14 @@ pub struct Rng {
 }
 
 impl Rng {
-    /// The generator that starts at `seed`.
+    /// Creates a generator from a seed.
     #[must_use]
     pub fn new(seed: u32) -> Self {
         let state = if seed == 0 { STATE_OF_SEED_ZERO } else { seed };
         Self { state }
     }
 
-    /// One draw, uniform in [0, 1).
+    /// Draws a number, uniform in [0, 1).
     #[inline]
     pub fn unit(&mut self) -> f64 {
         self.state = self.state.wrapping_add(0x6D2B_79F5);
@@ -34,16 +34,16 @@ impl Rng {
         f64::from(t ^ (t >> 14)) / 4_294_967_296.0
     }
 
-    /// One draw, uniform in [lo, hi).
+    /// Draws a number, uniform in [lo, hi).
     #[inline]
     pub fn uniform(&mut self, lo: f64, hi: f64) -> f64 {
         lo + (hi - lo) * self.unit()
     }
 
-    /// A normal number by the cosine branch of Box and Muller 1958.
+    /// Draws a normal number by the cosine branch of Box and Muller 1958.
     ///
-    /// It consumes two draws also where `standard_deviation` is 0, so that the numbers that follow
-    /// do not depend on the noise level.
+    /// It always consumes two draws, even if `standard_deviation` is 0, because later numbers must not
+    /// depend on the noise level.
     #[inline]
     pub fn normal(&mut self, mean: f64, standard_deviation: f64) -> f64 {
         let u = self.unit_above_zero();

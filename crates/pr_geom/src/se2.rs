@@ -20,7 +20,7 @@ pub struct SE2 {
     theta: f64,
 }
 
-/// A heading with its sine and cosine worked out once, for loops over many points.
+/// A rotation with precomputed sine and cosine, for loops over many points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation {
     /// cos θ.
@@ -53,8 +53,8 @@ impl Rotation {
     }
 }
 
-/// Read access to the translation part, as a trait: the constructor [`SE2::translation`] has the
-/// same name, and the chapter's listings use both.
+/// Read access to the translation part. It is a trait because the constructor [`SE2::translation`]
+/// has the same name, and the chapter's listings use both.
 pub trait Translation {
     /// The translation part `(x, y)` in metres.
     fn translation(&self) -> Vector2<f64>;
@@ -79,7 +79,7 @@ impl SE2 {
         }
     }
 
-    /// The motion that changes nothing.
+    /// The identity motion.
     #[inline]
     #[must_use]
     pub fn identity() -> Self {
@@ -107,7 +107,7 @@ impl SE2 {
         self.y
     }
 
-    /// Where the body's origin is, in the world frame, m.
+    /// Position of the body's origin in the world frame, m.
     #[inline]
     #[must_use]
     pub fn position(&self) -> Point2<f64> {
@@ -128,7 +128,7 @@ impl SE2 {
         [self.x, self.y, self.theta]
     }
 
-    /// Sine and cosine of the heading, worked out once for a loop over points.
+    /// The heading as a rotation with precomputed sine and cosine, for a loop over points.
     #[inline]
     #[must_use]
     pub fn rotation(&self) -> Rotation {
@@ -142,7 +142,7 @@ impl SE2 {
         Matrix2::new(cos, -sin, sin, cos)
     }
 
-    /// `R p + t`: a point of the body frame in the world frame.
+    /// Transforms a point from the body frame to the world frame: `R p + t`.
     #[inline]
     #[must_use]
     pub fn transform(&self, point: Point2<f64>) -> Point2<f64> {
@@ -150,7 +150,7 @@ impl SE2 {
         Point2::new(x + self.x, y + self.y)
     }
 
-    /// `self ∘ other`: first `other`, then `self`.
+    /// Composes two motions, `self ∘ other`: first `other`, then `self`.
     #[inline]
     #[must_use]
     pub fn compose(&self, other: &Self) -> Self {
@@ -158,7 +158,7 @@ impl SE2 {
         Self::new(x + self.x, y + self.y, self.theta + other.theta)
     }
 
-    /// The motion that undoes this one.
+    /// The inverse motion.
     #[inline]
     #[must_use]
     pub fn inverse(&self) -> Self {
@@ -166,7 +166,7 @@ impl SE2 {
         Self::new(-x, -y, -self.theta)
     }
 
-    /// `self⁻¹ ∘ other`: `other` seen from `self`.
+    /// The relative pose `self⁻¹ ∘ other`: `other` in the frame of `self`.
     #[inline]
     #[must_use]
     pub fn between(&self, other: &Self) -> Self {
@@ -174,7 +174,7 @@ impl SE2 {
         Self::new(x, y, other.theta - self.theta)
     }
 
-    /// The motion reached by following the twist `(v_x, v_y, ω)` for unit time.
+    /// The exponential map: the motion of the twist `(v_x, v_y, ω)` in unit time.
     ///
     /// Solà, Deray, Atchuthan 2018, eq. (156) and (158).
     #[must_use]
@@ -187,7 +187,7 @@ impl SE2 {
         )
     }
 
-    /// The twist `(v_x, v_y, ω)` whose [`SE2::exp`] is this motion, with ω in (−π, π].
+    /// The logarithm: the twist `(v_x, v_y, ω)` whose [`SE2::exp`] is this motion, with ω in (−π, π].
     ///
     /// Solà, Deray, Atchuthan 2018, eq. (157).
     #[must_use]
@@ -226,14 +226,14 @@ impl SE2 {
         other.between(self).log()
     }
 
-    /// Size of the motion as the chapter measures steps: `‖(v_x, v_y)‖ + |ω|` of its log.
+    /// Size of the motion by the chapter's measure of steps: `‖(v_x, v_y)‖ + |ω|` of its log.
     #[must_use]
     pub fn step_size(&self) -> f64 {
         twist_size(&self.log())
     }
 }
 
-/// Size of a tangent vector as the chapter measures steps: `‖(v_x, v_y)‖ + |ω|`, m and rad added.
+/// Size of a tangent vector by the chapter's measure of steps: `‖(v_x, v_y)‖ + |ω|`, m and rad added.
 #[must_use]
 pub fn twist_size(twist: &Vector3<f64>) -> f64 {
     math::norm2(twist.x, twist.y) + twist.z.abs()
@@ -264,7 +264,7 @@ fn left_jacobian_terms(theta: f64) -> (f64, f64) {
         (1.0 - square / 6.0, theta * (0.5 - square / 24.0))
     } else {
         let (sin, cos) = math::sin_cos(theta);
-        // 1 − cos θ loses its leading digits where θ is small; sin²/(1 + cos) does not.
+        // 1 − cos θ cancels if θ is small; sin²/(1 + cos) does not.
         let one_minus_cos = if cos > 0.0 {
             sin * sin / (1.0 + cos)
         } else {

@@ -1,4 +1,4 @@
-//! The laws of SE(2), on random motions, and the angles where implementations break.
+//! The group laws of SE(2) on random motions, and the angles at which implementations fail.
 
 use pr_geom::{Matrix3, Point2, SE2, Translation, Vector2, Vector3};
 use proptest::prelude::*;
@@ -80,7 +80,7 @@ fn exp_and_log_are_smooth_across_the_small_angle_branch() {
             let twist = Vector3::new(2.0, -3.0, sign * omega);
             let back = SE2::exp(&twist).log();
             assert!((back - twist).norm() < 1e-14, "omega {omega}: {back:?}");
-            // A sign slip in the odd term moves the end point by ω·‖v‖, far above rounding.
+            // A wrong sign in the odd term moves the end point by ω·‖v‖, far above rounding.
             let half = SE2::exp(&(twist * 0.5));
             assert_same(half * half, SE2::exp(&twist), 1e-14);
         }

@@ -1,4 +1,4 @@
-//! The directions of a sweep's beams, and which of them is nearest to a point.
+//! The directions of a scan's beams, and the beam nearest to a point.
 
 use pr_geom::Rotation;
 
@@ -9,7 +9,7 @@ pub struct Beams {
 }
 
 impl Beams {
-    /// Beams at these bearings in radians, which must grow and span at most one turn.
+    /// Creates beams at these bearings in radians, which must increase and span at most one turn.
     #[must_use]
     pub fn new(bearings_rad: &[f64]) -> Self {
         Self {
@@ -23,7 +23,7 @@ impl Beams {
         &self.directions
     }
 
-    /// How far the point `(x, y)` lies along beam `beam`, in metres.
+    /// Projection of the point `(x, y)` onto beam `beam`, in metres.
     #[inline]
     #[must_use]
     pub fn along(&self, beam: usize, x: f64, y: f64) -> f64 {
@@ -33,8 +33,8 @@ impl Beams {
 
     /// The beam whose bearing is nearest to that of the point `(x, y)`, in the sensor frame.
     ///
-    /// Walks from `hint` to ever better neighbours: around the circle the distance along a beam has
-    /// a single peak. On a ray the answer is the hint or next to it, so no angle is worked out.
+    /// Climbs from `hint` to better neighbours, because around the circle the distance along a beam has
+    /// a single peak. On a ray the answer is the hint or next to it, so no angle is computed.
     #[inline]
     #[must_use]
     pub fn nearest(&self, x: f64, y: f64, hint: usize) -> usize {
@@ -73,7 +73,7 @@ mod tests {
         let bearings: Vec<f64> = (0..120).map(|k| -PI + f64::from(k) * TAU / 120.0).collect();
         let beams = Beams::new(&bearings);
         for step in 0..400 {
-            // An irrational step: no point lies exactly between two beams.
+            // An irrational step, so no point is exactly between two beams.
             let angle = f64::from(step) * 0.618_033_988_7;
             let (y, x) = math::sin_cos(angle);
             let off = |b: &f64| wrap_angle(angle - b).abs();

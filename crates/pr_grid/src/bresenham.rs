@@ -1,15 +1,15 @@
 //! The cells of a straight line, in integers (Bresenham 1965, in the form for all octants).
 
-/// A cell by column (x) and row (y); may lie outside of a grid.
+/// A cell by column (x) and row (y); may be outside of a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cell {
-    /// Column, growing with x.
+    /// Column, increasing with x.
     pub column: i32,
-    /// Row, growing with y.
+    /// Row, increasing with y.
     pub row: i32,
 }
 
-/// All cells of the line from `from` to `to`, both included, without gaps at corners.
+/// Iterates over all cells of the line from `from` to `to`, both included, without gaps at corners.
 ///
 /// A tie between a straight and a diagonal step goes to the diagonal one.
 #[inline]

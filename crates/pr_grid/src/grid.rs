@@ -1,4 +1,4 @@
-//! The grid: dense log odds over a rectangle, updated one sweep at a time.
+//! The occupancy grid: dense log odds over a rectangle, updated scan by scan.
 
 use pr_geom::{Point2, SE2, Vector2, math};
 
@@ -15,9 +15,9 @@ pub struct GridConfig {
     pub max_m: Point2<f64>,
     /// Side of a cell in metres.
     pub cell_m: f64,
-    /// What a reading says about a cell.
+    /// The inverse sensor model.
     pub sensor: InverseSensorModel,
-    /// Log odds stay within ± this, so that a changed world can still change a cell.
+    /// Log odds are clamped to ± this, because a cell must be able to follow a changed world.
     pub clamp_log_odds: f64,
 }
 
@@ -40,13 +40,13 @@ pub struct OccupancyGrid {
     columns: usize,
     rows: usize,
     log_odds: Vec<f64>,
-    /// The number of the last sweep that touched each cell: a cell counts once a sweep.
+    /// The number of the last scan that updated each cell: a cell is updated once per scan.
     last_sweep: Vec<u32>,
     sweeps: u32,
 }
 
 impl OccupancyGrid {
-    /// An unknown grid.
+    /// Creates an unknown grid.
     #[must_use]
     pub fn new(config: GridConfig) -> Self {
         let count = |from: f64, to: f64| ((to - from) / config.cell_m - 1e-9).ceil() as usize;
@@ -62,7 +62,7 @@ impl OccupancyGrid {
         }
     }
 
-    /// Forgets everything and keeps the memory.
+    /// Resets all cells to unknown and keeps the memory.
     pub fn clear(&mut self) {
         self.log_odds.fill(0.0);
         self.last_sweep.fill(0);
@@ -93,28 +93,28 @@ impl OccupancyGrid {
         &self.log_odds
     }
 
-    /// Number of sweeps since the grid was empty.
+    /// Number of scans since the grid was empty.
     #[must_use]
     pub fn sweeps(&self) -> u32 {
         self.sweeps
     }
 
-    /// Number of cells that are more likely occupied than free.
+    /// Number of occupied cells: log odds above 0.
     #[must_use]
     pub fn occupied_cells(&self) -> usize {
         self.log_odds.iter().filter(|l| **l > 0.0).count()
     }
 
-    /// Number of cells that are more likely free than occupied.
+    /// Number of free cells: log odds below 0.
     #[must_use]
     pub fn free_cells(&self) -> usize {
         self.log_odds.iter().filter(|l| **l < 0.0).count()
     }
 
-    /// Adds one sweep taken at `world_from_sensor`; `beams` has one range for each of its bearings.
+    /// Adds one scan taken at `world_from_sensor`; `ranges_m` has one range for each of the `beams`.
     ///
-    /// Every cell on a ray is asked about once. The beam that answers for it is the one nearest to
-    /// it in bearing, as in Table 9.2, which is not always the one whose ray came first.
+    /// Every cell on a ray is updated once, by the beam nearest to it in bearing as in Table 9.2, which
+    /// is not always the beam whose ray reached it first.
     pub fn integrate(&mut self, world_from_sensor: &SE2, beams: &Beams, ranges_m: &[f64]) {
         debug_assert_eq!(beams.directions().len(), ranges_m.len());
         self.sweeps += 1;
@@ -153,7 +153,7 @@ impl OccupancyGrid {
         }
     }
 
-    /// The cell that holds a point in metres, world frame; may lie outside of the grid.
+    /// The cell that contains a point in metres, world frame; may be outside of the grid.
     #[must_use]
     pub fn cell_at(&self, point: Point2<f64>) -> Cell {
         let index = |coordinate: f64, min: f64| ((coordinate - min) / self.config.cell_m).floor();
@@ -163,8 +163,7 @@ impl OccupancyGrid {
         }
     }
 
-    /// Makes the grid larger: `below` columns and rows come before the present ones, and there are
-    /// `size` of them afterwards.
+    /// Enlarges the grid to `size` columns and rows, of which `below` come before the present ones.
     pub(crate) fn grow(&mut self, below: (usize, usize), size: (usize, usize)) {
         let old = core::mem::replace(&mut self.log_odds, vec![0.0; size.0 * size.1]);
         let old_sweeps = core::mem::replace(&mut self.last_sweep, vec![0; size.0 * size.1]);
@@ -191,7 +190,7 @@ impl OccupancyGrid {
         )
     }
 
-    /// Index of a cell into [`OccupancyGrid::log_odds`]; none outside of the grid.
+    /// Index of a cell into [`OccupancyGrid::log_odds`]; `None` outside of the grid.
     #[must_use]
     pub fn index(&self, cell: Cell) -> Option<usize> {
         let column = usize::try_from(cell.column).ok()?;

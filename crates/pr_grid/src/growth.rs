@@ -1,32 +1,33 @@
-//! A grid that grows with what is mapped: for a log, whose world nobody knows beforehand.
+//! A grid that grows with the mapped area: for logs, whose extent is unknown beforehand.
 
 use pr_geom::{Point2, Vector2};
 use thiserror::Error;
 
 use crate::grid::{GridConfig, OccupancyGrid};
 
-/// The grid grows by whole blocks of so many cells, so that it does not grow with every sweep.
+/// The grid grows by whole blocks of this many cells, because growing at every scan would be slow.
 const BLOCK: usize = 64;
 
-/// Most cells of a grid that grows: 50 MB, 300 m × 300 m at the chapter's 0.15 m.
+/// Maximum number of cells of a growing grid: 50 MB, 300 m × 300 m at the chapter's 0.15 m.
 pub const MAX_CELLS: usize = 1 << 22;
 
-/// What is to be mapped needs more cells than a grid may have; the grid is as it was.
+/// The mapped area needs more cells than a grid may have; the grid is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error(
     "the map needs {columns} × {rows} cells of {cell_m} m, more than {MAX_CELLS}; take larger cells"
 )]
 pub struct GridTooLarge {
-    /// Columns that it would have.
+    /// Number of columns that it would have.
     pub columns: u64,
-    /// Rows that it would have.
+    /// Number of rows that it would have.
     pub rows: u64,
     /// Side of a cell, m.
     pub cell_m: f64,
 }
 
 impl GridConfig {
-    /// A grid without cells at `point`, to be grown; see [`OccupancyGrid::cover`].
+    /// The configuration of a grid without cells at `point`, to be enlarged by
+    /// [`OccupancyGrid::cover`].
     #[must_use]
     pub fn growing_from(point: Point2<f64>, cell_m: f64) -> Self {
         Self {
@@ -39,11 +40,11 @@ impl GridConfig {
 }
 
 impl OccupancyGrid {
-    /// Grows the grid by unknown cells until it holds all points within `reach_m` of `center` along
-    /// the axes; what it knows stays.
+    /// Enlarges the grid by unknown cells until it contains all points within `reach_m` of `center`
+    /// along the axes; known cells keep their values.
     ///
     /// # Errors
-    /// Where it would have more than [`MAX_CELLS`]; it stays as it was.
+    /// If it would have more than [`MAX_CELLS`] cells; it is then unchanged.
     pub fn cover(&mut self, center: Point2<f64>, reach_m: f64) -> Result<(), GridTooLarge> {
         let low = self.cell_at(center - Vector2::repeat(reach_m));
         let high = self.cell_at(center + Vector2::repeat(reach_m));

@@ -1,22 +1,22 @@
-//! What one range reading says about one cell: Thrun, Burgard, Fox 2005, Table 9.2.
+//! The inverse sensor model of one range reading: Thrun, Burgard, Fox 2005, Table 9.2.
 
 use pr_geom::math;
 
-/// `ln(p / (1 − p))`.
+/// The log odds of a probability, `ln(p / (1 − p))`.
 #[must_use]
 pub fn probability_to_log_odds(probability: f64) -> f64 {
     math::ln(probability / (1.0 - probability))
 }
 
 /// The inverse sensor model: occupied in a band of thickness α around the return, free before it,
-/// nothing said behind it or outside of the beam's width β.
+/// unchanged behind it and outside of the beam's width β.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InverseSensorModel {
     /// Thickness α of an obstacle in metres.
     pub obstacle_thickness_m: f64,
     /// Opening angle β of a beam in radians.
     pub beam_width_rad: f64,
-    /// Longest range in metres; a reading at it hit nothing.
+    /// Longest range in metres; a reading at it is not a return.
     pub max_range_m: f64,
     /// Log odds added to a cell in the band.
     pub occupied_log_odds: f64,

@@ -1,8 +1,8 @@
-//! A course: a world, where the robot starts in it, and the way points that it visits.
+//! A course: a world, the robot's start pose, and the way points that it visits.
 //!
-//! Built in are the chapter's Apartment, a ring of corridors, and three that break a map; [`Course::from_json`]
-//! reads any other. What a course promises: the driver, which turns toward the next way point and drives
-//! straight to it, touches no wall and arrives.
+//! Built in are the chapter's Apartment, a ring of corridors, and three worlds in which SLAM fails;
+//! [`Course::from_json`] reads others. A course guarantees that the driver, which turns toward the next way
+//! point and drives straight to it, touches no wall and arrives.
 
 mod breaking;
 mod clearance;
@@ -19,27 +19,26 @@ use clearance::{nearest_wall, nearest_wall_to_leg};
 pub use error::{CourseError, CoursePoint};
 pub(crate) use file::extent;
 
-/// Walls, way points and coordinates beyond these are refused: a lap has to fit into memory and
-/// into the patience of whoever runs it.
+/// Limits of a course, because a lap must fit into memory and finish in reasonable time.
 pub mod limits {
-    /// Walls of a world; a sweep casts every ray against every wall within range.
+    /// Number of walls; a scan casts every ray against every wall within range.
     pub const WALLS: usize = 2000;
-    /// Way points; the robot may have to turn around at each.
+    /// Number of way points; the robot may have to turn around at each.
     pub const WAY_POINTS: usize = 50;
     /// Largest |coordinate|, m.
     pub const COORDINATE_M: f64 = 100.0;
     /// The same in centimetres.
     pub const COORDINATE_CM: u32 = 10_000;
-    /// Longest way, m.
+    /// Largest path length, m.
     pub const WAY_M: f64 = 200.0;
 }
 
-/// Least distance between the way and a wall, m.
+/// Least distance between the path and a wall, m.
 ///
-/// The driver leaves a way point's neighbourhood from 0.3 m before it, and so cuts a corner by less.
+/// The driver turns to the next way point within 0.3 m of the present one, so it cuts a corner by less.
 pub const CLEARANCE_M: f64 = 0.3;
 
-/// A world with a way through it.
+/// A world with a path through it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
     world: World,
@@ -49,13 +48,12 @@ pub struct Course {
 }
 
 impl Course {
-    /// A course that has been checked.
+    /// Creates a course and checks it.
     ///
-    /// `turn` counts the way points from 0: once it is reached, the robot sees places again that it
-    /// has seen before.
+    /// `turn` is the index of the way point, from 0, after which the robot revisits known space.
     ///
     /// # Errors
-    /// Where the driver would touch a wall or could not finish, or a number is out of range.
+    /// If the driver would touch a wall or could not finish, or if a number is out of range.
     pub fn new(
         world: World,
         start: SE2,
@@ -83,10 +81,10 @@ impl Course {
         }
     }
 
-    /// Once around [`World::ring`], counterclockwise, and on to the middle of its first corridor.
+    /// One lap around [`World::ring`], counterclockwise, and on to the middle of its first corridor.
     ///
-    /// Its free space has a hole: the last corridor leads to the first one from the other side,
-    /// where the Apartment's lap only comes back the way that it went.
+    /// The path closes a cycle: the last corridor meets the first one from the other side, while the
+    /// Apartment's lap returns through the corridor by which it left.
     #[must_use]
     pub fn ring() -> Self {
         let (west, east, south, north) = (0.7, 11.3, 0.7, 8.3);
@@ -111,7 +109,7 @@ impl Course {
         &self.world
     }
 
-    /// True pose at the start, world frame.
+    /// True start pose, world frame.
     #[must_use]
     pub fn start(&self) -> SE2 {
         self.start
@@ -123,7 +121,7 @@ impl Course {
         &self.way_points
     }
 
-    /// The way point from which on places are seen again, counted from 0.
+    /// Index of the way point, from 0, after which the robot revisits known space.
     #[must_use]
     pub fn turn(&self) -> Option<usize> {
         self.turn

@@ -1,4 +1,4 @@
-//! The driver: turns toward the next way point on the true pose, then drives to it.
+//! The driver: turns toward the next way point by the true pose, then drives to it.
 
 use pr_geom::{Point2, SE2, math, wrap_angle};
 
@@ -37,14 +37,14 @@ impl Default for DriverConfig {
     }
 }
 
-/// What the driver decides in one tick.
+/// The driver's decision in one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveStep {
-    /// The command of this tick, still toward the way point that was just reached.
+    /// The command of this tick, still toward the way point that is reached in it.
     pub command: VelocityCommand,
-    /// Index of the way point reached in this tick.
+    /// Index of the way point reached in this tick, if any.
     pub reached: Option<usize>,
-    /// Whether that was the last one: the lap ends after this tick.
+    /// Whether that is the last one: the lap ends after this tick.
     pub finished: bool,
 }
 
@@ -56,7 +56,7 @@ pub struct WaypointDriver {
 }
 
 impl WaypointDriver {
-    /// A driver on its way to the first way point.
+    /// Creates a driver that starts toward the first way point.
     #[must_use]
     pub fn new(config: DriverConfig) -> Self {
         Self {
@@ -65,7 +65,7 @@ impl WaypointDriver {
         }
     }
 
-    /// The command at the true pose `world_from_body`; stands still once the lap is finished.
+    /// Returns the command at the true pose `world_from_body`; zero velocity once the lap is finished.
     pub fn step(&mut self, world_from_body: &SE2) -> DriveStep {
         let Some(waypoint) = self.config.waypoints.get(self.next_waypoint) else {
             return DriveStep {

@@ -1,8 +1,8 @@
-//! Simulated worlds: seeded noise, ray casting, LiDAR, wheel odometry and the way-point driver
+//! Simulates a robot in the plane: worlds, ray casting, LiDAR, wheel odometry and a way-point driver
 //! (Chapters 4 and 9).
 //!
-//! Everything here is a function of its arguments and of one seeded [`Rng`]: the same seed gives
-//! the same bits natively and in WebAssembly. Units are metres, radians and seconds.
+//! Every result depends on the arguments and on one seeded [`Rng`] only: the same seed gives the same
+//! bits natively and in WebAssembly. Units are metres, radians and seconds.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 

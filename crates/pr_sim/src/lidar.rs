@@ -1,4 +1,4 @@
-//! A planar LiDAR: true ranges by ray casting, Gaussian range noise, and the projection of a sweep
+//! A planar LiDAR: true ranges by ray casting, Gaussian range noise, and the projection of a scan
 //! to points.
 
 use core::f64::consts::{PI, TAU};
@@ -7,13 +7,13 @@ use pr_geom::{Point2, Rng, Rotation, SE2};
 
 use crate::world::{Viewpoint, World};
 
-/// A return at or beyond this share of the maximum range is taken for "nothing hit".
+/// A reading at or beyond this share of the maximum range is not a return.
 const RETURN_SHARE: f64 = 0.995;
 
 /// A field of view this close to 2π is a full circle, whose last beam must not repeat the first.
 const FULL_CIRCLE_TOLERANCE: f64 = 1e-9;
 
-/// The sensor's parameters; the default is the one of the chapter's lap.
+/// The sensor's parameters; the default is that of the chapter's lap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LidarConfig {
     /// Number of beams.
@@ -48,7 +48,7 @@ impl LidarConfig {
         }
     }
 
-    /// Bearing from one beam to the next, rad.
+    /// Angle between consecutive beams, rad.
     #[must_use]
     pub fn angle_step_rad(&self) -> f64 {
         let n = self.beams as f64;
@@ -59,7 +59,7 @@ impl LidarConfig {
         }
     }
 
-    /// Ranges at or beyond this hit nothing, m.
+    /// Readings at or beyond this range are not returns, m.
     #[must_use]
     pub fn return_limit_m(&self) -> f64 {
         RETURN_SHARE * self.max_range_m
@@ -70,7 +70,7 @@ impl LidarConfig {
     }
 }
 
-/// A LiDAR with its bearings worked out and its buffers kept.
+/// A LiDAR with precomputed bearings and reused buffers.
 #[derive(Clone, Debug)]
 pub struct Lidar {
     config: LidarConfig,
@@ -80,11 +80,11 @@ pub struct Lidar {
 }
 
 impl Lidar {
-    /// A sensor with these parameters.
+    /// Creates a sensor with these parameters.
     #[must_use]
     pub fn new(config: LidarConfig) -> Self {
-        // Grouped as a step times a number: the beams abeam lie on an edge of the voxel grid, and the
-        // last bit of their bearing decides which voxel they fall into.
+        // A step times a number, in this order: the beams abeam hit an edge of the voxel grid, and the
+        // last bit of their bearing decides the voxel.
         let (first, step) = (config.first_angle_rad(), config.angle_step_rad());
         let bearings_rad: Vec<f64> = (0..config.beams).map(|k| first + k as f64 * step).collect();
         let directions = bearings_rad.iter().map(|&b| Rotation::new(b)).collect();
@@ -108,7 +108,7 @@ impl Lidar {
         &self.bearings_rad
     }
 
-    /// Noise-free ranges in metres from `world_from_sensor`, one per beam, into `ranges_m`.
+    /// Writes the noise-free ranges from `world_from_sensor` to `ranges_m`, one per beam, in metres.
     pub fn measure_into(
         &mut self,
         world: &World,
@@ -131,10 +131,10 @@ impl Lidar {
         );
     }
 
-    /// One noisy sweep from `world_from_sensor`: ranges in metres, one per beam, into `ranges_m`.
+    /// Writes one noisy scan from `world_from_sensor` to `ranges_m`: ranges in metres, one per beam.
     ///
-    /// Each beam consumes three draws: one that would decide on a dropout or a random return
-    /// (Chapter 9; both have probability 0 here) and two for the normal noise.
+    /// Each beam consumes three draws: one for a dropout or a random return (Chapter 9; both have
+    /// probability 0 here) and two for the normal noise.
     pub fn sense_into(
         &mut self,
         world: &World,
@@ -150,7 +150,7 @@ impl Lidar {
         }
     }
 
-    /// [`Lidar::sense_into`] with a buffer of its own.
+    /// Does the same as [`Lidar::sense_into`] and returns a new buffer.
     #[must_use]
     pub fn sense(&mut self, world: &World, world_from_sensor: &SE2, rng: &mut Rng) -> Vec<f64> {
         let mut ranges_m = Vec::with_capacity(self.config.beams);
@@ -158,8 +158,8 @@ impl Lidar {
         ranges_m
     }
 
-    /// The points of a sweep in the sensor frame, in beam order; beams that hit nothing are left
-    /// out.
+    /// Returns the points of a scan in the sensor frame, in beam order, without beams that have no
+    /// return.
     pub fn project<'a>(&'a self, ranges_m: &'a [f64]) -> impl Iterator<Item = Point2<f64>> + 'a {
         let limit = self.config.return_limit_m();
         ranges_m
@@ -201,7 +201,7 @@ mod tests {
             beams: 4,
             ..LidarConfig::default()
         });
-        // 0.995 · 6 = 5.97: the first and the last beam saw nothing.
+        // 0.995 · 6 = 5.97: the first and the last beam have no return.
         let points: Vec<_> = lidar.project(&[5.97, 2.0, 3.0, 6.0]).collect();
         assert_eq!(points.len(), 2);
         assert!((points[0] - Point2::new(0.0, -2.0)).norm() < 1e-12);

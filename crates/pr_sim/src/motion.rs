@@ -1,11 +1,11 @@
-//! Motion at a constant velocity command: the exact arc, and what wheel odometry makes of it.
+//! Motion at a constant velocity command: the exact arc, and the motion model of wheel odometry.
 
 use pr_geom::{Rng, SE2, math};
 
-/// Turn rates below this (rad/s) drive straight.
+/// Turn rates below this (rad/s) count as straight motion.
 const STRAIGHT_TRUTH: f64 = 1e-9;
 
-/// Sampled turn rates below this (rad/s) drive straight.
+/// Sampled turn rates below this (rad/s) count as straight motion.
 const STRAIGHT_SAMPLE: f64 = 1e-6;
 
 /// A velocity command, held for one tick.
@@ -33,7 +33,7 @@ impl Default for OdometryNoise {
 }
 
 impl OdometryNoise {
-    /// All six α multiplied by `factor`.
+    /// Multiplies all six α by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
@@ -42,13 +42,13 @@ impl OdometryNoise {
     }
 }
 
-/// The pose after holding `command` for `dt_s` seconds: an arc of a circle, or a straight line.
+/// Returns the pose after `command` for `dt_s` seconds: an arc of a circle, or a straight line.
 #[must_use]
 pub fn drive_exactly(world_from_body: &SE2, command: VelocityCommand, dt_s: f64) -> SE2 {
     drive_arc(world_from_body, command, dt_s, STRAIGHT_TRUTH)
 }
 
-/// A pose drawn from the velocity motion model (Thrun, Burgard, Fox 2005, Table 5.3).
+/// Draws a pose from the velocity motion model (Thrun, Burgard, Fox 2005, Table 5.3).
 ///
 /// `v̂ = v + N(0, √(α₁v² + α₂ω²))`, `ω̂ = ω + N(0, √(α₃v² + α₄ω²))`,
 /// `γ̂ = N(0, √(α₅v² + α₆ω²))`, drawn in this order; the arc of `(v̂, ω̂)`, then θ grows by `γ̂ dt`.

@@ -1,9 +1,8 @@
-//! A flat that is being drawn: walls, a start and way points, to the centimetre.
+//! A floor plan that a user draws: walls, a start and way points, to the centimetre.
 //!
-//! A [`Course`] can be driven; a sketch need not be, or nobody could draw it wall by wall. Both forms in
-//! which a sketch travels hold whole centimetres and degrees: the JSON of a course ([`Sketch::to_json`]),
-//! and a short text for links ([`Sketch::to_text`]). So a course is the same to the bit whichever way it
-//! came.
+//! A [`Course`] can be driven; a sketch may be incomplete, because it is drawn wall by wall. Both of its
+//! formats keep whole centimetres and degrees: the JSON of a course ([`Sketch::to_json`]), and a short
+//! text for links ([`Sketch::to_text`]). Therefore both give the same course to the bit.
 
 mod error;
 mod text;
@@ -21,26 +20,26 @@ pub use error::SketchError;
 /// Centimetres in a metre.
 const CM_PER_M: f64 = 100.0;
 
-/// A place, `[x, y]` in centimetres, world frame.
+/// A point, `[x, y]` in centimetres, world frame.
 pub type PlaceCm = [i32; 2];
 
-/// Walls, start and way points, which may not yet make a course.
+/// Walls, start and way points, which need not be a valid course yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sketch {
     /// Walls, each from its first end to its second, cm.
     pub walls_cm: Vec<[PlaceCm; 2]>,
-    /// Where the robot starts, cm.
+    /// Start position, cm.
     pub start_cm: PlaceCm,
-    /// Where it looks there, degrees from 0 to 359; 0 is along x.
+    /// Start heading, degrees from 0 to 359; 0 is along x.
     pub heading_deg: i32,
-    /// Where it drives to, in order, cm.
+    /// Way points, in order, cm.
     pub way_points_cm: Vec<PlaceCm>,
-    /// The way point from which on places are seen again, counted from 0.
+    /// Index of the way point, from 0, after which the robot revisits known space.
     pub turn: Option<usize>,
 }
 
 impl Sketch {
-    /// A course to the nearest centimetre; walls that are shorter than one are left out.
+    /// Rounds a course to centimetres, without walls shorter than one.
     #[must_use]
     pub fn from_course(course: &Course) -> Self {
         let walls = course.world().walls().iter();
@@ -55,7 +54,7 @@ impl Sketch {
         }
     }
 
-    /// Reads the JSON of a course to the nearest centimetre.
+    /// Reads the JSON of a course and rounds it to centimetres.
     ///
     /// # Errors
     /// Those of [`Course::from_json`].
@@ -63,10 +62,10 @@ impl Sketch {
         Course::from_json(text).map(|course| Self::from_course(&course))
     }
 
-    /// The course, where it can be driven.
+    /// Converts the sketch to a course, if it can be driven.
     ///
     /// # Errors
-    /// What stands in the way.
+    /// The reason why it cannot be driven.
     pub fn course(&self) -> Result<Course, CourseError> {
         let walls: Vec<_> = self.walls().collect();
         let [x, y] = self.start_cm.map(to_m);
@@ -87,7 +86,7 @@ impl Sketch {
         })
     }
 
-    /// The JSON of the course, as `docs/worlds.md` says.
+    /// Writes the JSON of the course, see `docs/worlds.md`.
     #[must_use]
     pub fn to_json(&self) -> String {
         let place = |cm: &PlaceCm| {
@@ -108,14 +107,14 @@ impl Sketch {
             way_points.join(", "),
         );
         if let Some(turn) = self.turn {
-            // A text takes whatever is written to it.
+            // Writing to a string cannot fail.
             let _ = write!(json, ",\n  \"turn_at\": {}", turn + 1);
         }
         json + "\n}\n"
     }
 }
 
-/// Centimetres in metres: the nearest number to the decimal fraction, as a file reads it.
+/// Converts centimetres to metres: the number nearest to the decimal fraction, as parsed from a file.
 #[must_use]
 pub fn to_m(cm: i32) -> f64 {
     f64::from(cm) / CM_PER_M

@@ -5,7 +5,7 @@ use pr_geom::{Point2, math};
 /// Below this |d × (s2 − s1)| a ray counts as parallel to a wall.
 const PARALLEL: f64 = 1e-12;
 
-/// A wall this much beyond the range is still tested: distance and ray round differently, m.
+/// Walls up to this much beyond the range are still tested, because distance and ray round differently, m.
 const RANGE_ROUNDING_M: f64 = 1e-6;
 
 /// A wall: the segment from `start` to `end`, in metres, world frame.
@@ -51,7 +51,7 @@ pub struct Room {
     pub bounds: Bounds,
 }
 
-/// A flat world of walls.
+/// A planar world of walls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
     bounds: Bounds,
@@ -59,7 +59,7 @@ pub struct World {
 }
 
 impl World {
-    /// A world of any walls within `bounds`.
+    /// Creates a world of walls within `bounds`.
     #[must_use]
     pub fn new(bounds: Bounds, walls: Vec<Wall>) -> Self {
         Self { bounds, walls }
@@ -124,7 +124,8 @@ impl World {
         &self.walls
     }
 
-    /// Distance in metres from `origin` along `angle_rad` to the first wall, at most `max_range_m`.
+    /// Casts a ray: distance in metres from `origin` along `angle_rad` to the first wall, at most
+    /// `max_range_m`.
     #[must_use]
     pub fn cast(&self, origin: Point2<f64>, angle_rad: f64, max_range_m: f64) -> f64 {
         let mut viewpoint = Viewpoint::default();
@@ -140,9 +141,9 @@ pub(crate) fn rectangle(x_from: f64, y_from: f64, x_to: f64, y_to: f64) -> Bound
     }
 }
 
-/// What all rays from one origin share: the walls within range, relative to it.
+/// Casts rays from one origin: the walls within range, relative to it.
 ///
-/// One array a coordinate, so that the inner loop reads plain arrays and may use SIMD.
+/// One array per coordinate, because the inner loop can then use SIMD.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Viewpoint {
     max_range_m: f64,
@@ -155,8 +156,7 @@ pub struct Viewpoint {
 }
 
 impl Viewpoint {
-    /// Moves the viewpoint to `origin` and leaves out walls beyond `max_range_m`; its buffers are
-    /// used again.
+    /// Moves the viewpoint to `origin` and drops walls beyond `max_range_m`; reuses the buffers.
     pub fn stand_at(&mut self, world: &World, origin: Point2<f64>, max_range_m: f64) {
         self.max_range_m = max_range_m;
         for buffer in [
@@ -197,8 +197,8 @@ impl Viewpoint {
             let denominator = dir_x * edge_y[i] - dir_y * edge_x[i];
             let t = self.start_cross_edge[i] / denominator;
             let u = (to_start_x[i] * dir_y - to_start_y[i] * dir_x) / denominator;
-            // One test without a branch inside: most walls miss, in no pattern that a branch
-            // predictor could learn.
+            // One test without a branch: most walls miss, in a pattern that branch prediction cannot
+            // learn.
             let on_ray = (t >= 0.0) & (t < best);
             let on_wall = (0.0..=1.0).contains(&u);
             let hit = (denominator.abs() >= PARALLEL) & on_ray & on_wall;

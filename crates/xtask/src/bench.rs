@@ -1,5 +1,5 @@
-//! `cargo xtask bench`: the same workloads natively and as WebAssembly, timed by turns and counted, and what is
-//! measured beside them.
+//! `cargo xtask bench`: times the same workloads natively and as WebAssembly, interleaved, counts their instructions,
+//! and measures the other tables of the page.
 
 use std::fs::{self, File};
 use std::path::Path;
@@ -11,11 +11,11 @@ use crate::run::{cargo, program, root, run};
 use crate::site::{self, Speed, wasm_pack_build};
 use crate::tools;
 
-/// Where the tables stand.
+/// The page with the tables.
 pub const PAGE: &str = "docs/performance.md";
 
-/// Measures, prints the tables, writes them into `docs/performance.md`, and the figures of the
-/// workloads to `json` if one is named.
+/// Measures, prints the tables, writes them into `docs/performance.md`, and writes the figures of the
+/// workloads to `json` if it is given.
 ///
 /// # Errors
 /// The first step that fails.
@@ -50,10 +50,7 @@ pub fn bench(json: Option<&Path>) -> anyhow::Result<()> {
     measure
         .env("CHROMIUM", &chromium)
         .stdout(File::create(&turns)?);
-    run(
-        "Measuring by turns: natively, in Node, in Chromium",
-        &mut measure,
-    )?;
+    run("Measuring natively, in Node and in Chromium", &mut measure)?;
     let mut count = program(&ours);
     count.arg("count").stdout(File::create(&instructions)?);
     run("Counting instructions if valgrind is installed", &mut count)?;
@@ -71,11 +68,11 @@ pub fn bench(json: Option<&Path>) -> anyhow::Result<()> {
     )?;
     let clouds = root().join("target/bench-clouds");
     table(
-        "Registration of files",
+        "Registration compared with nanoflann",
         program(&ours).arg("registration").args([&slam2d, &clouds]),
     )?;
     table(
-        "The lap at many seeds",
+        "The sweep over seeds",
         program(&ours).arg("sweep").arg(&slam2d),
     )?;
     for (what, script) in [

@@ -1,7 +1,7 @@
-//! `cargo xtask fuzz`: every door from outside under libFuzzer, one after the other, by cargo-fuzz.
+//! `cargo xtask fuzz`: runs the fuzz targets under libFuzzer, one after the other, by cargo-fuzz.
 //!
-//! The doors are functions in `tests/fuzz_targets`; `fuzz/` gives each a target. What a run finds new goes
-//! to `target/fuzz/corpus`, what makes a door panic to `fuzz/artifacts`.
+//! The entry points for external input are functions in `tests/fuzz_targets`; `fuzz/` has a target for each. New inputs go
+//! to `target/fuzz/corpus`, inputs that cause a panic to `fuzz/artifacts`.
 
 use std::fs;
 use std::path::PathBuf;
@@ -12,16 +12,16 @@ use anyhow::{Context as _, bail};
 use crate::run::{cargo, root, run};
 use crate::tools;
 
-/// What to fuzz, and for how long.
+/// The targets and the time limit.
 #[derive(Debug, clap::Args)]
 pub struct Fuzz {
-    /// One target of fuzz/fuzz_targets alone.
+    /// Only this target of fuzz/fuzz_targets.
     #[arg(long)]
     target: Option<String>,
-    /// Minutes in all, shared alike by the targets.
+    /// Minutes in total, divided equally among the targets.
     #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u64).range(1..))]
     minutes: u64,
-    /// Take the fewest inputs that together reach as much code as all into fuzz/corpus, which the tests replay.
+    /// Reduce all inputs to the fewest that reach the same code, and keep those in fuzz/corpus for the tests.
     #[arg(long)]
     keep: bool,
 }
@@ -29,7 +29,7 @@ pub struct Fuzz {
 /// Runs the targets.
 ///
 /// # Errors
-/// If a target cannot be built, or an input makes a door panic.
+/// If a target cannot be built, or an input causes a panic.
 pub fn fuzz(fuzz: &Fuzz) -> anyhow::Result<()> {
     tools::ensure_cargo_fuzz()?;
     let targets = match &fuzz.target {
@@ -45,9 +45,9 @@ pub fn fuzz(fuzz: &Fuzz) -> anyhow::Result<()> {
         fuzzer.args([
             "--",
             &format!("-max_total_time={seconds}"),
-            // A few dozen lines or points.
+            // Sufficient for a few dozen lines or points.
             "-max_len=2048",
-            // The slowest take a tenth of a second of a quiet machine, and the fuzzer goes by the clock of the wall.
+            // The slowest take a tenth of a second on a quiet machine, and the fuzzer measures wall time.
             "-timeout=300",
             "-rss_limit_mb=4096",
             "-print_final_stats=1",
@@ -59,7 +59,7 @@ pub fn fuzz(fuzz: &Fuzz) -> anyhow::Result<()> {
     }
     if !failed.is_empty() {
         bail!(
-            "{}: mend the code, and move the inputs of fuzz/artifacts to fuzz/found, where the tests replay them",
+            "{}: fix the code and move the inputs from fuzz/artifacts to fuzz/found, where the tests replay them",
             failed.join(", ")
         );
     }
@@ -69,7 +69,7 @@ pub fn fuzz(fuzz: &Fuzz) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The names of all targets.
+/// Returns the names of all targets.
 fn targets() -> anyhow::Result<Vec<String>> {
     let files = fs::read_dir(root().join("fuzz/fuzz_targets"))?;
     let name = |file: fs::DirEntry| Some(file.path().file_stem()?.to_str()?.to_owned());
@@ -78,18 +78,18 @@ fn targets() -> anyhow::Result<Vec<String>> {
     Ok(names)
 }
 
-/// Replaces the inputs of the project by the fewest that together pass as many edges as all that are known.
+/// Replaces the inputs of the repository by the fewest that cover the same edges as all known inputs.
 fn keep(target: &str) -> anyhow::Result<()> {
     let chosen = root().join("target/fuzz/kept").join(target);
-    // Of an earlier run; mostly there is none.
+    // It remains only if an earlier run was interrupted.
     _ = fs::remove_dir_all(&chosen);
     fs::create_dir_all(&chosen)?;
     let mut merge = fuzzer(target, chosen.clone());
     merge.arg(root().join("target/fuzz/corpus").join(target));
-    // How often an edge is passed matters to the fuzzer, but would keep ten times as much.
+    // Counting how often an edge is taken helps the fuzzer, but would keep ten times as many inputs.
     merge.args(["--", "-set_cover_merge=1", "-use_counters=0"]);
     run(
-        &format!("Keeping what reaches new code: {target}"),
+        &format!("Keeping inputs that reach new code: {target}"),
         merge.arg("-rss_limit_mb=4096"),
     )?;
     let kept = root().join("fuzz/corpus").join(target);
@@ -97,7 +97,7 @@ fn keep(target: &str) -> anyhow::Result<()> {
     fs::rename(&chosen, &kept).with_context(|| format!("{}", kept.display()))
 }
 
-/// The fuzzer of a target, on the inputs of the project and a folder for more.
+/// Returns the command of a target's fuzzer, on the inputs of the repository and a folder for new ones.
 fn fuzzer(target: &str, more: PathBuf) -> Command {
     let mut command = cargo();
     command
@@ -105,7 +105,7 @@ fn fuzzer(target: &str, more: PathBuf) -> Command {
         .arg(more)
         .current_dir(root().join("fuzz"))
         .env("PATH", tools::path_with_tools())
-        // The counters for the fuzzer are an unstable option of the stable compiler.
+        // Coverage counters are an unstable option, which this enables in the stable compiler.
         .env("RUSTC_BOOTSTRAP", "1")
         .env("CARGO_TARGET_DIR", root().join("target/fuzz/build"));
     let committed = ["corpus", "found"].map(|kind| root().join("fuzz").join(kind).join(target));

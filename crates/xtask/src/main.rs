@@ -1,7 +1,7 @@
-//! The project's commands: `cargo xtask serve`, `build`, `test` and what belongs to them.
+//! The project's commands: `cargo xtask serve`, `build`, `test` and others.
 //!
-//! Each command first installs what it needs, as far as cargo, npm or apt can, and otherwise names it with the way to
-//! get it. Tools go to `target/tools`; only the wasm target and Chromium go elsewhere, through rustup and apt.
+//! Each command first installs what it needs through cargo, npm or apt. If that is not possible, its error message says
+//! how to get it. Tools go to `target/tools`; only the wasm target and Chromium go elsewhere, through rustup and apt.
 
 mod bench;
 mod fuzz;
@@ -30,7 +30,7 @@ enum Command {
         /// The TCP port.
         #[arg(long, default_value_t = 8016, value_parser = clap::value_parser!(u16).range(1..))]
         port: u16,
-        /// As published: smaller and faster, and minutes to compile.
+        /// Build as published: smaller and faster, but minutes to compile.
         #[arg(long)]
         release: bool,
     },
@@ -38,41 +38,41 @@ enum Command {
     Build,
     /// Build the npm archive and the Python wheel into target/packages/.
     Package,
-    /// Run every check, or the named pieces of the suite.
+    /// Run every check, or some pieces of the suite.
     Test {
-        /// What to run, whatever the order here; all of them if none is named.
+        /// The pieces to run, in the order of the suite; all by default.
         pieces: Vec<Piece>,
-        /// Only what needs no site: format, licences, native, lints.
+        /// Only the pieces that need no site: format, licences, native, lints.
         #[arg(long, conflicts_with = "pieces")]
         quick: bool,
     },
-    /// Lint and test the crate that times other people's solvers.
+    /// Lint and test the crate that benchmarks other solvers.
     Peers,
-    /// Lint and test the program that opens a widget in a window of the desktop.
+    /// Lint and test the program that opens a widget in a desktop window.
     Desktop,
-    /// Run the browser tests again and again while other work keeps every core busy.
+    /// Repeat the browser tests while other work keeps every core busy.
     Soak {
         /// The number of rounds.
         #[arg(value_parser = clap::value_parser!(u32).range(1..))]
         rounds: u32,
-        /// Go on after a round that failed.
+        /// Continue after a failed round.
         #[arg(long)]
         go_on: bool,
         /// The test files, without `.test.mjs`.
         #[arg(long, value_delimiter = ',')]
         only: Vec<String>,
     },
-    /// Accept the instruction counts of the workloads as they are.
+    /// Record the present instruction counts of the workloads as the reference.
     RecordCounts,
-    /// Feed made-up inputs to every door from outside, under libFuzzer.
+    /// Run the fuzz targets of all external inputs under libFuzzer.
     Fuzz(fuzz::Fuzz),
-    /// Time and count the workloads, and write docs/performance.md.
+    /// Measure times and instructions of the workloads, and write docs/performance.md.
     Bench {
         /// A file for the figures of the workloads as JSON.
         #[arg(long)]
         json: Option<PathBuf>,
     },
-    /// Measure how much smaller each step of the build makes the module.
+    /// Measure the effect of each size optimization of the module.
     Sizes,
 }
 

@@ -1,7 +1,7 @@
-//! `cargo xtask serve`: build, then a file server for this machine, with the headers of a careful host.
+//! `cargo xtask serve`: builds the site and serves it on this machine, with strict security headers.
 //!
-//! Any file server can serve the finished site. The small ones of crates.io send no headers of the caller's, and those
-//! that do compile for longer than the rest of this program.
+//! Any file server can serve the finished site. This one exists because small servers on crates.io send no custom
+//! headers, and those that do take longer to compile than the rest of this program.
 
 use std::io::{self, BufRead as _, BufReader, Write as _};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -13,8 +13,8 @@ use anyhow::Context as _;
 use crate::run::root;
 use crate::site::{self, Speed};
 
-/// What a page with widgets needs and no more. Formulas bring their own fonts; the page shows the
-/// embedding examples in frames of its own. A sandboxed frame has no origin and loads script and wasm all the same.
+/// Only what a page with widgets needs: fonts for the formulas, and frames for the embedding examples. A sandboxed
+/// frame has no origin and must be able to load script and wasm.
 const HEADERS: &str = "Content-Security-Policy: default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; \
      connect-src 'self'; img-src 'self' data:; style-src 'self' 'unsafe-inline'; font-src 'self'; \
      frame-src 'self'; base-uri 'none'; form-action 'none'\r\n\
@@ -26,13 +26,15 @@ const HEADERS: &str = "Content-Security-Policy: default-src 'none'; script-src '
 /// # Errors
 /// A build step that fails, or a port that is taken.
 pub fn serve(port: u16, speed: Speed) -> anyhow::Result<()> {
-    // A taken port is better known before minutes of building.
+    // Report a port in use before minutes of building.
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).with_context(|| {
-        format!("port {port} cannot be used: try another one, as `cargo xtask serve --port 9000`")
+        format!(
+            "port {port} is not available: try another one, such as `cargo xtask serve --port 9000`"
+        )
     })?;
     site::build(speed)?;
     println!("\nServing on http://localhost:{port}/   (stop with Ctrl+C)");
-    // A reader that went away is no error of ours.
+    // A client that disconnects is not an error.
     for stream in listener.incoming().flatten() {
         thread::spawn(move || answer(stream, &root().join("dist")));
     }
@@ -43,7 +45,7 @@ pub fn serve(port: u16, speed: Speed) -> anyhow::Result<()> {
 fn answer(mut stream: TcpStream, folder: &Path) -> io::Result<()> {
     let mut lines = BufReader::new(stream.try_clone()?).lines();
     let request = lines.next().transpose()?.unwrap_or_default();
-    // The rest of the head has to be read: closing with unread input resets the connection.
+    // Read the rest of the head, because closing with unread input resets the connection.
     lines.find(|line| line.as_ref().map_or(true, String::is_empty));
     let mut words = request.split(' ');
     let (method, target) = (words.next(), words.next().unwrap_or_default());
@@ -67,7 +69,7 @@ fn answer(mut stream: TcpStream, folder: &Path) -> io::Result<()> {
     stream.flush()
 }
 
-/// The file that a request means, unless it would lead out of the folder. No name in the site needs an escape.
+/// Returns the file of a request, unless it is outside of the folder. No name in the site needs an escape.
 fn file_of(target: &str, folder: &Path) -> Option<PathBuf> {
     let path = target.split(['?', '#']).next()?;
     let relative = Path::new(path.trim_start_matches('/'));
@@ -101,7 +103,7 @@ fn content_type(path: &Path) -> &'static str {
 mod tests {
     use super::*;
 
-    /// What the server answers to one request over a real connection.
+    /// Returns the server's response to one request over a real connection.
     fn ask(request: &str) -> String {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();

@@ -1,4 +1,4 @@
-//! The finished site: wasm, element, page, pictures, all in `dist/`; and what people install of it.
+//! Builds the finished site in `dist/` (wasm, element, page, pictures) and the packages.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -10,12 +10,12 @@ use crate::bench::PAGE;
 use crate::run::{cargo, output, program, root, run};
 use crate::tools::{self, TARGET};
 
-/// What the compiler aims at.
+/// The build profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Speed {
-    /// Profile `web-dev`: compiles in a fraction of the time, for trying things out.
+    /// Profile `web-dev`: compiles in a fraction of the time, for development.
     QuickToCompile,
-    /// Profile `web`: what is published.
+    /// Profile `web`: the published build.
     SmallAndFast,
 }
 
@@ -48,9 +48,9 @@ pub fn build(speed: Speed) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Compiles both modules of the site, and the tools that make packages of them beside.
+/// Compiles both modules of the site, and at the same time the tools that package them.
 ///
-/// wasm-pack then finds what it would compile up to date.
+/// wasm-pack then has nothing left to compile.
 fn compile(speed: Speed) -> anyhow::Result<()> {
     let mut modules = cargo();
     modules
@@ -63,7 +63,7 @@ fn compile(speed: Speed) -> anyhow::Result<()> {
         tools.join().map_err(|_| anyhow!("a thread panicked"))?
     })?;
     run("Packing the widgets", &mut wasm_build("../pkg", speed))?;
-    // One instance in a worker of its own: the glue is a module that the worker's script takes in.
+    // One instance in a worker: the glue is a module that the worker's script imports.
     let worker = [
         "--target=web",
         "--out-dir=../../pkg-robot",
@@ -73,16 +73,16 @@ fn compile(speed: Speed) -> anyhow::Result<()> {
     run("Packing the worker that maps logs", &mut robot)
 }
 
-/// The build of the widgets into a folder, named as seen from `web/module/`; takes more options of cargo.
+/// Returns the command that builds the widgets into a folder relative to `web/module/`; takes more options of cargo.
 fn wasm_build(folder: &str, speed: Speed) -> Command {
-    // `no-modules`: one function that holds the whole glue, and the element makes as many
-    // instances as there are widgets. No wasm-opt: see web/module/Cargo.toml.
+    // `no-modules`: the glue is one function, which the element calls once per widget to make an
+    // instance. No wasm-opt: see web/module/Cargo.toml.
     let folder = format!("--out-dir={folder}");
     let options = ["--target=no-modules", &folder, "--out-name=slam_web"];
     wasm_pack_build("web/module", &options, speed)
 }
 
-/// `wasm-pack build PACKAGE`; takes more options of cargo.
+/// Returns the command `wasm-pack build PACKAGE`; takes more options of cargo.
 pub fn wasm_pack_build(package: &str, options: &[&str], speed: Speed) -> Command {
     let mut command = program("wasm-pack");
     command
@@ -95,8 +95,8 @@ pub fn wasm_pack_build(package: &str, options: &[&str], speed: Speed) -> Command
     command
 }
 
-/// Panic messages name sources, and so the module would hold where this machine keeps cargo's registry: the compiler
-/// writes `cargo/registry/…` instead. The setting is added to the flags of `.cargo/config.toml`.
+/// Replaces this machine's path of cargo's registry by `cargo/registry/…` in panic messages, because the module would
+/// contain it. The setting is added to the flags of `.cargo/config.toml`.
 fn remapping() -> Vec<String> {
     let home = env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| Some(env::home_dir()?.join(".cargo")));
@@ -107,7 +107,7 @@ fn remapping() -> Vec<String> {
     home.map_or_else(Vec::new, |home| vec!["--config".to_owned(), setting(home)])
 }
 
-/// `cargo xtask package`: the npm archive and the Python wheel, in `target/packages`. The command line needs no
+/// `cargo xtask package`: makes the npm archive and the Python wheel in `target/packages`. The command line needs no
 /// package: `cargo install --path crates/slam2d_cli`.
 ///
 /// # Errors
@@ -126,7 +126,7 @@ pub fn package() -> anyhow::Result<()> {
     )
 }
 
-/// Builds of the module: a folder, how it differs from the published one, more options of cargo.
+/// Variants of the module: a folder, the difference from the published one, more options of cargo.
 const VARIANTS: [(&str, &str, &[&str]); 5] = [
     ("published", "as published", &[]),
     (
@@ -162,7 +162,7 @@ pub fn sizes() -> anyhow::Result<()> {
     let mut table = program("node");
     table.args(["web/size-table.mjs", PAGE]);
     for (id, what, options) in VARIANTS {
-        // A target folder of its own: the published build stays compiled.
+        // A separate target folder, because the published build stays compiled.
         let mut build = wasm_build(&format!("../../target/sizes/{id}"), Speed::SmallAndFast);
         build.args(options);
         build.env("CARGO_TARGET_DIR", folder.join("cargo"));
@@ -179,7 +179,7 @@ mod tests {
 
     use super::*;
 
-    /// What a module of the site is made of: crates with versions and features.
+    /// Returns the crates of a module of the site, with versions and features.
     fn crates_of(package: &str) -> BTreeSet<String> {
         let tree = output(
             cargo()

@@ -1,4 +1,4 @@
-//! `cargo xtask test`: every check there is, cheapest first. `docs/testing.md` says what is where.
+//! `cargo xtask test`: runs every check, cheapest first. `docs/testing.md` describes them.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,7 +11,7 @@ use crate::run::{cargo, program, root, run};
 use crate::site::{self, Speed};
 use crate::tools::{self, TARGET, linting};
 
-/// A part of the suite, in the order in which they run.
+/// A piece of the suite, in the order in which they run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Piece {
     /// `cargo fmt --check`
@@ -20,7 +20,7 @@ pub enum Piece {
     Licences,
     /// Everything native: compiled and linted in one pass, then tested
     Native,
-    /// Lints of what only WebAssembly compiles
+    /// Lints of code for WebAssembly only
     Lints,
     /// Counted instructions against the recorded ones
     Counts,
@@ -32,7 +32,7 @@ pub enum Piece {
     Browser,
 }
 
-/// The named pieces in the order of the suite.
+/// Returns the chosen pieces in the order of the suite.
 pub fn chosen(named: Vec<Piece>, quick: bool) -> Vec<Piece> {
     use Piece::{Format, Licences, Lints, Native};
     let named = if quick {
@@ -50,7 +50,7 @@ pub fn chosen(named: Vec<Piece>, quick: bool) -> Vec<Piece> {
 /// # Errors
 /// The check that failed.
 pub fn test(pieces: &[Piece]) -> anyhow::Result<()> {
-    // What is missing is better known before many minutes of compiling and testing.
+    // Report missing tools before many minutes of compiling and testing.
     let is_native = |piece| matches!(piece, &Piece::Format | &Piece::Native | &Piece::Counts);
     if !pieces.iter().all(is_native) {
         tools::ensure_web_tools()?;
@@ -72,7 +72,7 @@ pub fn test(pieces: &[Piece]) -> anyhow::Result<()> {
 
 fn test_piece(piece: Piece, chromium: Option<&Path>, skipped: &Path) -> anyhow::Result<()> {
     let tell = |command: &mut Command| {
-        // Tests append a line for each thing that they skip.
+        // Tests append a line for each skip.
         command.env("SLAM_SKIPPED", skipped);
     };
     match piece {
@@ -80,8 +80,8 @@ fn test_piece(piece: Piece, chromium: Option<&Path>, skipped: &Path) -> anyhow::
         Piece::Licences => run("Licences", program("node").arg("web/licences/check.mjs")),
         Piece::Native => {
             let mut compile = cargo();
-            // Benches are compiled, to be linted; only `cargo bench` runs them. `--all-targets` would
-            // also link test programs for what has no tests.
+            // Benches are compiled only to lint them; `cargo bench` runs them. `--all-targets` would also
+            // link test programs of packages without tests.
             linting(&mut compile)?
                 .args(["test", "--quiet", "--no-run"])
                 .args(["--tests", "--benches", "--examples"]);
@@ -96,7 +96,7 @@ fn test_piece(piece: Piece, chromium: Option<&Path>, skipped: &Path) -> anyhow::
                 .args(["--package=slam_web", "--package=slam_robot"])
                 .args(["--", "-D", "warnings"])
                 .env("CARGO_INCREMENTAL", "0");
-            run("Linting what only WebAssembly compiles", &mut lint)
+            run("Linting code for WebAssembly only", &mut lint)
         }
         Piece::Counts => {
             compile_programs()?;
@@ -126,11 +126,11 @@ fn test_piece(piece: Piece, chromium: Option<&Path>, skipped: &Path) -> anyhow::
     }
 }
 
-/// What the build writes and the repository holds. The README's table of sizes is no part of it: compressed sizes
-/// change with the version of Node, as its zlib and brotli do.
+/// Committed files that the build writes. The README's table of sizes is not one of them, because compressed sizes
+/// change with the version of Node and of its zlib and brotli.
 const GENERATED: [&str; 2] = ["web/slam-widget.d.ts", "docs/parameters.md"];
 
-/// On a build machine, fails if the build has changed a generated file.
+/// Fails if the build has changed a generated file, on a build machine.
 fn check_generated() -> anyhow::Result<()> {
     if matches!(env::var("CI").as_deref(), Err(_) | Ok("" | "0" | "false")) {
         return Ok(());
@@ -142,8 +142,8 @@ fn check_generated() -> anyhow::Result<()> {
         .context("commit what `cargo xtask build` writes: the files above are out of date")
 }
 
-/// Compiles what is counted, and what is compared with the module in Node: of the whole workspace, with a bench. Then
-/// the crates have the features that they have for the tests, and are compiled once.
+/// Compiles the programs that are counted or compared with the module in Node: with the whole workspace and a bench,
+/// because the crates then have the same features as for the tests and are compiled once.
 fn compile_programs() -> anyhow::Result<()> {
     let mut compile = cargo();
     linting(&mut compile)?
@@ -158,7 +158,7 @@ fn programs() -> PathBuf {
     root().join("target/debug")
 }
 
-/// The test files of a folder by name: what `node --test` makes of a folder differs by version.
+/// Returns the test files of a folder by name, because `node --test FOLDER` differs by version.
 fn test_files(folder: &str) -> anyhow::Result<Vec<PathBuf>> {
     let entries = fs::read_dir(root().join(folder))?;
     let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
@@ -167,11 +167,11 @@ fn test_files(folder: &str) -> anyhow::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// The browser tests: all files, or those that are named, such as `drag`.
+/// Returns the command of the browser tests: all files, or the given ones, such as `drag`.
 fn browser_tests(chromium: &Path, only: &[String]) -> Command {
     let mut node = program("node");
     node.arg("tests/browser/run.mjs").env("CHROMIUM", chromium);
-    // The pieces before have compiled it; without them the test that needs it does.
+    // Earlier pieces have compiled it; without them the test that needs it does.
     if programs().join("slam2d").exists() {
         node.env("SLAM_NATIVE", programs());
     }
@@ -184,10 +184,10 @@ fn browser_tests(chromium: &Path, only: &[String]) -> Command {
 /// `cargo xtask soak`: repeats the browser tests while a busy thread for each core loads the machine.
 ///
 /// # Errors
-/// The rounds that failed; what failed in them stands in the output above.
+/// The failed rounds; the output above has the failed tests.
 pub fn soak(rounds: u32, go_on: bool, only: &[String]) -> anyhow::Result<()> {
     if !root().join("dist/schema.json").is_file() {
-        bail!("dist/ holds no site: `cargo xtask build` makes one");
+        bail!("dist/ does not contain a site: `cargo xtask build` makes one");
     }
     tools::ensure_node_modules("tests/browser")?;
     let chromium = tools::ensure_chromium_for_tests()?;
@@ -216,7 +216,7 @@ pub fn soak(rounds: u32, go_on: bool, only: &[String]) -> anyhow::Result<()> {
     bail!("these rounds failed: {failed:?}")
 }
 
-/// `cargo xtask record-counts`: what the workloads take now is what the suite allows from now on.
+/// `cargo xtask record-counts`: records the present instruction counts as the suite's reference.
 ///
 /// # Errors
 /// If they do not compile, or valgrind is missing.
@@ -227,8 +227,8 @@ pub fn record_counts() -> anyhow::Result<()> {
     run("Recording the instruction counts", &mut count)
 }
 
-/// Lints and tests a package that the suite leaves out: what it needs of others takes a minute and more to compile,
-/// and nothing of ours depends on it.
+/// Lints and tests a package that the suite leaves out, because its dependencies take a minute or more to compile and
+/// no other package depends on it.
 ///
 /// # Errors
 /// The step that failed.
@@ -283,7 +283,7 @@ mod tests {
     #[test]
     fn git_knows_the_generated_files() {
         let listed = output(program("git").args(["ls-files", "--"]).args(GENERATED));
-        // No git, no check: an unpacked archive has no history.
+        // Without git there is no check: an unpacked archive has no history.
         if let Some(listed) = listed {
             assert_eq!(listed.lines().count(), GENERATED.len());
         }

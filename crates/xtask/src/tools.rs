@@ -1,4 +1,4 @@
-//! What the commands need besides cargo: found, installed, or named with the way to get it.
+//! Finds or installs the tools that the commands need besides cargo, or reports how to get them.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -9,15 +9,15 @@ use anyhow::{Context as _, bail};
 
 use crate::run::{cargo, output, program, root, run};
 
-/// What browsers run.
+/// The compilation target of browsers.
 pub const TARGET: &str = "wasm32-unknown-unknown";
 
-/// What fits the rest: wasm-bindgen's version stands in `web/bindgen/Cargo.toml`, and the sizes of the README are of
-/// these.
+/// Versions of the tools. That of wasm-bindgen is in `web/bindgen/Cargo.toml`; the sizes in the README were measured
+/// with these.
 const WASM_PACK: &str = "0.15.1";
 const CARGO_FUZZ: &str = "0.13.2";
 
-/// Makes sure that the wasm target, Node and the npm packages are there.
+/// Installs the wasm target and the npm packages if they are missing, and checks Node.
 ///
 /// # Errors
 /// What is missing and how to get it.
@@ -40,7 +40,7 @@ pub fn ensure_web_tools() -> anyhow::Result<()> {
     ensure_node_modules("web")
 }
 
-/// Takes what `node --version` printed, if there is a Node.
+/// Checks the output of `node --version`, if there is a Node.
 fn check_node(version: Option<&str>) -> anyhow::Result<()> {
     let major = |version: &str| {
         version
@@ -57,7 +57,7 @@ fn check_node(version: Option<&str>) -> anyhow::Result<()> {
     }
 }
 
-/// `npm ci` in a folder of the project if the lock file is newer than what it installed.
+/// Runs `npm ci` in a folder of the project if the lock file is newer than the installed packages.
 ///
 /// # Errors
 /// If npm is missing or cannot install them.
@@ -79,12 +79,12 @@ pub fn ensure_node_modules(folder: &str) -> anyhow::Result<()> {
     .with_context(|| format!("`npm ci` in {folder}/ needs npm and the network"))
 }
 
-/// npm is a script on Windows, which must be named in full.
+/// The name of npm: on Windows it is a script, which needs its extension.
 pub fn npm() -> &'static str {
     if cfg!(windows) { "npm.cmd" } else { "npm" }
 }
 
-/// Compiles wasm-bindgen's command and installs wasm-pack if they are not there.
+/// Compiles wasm-bindgen's command and installs wasm-pack if they are missing.
 ///
 /// # Errors
 /// If cargo cannot compile them.
@@ -100,7 +100,7 @@ pub fn ensure_wasm_pack() -> anyhow::Result<()> {
     ensure_cargo_tool("wasm-pack", WASM_PACK)
 }
 
-/// Installs what runs the fuzz targets.
+/// Installs cargo-fuzz.
 ///
 /// # Errors
 /// If cargo cannot install it.
@@ -108,7 +108,7 @@ pub fn ensure_cargo_fuzz() -> anyhow::Result<()> {
     ensure_cargo_tool("cargo-fuzz", CARGO_FUZZ)
 }
 
-/// Without optimization: these tools run for a moment and would compile for minutes.
+/// Installs a tool without optimization, because it runs briefly and would take minutes to compile.
 fn ensure_cargo_tool(name: &str, version: &str) -> anyhow::Result<()> {
     let mut ask = program(name);
     let found = output(ask.arg("--version").env("PATH", path_with_tools()));
@@ -127,13 +127,11 @@ fn ensure_cargo_tool(name: &str, version: &str) -> anyhow::Result<()> {
         &mut install,
     )
     .with_context(|| {
-        format!(
-            "it needs the network and a C compiler; any {name} {version} on the PATH will do, too"
-        )
+        format!("it needs the network and a C compiler; {name} {version} on the PATH works too")
     })
 }
 
-/// The PATH with our own tools first.
+/// Returns the PATH with the project's tools first.
 pub fn path_with_tools() -> OsString {
     let inherited = env::var_os("PATH").unwrap_or_default();
     let tools = root().join("target/tools/bin");
@@ -141,10 +139,10 @@ pub fn path_with_tools() -> OsString {
     env::join_paths(paths).unwrap_or(inherited)
 }
 
-/// Makes clippy the compiler of the workspace's own crates and every warning an error.
+/// Makes clippy the compiler of the workspace's crates and every warning an error.
 ///
-/// That is what `cargo clippy -- -D warnings` does, but for `cargo build` and `cargo test` as well: one pass compiles
-/// and lints, and the crates of others are not checked once more.
+/// It does for `cargo build` and `cargo test` what `cargo clippy -- -D warnings` does: one pass compiles and lints, and
+/// third-party crates are not checked again.
 ///
 /// # Errors
 /// If clippy is missing.
@@ -165,10 +163,10 @@ pub fn linting(command: &mut Command) -> anyhow::Result<&mut Command> {
         .env("CARGO_INCREMENTAL", "0"))
 }
 
-/// The engine alone, without the windows around it, as Debian and Playwright name it: a page takes a sixth less.
+/// The engine without windows, by its name in Debian and Playwright; a page takes a sixth less time.
 const SHELL: &str = "chromium-headless-shell";
 
-/// The Chromium for tests; installed through apt-get as root on Debian.
+/// Returns the Chromium for tests; installs it through apt-get as root on Debian.
 ///
 /// # Errors
 /// How to get one.
@@ -176,7 +174,7 @@ pub fn ensure_chromium_for_tests() -> anyhow::Result<PathBuf> {
     ensure_chromium(&[SHELL, "chromium"])
 }
 
-/// The Chromium whose times are measured: what readers have.
+/// Returns the Chromium for measuring times, which readers have.
 ///
 /// # Errors
 /// How to get one.
@@ -191,7 +189,7 @@ fn ensure_chromium(packages: &[&str]) -> anyhow::Result<PathBuf> {
     if let Some(named) = env::var_os("CHROMIUM") {
         let path = PathBuf::from(named);
         if !path.is_file() {
-            bail!("CHROMIUM names {path:?}, which is no file: correct or unset it");
+            bail!("CHROMIUM is {path:?}, which is not a file: correct or unset it");
         }
         return Ok(path);
     }

@@ -1,4 +1,4 @@
-//! Three worlds in which a map goes wrong although nothing is broken: what is seen there is not enough.
+//! Three worlds in which SLAM fails, because the scans do not determine the pose.
 
 use core::f64::consts::TAU;
 
@@ -11,26 +11,26 @@ use crate::world::{Wall, World};
 /// Width of each of the two rooms, m.
 const ROOM_M: f64 = 1.3;
 
-/// The west wall of the first of them, m.
+/// The west wall of the first room, m.
 const ROOMS_AT_M: f64 = 4.2;
 
-/// Middle of the corridor before them, and of the bare one, m.
+/// Middle line of the corridor before the rooms, and of the bare corridor, m.
 const MIDDLE_M: f64 = 0.8;
 
-/// Radius of the hall, m, and of the way around it.
+/// Radius of the hall and of the path around it, m.
 const HALL_M: f64 = 3.5;
 const HALL_WAY_M: f64 = 2.2;
 
-/// Walls of the hall, and way points of one round.
+/// Number of walls of the hall, and of way points of one round.
 const HALL_WALLS: u16 = 36;
 const HALL_ROUND: u16 = 8;
 
 impl Course {
-    /// Two rooms, alike to the millimetre, side by side on a corridor: into the one, up and down the
-    /// corridor twice, into the other.
+    /// Two identical rooms side by side on a corridor: into one, up and down the corridor twice, into
+    /// the other.
     ///
-    /// The second room looks as the first one did. It stands 1.3 m from it, and after so long a way the
-    /// drift may be as much.
+    /// The scans of both rooms are the same. They are 1.3 m apart, and the drift may be as large after
+    /// such a path length, so data association fails.
     #[must_use]
     pub fn twin_rooms() -> Self {
         let east = ROOMS_AT_M + 2.0 * ROOM_M;
@@ -41,7 +41,7 @@ impl Course {
             Wall::horizontal(1.6, 0.0, ROOMS_AT_M),
             Wall::horizontal(1.6, east, 12.0),
             Wall::vertical(east, 1.6, 4.6),
-            // Pillars, so that the corridor itself is no riddle.
+            // Pillars, because the corridor itself must not be degenerate.
             Wall::vertical(2.0, 1.25, 1.6),
             Wall::vertical(9.0, 0.0, 0.3),
         ];
@@ -69,7 +69,7 @@ impl Course {
 
     /// A corridor of 24 m without a door or a pillar, there and back.
     ///
-    /// Along it every sweep looks like the one before.
+    /// Degenerate along its axis: every scan equals the previous one.
     #[must_use]
     pub fn bare_corridor() -> Self {
         let walls = vec![
@@ -84,7 +84,7 @@ impl Course {
 
     /// A round hall of 7 m, one and a half times around.
     ///
-    /// Its wall of 36 pieces says how far it is, and next to nothing of the heading.
+    /// Its wall of 36 segments determines the distance, but hardly the heading.
     #[must_use]
     pub fn round_hall() -> Self {
         let at = |radius_m: f64, share: f64| {

@@ -1,4 +1,4 @@
-//! Distances from places and straight ways to walls.
+//! Distances from points and segments to walls.
 
 use pr_geom::Point2;
 
@@ -34,7 +34,7 @@ fn distance_to(wall: &Wall, point: Point2<f64>) -> f64 {
     distance_to_segment(to_start.x, to_start.y, edge.x, edge.y)
 }
 
-/// 0 where two segments cross, else the least distance of an end of one to the other.
+/// Distance between two segments: 0 if they cross, otherwise the least distance of an end of one to the other.
 fn distance_between(one: &Wall, other: &Wall) -> f64 {
     if separates(one, other) && separates(other, one) {
         return 0.0;
@@ -48,7 +48,7 @@ fn distance_between(one: &Wall, other: &Wall) -> f64 {
     ends.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// Whether the ends of `other` lie on different sides of the line through `line`.
+/// Whether the ends of `other` are on different sides of the line through `line`.
 fn separates(line: &Wall, other: &Wall) -> bool {
     let edge = line.end - line.start;
     let side = |point: Point2<f64>| {

@@ -1,4 +1,4 @@
-//! What can be wrong with a course, in one sentence each.
+//! Errors of a course, one sentence each.
 
 use core::fmt;
 
@@ -10,7 +10,7 @@ use crate::world::Bounds;
 /// A part of a course, counted from 1 as in its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoursePoint {
-    /// Where the robot starts.
+    /// The start pose.
     Start,
     /// A way point.
     WayPoint(usize),
@@ -31,7 +31,7 @@ impl fmt::Display for CoursePoint {
 /// Why a course cannot be driven: what is wrong, where, and what to do. Walls count from 1.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum CourseError {
-    /// The text is no JSON.
+    /// The text is not JSON.
     #[error(
         "line {line}, column {column}: {problem}; the file has to be JSON, which knows no comments, no NaN and no comma after the last item"
     )]
@@ -40,10 +40,10 @@ pub enum CourseError {
         line: usize,
         /// Column in bytes, from 1.
         column: usize,
-        /// What the reader of JSON says.
+        /// The message of the JSON parser.
         problem: String,
     },
-    /// The text is JSON and no course.
+    /// The text is JSON, but not a course.
     #[error(
         "line {line}, column {column}: {problem}; a world has walls_m as [[x, y, x, y], …], start as {{\"x_m\", \"y_m\", \"heading_deg\"}} and way_points_m as [[x, y], …]"
     )]
@@ -52,99 +52,99 @@ pub enum CourseError {
         line: usize,
         /// Column in bytes, from 1.
         column: usize,
-        /// What does not fit.
+        /// The message of the JSON parser.
         problem: String,
     },
-    /// Nothing to see.
+    /// There are no walls.
     #[error("walls_m is empty: give it at least one wall as [x, y, x, y]")]
     NoWalls,
-    /// More walls than a sweep may take time for.
+    /// There are too many walls.
     #[error("walls_m has {count} walls, and {limit} are the most: leave small ones out")]
     TooManyWalls {
-        /// How many there are.
+        /// Their number.
         count: usize,
-        /// How many may be.
+        /// Their largest number.
         limit: usize,
     },
-    /// A wall is a point.
+    /// The ends of a wall coincide.
     #[error("wall {wall} starts where it ends: give it two different ends, or leave it out")]
     NoLength {
-        /// Which wall.
+        /// The number of the wall.
         wall: usize,
     },
-    /// Nowhere to go.
+    /// There are no way points.
     #[error("way_points_m is empty: give it at least one way point as [x, y]")]
     NoWayPoints,
-    /// More way points than a lap may have.
+    /// There are too many way points.
     #[error("way_points_m has {count} way points, and {limit} are the most: leave some out")]
     TooManyWayPoints {
-        /// How many there are.
+        /// Their number.
         count: usize,
-        /// How many may be.
+        /// Their largest number.
         limit: usize,
     },
-    /// The turn is no way point.
+    /// The turn is not a way point.
     #[error("turn_at is {turn}, and there are {count} way points: name one of them, from 1")]
     NoSuchTurn {
-        /// What was given.
+        /// The given value.
         turn: usize,
-        /// How many way points there are.
+        /// The number of way points.
         count: usize,
     },
-    /// A coordinate is not finite or far away.
+    /// A coordinate is not finite or too large.
     #[error("{place} is more than {limit_m} m from the origin: give coordinates in metres near it")]
     TooFar {
-        /// What is there.
+        /// The start, way point or wall.
         place: CoursePoint,
-        /// How far it may be along an axis, m.
+        /// The largest distance along an axis, m.
         limit_m: f64,
     },
-    /// The heading is no angle.
+    /// The heading is not an angle in degrees.
     #[error("heading_deg of the start is not between -360 and 360: give it in degrees")]
     NoHeading,
-    /// A place lies beyond all walls.
+    /// The start or a way point is outside of all walls.
     #[error(
         "{place} is outside the walls, which reach from ({}, {}) to ({}, {}) m: move it inside",
         bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y
     )]
     Outside {
-        /// What is there.
+        /// The start, way point or wall.
         place: CoursePoint,
-        /// What the walls enclose.
+        /// The bounds of the walls.
         bounds: Bounds,
     },
-    /// A place lies in or at a wall.
+    /// The start or a way point is too close to a wall.
     #[error(
         "{place} is {distance_m:.2} m from wall {wall}: keep it {CLEARANCE_M} m from every wall"
     )]
     AtWall {
-        /// What is there.
+        /// The start, way point or wall.
         place: CoursePoint,
-        /// Which wall.
+        /// The number of the wall.
         wall: usize,
-        /// How far from it, m.
+        /// Its distance from the wall, m.
         distance_m: f64,
     },
-    /// The straight way between two places meets a wall.
+    /// The straight segment between two way points is too close to a wall.
     #[error(
         "the straight way from {from} to {to} comes within {distance_m:.2} m of wall {wall}: lead it around by way points, {CLEARANCE_M} m from every wall"
     )]
     Blocked {
-        /// Where it begins.
+        /// Its start.
         from: CoursePoint,
-        /// Where it ends.
+        /// Its end.
         to: CoursePoint,
-        /// Which wall.
+        /// The number of the wall.
         wall: usize,
-        /// How near it comes, m; 0 is through it.
+        /// Its distance from the wall, m; 0 if it crosses the wall.
         distance_m: f64,
     },
-    /// The drive takes too long.
+    /// The path is too long.
     #[error("the way is {length_m:.0} m long, and {limit_m} m are the most: leave way points out")]
     TooLong {
-        /// Its length, m.
+        /// The path length, m.
         length_m: f64,
-        /// What it may be, m.
+        /// The largest path length, m.
         limit_m: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! Courses as JSON: `docs/worlds.md` shows one and says what its fields are.
+//! Reads courses from JSON; `docs/worlds.md` describes the fields.
 
 use pr_geom::{Point2, SE2};
 use serde::Deserialize;
@@ -7,10 +7,10 @@ use serde_json::error::Category;
 use super::{Course, CourseError};
 use crate::world::{Bounds, Wall, World};
 
-/// What editors of Windows put before a text.
+/// The byte order mark, which some editors write.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// So many characters of what the reader of JSON says are told.
+/// Largest number of characters of the JSON parser's message.
 const MOST_QUOTED: usize = 200;
 
 #[derive(Deserialize)]
@@ -34,7 +34,7 @@ impl Course {
     /// Reads a course from JSON; the extent of its world is that of its walls.
     ///
     /// # Errors
-    /// Where the text is no JSON or does not describe a course that can be driven.
+    /// If the text is not JSON or does not describe a course that can be driven.
     pub fn from_json(text: &[u8]) -> Result<Self, CourseError> {
         let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
         let file: CourseFile = serde_json::from_slice(text).map_err(|error| refusal(&error))?;
@@ -92,7 +92,7 @@ fn refusal(error: &serde_json::Error) -> CourseError {
     let words = error.to_string();
     let place = format!(" at line {line} column {column}");
     let words = words.strip_suffix(&place).unwrap_or(&words);
-    // It may quote any words of the file.
+    // The message may quote any text of the file.
     let printable = words.chars().filter(|c| !c.is_control());
     let problem: String = printable.take(MOST_QUOTED).collect();
     match error.classify() {

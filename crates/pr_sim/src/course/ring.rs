@@ -3,10 +3,10 @@
 use crate::world::{Wall, World, rectangle};
 
 impl World {
-    /// A ring of corridors, 1.4 m wide, around a block of five rooms: 12 m × 9 m as the Apartment.
+    /// A ring of corridors, 1.4 m wide, around a block of five rooms: 12 m × 9 m like the Apartment.
     ///
-    /// Every room has one door, so that the corridors are the only way around. No two corridors
-    /// look alike: their doors and the pillars on their outer walls stand at different places.
+    /// Every room has one door, so the corridors are the only path around the block. All corridors
+    /// differ in the positions of their doors and of the pillars on their outer walls.
     #[must_use]
     pub fn ring() -> Self {
         let walls = vec![

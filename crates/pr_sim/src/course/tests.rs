@@ -8,11 +8,11 @@ use crate::driver::WaypointDriver;
 use crate::motion::drive_exactly;
 use crate::world::{Bounds, Wall};
 
-/// Ticks of the chapter's lap, s, and how many of them a lap may take.
+/// Tick of the chapter's lap, s, and the largest number of ticks of a lap.
 const DT_S: f64 = 0.25;
 const MAX_TICKS: usize = 2000;
 
-/// The least distance to a wall on the whole drive in metres; none where it does not end.
+/// The least distance to a wall on the whole drive in metres; `None` if it does not end.
 fn clearance_of_drive(course: &Course) -> Option<f64> {
     let mut driver = WaypointDriver::new(DriverConfig {
         waypoints: course.way_points().to_vec(),
@@ -37,7 +37,7 @@ fn read(text: &str) -> Result<Course, CourseError> {
     Course::from_json(text.as_bytes())
 }
 
-/// A square room of 8 m with a wall in it, and what a test puts in its place.
+/// A square room of 8 m with a wall, in which a test replaces one text by another.
 fn room(replace: &str, with: &str) -> String {
     let text = r#"{
   "walls_m": [[0, 0, 8, 0], [8, 0, 8, 8], [8, 8, 0, 8], [0, 8, 0, 0], [3, 4, 5, 4]],
@@ -70,11 +70,11 @@ fn the_twin_rooms_are_alike_to_the_millimetre() {
             let angle = (f64::from(k) + 0.5) / 360.0 * core::f64::consts::TAU;
             course.world().cast(Point2::new(x, 3.7), angle, 3.0)
         };
-        // Up from the south: through the door the corridor looks another way.
+        // Up from the south: through the door the scans of the corridor differ.
         (0..180).map(cast).collect()
     };
     for (one, other) in sweep(4.85).iter().zip(sweep(6.15)) {
-        // 1e-9: the second room's walls lie at other multiples of the last bit.
+        // 1e-9: the coordinates of the second room's walls round differently.
         assert!((one - other).abs() < 1e-9, "{one} and {other}");
     }
 }
@@ -120,7 +120,7 @@ fn what_is_wrong_is_one_sentence_that_says_what_where_and_what_to_do() {
             "line 5, column 2: EOF while parsing",
             "last item",
         ),
-        // What moves a terminal's cursor is not told.
+        // Control characters are not printed.
         (
             "\"turn_at\"",
             "\"turn\u{7f}at\u{9b}\"",
@@ -299,8 +299,8 @@ fn the_built_in_courses_pass_their_own_checks_and_are_driven() {
     }
 }
 
-/// The cells of 0.2 m that can be reached from one on straight steps between points inside them, of
-/// which none lies on a wall.
+/// The cells of 0.2 m that can be reached from one by straight steps between points inside them, none
+/// of which is on a wall.
 fn reachable(world: &World, from: (i32, i32)) -> BTreeSet<(i32, i32)> {
     let inside = |(x, y)| Point2::new(0.2 * f64::from(x) + 0.07, 0.2 * f64::from(y) + 0.07);
     let mut found = BTreeSet::from([from]);

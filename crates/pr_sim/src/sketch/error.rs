@@ -1,19 +1,19 @@
-//! Why a text is no flat, in one sentence each.
+//! Errors of a floor plan in a link, one sentence each.
 
 use thiserror::Error;
 
-/// Why a text of a link cannot be read as a flat.
+/// Why the text of a link cannot be read as a floor plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SketchError {
-    /// The text is not what was once written.
+    /// The text was damaged or truncated.
     #[error(
         "the flat is damaged or cut off: copy its whole link, or open the file that it was saved as"
     )]
     Damaged,
-    /// Another version wrote it.
+    /// A newer version wrote it.
     #[error("the flat was written by a newer version: reload the page, or open its file")]
     Newer,
-    /// Nobody could draw it.
+    /// It exceeds the limits.
     #[error(
         "the flat has more than {walls} walls or {way_points} way points, or one more than {coordinate_m} m from the origin: leave some out",
         walls = super::limits::WALLS,

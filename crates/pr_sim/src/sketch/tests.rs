@@ -17,7 +17,7 @@ fn a_world_is_the_same_course_by_file_and_by_link() {
     for course in courses() {
         let sketch = Sketch::from_course(&course);
         let drawn = sketch.course().expect("a built-in world can be driven");
-        // Half a centimetre along each axis, which the corners of the round hall are off.
+        // Half a centimetre along each axis: the corners of the round hall are not on the grid.
         let near = |a: Point2<f64>, b: Point2<f64>| (a - b).norm() < 0.0071;
         for (wall, known) in drawn.world().walls().iter().zip(course.world().walls()) {
             assert!(near(wall.start, known.start) && near(wall.end, known.end));

@@ -1,28 +1,28 @@
-//! A flat as a text for links: numbers in digits of base 64, and a checksum.
+//! A floor plan as a text for links: numbers in digits of base 64, and a checksum.
 //!
 //! A number is zigzag coded (0, −1, 1, −2 … become 0, 1, 2, 3 …) and written from its lowest five bits on; the
-//! sixth bit of a digit says that more follow, as in source maps. In order: the version, the turn (counted
-//! from 1, or 0), the heading, the start, the number of way points and each as the step from the place
+//! sixth bit of a digit is set if more follow, as in source maps. In order: the version, the turn (counted
+//! from 1, or 0), the heading, the start, the number of way points and each as the step from the point
 //! before, the number of walls, and of each its first end as the step from the second end of the wall before
 //! and its second end as the step from the first. A wall along an axis takes a handful of digits. Five more
-//! are FNV-1a of all others: a text that lost or changed a character is no flat.
+//! are FNV-1a of all others, which detects lost or changed characters.
 
 use super::{PlaceCm, Sketch, SketchError, limits};
 
 /// The digits: those of base64url.
 const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 
-/// What is written, and the newest that is read.
+/// The version of the format that is written, and the newest that is read.
 const VERSION: i32 = 1;
 
-/// Digits of the checksum.
+/// Number of digits of the checksum.
 const CHECK_DIGITS: usize = 5;
 
-/// Bits of a digit that hold the number.
+/// Number of bits of the number in a digit.
 const DATA_BITS: u32 = 5;
 
 impl Sketch {
-    /// The flat as letters, digits, `-` and `_`: what [`Sketch::from_text`] reads.
+    /// Writes the floor plan as letters, digits, `-` and `_`, for [`Sketch::from_text`].
     #[must_use]
     pub fn to_text(&self) -> String {
         let mut writer = Writer::default();
@@ -43,7 +43,7 @@ impl Sketch {
         writer.finish()
     }
 
-    /// Reads the text of a flat; nothing but what [`Sketch::to_text`] writes is one.
+    /// Reads the text of a floor plan; accepts only what [`Sketch::to_text`] writes.
     ///
     /// # Errors
     /// [`SketchError`].
@@ -75,7 +75,7 @@ impl Sketch {
         let is_whole = (0..360).contains(&heading_deg)
             && turn.is_none_or(|turn| turn < sketch.way_points_cm.len())
             && sketch.walls_cm.iter().all(|[from, to]| from != to);
-        // A number can be spelled with leading zeros, but not here.
+        // Leading zeros are refused, because every number has one spelling.
         if !is_whole || sketch.to_text() != text {
             return Err(SketchError::Damaged);
         }
@@ -103,7 +103,7 @@ impl Writer {
     }
 
     fn count(&mut self, count: usize) {
-        // The lists of a flat are shorter than 2³¹ in every memory.
+        // The lists are shorter than 2³¹ on every machine.
         self.number(i32::try_from(count).unwrap_or(i32::MAX));
     }
 
@@ -132,7 +132,7 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Checks the sum and stands at the first number.
+    /// Checks the checksum and starts at the first number.
     fn new(text: &'a str) -> Result<Self, SketchError> {
         let bytes = text.as_bytes();
         let numbers = bytes.len().checked_sub(CHECK_DIGITS);
@@ -181,14 +181,14 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// FNV-1a, 32 bits, of which thirty are written.
+/// FNV-1a with 32 bits, thirty of which are written.
 fn check(bytes: &[u8]) -> u32 {
     bytes.iter().fold(0x811c_9dc5, |hash, byte| {
         (hash ^ u32::from(*byte)).wrapping_mul(0x0100_0193)
     })
 }
 
-/// A text of any numbers, with the checksum that fits.
+/// A text of any numbers with a valid checksum.
 #[cfg(test)]
 pub(super) fn written(numbers: &[i32]) -> String {
     let mut writer = Writer::default();
