@@ -1,3 +1,5 @@
+#![doc = include_str!("../README.md")]
+//!
 //! The chapter's experiments, on the simulator and the estimator: whole laps of the Apartment with
 //! their judge, basins of attraction, cost landscapes, and samples to time and to try things on.
 

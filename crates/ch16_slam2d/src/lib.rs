@@ -1,4 +1,4 @@
-//! Scan matching and pose-graph SLAM: the system of the chapter.
+#![doc = include_str!("../README.md")]
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 

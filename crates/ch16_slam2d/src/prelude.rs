@@ -1,4 +1,4 @@
-//! What the chapter's printed listings use, in one import.
+//! What a user types and what the chapter's listings use, in one import.
 //!
 //! Its first worked example: four points on the unit circle, turned and moved. The motion comes out
 //! in closed form.
@@ -47,3 +47,6 @@ pub use crate::icp::{
     IcpConfig, IcpResult, IcpVariant, Pair, icp, icp_information, point_to_plane_step, regularize,
     svd_align,
 };
+pub use crate::pipeline::{LogFrame, Pipeline};
+pub use crate::scan::{Frame, LaserScan};
+pub use crate::slam::{Slam, SlamConfig, SlamReport};

@@ -1,3 +1,5 @@
+#![doc = include_str!("../README.md")]
+//!
 //! The ancestor of pose graphs: one map, one pose, and never a look back, or only along the path.
 //!
 //! Incremental maximum likelihood mapping puts every scan where it fits best on the map of all scans

@@ -1,3 +1,5 @@
+#![doc = include_str!("../README.md")]
+//!
 //! Rigid motions of the plane (Chapter 3): the group SE(2), its tangent space, angles, and the seeded
 //! random numbers of all noise.
 //!

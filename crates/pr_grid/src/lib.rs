@@ -1,3 +1,5 @@
+#![doc = include_str!("../README.md")]
+//!
 //! Log-odds occupancy grid (Chapter 13): Bresenham rays and the inverse sensor model of Thrun,
 //! Burgard, Fox 2005, Table 9.2.
 //!

@@ -1,3 +1,5 @@
+#![doc = include_str!("../README.md")]
+//!
 //! Sparse nonlinear least squares over SE(2) blocks (Chapter 15).
 //!
 //! A [`Problem`] holds poses and measurements between them. An [`Optimizer`] lowers

@@ -1,3 +1,5 @@
+#![doc = include_str!("../README.md")]
+//!
 //! Simulates a robot in the plane: worlds, ray casting, LiDAR, wheel odometry and a way-point driver
 //! (Chapters 4 and 9).
 //!

@@ -1,3 +1,5 @@
+#![doc = include_str!("../README.md")]
+//!
 //! Recorded logs of real robots: read, run through the estimator, and graded.
 //!
 //! - [`log`]: what every log yields, frames in the order of the file, and what is told of it.
