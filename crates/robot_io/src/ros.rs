@@ -1,9 +1,9 @@
 //! Recordings of ROS: MCAP and SQLite files of ROS 2 and bags of ROS 1, through one set of messages.
 //!
 //! A container yields messages with topic, type and bytes: `mcap_file`, `sqlite_file` or `bag_file`. A recording
-//! is read twice. A [survey](survey::Survey) finds what is in it: topics, transforms, odometry and the times of scans. A
-//! [plan](plan::Plan) chooses among them, puts all clocks together and says where the laser sits. Then a
-//! [cursor](cursor::ScanCursor) for each laser yields its scans in the order of time.
+//! is read twice. A `survey` finds what is in it: topics, transforms, odometry and the times of scans. A
+//! `plan` chooses among them, puts all clocks together and says where the laser sits. Then a
+//! `cursor` for each laser yields its scans in the order of time.
 //!
 //! | type | what it gives |
 //! |---|---|

@@ -10,7 +10,7 @@ use crate::graph::{EdgeKind, InlierEdges, PoseGraph};
 use crate::loops::{LoopRejection, LoopVerification};
 use crate::metrics::position_error_m;
 
-/// Which edges of a graph are inliers where each loop may be false, such as [`PoseGraph::inliers`].
+/// Which edges of a graph are inliers where each loop may be false, such as [`PoseGraph::inlier_edges`].
 ///
 /// A function that whoever maps a log hands over: a program that never does so does not carry it.
 pub type LoopOutlierTest = fn(&PoseGraph) -> InlierEdges;
@@ -198,7 +198,7 @@ impl Mapper {
 
     /// Covariance of every keyframe against the first one, in the body's frame: x and y in m, θ in rad.
     ///
-    /// That of the graph, times what its contradictions say of it: see [`super::uncertainty`].
+    /// That of the graph, times what its contradictions say of it: see `slam::uncertainty`.
     ///
     /// # Errors
     /// Where the normal equations are not positive definite.
