@@ -184,7 +184,7 @@ fn a_log_whose_stamps_have_six_digits_keeps_its_scans() {
     // 1e-6 m: the stamps decide nothing else.
     assert!(distance_m(&poses, &good) < 1e-6);
     let off_m = distance_m(&poses, &truth);
-    assert!(off_m < 0.2, "{off_m} m");
+    assert!(off_m < 0.1, "{off_m} m");
 }
 
 #[test]
