@@ -137,7 +137,7 @@ impl PoseGraph {
     /// A graph of these nodes and edges, solved with the chapter's Jacobians; handles follow the order.
     ///
     /// # Panics
-    /// Where an edge's end does not exist, or both are the same.
+    /// If an edge's end does not exist, or both are the same.
     #[must_use]
     pub fn from_parts<'a>(
         nodes: impl IntoIterator<Item = &'a PoseNode>,
@@ -184,7 +184,7 @@ impl PoseGraph {
     /// Adds the measurement that `to` is at `measurement` in the frame of `from`.
     ///
     /// # Panics
-    /// Where an end does not exist, or both ends are the same.
+    /// If an end does not exist, or both ends are the same.
     pub fn add_edge(
         &mut self,
         from: impl Into<NodeId>,
@@ -205,7 +205,7 @@ impl PoseGraph {
         edge
     }
 
-    /// Takes the newest edge out again and returns it; none where there is none.
+    /// Takes the newest edge out again and returns it, or `None` if there is none.
     pub fn pop_edge(&mut self) -> Option<PoseEdge> {
         let factor = self.problem.pop_factor()?;
         self.chi2 = None;
@@ -215,7 +215,7 @@ impl PoseGraph {
     /// The present pose of a node.
     ///
     /// # Panics
-    /// Where the node does not exist.
+    /// If the node does not exist.
     #[must_use]
     pub fn pose(&self, node: impl Into<NodeId>) -> SE2 {
         self.problem.poses()[node.into().index()]
@@ -224,7 +224,7 @@ impl PoseGraph {
     /// Moves a node from outside, for an initial guess.
     ///
     /// # Panics
-    /// Where the node does not exist.
+    /// If the node does not exist.
     pub fn set_pose(&mut self, node: impl Into<NodeId>, pose: SE2) {
         self.problem.poses_mut()[node.into().index()] = pose;
         self.chi2 = None;
@@ -281,7 +281,7 @@ impl PoseGraph {
     /// `eᵀΩe` of one edge at the present poses.
     ///
     /// # Panics
-    /// Where the edge does not exist.
+    /// If the edge does not exist.
     #[must_use]
     pub fn edge_chi2(&self, edge: EdgeId) -> f64 {
         self.problem.factor_chi2(edge.index())
@@ -340,7 +340,7 @@ impl PoseGraph {
     /// Which edges are believed where each loop may be false: see [`select_inliers`].
     ///
     /// # Errors
-    /// Where the normal equations cannot be solved.
+    /// If the normal equations cannot be solved.
     pub fn inlier_edges(&self) -> InlierEdges {
         let trusted: Vec<bool> = self
             .kinds
@@ -368,7 +368,7 @@ impl PoseGraph {
 fn factor_use(jacobians: JacobianModel) -> FactorUse {
     match jacobians {
         JacobianModel::Chapter => FactorUse::EveryStep,
-        JacobianModel::Exact => FactorUse::WhileItShrinks,
+        JacobianModel::Exact => FactorUse::WhileStepsShrink,
     }
 }
 

@@ -150,7 +150,7 @@ impl LocalMap {
     }
 
     /// The best pose of `scan` in a window, by branch and bound, and the best other one if it is behind by no
-    /// more than `margin`, 0 to 1; none where no pose fits, or where the points need too large a grid.
+    /// more than `margin`, 0 to 1; `None` if no pose fits, or where the points need too large a grid.
     #[must_use]
     pub fn search(
         &self,
@@ -182,7 +182,7 @@ impl LocalMap {
         }
     }
 
-    /// The direction of least scatter of the points around one; none where they are no wall.
+    /// The direction of least scatter of the points around one; `None` if they are no wall.
     fn estimate_normal(&self, index: usize, radius_m: f64) -> Option<Vector2<f64>> {
         let center = self.points.point(index);
         let (xs, ys) = (self.points.xs(), self.points.ys());

@@ -102,7 +102,7 @@ impl MapDisagreement {
         }
     }
 
-    /// Root mean square distance in metres; none before a point of the second pass was compared.
+    /// Root mean square distance in metres; `None` before a point of the second pass was compared.
     #[must_use]
     pub fn value_m(&self) -> Option<f64> {
         (self.count > 0).then(|| math::sqrt(self.sum_of_squares_m2 / self.count as f64))

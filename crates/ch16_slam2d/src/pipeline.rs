@@ -147,7 +147,7 @@ impl Pipeline {
         Ok(report)
     }
 
-    /// The motion since the scan before by the odometry; none if there is none, or if it is not used.
+    /// The motion since the scan before by the odometry; `None` if there is none, or if it is not used.
     #[must_use]
     pub fn motion(&self, recorded: &LogFrame) -> Option<SE2> {
         match (self.odometry_use, self.last_odometry, recorded.odometry) {
@@ -157,20 +157,20 @@ impl Pipeline {
     }
 
     /// Ends the log: loops that wait are closed if nothing contradicts them, and keyframes are linked once
-    /// more. What it did; none without a scan since the last time.
+    /// more. What it did; `None` without a scan since the last time.
     pub fn finish(&mut self) -> Option<Conclusion> {
         let slam = self.slam.as_mut().filter(|_| self.driven.is_none())?;
         self.driven = Some(slam.snapshot());
         Some(slam.conclude())
     }
 
-    /// The estimator; none before the first scan.
+    /// The estimator; `None` before the first scan.
     #[must_use]
     pub fn slam(&self) -> Option<&Slam> {
         self.slam.as_ref()
     }
 
-    /// The estimator, for whoever changes its graph by hand; none before the first scan.
+    /// The estimator, for whoever changes its graph by hand; `None` before the first scan.
     pub fn slam_mut(&mut self) -> Option<&mut Slam> {
         self.slam.as_mut()
     }

@@ -103,7 +103,7 @@ impl Slam {
     /// Takes one frame: cleans its scan, registers it, and closes what loop it finds.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the estimator stays as it was.
+    /// If the frame cannot be used; the estimator stays as it was.
     pub fn step(&mut self, frame: &Frame) -> Result<SlamReport, FrameError> {
         let prepared = self.prepare(frame)?;
         self.step_prepared(&prepared)
@@ -112,7 +112,7 @@ impl Slam {
     /// [`Slam::step`] with a scan that is already a cloud.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the estimator stays as it was.
+    /// If the frame cannot be used; the estimator stays as it was.
     pub fn step_prepared(&mut self, frame: &PreparedFrame) -> Result<SlamReport, FrameError> {
         let mut pending = self.begin(frame)?;
         self.verify_loops(&mut pending);
@@ -123,7 +123,7 @@ impl Slam {
     /// The cloud that [`Slam::step`] makes of a frame.
     ///
     /// # Errors
-    /// Where the frame cannot be used.
+    /// If the frame cannot be used.
     pub fn prepare(&mut self, frame: &Frame) -> Result<PreparedFrame, FrameError> {
         let velocity = self.front_end.velocity();
         self.preparer
@@ -135,7 +135,7 @@ impl Slam {
     /// The parts are for callers that look in between; [`Slam::step`] does all of them in order.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the estimator stays as it was.
+    /// If the frame cannot be used; the estimator stays as it was.
     pub fn begin(&mut self, frame: &PreparedFrame) -> Result<PendingFrame, FrameError> {
         let dt_s = frame.seconds_after(self.last_stamp_s, &self.front_end.estimate())?;
         self.last_stamp_s = frame.stamp_s;
@@ -258,7 +258,7 @@ impl Slam {
         &self.loop_closer
     }
 
-    /// Submap and pairs of the chapter's last attempt to close a loop; none for robots.
+    /// Submap and pairs of the chapter's last attempt to close a loop; `None` for robots.
     #[must_use]
     pub fn loop_workspace(&self) -> Option<&LoopWorkspace> {
         self.loop_closer.workspace()
@@ -273,7 +273,7 @@ impl Slam {
     /// Covariance of every keyframe against the first one: see [`Mapper::keyframe_covariances`].
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn keyframe_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
         self.mapper.keyframe_covariances()
     }
@@ -288,10 +288,10 @@ impl Slam {
     /// as it is.
     ///
     /// # Errors
-    /// Where the graph has no covariance to test it against.
+    /// If the graph has no covariance to test it against.
     ///
     /// # Panics
-    /// Where a keyframe does not exist, or `new` is not after `old`.
+    /// If a keyframe does not exist, or `new` is not after `old`.
     pub fn register_loop(
         &mut self,
         old: usize,

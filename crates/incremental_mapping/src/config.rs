@@ -59,7 +59,7 @@ pub struct IncrementalConfig {
     pub keyframe_distance_m: f64,
     /// Turn in radians after which a scan is added to the map.
     pub keyframe_turn_rad: f64,
-    /// The variant for cycles; none for the incremental mapper alone.
+    /// The variant for cycles; `None` for the incremental mapper alone.
     pub cycles: Option<CycleConfig>,
 }
 

@@ -53,7 +53,7 @@ impl IncrementalMapper {
     /// Takes one frame: cleans its scan, climbs, and adds it to the map where a keyframe is due.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the mapper stays as it was.
+    /// If the frame cannot be used; the mapper stays as it was.
     pub fn step(&mut self, frame: &Frame) -> Result<IncrementalReport, FrameError> {
         let prepared = self.preparer.prepare_frame(
             frame,
@@ -67,7 +67,7 @@ impl IncrementalMapper {
     /// [`IncrementalMapper::step`] with a scan that is already a cloud.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the mapper stays as it was.
+    /// If the frame cannot be used; the mapper stays as it was.
     pub fn step_prepared(
         &mut self,
         frame: &PreparedFrame,
@@ -131,7 +131,7 @@ impl IncrementalMapper {
         &self.map
     }
 
-    /// The particles; none without the variant for cycles.
+    /// The particles; `None` without the variant for cycles.
     #[must_use]
     pub fn cycles(&self) -> Option<&CycleWatch> {
         self.cycles.as_ref()

@@ -59,13 +59,13 @@ pub struct IncrementalReport {
     pub stamp_s: f64,
     /// Where the motion leads: `world_from_body`.
     pub prediction: SE2,
-    /// The climb; none for the first frame, which starts the map.
+    /// The climb; `None` for the first frame, which starts the map.
     pub climb: Option<Climb>,
     /// Estimate at the end of the frame, a cycle's correction included: `world_from_body`.
     pub estimate: SE2,
     /// Keyframe that was taken.
     pub new_keyframe: Option<usize>,
-    /// What the particles say at it; none without the variant for cycles.
+    /// What the particles say at it; `None` without the variant for cycles.
     pub cycle: Option<CycleTest>,
 }
 

@@ -33,11 +33,11 @@ pub(super) fn gate_information(
 /// the frame of `old`, inverted; see [`PoseGraph::relative_covariance`].
 ///
 /// # Errors
-/// Where the graph has no covariance: its normal equations are not positive definite, or hold
-/// numbers that are not finite.
+/// If the graph has no covariance: its normal equations are not positive definite, or hold numbers that are not
+/// finite.
 ///
 /// # Panics
-/// Where a node does not exist.
+/// If a node does not exist.
 pub fn marginal_information(
     graph: &mut PoseGraph,
     old: usize,

@@ -15,10 +15,10 @@ impl PoseGraph {
     /// association", 2009.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     ///
     /// # Panics
-    /// Where a node does not exist.
+    /// If a node does not exist.
     pub fn relative_covariance(
         &mut self,
         i: impl Into<NodeId>,
@@ -35,7 +35,7 @@ impl PoseGraph {
     /// edges since it was optimized last. Infinite where those are too many.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn largest_move_since(&mut self) -> Result<f64, OptimizeError> {
         self.optimizer.largest_move_since(&self.problem)
     }
@@ -43,7 +43,7 @@ impl PoseGraph {
     /// Exact covariance of every pose against the fixed ones, by node; zero for those.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn pose_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
         self.optimizer.marginals(&self.problem)
     }
@@ -54,7 +54,7 @@ impl PoseGraph {
     /// one selected inverse of the factor.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn edge_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
         let measured = self.optimizer.measured_covariances(&self.problem)?;
         let poses = self.problem.poses();

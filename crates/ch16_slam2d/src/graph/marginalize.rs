@@ -69,10 +69,10 @@ impl PoseGraph {
     /// left of a node belongs to the way, and no loop that is tested again.
     ///
     /// # Errors
-    /// Where the node is fixed, or an edge has no covariance; the graph stays as it was.
+    /// If the node is fixed, or an edge has no covariance; the graph stays as it was.
     ///
     /// # Panics
-    /// Where the node does not exist.
+    /// If the node does not exist.
     pub fn marginalize(
         &mut self,
         node: impl Into<NodeId>,
@@ -120,7 +120,7 @@ impl PoseGraph {
     }
 }
 
-/// What an edge of the middle node measures; none where it is no edge of it, and no spoke where it has
+/// What an edge of the middle node measures; `None` if it is no edge of it, and no spoke where it has
 /// no covariance.
 fn spoke(view: &EdgeView, middle: usize) -> Option<Option<Spoke>> {
     let (from, to) = (view.from.index(), view.to.index());

@@ -44,7 +44,7 @@ impl KnownMap {
     /// The map of these keyframes, `map_from_body` each.
     ///
     /// # Errors
-    /// Where they have no point, or lie farther apart than any grid reaches.
+    /// If they have no point, or lie farther apart than any grid reaches.
     pub fn new(
         keyframes: Vec<Keyframe>,
         poses: Vec<SE2>,
@@ -115,7 +115,7 @@ impl KnownMap {
     /// A search for a scan, or for a trail of scans, that has not begun.
     ///
     /// # Errors
-    /// Where the scan has no finite point or the window cannot be numbered.
+    /// If the scan has no finite point or the window cannot be numbered.
     pub fn search(
         &self,
         scan: &PointCloud,

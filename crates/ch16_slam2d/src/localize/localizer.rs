@@ -98,7 +98,7 @@ impl Localizer {
     /// Takes one frame.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the localizer stays as it was.
+    /// If the frame cannot be used; the localizer stays as it was.
     pub fn step(&mut self, frame: &Frame) -> Result<LocalizeReport, FrameError> {
         let velocity = self.trail.velocity();
         let prepared =
@@ -110,7 +110,7 @@ impl Localizer {
     /// [`Localizer::step`] with a scan that is already a cloud.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the localizer stays as it was.
+    /// If the frame cannot be used; the localizer stays as it was.
     pub fn step_prepared(&mut self, frame: &PreparedFrame) -> Result<LocalizeReport, FrameError> {
         let mut pending = self.begin(frame)?;
         while self.search_step(&mut pending) {}
@@ -122,7 +122,7 @@ impl Localizer {
     /// The parts are for callers that look in between; [`Localizer::step`] does all of them in order.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the localizer stays as it was.
+    /// If the frame cannot be used; the localizer stays as it was.
     pub fn begin(&mut self, frame: &PreparedFrame) -> Result<PendingFix, FrameError> {
         let here = self.belief.map_or_else(SE2::identity, |belief| belief.pose);
         let dt_s = frame.seconds_after(self.last_stamp_s, &here)?;

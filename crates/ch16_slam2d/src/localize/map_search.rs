@@ -17,7 +17,7 @@ pub struct MapSearch {
     trail: PointCloud,
     /// Windows around keyframes that look alike, the next one last.
     alike: Vec<SearchWindow>,
-    /// The window that is asked about; none once it is under way.
+    /// The window that is asked about; `None` once it is under way.
     asked: Option<SearchWindow>,
     floor: f64,
     under_way: Option<ScanSearch>,

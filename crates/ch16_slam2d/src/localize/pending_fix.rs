@@ -13,14 +13,14 @@ pub struct PendingFix {
     pub(super) scan: Arc<PointCloud>,
     /// Whether the sweep joined the trail.
     pub(super) joined: bool,
-    /// The given start around which is looked; none where it is everywhere.
+    /// The given start around which is looked; `None` if it is everywhere.
     pub(super) start: Option<SE2>,
     pub(super) search: Option<MapSearch>,
     pub(super) report: LocalizeReport,
 }
 
 impl PendingFix {
-    /// The search under way; none where none is needed, or where it has ended.
+    /// The search under way; `None` if none is needed, or where it has ended.
     #[must_use]
     pub fn search(&self) -> Option<&MapSearch> {
         self.search.as_ref()

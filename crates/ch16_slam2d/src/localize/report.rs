@@ -47,7 +47,7 @@ pub struct LocalizeReport {
     pub stamp_s: f64,
     /// How far the pose is to be localized.
     pub verdict: Verdict,
-    /// `map_from_body`; none where it is lost.
+    /// `map_from_body`; `None` if it is lost.
     pub pose: Option<SE2>,
     /// Covariance of the pose in the body's frame, 3×3, translation first: m², rad².
     pub covariance: Option<Matrix3<f64>>,

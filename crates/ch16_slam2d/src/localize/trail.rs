@@ -16,7 +16,7 @@ const TORN_SCORE: f64 = 0.3;
 /// What a sweep did to the trail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrailStep {
-    /// Motion since the last frame as scans and wheels tell it; none where the trail is torn.
+    /// Motion since the last frame as scans and wheels tell it; `None` if the trail is torn.
     pub motion: Option<SE2>,
     /// Whether the sweep joined the trail.
     pub joined: bool,

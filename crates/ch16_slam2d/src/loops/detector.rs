@@ -43,7 +43,7 @@ impl<'a> LoopQuery<'a> {
     /// The thinned scan of a keyframe with its normals, body frame.
     ///
     /// # Panics
-    /// Where the keyframe does not exist.
+    /// If the keyframe does not exist.
     #[must_use]
     pub fn scan(&self, node: usize) -> &PointCloud {
         &self.keyframes[node].scan
@@ -53,10 +53,10 @@ impl<'a> LoopQuery<'a> {
     /// [`PoseGraph::relative_covariance`]. It is worked out when it is asked for.
     ///
     /// # Errors
-    /// Where the graph has none.
+    /// If the graph has none.
     ///
     /// # Panics
-    /// Where a node does not exist.
+    /// If a node does not exist.
     pub fn relative_covariance(
         &mut self,
         old: usize,

@@ -94,7 +94,7 @@ pub struct LoopVerification {
     /// The matcher's score of it, where it has one.
     pub score: Option<f64>,
     /// By how much the best other place was behind, in the unit of the matcher's score, as far as it was
-    /// looked for; none where nobody looked.
+    /// looked for; `None` if nobody looked.
     pub margin: Option<f64>,
     /// `log(T₀⁻¹ T̂)`, in m, m, rad.
     pub innovation: Vector3<f64>,
@@ -104,7 +104,7 @@ pub struct LoopVerification {
     pub gate: GateTest,
     /// Information of the loop edge, should it be added.
     pub information: Matrix3<f64>,
-    /// Why it was turned away; none where it was accepted.
+    /// Why it was turned away; `None` if it was accepted.
     pub rejection: Option<LoopRejection>,
 }
 

@@ -23,7 +23,7 @@ pub enum MatcherKind {
 }
 
 impl MatcherKind {
-    /// The settings of its ICP, but for τ and the number of iterations; none where it is none.
+    /// The settings of its ICP, but for τ and the number of iterations; `None` if it is none.
     #[must_use]
     pub fn icp(&self) -> Option<IcpConfig> {
         let of = |variant| IcpConfig {

@@ -54,7 +54,7 @@ impl PreparedFrame {
     /// the time since then, s.
     ///
     /// # Errors
-    /// [`FrameError::Stamp`] where it is not later, [`FrameError::Odometry`] where its motion leads nowhere.
+    /// [`FrameError::Stamp`] if it is not later, [`FrameError::Odometry`] where its motion leads nowhere.
     pub fn seconds_after(
         &self,
         last_stamp_s: f64,

@@ -48,7 +48,7 @@ impl ScanPreparer {
     /// its odometry says, and without odometry by `velocity` (m/s, m/s, rad/s).
     ///
     /// # Errors
-    /// Where the frame cannot be used.
+    /// If the frame cannot be used.
     pub fn prepare_frame(
         &mut self,
         frame: &Frame,

@@ -49,7 +49,7 @@ impl LikelihoodGrid {
     /// The grid of the finite points of `map`.
     ///
     /// # Errors
-    /// Where the map has no such points or needs more than [`MAX_GRID_CELLS`].
+    /// If the map has no such points or needs more than [`MAX_GRID_CELLS`].
     pub fn build(map: &PointCloud, config: LikelihoodConfig) -> Result<Self, SearchError> {
         let LikelihoodConfig { cell_m, sigma_m } = config;
         let is_length = |length: f64| length > 0.0 && length.is_finite();

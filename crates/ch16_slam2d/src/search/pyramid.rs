@@ -43,7 +43,7 @@ impl SearchMap {
     /// The map of the finite points of `map`.
     ///
     /// # Errors
-    /// Where [`LikelihoodGrid::build`] refuses them.
+    /// If [`LikelihoodGrid::build`] refuses them.
     pub fn build(map: &PointCloud, config: LikelihoodConfig) -> Result<Self, SearchError> {
         Ok(Self::new(LikelihoodGrid::build(map, config)?))
     }

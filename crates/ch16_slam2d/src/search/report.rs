@@ -86,7 +86,7 @@ impl SearchCounts {
 pub struct SearchResult {
     /// The best pose; of equals the first in heading, then y, then x.
     pub best: ScoredPose,
-    /// The best pose that is another place; none where the window has no other.
+    /// The best pose that is another place; `None` if the window has no other.
     pub runner_up: Option<ScoredPose>,
     /// The work.
     pub counts: SearchCounts,

@@ -68,7 +68,7 @@ impl ScanSearch {
     /// A search of `window` that has not begun.
     ///
     /// # Errors
-    /// Where the scan has no finite point or the window cannot be numbered.
+    /// If the scan has no finite point or the window cannot be numbered.
     pub fn new(
         map: Arc<SearchMap>,
         scan: &PointCloud,
@@ -122,7 +122,7 @@ impl ScanSearch {
         self
     }
 
-    /// Takes up one box; none once the search is finished.
+    /// Takes up one box; `None` once the search is finished.
     pub fn step(&mut self) -> Option<SearchReport> {
         if self.open.is_empty() && self.goal == SearchGoal::Best {
             self.look_for_the_runner_up();
@@ -139,7 +139,7 @@ impl ScanSearch {
         })
     }
 
-    /// Searches to the end; none where no pose scores as much as it has to.
+    /// Searches to the end; `None` if no pose scores as much as it has to.
     #[must_use]
     pub fn run(mut self) -> Option<SearchResult> {
         loop {
@@ -156,7 +156,7 @@ impl ScanSearch {
         }
     }
 
-    /// The answer so far; none before a pose was found.
+    /// The answer so far; `None` before a pose was found.
     ///
     /// It is final once [`ScanSearch::step`] has nothing left to do.
     #[must_use]

@@ -91,7 +91,7 @@ struct Cells {
     rows: Vec<i16>,
 }
 
-/// Points in a row that look up the same level; none where no level is large enough.
+/// Points in a row that look up the same level; `None` if no level is large enough.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     first: usize,

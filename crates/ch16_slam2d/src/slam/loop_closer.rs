@@ -128,7 +128,7 @@ impl LoopCloser {
         }
     }
 
-    /// Submap and pairs of the chapter's last attempt; none for robots.
+    /// Submap and pairs of the chapter's last attempt; `None` for robots.
     #[must_use]
     pub fn workspace(&self) -> Option<&LoopWorkspace> {
         match &self.finder {

@@ -73,7 +73,7 @@ impl Mapper {
     /// Adds the edges of loops and spreads the correction: what it did, with `last ∘ last before⁻¹`.
     ///
     /// # Errors
-    /// Where the graph does not bear them: the edges are gone then, and the nodes are where they were.
+    /// If the graph does not bear them: the edges are gone then, and the nodes are where they were.
     pub(super) fn close(
         &mut self,
         loops: &[LoopVerification],
@@ -201,7 +201,7 @@ impl Mapper {
     /// That of the graph, times what its contradictions say of it: see [`super::uncertainty`].
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn keyframe_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
         let factor = super::uncertainty::keyframe_factor(&self.graph);
         let stated = self.graph.pose_covariances()?;

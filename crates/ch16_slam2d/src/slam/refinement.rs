@@ -126,7 +126,7 @@ impl Mapper {
     /// Registers keyframe `new` on what was seen around keyframe `old`, which somebody asks for.
     ///
     /// # Errors
-    /// Where the graph has no covariance to test it against.
+    /// If the graph has no covariance to test it against.
     pub(super) fn link_on_request(
         &mut self,
         old: usize,

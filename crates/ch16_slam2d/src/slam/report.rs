@@ -53,7 +53,7 @@ pub struct LoopAttempt {
     pub frame: usize,
     /// Candidate, registration and tests.
     pub verification: LoopVerification,
-    /// What it did to the graph; none where it was turned away.
+    /// What it did to the graph; `None` if it was turned away.
     pub effect: Option<LoopEffect>,
 }
 
@@ -81,7 +81,7 @@ pub struct SlamReport {
     pub frame: usize,
     /// Its time, s.
     pub stamp_s: f64,
-    /// Prediction and registration of the scan; none for the first one, which starts the map.
+    /// Prediction and registration of the scan; `None` for the first one, which starts the map.
     pub registration: Option<Registration>,
     /// Estimate at the end of the frame, a loop's correction included: `world_from_body`.
     pub estimate: SE2,

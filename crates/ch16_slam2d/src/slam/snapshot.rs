@@ -245,7 +245,7 @@ impl Slam {
     /// An estimator that goes on from a snapshot, with the parts that its parameters name.
     ///
     /// # Errors
-    /// Where the snapshot contradicts itself.
+    /// If the snapshot contradicts itself.
     pub fn restore(snapshot: &SlamSnapshot) -> Result<Self, SnapshotError> {
         let parts = SlamParts::from_config(&snapshot.config);
         Self::restore_with_parts(snapshot, parts)
@@ -254,7 +254,7 @@ impl Slam {
     /// [`Slam::restore`] with matchers and a loop detector of one's own.
     ///
     /// # Errors
-    /// Where the snapshot contradicts itself.
+    /// If the snapshot contradicts itself.
     pub fn restore_with_parts(
         snapshot: &SlamSnapshot,
         parts: SlamParts,

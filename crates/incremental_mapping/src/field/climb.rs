@@ -156,7 +156,7 @@ impl<'a, F: PointScores> ScanClimb<'a, F> {
         climb
     }
 
-    /// Tries one step; none once the climb has ended.
+    /// Tries one step; `None` once the climb has ended.
     pub fn step(&mut self) -> Option<ClimbStep> {
         if self.stop.is_none() && self.steps >= self.config.max_steps {
             self.stop = Some(ClimbStop::MaxSteps);

@@ -90,7 +90,7 @@ impl<T: Copy> TiledGrid<T> {
         }
     }
 
-    /// A cell to be written; none where the memory is used up.
+    /// A cell to be written; `None` if the memory is used up.
     pub fn get_mut(&mut self, (column, row): (i32, i32)) -> Option<&mut T> {
         let tile = (column.div_euclid(SIDE), row.div_euclid(SIDE));
         let place = match self.places.get(&tile) {
