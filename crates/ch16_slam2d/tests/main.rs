@@ -1,4 +1,4 @@
-//! The system from outside: one binary, one module for each part.
+//! Integration tests of the system: one binary, one module for each part.
 
 mod alignment;
 mod any_frame;

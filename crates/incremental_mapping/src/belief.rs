@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn particles_spread_as_the_way_drifts_and_meet_where_the_map_knows() {
+    fn particles_spread_by_drift_and_converge_on_known_map() {
         let mut belief = PoseBelief::new(SE2::identity(), 800, 7);
         for _ in 0..16 {
             belief.predict(&SE2::identity(), 0.05, 0.01);
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_place_changes_no_weight_and_the_same_seed_gives_the_same_bits() {
+    fn unseen_space_changes_no_weight_and_equal_seeds_give_equal_bits() {
         let run = |seed: u32| {
             let mut belief = PoseBelief::new(SE2::identity(), 50, seed);
             belief.predict(&SE2::new(40.0, 0.0, 0.1), 0.1, 0.1);

@@ -252,7 +252,7 @@ mod tests {
     };
 
     #[test]
-    fn the_gradient_of_the_likelihood_is_that_of_differences() {
+    fn the_gradient_of_the_likelihood_agrees_with_finite_differences() {
         let (map, scan) = (map(), corner());
         let field = map.field(0.07);
         let climb = ScanClimb::new(&field, &scan, SE2::identity(), None, CLIMB);
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_never_seen_says_nothing_and_what_was_seen_empty_speaks_against_a_wall() {
+    fn unseen_space_is_neutral_and_free_space_lowers_the_likelihood() {
         let map = map();
         let pose = SE2::new(0.3, -0.2, 0.4);
         let at = |x: f64, y: f64| map.log_ratio(pose.transform(Point2::new(x, y)));
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn points_beyond_all_numbers_are_nobodys() {
+    fn overflowing_points_are_ignored() {
         let mut map = map();
         let before = map.cell_count();
         let far = [(1e300, 0.0), (f64::NAN, 1.0), (f64::INFINITY, -1.0)];

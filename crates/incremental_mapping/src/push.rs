@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_is_where_it_shall_be_and_the_start_stays() {
+    fn the_end_reaches_its_target_and_the_start_stays() {
         let mut poses = path();
         let moved = push_backwards(&mut poses, &SE2::identity());
         assert_eq!((poses[0], poses[16]), (SE2::identity(), SE2::identity()));

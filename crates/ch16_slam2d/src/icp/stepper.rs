@@ -14,11 +14,11 @@ pub struct IcpTrace {
     pub pairs: usize,
     /// Root mean square residual of the pairs, m; infinite without pairs.
     pub rmse_m: f64,
-    /// Mean over the cloud of `min(d², τ²)`, m²: what point-to-point ICP never raises.
+    /// Mean over the cloud of `min(d², τ²)`, m²: point-to-point ICP never raises it.
     pub truncated_cost_m2: f64,
 }
 
-/// Why a registration ended, with what was measured.
+/// Why a registration ended, with the measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StopReason {
     /// The last increment was smaller than the tolerance: converged.
@@ -28,7 +28,7 @@ pub enum StopReason {
         /// [`IcpConfig::tolerance`].
         tolerance: f64,
     },
-    /// All the iterations were used up.
+    /// The limit of iterations was reached.
     IterationLimit {
         /// [`IcpConfig::max_iterations`].
         max_iterations: usize,
@@ -40,7 +40,7 @@ pub enum StopReason {
         /// [`IcpConfig::min_pairs`].
         min_pairs: usize,
     },
-    /// The next increment is out of the range of numbers, as for points 1e200 m away; the pose stays.
+    /// The next increment is not finite, as for points 1e200 m away; the pose is unchanged.
     NotFinite,
 }
 
@@ -52,10 +52,10 @@ impl StopReason {
     }
 }
 
-/// One iteration: where it led, and whether it was the last.
+/// Result of one iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IcpStep {
-    /// The state after the iteration; unchanged where none was made.
+    /// The state after the iteration; unchanged if none was made.
     pub trace: IcpTrace,
     /// Set once the registration has ended.
     pub stop: Option<StopReason>,
@@ -168,7 +168,7 @@ impl<'a, M: NearestMap> Icp<'a, M> {
         registration
     }
 
-    /// The same registration, in which only those pairs count that `rule` lets pass, from the guess on.
+    /// The same registration with only the pairs that `rule` accepts, from the initial guess on.
     #[must_use]
     pub fn with_rejection(mut self, rule: &'a dyn PairRejection) -> Self {
         self.rejection = Some(rule);

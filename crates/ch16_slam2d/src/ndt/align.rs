@@ -6,23 +6,23 @@ use pr_geom::{Rotation, SE2, twist_size};
 use super::NdtMap;
 use crate::cloud::PointCloud;
 
-/// Added to every diagonal entry, so that a cloud far from every cell still has a solvable system.
+/// Added to every diagonal entry, so that the system of a cloud far from every cell is solvable.
 const RIDGE: f64 = 1e-9;
-/// Smallest damping that successes leave.
+/// Smallest damping after successful steps.
 const MIN_DAMPING: f64 = 1e-6;
-/// Terms smaller than this add nothing to gradient and Hessian.
+/// Smaller terms are left out of gradient and Hessian.
 const MIN_TERM: f64 = 1e-9;
 
 /// The settings of [`ndt_align`]; the defaults are the chapter's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NdtConfig {
-    /// At most so many steps.
+    /// Largest number of steps.
     pub max_iterations: usize,
     /// Gradient below which the run ends, `‖g_xy‖ + |g_θ|`.
     pub gradient_tolerance: f64,
-    /// First damping λ: diagonal entries grow by the factor 1 + λ.
+    /// Initial damping λ: diagonal entries grow by the factor 1 + λ.
     pub initial_damping: f64,
-    /// Dampings tried for one step, each six times the one before.
+    /// Dampings tried for one step, each six times the previous one.
     pub max_tries: usize,
 }
 
@@ -37,10 +37,10 @@ impl Default for NdtConfig {
     }
 }
 
-/// Why an NDT registration ended, with what was measured.
+/// Why an NDT registration ended, with the measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NdtStop {
-    /// The score is flat here: a maximum, or a place where no cell is near.
+    /// The gradient is below the tolerance: a maximum, or a pose without near cells.
     SmallGradient {
         /// `‖g_xy‖ + |g_θ|`.
         gradient: f64,
@@ -52,7 +52,7 @@ pub enum NdtStop {
         /// The damping tried last.
         damping: f64,
     },
-    /// All the steps were used up.
+    /// The limit of steps was reached.
     IterationLimit {
         /// [`NdtConfig::max_iterations`].
         max_iterations: usize,
@@ -77,7 +77,7 @@ pub struct NdtResult {
     pub pose: SE2,
     /// Sum of the points' scores.
     pub score: f64,
-    /// Iterations begun; the last one may have found no better step.
+    /// Iterations started; the last one may have found no better step.
     pub iterations: usize,
     /// The poses from the initial guess on.
     pub trace: Vec<SE2>,
@@ -119,7 +119,7 @@ pub struct NdtAlign<'a> {
     config: NdtConfig,
     pose: SE2,
     score: f64,
-    /// At the pose, where the score was worked out together with it.
+    /// Derivatives at the pose, if they were computed together with the score.
     slope: Option<Slope>,
     damping: f64,
     iterations: usize,
@@ -151,7 +151,7 @@ impl<'a> NdtAlign<'a> {
         }
     }
 
-    /// Iterations begun so far.
+    /// Iterations started so far.
     #[must_use]
     pub fn iterations(&self) -> usize {
         self.iterations
@@ -202,7 +202,7 @@ impl<'a> NdtAlign<'a> {
                     self.pose.y() + step.y,
                     self.pose.theta() + step.z,
                 );
-                // The first try is nearly always taken, and the next step begins with its slope.
+                // The first try is nearly always accepted, and the next step starts with its derivatives.
                 let (score, slope) = if tried == 0 {
                     let (score, slope) = score_with_slope(self.cloud, self.map, &pose);
                     (score, Some(slope))
@@ -226,7 +226,7 @@ impl<'a> NdtAlign<'a> {
     }
 }
 
-/// The score as [`NdtMap::score`] adds it up, and its slope, in one pass over the cloud.
+/// The score of [`NdtMap::score`] and its derivatives, in one pass over the cloud.
 fn score_with_slope(cloud: &PointCloud, map: &NdtMap, pose: &SE2) -> (f64, Slope) {
     let Rotation { cos, sin } = pose.rotation();
     let mut score = 0.0;
@@ -243,7 +243,7 @@ fn score_with_slope(cloud: &PointCloud, map: &NdtMap, pose: &SE2) -> (f64, Slope
             let (dx, dy) = (x - gaussian.mean.x, y - gaussian.mean.y);
             let m = &gaussian.information;
             let (qx, qy) = (m.m11 * dx + m.m12 * dy, m.m12 * dx + m.m22 * dy);
-            // The derivative of R p by θ is R p turned by a quarter: (−ry, rx).
+            // The derivative of R p by θ is R p rotated by a quarter turn: (−ry, rx).
             let (ux, uy) = (m.m12 * rx - m.m11 * ry, m.m22 * rx - m.m12 * ry);
             gx += e * qx;
             gy += e * qy;

@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_parabola_is_met_exactly_between_the_cells() {
+    fn a_parabola_is_interpolated_exactly() {
         // Cubic convolution reproduces polynomials of the second degree (Keys 1981).
         let at = |x: f64, y: f64| 1.0 + 2.0 * x - 3.0 * y + 0.5 * x * x + x * y - y * y;
         let rows = core::array::from_fn(|row| {

@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gradient_is_that_of_differences_with_and_without_a_prior() {
+    fn the_gradient_agrees_with_finite_differences_with_and_without_a_prior() {
         let scan = scan();
         for prior in [None, Some(prior())] {
             let climb = ScanClimb::new(&Hill, &scan, SE2::identity(), prior, CONFIG);
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn a_climb_ends_where_the_gradient_is_nothing_and_every_step_leads_uphill() {
+    fn a_climb_ends_at_zero_gradient_and_every_step_raises_the_objective() {
         let scan = scan();
         let start = SE2::new(-2.0, 3.0, 1.0);
         let mut climb = ScanClimb::new(&Hill, &scan, start, Some(prior()), CONFIG);

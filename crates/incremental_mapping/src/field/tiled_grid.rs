@@ -166,7 +166,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_written_is_read_on_both_sides_of_the_origin_and_elsewhere_is_unknown() {
+    fn written_cells_are_read_back_and_others_are_unknown() {
         let mut grid = TiledGrid::new(0.1, -1.0, 1 << 20);
         let cells = [(0, 0), (-1, -1), (15, 16), (-17, 300), (i32::MIN, i32::MAX)];
         for (k, &cell) in cells.iter().enumerate() {
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn memory_ends_at_the_limit_and_what_is_known_stays() {
+    fn cells_beyond_the_limit_are_refused_and_known_ones_stay() {
         let mut grid = TiledGrid::new(0.1, 0.0, 3 * CELLS);
         for k in 0..3 {
             *grid.get_mut((100 * k, 0)).unwrap() = 1.0;
