@@ -52,6 +52,7 @@ enum Normal {
 
 /// Fit of a scan at a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MapFit {
     /// 1 if every point lies on the map, 0 if every point is a miss in free space.
     pub score: f64,

@@ -43,7 +43,7 @@ pub enum OdometryUse {
     None,
 }
 
-/// The estimator for recorded logs, with where each scan was taken.
+/// The estimator for recorded logs, with the pose of each scan.
 ///
 /// ```
 /// use ch16_slam2d::pipeline::{Pipeline, LogFrame};

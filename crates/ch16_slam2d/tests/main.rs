@@ -6,3 +6,4 @@ mod examples;
 mod listings;
 mod listings_and_core;
 mod nearest;
+mod reasons;

@@ -30,7 +30,7 @@ pub enum JacobianModel {
     /// `−Ad(Z⁻¹)` and `I`: exact for a zero residual, as in the chapter's listing.
     #[default]
     Chapter,
-    /// The exact derivative of the log residual: fewer iterations where residuals are large.
+    /// The exact derivative of the log residual: fewer iterations for large residuals.
     Exact,
 }
 

@@ -12,6 +12,7 @@ const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 /// Why a text is not a cloud.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum CsvError {
     /// A line is not a point.
     #[error("line {line}: expected x,y or x,y,nx,ny as finite numbers")]

@@ -24,6 +24,7 @@ use super::{EdgeKind, EdgeView, NodeId, PoseEdge, PoseGraph, PoseNode};
 
 /// Result of a marginalization.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Marginalized {
     /// Number of neighbours of the node.
     pub neighbours: usize,
@@ -33,6 +34,7 @@ pub struct Marginalized {
 
 /// Why a node cannot be marginalized.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum MarginalizeError {
     /// The node is fixed.
     #[error("node {0} is fixed: marginalizing it would leave the gauge free")]

@@ -8,6 +8,7 @@ const MIN_NORMALS: usize = 3;
 
 /// The rigid motion that aligns paired points, and the bound that it reaches.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Alignment {
     /// The motion `dst_from_src`.
     pub pose: SE2,

@@ -7,6 +7,7 @@ use crate::cloud::{NearestMap, PointCloud};
 
 /// The state of a registration after one association.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct IcpTrace {
     /// `target_from_source`.
     pub pose: SE2,
@@ -52,8 +53,26 @@ impl StopReason {
     }
 }
 
+impl core::fmt::Display for StopReason {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::SmallStep { step, tolerance } => {
+                write!(f, "step {step:.2e} below {tolerance:.2e}")
+            }
+            Self::IterationLimit { max_iterations } => {
+                write!(f, "limit of {max_iterations} iterations")
+            }
+            Self::TooFewPairs { pairs, min_pairs } => {
+                write!(f, "{pairs} pairs, at least {min_pairs} are needed")
+            }
+            Self::NotFinite => write!(f, "the next increment is not finite"),
+        }
+    }
+}
+
 /// Result of one iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct IcpStep {
     /// The state after the iteration; unchanged if none was made.
     pub trace: IcpTrace,
@@ -63,6 +82,7 @@ pub struct IcpStep {
 
 /// The outcome of a registration without its history.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct IcpSummary {
     /// `target_from_source`.
     pub pose: SE2,
@@ -126,7 +146,7 @@ pub fn icp<M: NearestMap>(cloud: &PointCloud, map: &M, init: SE2, config: &IcpCo
     }
 }
 
-/// A registration under way.
+/// A running registration.
 pub struct Icp<'a, M> {
     cloud: &'a PointCloud,
     map: &'a M,

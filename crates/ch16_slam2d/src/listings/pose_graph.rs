@@ -121,7 +121,7 @@ impl PoseGraph {
             let diagonal = Matrix3::identity() * (held + RIDGE);
             push_block(&mut entries, node.index(), node.index(), &diagonal);
         }
-        // Entries at the same place are added up.
+        // Entries at the same position are summed.
         let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(size, size, &entries);
         let Some(factor) = matrix.ok().and_then(|h| h.sp_cholesky(Side::Lower).ok()) else {
             return f64::NAN;

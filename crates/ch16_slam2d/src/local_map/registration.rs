@@ -40,6 +40,7 @@ pub struct MapRegistrationConfig {
 
 /// A pose by least squares, and the information of its pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Registered {
     /// `map_from_scan`.
     pub pose: SE2,
@@ -51,6 +52,7 @@ pub struct Registered {
 
 /// A registration with the score for comparisons.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MapRegistration {
     /// The pose and its information.
     pub registered: Registered,

@@ -19,6 +19,7 @@ const DOUBLINGS: usize = 8;
 
 /// A keyframe that looks similar to a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PlaceGuess {
     /// Its index.
     pub keyframe: usize,
@@ -106,16 +107,16 @@ impl KnownMap {
         &self.poses
     }
 
-    /// All points, thinned to a cell of the grid each.
+    /// All points, thinned to one per cell of the grid.
     #[must_use]
     pub fn points(&self) -> &PointCloud {
         &self.points
     }
 
-    /// A search for a scan, or for a trail of scans, that has not begun.
+    /// A new search for a scan, or for a trail of scans.
     ///
     /// # Errors
-    /// If the scan has no finite point or the window cannot be numbered.
+    /// If the scan has no finite point or the window has too many poses.
     pub fn search(
         &self,
         scan: &PointCloud,
@@ -131,7 +132,7 @@ impl KnownMap {
         SearchWindow::whole(self.search.grid())
     }
 
-    /// The keyframes that look most like a scan, the best first.
+    /// The keyframes most similar to a scan, the best first.
     #[must_use]
     pub fn alike(&self, scan: &PointCloud, most: usize) -> Vec<PlaceGuess> {
         let here = ScanContext::new(scan, &self.looks);

@@ -254,7 +254,7 @@ impl Localizer {
         report.score = Some(score);
     }
 
-    /// Whether so many scans have fitted so much worse than usual that the robot may be elsewhere.
+    /// Whether enough scans have fitted clearly worse than usual, so the robot may be elsewhere.
     fn is_suspect(&self, belief: &Belief) -> bool {
         belief.drops >= self.config.lost_after
     }

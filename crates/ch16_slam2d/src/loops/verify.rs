@@ -72,6 +72,57 @@ pub enum LoopRejection {
     },
 }
 
+impl core::fmt::Display for LoopRejection {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::PoorFit { rmse_m, max_rmse_m } => {
+                write!(
+                    f,
+                    "the inliers' RMSE is {rmse_m:.3} m, above {max_rmse_m:.3} m"
+                )
+            }
+            Self::FewInliers {
+                inliers,
+                min_inliers,
+            } => write!(f, "{inliers} inliers, at least {min_inliers} are needed"),
+            Self::LowScore { score, min_score } => {
+                write!(
+                    f,
+                    "a score of {score:.2}, at least {min_score:.2} is needed"
+                )
+            }
+            Self::NoPlace {
+                half_width_m,
+                min_score,
+            } => write!(
+                f,
+                "no pose within {half_width_m:.1} m has a score of at least {min_score:.2}"
+            ),
+            Self::Ambiguous { margin, min_margin } => write!(
+                f,
+                "ambiguous: the margin over the next best pose is {margin:.2}, at least {min_margin:.2} is needed"
+            ),
+            Self::Waiting { agreeing, needed } => {
+                write!(f, "pending: {agreeing} loops agree, {needed} are needed")
+            }
+            Self::OutsideGate(gate) => {
+                write!(
+                    f,
+                    "chi-squared {:.1} is above {:.1}",
+                    gate.chi2, gate.gate_chi2
+                )
+            }
+            Self::NoCovariance(error) => write!(f, "the graph has no covariance: {error}"),
+            Self::OptimizationFailed(stop) => {
+                write!(f, "the graph cannot be optimized with it: {stop}")
+            }
+            Self::CostRose { before, after } => {
+                write!(f, "the cost rose from {before:.1} to {after:.1}")
+            }
+        }
+    }
+}
+
 /// A verified loop: the registration and the results of the tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopVerification {

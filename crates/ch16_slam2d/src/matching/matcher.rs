@@ -51,6 +51,7 @@ impl MatchRequest {
 
 /// Why a matcher stopped, with the measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum MatchStop {
     /// Stop reason of ICP.
     Icp(StopReason),
@@ -63,6 +64,17 @@ pub enum MatchStop {
     },
     /// Stop reason of a custom matcher.
     Other(&'static str),
+}
+
+impl core::fmt::Display for MatchStop {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Icp(stop) => write!(f, "ICP: {stop}"),
+            Self::Ndt(stop) => write!(f, "NDT: {stop}"),
+            Self::Searched { poses } => write!(f, "the window was searched: {poses} poses scored"),
+            Self::Other(stop) => write!(f, "{stop}"),
+        }
+    }
 }
 
 /// The best pose that is distinct from the answer.

@@ -59,8 +59,26 @@ pub enum NdtStop {
     },
 }
 
+impl core::fmt::Display for NdtStop {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::SmallGradient {
+                gradient,
+                tolerance,
+            } => write!(f, "gradient {gradient:.2e} below {tolerance:.2e}"),
+            Self::NoBetterStep { damping } => {
+                write!(f, "no better step up to a damping of {damping:.2e}")
+            }
+            Self::IterationLimit { max_iterations } => {
+                write!(f, "limit of {max_iterations} iterations")
+            }
+        }
+    }
+}
+
 /// The state after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NdtStep {
     /// `map_from_cloud`.
     pub pose: SE2,
@@ -72,6 +90,7 @@ pub struct NdtStep {
 
 /// The outcome of an NDT registration.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NdtResult {
     /// `map_from_cloud`.
     pub pose: SE2,
@@ -111,7 +130,7 @@ pub fn ndt_align(cloud: &PointCloud, map: &NdtMap, init: SE2, config: &NdtConfig
     }
 }
 
-/// An NDT registration under way.
+/// A running NDT registration.
 #[derive(Clone, Debug)]
 pub struct NdtAlign<'a> {
     cloud: &'a PointCloud,

@@ -29,6 +29,7 @@ impl Default for ContextConfig {
 
 /// Result of comparing two contexts.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ContextMatch {
     /// Mean cosine distance of the sectors at the best rotation, 0 to 1.
     pub distance: f64,

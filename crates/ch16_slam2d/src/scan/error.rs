@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// Why a frame was rejected; the estimator is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum FrameError {
     /// A number of the geometry is unusable.
     #[error("the scan's {name} is {value}; give {expected}")]

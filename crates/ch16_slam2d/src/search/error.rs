@@ -6,6 +6,7 @@ use super::MAX_GRID_CELLS;
 
 /// Why a search cannot start.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SearchError {
     /// The map has no finite point.
     #[error("the map has no finite points; use a map with points")]

@@ -4,6 +4,7 @@ use pr_geom::SE2;
 
 /// A pose and its score.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ScoredPose {
     /// `map_from_scan`.
     pub pose: SE2,
@@ -13,6 +14,7 @@ pub struct ScoredPose {
 
 /// A box of poses of a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PoseBox {
     /// Range of its poses in x, m.
     pub x_m: [f64; 2],
@@ -53,6 +55,7 @@ pub enum SearchGoal {
 
 /// One step of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SearchReport {
     /// The current goal.
     pub goal: SearchGoal,
@@ -64,6 +67,7 @@ pub struct SearchReport {
 
 /// Work of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SearchCounts {
     /// Boxes of more than one pose that were bounded, by one sum over the points each.
     pub bounds: u64,
@@ -83,6 +87,7 @@ impl SearchCounts {
 
 /// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SearchResult {
     /// The best pose; of equals the first in heading, then y, then x.
     pub best: ScoredPose,

@@ -30,6 +30,7 @@ pub struct WindowSweep {
 
 /// Result of registering one scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Registration {
     /// Estimate before it, moved by the odometry or by the last velocity: `world_from_body`.
     pub prediction: SE2,

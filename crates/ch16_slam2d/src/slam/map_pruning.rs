@@ -60,6 +60,7 @@ impl Default for MapPruningConfig {
 
 /// Result of pruning at one keyframe.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct MapPruning {
     /// The removed keyframes, by their previous indices, the oldest first.
     pub removed: Vec<usize>,

@@ -67,6 +67,7 @@ impl LoopAttempt {
 
 /// Result of ending a run.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Conclusion {
     /// The last attempts to close a loop.
     pub tried: Vec<LoopAttempt>,
@@ -76,6 +77,7 @@ pub struct Conclusion {
 
 /// Report of one frame.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SlamReport {
     /// Index of the frame.
     pub frame: usize,

@@ -70,6 +70,7 @@ pub struct FrontEndSnapshot {
 
 /// Why a snapshot cannot be restored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum SnapshotError {
     /// The numbers of nodes and keyframes differ.
     #[error("the snapshot has {nodes} nodes but {keyframes} keyframes; each node needs one")]

@@ -72,6 +72,17 @@ pub enum ClimbStop {
     NotFinite,
 }
 
+impl core::fmt::Display for ClimbStop {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::SmallStep { step } => write!(f, "step {step:.2e} below the tolerance"),
+            Self::Summit => write!(f, "no step raises the objective"),
+            Self::MaxSteps => write!(f, "limit of steps"),
+            Self::NotFinite => write!(f, "the objective is not finite"),
+        }
+    }
+}
+
 /// Result of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClimbStep {

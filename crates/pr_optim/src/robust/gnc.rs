@@ -79,6 +79,16 @@ pub enum GncStop {
     RoundLimit,
 }
 
+impl core::fmt::Display for GncStop {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Decided => "every measurement is an inlier or an outlier",
+            Self::FullShape => "the weights converged at the final shape of the cost",
+            Self::RoundLimit => "limit of rounds",
+        })
+    }
+}
+
 /// Result of [`Gnc`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct GncOutcome {
