@@ -90,7 +90,7 @@ fn a_start_whose_first_step_breaks_its_promise_is_left_after_that_step() {
         assert_eq!((other.iterations, other.stop), (0, None), "{name}");
         assert_eq!(first.iterations, 1, "{name}");
         assert!(
-            matches!(first.stop, Some(StopReason::PromiseBroken { .. })),
+            matches!(first.stop, Some(StopReason::LowGainRatio { .. })),
             "{name}: {first:?}"
         );
         assert_eq!(chordal.start, Start::Chordal, "{name}");

@@ -1,4 +1,4 @@
-//! Two clouds whose points are paired: the motion between them in closed form.
+//! Computes the motion between two clouds with known pairs, in closed form.
 //!
 //! `cargo run -p ch16_slam2d --example align_two_clouds`
 
@@ -12,13 +12,13 @@ fn corners() -> ([Point2<f64>; 4], [Point2<f64>; 4]) {
     (points(before), points(after))
 }
 
-/// `before_from_after`: where the robot is now, seen from where it was.
+/// `before_from_after`: the robot's present pose in the frame of its previous pose.
 pub fn motion() -> SE2 {
     let (before, after) = corners();
     svd_align(&after, &before)
 }
 
-/// Prints the motion, and how far it leaves each corner from its partner.
+/// Prints the motion and the remaining distance of each pair.
 pub fn main() {
     let motion = motion();
     let (before, after) = corners();

@@ -46,7 +46,7 @@ pub fn wall() -> Vec<Point2<f64>> {
     along.map(|x| Point2::new(x, 0.0)).collect()
 }
 
-/// Shows who is whose partner beside the wall.
+/// Prints the nearest wall point of some queries.
 pub fn main() {
     let tau_m = 0.5;
     let cells = cells(&wall(), tau_m);

@@ -1,13 +1,13 @@
-//! A robot drives round a square, its wheels turn a little too far, and one loop puts it right.
+//! A robot drives around a square with drifting odometry, and one loop closure corrects it.
 //!
 //! `cargo run -p ch16_slam2d --example optimize_a_graph`
 
 use ch16_slam2d::prelude::*;
 
-/// Four sides of 2 m: how much each turn of a quarter is too wide, rad.
+/// Excess of each quarter turn, rad.
 const DRIFT_RAD: f64 = 0.04;
 
-/// The graph of odometry alone, each pose put where the wheels say.
+/// The graph of odometry alone, with poses by dead reckoning.
 pub fn drive() -> (PoseGraph, Vec<NodeId>) {
     let mut graph = PoseGraph::new();
     let mut nodes = vec![graph.add_fixed_node(SE2::identity())];
@@ -22,7 +22,7 @@ pub fn drive() -> (PoseGraph, Vec<NodeId>) {
     (graph, nodes)
 }
 
-/// The robot recognizes where it started: the last node stands on the first.
+/// Adds a loop closure: the last node is at the pose of the first.
 pub fn close_the_loop(graph: &mut PoseGraph, nodes: &[NodeId]) {
     let omega = Matrix3::from_diagonal_element(2500.0);
     let (first, last) = (nodes[0], nodes[4]);
@@ -39,7 +39,7 @@ pub fn gap_m(graph: &PoseGraph, nodes: &[NodeId]) -> f64 {
 pub fn main() {
     let (mut graph, nodes) = drive();
     println!(
-        "The wheels end {:.3} m from the start.",
+        "The odometry ends {:.3} m from the start.",
         gap_m(&graph, &nodes)
     );
     close_the_loop(&mut graph, &nodes);

@@ -1,4 +1,4 @@
-//! A scan on a map, without knowing which point belongs to which: ICP, and how much it knows.
+//! Registers a scan on a map without known pairs: ICP, and the information of its result.
 //!
 //! `cargo run -p ch16_slam2d --example register_a_scan`
 
@@ -12,7 +12,7 @@ fn walls(start_m: f64) -> Vec<Point2<f64>> {
     south.chain(west).collect()
 }
 
-/// Where the scan was taken: the corner lies behind the robot, to its right.
+/// Pose of the scan: the corner is behind the robot, to its right.
 fn map_from_robot() -> SE2 {
     SE2::new(1.5, 1.0, 0.4)
 }
@@ -25,7 +25,7 @@ pub fn register(variant: IcpVariant) -> (IcpResult, Matrix3<f64>) {
     map.insert_cloud(&target);
 
     let robot_from_map = map_from_robot().inverse();
-    // A scan never meets the very points of the map.
+    // A scan does not hit exactly the points of the map.
     let seen = walls(0.02).into_iter().map(|p| robot_from_map.transform(p));
     let scan = PointCloud::new(seen.collect(), 0.25);
 
@@ -36,17 +36,17 @@ pub fn register(variant: IcpVariant) -> (IcpResult, Matrix3<f64>) {
         ..Default::default()
     };
     let found = icp(&scan, &map, guess, &cfg);
-    // Neighbouring beams hit the same wall: as if ten of them were one.
+    // Neighbouring beams hit the same wall: ten of them count as one.
     let information = icp_information(&found.pairs, 0.02, 10.0);
     (found, regularize(information, 1.0, 2500.0))
 }
 
-/// How far a registration ends from where the scan was taken, m and rad added.
+/// Error of a registration, m and rad added.
 pub fn error(found: &IcpResult) -> f64 {
     map_from_robot().between(&found.pose).step_size()
 }
 
-/// Prints both registrations, with what each knows.
+/// Prints both registrations and their information.
 pub fn main() {
     for variant in [IcpVariant::PointToPoint, IcpVariant::PointToPlane] {
         let (found, information) = register(variant);

@@ -1,4 +1,4 @@
-//! SLAM on frames of your own: a log, a robot, or a room and a walk that are made up here.
+//! SLAM on custom frames: from a log, a robot, or the simulated room of this example.
 //!
 //! `cargo run -p ch16_slam2d --example run_slam_on_your_frames`
 
@@ -6,18 +6,18 @@ use ch16_slam2d::pipeline::{LogFrame, Pipeline};
 use ch16_slam2d::prelude::*;
 use ch16_slam2d::scan::{FrameError, LaserScan};
 
-/// The walk: around a circle in an empty room of 8 m × 6 m.
+/// The true path: a circle in an empty room of 8 m × 6 m.
 pub fn truth(step: usize) -> SE2 {
     SE2::new(4.0, 1.5, 0.0) * SE2::exp(&(Vector3::new(1.5, 0.0, 1.0) * 0.06 * step as f64))
 }
 
-/// Where the wheels say that the robot is, from its start on: they claim a little too much of each turn.
-pub fn wheels(step: usize) -> SE2 {
+/// Odometry from the start, which overestimates each turn a little.
+pub fn odometry(step: usize) -> SE2 {
     let motion = truth(0).between(&truth(1)) * SE2::new(0.0, 0.0, 0.01);
     (0..step).fold(SE2::identity(), |pose, _| pose * motion)
 }
 
-/// What a log holds of the scan after `step` steps.
+/// The log entry of the scan after `step` steps.
 pub fn frame(step: usize) -> LogFrame {
     let mut scan = LaserScan {
         angle_step_rad: 1_f64.to_radians(),
@@ -28,7 +28,7 @@ pub fn frame(step: usize) -> LogFrame {
     scan.ranges_m = bearings.map(|b| range_m(&truth(step), b)).collect();
     LogFrame {
         stamp_s: 0.25 * step as f64,
-        odometry: Some(wheels(step)),
+        odometry: Some(odometry(step)),
         scan,
     }
 }
@@ -39,7 +39,7 @@ fn range_m(pose: &SE2, bearing_rad: f64) -> f64 {
     to_wall(pose.x(), cos, 8.0).min(to_wall(pose.y(), sin, 6.0))
 }
 
-/// Runs all frames and returns the pipeline with its map, whose frame lies where the robot started.
+/// Runs all frames and returns the pipeline with its map, in the frame of the robot's start.
 pub fn run() -> Result<Pipeline, FrameError> {
     let mut pipeline = Pipeline::default();
     for step in 0..=120 {
@@ -49,7 +49,7 @@ pub fn run() -> Result<Pipeline, FrameError> {
     Ok(pipeline)
 }
 
-/// Prints where the scans were taken.
+/// Prints the poses of the scans.
 pub fn main() {
     for (stamp_s, pose) in run().expect("frames in order").trajectory() {
         println!("at {stamp_s} s: {:.3?}", pose.to_array());

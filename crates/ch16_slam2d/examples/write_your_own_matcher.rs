@@ -1,4 +1,4 @@
-//! A matcher of your own: ICP from several headings, of which the one that fits best is kept.
+//! A custom matcher: ICP from several headings, which keeps the best fit.
 //!
 //! `cargo run -p ch16_slam2d --example write_your_own_matcher`
 
@@ -7,7 +7,7 @@ use ch16_slam2d::matching::{IcpMatcher, Match, MatchRequest, Matcher};
 use ch16_slam2d::prelude::*;
 use ch16_slam2d::slam::{Slam, SlamConfig};
 
-/// ICP that looks around before it looks closely.
+/// ICP from a coarse search over headings.
 #[derive(Clone)]
 pub struct ManyHeadings(pub IcpMatcher);
 
@@ -26,14 +26,14 @@ impl Matcher for ManyHeadings {
     }
 }
 
-/// The estimator with this matcher in front, and everything else as it was.
+/// The estimator with this matcher for its front end, and default parts otherwise.
 pub fn slam(config: SlamConfig, matcher: ManyHeadings) -> Slam {
     let mut parts = SlamParts::from_config(&config);
     parts.front_end = Box::new(matcher);
     Slam::with_parts(config, parts)
 }
 
-/// How far a registration ends from the heading of a scan whose guess is off by 0.9 rad.
+/// Heading error of a registration from a guess that is off by 0.9 rad.
 pub fn off_rad(matcher: &mut dyn Matcher) -> f64 {
     let side = |k: i32| 0.05 * f64::from(k);
     let walls = |k| [[side(k), 0.0], [0.0, side(k)], [side(k), 2.0]];
@@ -44,7 +44,7 @@ pub fn off_rad(matcher: &mut dyn Matcher) -> f64 {
     matcher.register(&scan, &request).summary.pose.theta() - 0.9
 }
 
-/// Prints by how much the matcher above misses a heading.
+/// Prints the heading error of the matcher above.
 pub fn main() {
     let config = SlamConfig::default();
     let mut many = ManyHeadings(IcpMatcher::with_variant(

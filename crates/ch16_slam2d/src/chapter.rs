@@ -1,12 +1,12 @@
 //! The chapter's rules, for its figures: registration on the last sweeps, and loops by a drift gate.
 //!
 //! `WindowMatching` registers each sweep with a [`Matcher`](crate::matching::Matcher) on the points of the
-//! last few, within an [`AdaptiveThreshold`]. `NearbyLoops` asks a [`LoopDetector`](crate::loops::LoopDetector) for candidates,
-//! registers the newest sweep on the keyframes around one and tests the innovation against the drift of
-//! the path ([`path_information`]). Edges get the information of their pairs, turned as in the chapter's
-//! figures ([`InformationFrame`]), and the optimizer the chapter's approximate Jacobians.
+//! last few, within an [`AdaptiveThreshold`]. `NearbyLoops` queries a [`LoopDetector`](crate::loops::LoopDetector)
+//! for candidates, registers the newest sweep on the keyframes around one and tests the innovation against the
+//! drift of the path ([`path_information`]). Edges get the information of their pairs, rotated as in the chapter's
+//! figures ([`InformationFrame`]), and the optimizer uses the chapter's approximate Jacobians.
 //!
-//! The estimator for recorded logs does without all of this: see [`RobotConfig`](crate::slam::RobotConfig).
+//! The estimator for recorded logs uses none of this: see [`RobotConfig`](crate::slam::RobotConfig).
 
 mod adaptive_threshold;
 mod config;

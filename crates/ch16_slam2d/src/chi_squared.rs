@@ -1,16 +1,15 @@
-//! The χ² distribution with three degrees of freedom: from the quantile that a loop gate is set by
-//! to the threshold that the squared innovation is compared with.
+//! The χ² distribution with three degrees of freedom: converts the quantile of a loop gate to the threshold of the
+//! squared innovation.
 //!
-//! A relative pose has three components, so for a right loop whose innovation has the covariance
-//! that the gate assumes, `eᵀΩe` follows χ²₃:
-//! `F(x) = erf(√(x/2)) − √(2x/π) e^(−x/2)`, with the density `f(x) = √(x/2π) e^(−x/2)`
-//! (Abramowitz & Stegun 1964, 26.4.4 for ν = 3).
+//! A relative pose has three components, so for a true loop whose innovation has the covariance that the gate
+//! assumes, `eᵀΩe` follows χ²₃: `F(x) = erf(√(x/2)) − √(2x/π) e^(−x/2)`, with the density
+//! `f(x) = √(x/2π) e^(−x/2)` (Abramowitz & Stegun 1964, 26.4.4 for ν = 3).
 
 use core::f64::consts::PI;
 
 use pr_geom::math;
 
-/// The quantile of the chapter's gate: one right loop in twenty is turned away.
+/// The quantile of the chapter's gate: it rejects one true loop in twenty.
 pub const CHAPTER_QUANTILE: f64 = 0.95;
 
 /// The chapter's gate: the threshold of [`CHAPTER_QUANTILE`], as tables print it.
@@ -30,7 +29,7 @@ pub fn cdf3(x: f64) -> f64 {
 
 /// The `x` with `cdf3(x) = quantile`, to 1e-12; the quantile is clamped to 1e-6…0.999999.
 ///
-/// Newton steps, kept inside a bracket that shrinks: the density is known in closed form.
+/// Newton steps inside a shrinking bracket, with the density in closed form.
 #[must_use]
 pub fn quantile3(quantile: f64) -> f64 {
     let quantile = quantile.clamp(*QUANTILES.start(), *QUANTILES.end());

@@ -1,11 +1,11 @@
-//! Point clouds and the maps that find a point's nearest neighbour.
+//! Point clouds and maps for nearest-neighbour search.
 //!
-//! - [`PointCloud`] keeps points, and normals where they were estimated, as one array a coordinate.
+//! - [`PointCloud`] stores points, and normals if they were estimated, as one array per coordinate.
 //! - [`VoxelMap`] is the chapter's map: hashed cells, points added at any time, no bound on the extent.
-//! - [`DenseMap`] is the same map frozen: built at once from a cloud, faster to ask, same answers.
-//! - [`NearestTable`] writes the answers down beforehand, for one map and very many queries.
+//! - [`DenseMap`] is the same map, immutable: built at once from a cloud, faster to query, same answers.
+//! - [`NearestTable`] precomputes the answers, for one map and very many queries.
 //!
-//! All maps answer through [`NearestMap`], so registration does not care which one it is given.
+//! All maps implement [`NearestMap`], so registration does not depend on the kind of map.
 
 mod cell_table;
 mod csv;
@@ -29,8 +29,8 @@ pub use voxel_map::VoxelMap;
 #[must_use]
 pub fn cell_index(coordinate_m: f64, cell_m: f64) -> i32 {
     let cells = coordinate_m / cell_m;
-    // The cast cuts off towards zero and saturates: whatever lies beyond ±2³¹ cells shares the
-    // outermost one. `floor` itself is a function call where SSE 4.1 cannot be assumed.
+    // The cast truncates towards zero and saturates: everything beyond ±2³¹ cells shares the
+    // outermost one. `floor` itself is a function call without SSE 4.1.
     let toward_zero = cells as i32;
     toward_zero.saturating_sub(i32::from(cells < f64::from(toward_zero)))
 }

@@ -1,6 +1,6 @@
-//! One number for all bits of a result, to compare machines and builds.
+//! A digest of all bits of a result, to compare machines and builds.
 //!
-//! A rounding that differs in one last bit gives another digest. It is no cryptographic hash.
+//! A difference in one last bit changes the digest. It is not a cryptographic hash.
 
 use pr_geom::SE2;
 
@@ -15,7 +15,7 @@ impl Default for Digest {
 }
 
 impl Digest {
-    /// The digest of nothing.
+    /// The digest of an empty sequence.
     #[must_use]
     pub fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn order_sign_of_zero_and_the_last_bit_all_count() {
+    fn order_sign_of_zero_and_last_bit_change_the_digest() {
         assert_ne!(of(&[1.0, 2.0]), of(&[2.0, 1.0]));
         assert_ne!(of(&[0.0]), of(&[-0.0]));
         assert_ne!(of(&[1.0]), of(&[1.0 + f64::EPSILON]));

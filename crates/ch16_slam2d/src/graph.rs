@@ -1,15 +1,14 @@
-//! The pose graph: keyframe poses as nodes, measured motions between them as edges.
+//! The pose graph: keyframe poses as nodes, measured relative poses as edges.
 //!
-//! Graph SLAM looks for the poses that lower
+//! Graph SLAM finds the poses that minimize
 //!
 //! ```text
 //! χ² = Σ eᵀ Ω e,   e = log(Z⁻¹ Tᵢ⁻¹ Tⱼ)
 //! ```
 //!
-//! over all edges `(i, j)` with measurement `Z` and information `Ω` (3×3, tangent order x, y, θ).
-//! The sum is not halved and not touched by a robust kernel. Fixed nodes hold the gauge.
-//! The solver is [`pr_optim`]. Poses and measurements are stored once, in its [`Problem`]; this module
-//! gives them their handles, and remembers where each measurement comes from.
+//! over all edges `(i, j)` with measurement `Z` and information `Ω` (3×3, tangent order x, y, θ). The sum has no
+//! factor ½ and no robust kernel. Fixed nodes fix the gauge. The solver is [`pr_optim`]. Poses and measurements
+//! are stored once, in its [`Problem`]; this module adds handles and the origin of each measurement.
 //!
 //! Source: Grisetti, Kümmerle, Stachniss, Burgard, "A tutorial on graph-based SLAM", 2010.
 
@@ -26,13 +25,13 @@ pub use ids::{EdgeId, NodeId};
 pub use marginalize::{MarginalizeError, Marginalized};
 pub use pr_optim::{JacobianModel, RobustKernel, StopReason};
 
-/// Where a measurement comes from.
+/// Origin of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EdgeKind {
-    /// From one keyframe to the next, by scan matching or wheels; and what nodes that were taken out
-    /// have told of those around them.
+    /// From one keyframe to the next, by scan matching or odometry; also the edges that replace marginalized
+    /// nodes.
     Odometry,
-    /// Between keyframes far apart in time, by recognizing a place.
+    /// Between keyframes far apart in time, by place recognition.
     Loop,
 }
 
@@ -41,18 +40,18 @@ pub enum EdgeKind {
 pub struct PoseNode {
     /// Present estimate, `world_from_body`.
     pub pose: SE2,
-    /// Whether the solver leaves it where it is.
+    /// Whether the solver keeps it fixed.
     pub fixed: bool,
 }
 
-/// A measured motion between two nodes.
+/// A measured relative pose of two nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseEdge {
     /// The measured pose of the target in the frame of the source.
     pub measurement: SE2,
     /// Inverse covariance of the residual, tangent order x, y, θ.
     pub information: Matrix3<f64>,
-    /// Where the measurement comes from.
+    /// Origin of the measurement.
     pub kind: EdgeKind,
 }
 
@@ -66,29 +65,29 @@ impl PoseEdge {
     }
 }
 
-/// An edge together with its ends, as the iterators give it.
+/// An edge with its ends, as the iterators return it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeView {
     /// Handle of the edge.
     pub id: EdgeId,
-    /// The node that measured.
+    /// The node from which the other was measured.
     pub from: NodeId,
-    /// The node that was measured.
+    /// The measured node.
     pub to: NodeId,
     /// The measurement.
     pub edge: PoseEdge,
 }
 
-/// What [`PoseGraph::inlier_edges`] says.
+/// Result of [`PoseGraph::inlier_edges`].
 pub type InlierEdges = Result<InlierSelection, OptimizeError>;
 
-/// Poses and measurements, with the solver's workspace beside them.
+/// Poses and measurements, with the solver's workspace.
 #[derive(Debug)]
 pub struct PoseGraph {
     problem: Problem,
-    /// Where each factor of the problem comes from.
+    /// Origin of each factor of the problem.
     kinds: Vec<EdgeKind>,
-    /// χ² at the present poses, to which every new edge adds; none since a pose was moved.
+    /// χ² at the present poses, updated by every new edge; `None` after a pose was moved.
     chi2: Option<f64>,
     optimizer: Optimizer,
 }
@@ -100,7 +99,7 @@ impl Default for PoseGraph {
 }
 
 impl Clone for PoseGraph {
-    /// The clone solves to the same bits; it analyses the pattern anew when it is first solved.
+    /// The clone solves to the same bits; it repeats the symbolic analysis when it is first solved.
     fn clone(&self) -> Self {
         Self {
             problem: self.problem.clone(),
@@ -137,7 +136,7 @@ impl PoseGraph {
     /// A graph of these nodes and edges, solved with the chapter's Jacobians; handles follow the order.
     ///
     /// # Panics
-    /// Where an edge's end does not exist, or both are the same.
+    /// If an edge's end does not exist, or both are the same.
     #[must_use]
     pub fn from_parts<'a>(
         nodes: impl IntoIterator<Item = &'a PoseNode>,
@@ -165,26 +164,26 @@ impl PoseGraph {
         self
     }
 
-    /// The Jacobians that it is solved with.
+    /// The Jacobians of the solver.
     #[must_use]
     pub fn jacobians(&self) -> JacobianModel {
         self.optimizer.settings.jacobians
     }
 
-    /// Adds a node that the solver may move.
+    /// Adds a free node.
     pub fn add_node(&mut self, pose: SE2) -> NodeId {
         NodeId::from(self.problem.add_pose(pose))
     }
 
-    /// Adds a node that stays where it is: it holds the gauge.
+    /// Adds a fixed node, which fixes the gauge.
     pub fn add_fixed_node(&mut self, pose: SE2) -> NodeId {
         NodeId::from(self.problem.add_fixed_pose(pose))
     }
 
-    /// Adds the measurement that `to` is at `measurement` in the frame of `from`.
+    /// Adds the measured pose of `to` in the frame of `from`.
     ///
     /// # Panics
-    /// Where an end does not exist, or both ends are the same.
+    /// If an end does not exist, or both ends are the same.
     pub fn add_edge(
         &mut self,
         from: impl Into<NodeId>,
@@ -205,7 +204,7 @@ impl PoseGraph {
         edge
     }
 
-    /// Takes the newest edge out again and returns it; none where there is none.
+    /// Removes the newest edge and returns it, or `None` if there is none.
     pub fn pop_edge(&mut self) -> Option<PoseEdge> {
         let factor = self.problem.pop_factor()?;
         self.chi2 = None;
@@ -215,16 +214,16 @@ impl PoseGraph {
     /// The present pose of a node.
     ///
     /// # Panics
-    /// Where the node does not exist.
+    /// If the node does not exist.
     #[must_use]
     pub fn pose(&self, node: impl Into<NodeId>) -> SE2 {
         self.problem.poses()[node.into().index()]
     }
 
-    /// Moves a node from outside, for an initial guess.
+    /// Sets the pose of a node, for an initial guess.
     ///
     /// # Panics
-    /// Where the node does not exist.
+    /// If the node does not exist.
     pub fn set_pose(&mut self, node: impl Into<NodeId>, pose: SE2) {
         self.problem.poses_mut()[node.into().index()] = pose;
         self.chi2 = None;
@@ -242,13 +241,13 @@ impl PoseGraph {
         self.kinds.len()
     }
 
-    /// How many edges there were when a node was last moved: later ones wait for the next optimization.
+    /// Number of edges when a node was last moved: later ones wait for the next optimization.
     #[must_use]
     pub fn optimized_edges(&self) -> usize {
         self.problem.optimized_factors()
     }
 
-    /// Says so of a graph whose nodes were moved and moved back.
+    /// Sets [`optimized_edges`](Self::optimized_edges), after an optimization was reverted.
     pub fn mark_optimized(&mut self, edges: usize) {
         self.problem.mark_optimized(edges);
     }
@@ -281,13 +280,13 @@ impl PoseGraph {
     /// `eᵀΩe` of one edge at the present poses.
     ///
     /// # Panics
-    /// Where the edge does not exist.
+    /// If the edge does not exist.
     #[must_use]
     pub fn edge_chi2(&self, edge: EdgeId) -> f64 {
         self.problem.factor_chi2(edge.index())
     }
 
-    /// `χ² = Σ eᵀΩe` over all edges at the present poses: no kernel, no factor ½.
+    /// `χ² = Σ eᵀΩe` over all edges at the present poses, without kernel and factor ½.
     #[must_use]
     pub fn chi2(&self) -> f64 {
         self.chi2.unwrap_or_else(|| self.problem.chi2())
@@ -295,15 +294,15 @@ impl PoseGraph {
 
     /// Gauss–Newton until the largest step of a node is below `tolerance` (m and rad added).
     ///
-    /// The step rule is `‖(v_x, v_y)‖ + |ω| < tolerance`. The report says why it stopped; where a
+    /// The step rule is `‖(v_x, v_y)‖ + |ω| < tolerance`. The report holds the reason of the stop. If a
     /// step could not be computed, the poses are those before it.
     pub fn optimize(&mut self, max_iterations: usize, tolerance: f64) -> Report {
         self.optimize_robust(max_iterations, tolerance, f64::INFINITY)
     }
 
-    /// [`PoseGraph::optimize`] where an edge beyond `huber` standard deviations pulls less.
+    /// [`PoseGraph::optimize`] with a Huber kernel of `huber` standard deviations.
     ///
-    /// Where the Mahalanobis norm `m` of a residual exceeds `huber`, Ω is scaled by `huber / m`.
+    /// If the Mahalanobis norm `m` of a residual exceeds `huber`, Ω is scaled by `huber / m`.
     pub fn optimize_robust(&mut self, max_iterations: usize, tolerance: f64, huber: f64) -> Report {
         self.optimize_with(
             max_iterations,
@@ -312,7 +311,7 @@ impl PoseGraph {
         )
     }
 
-    /// [`PoseGraph::optimize`] under any robust kernel.
+    /// [`PoseGraph::optimize`] with any robust kernel.
     pub fn optimize_with(
         &mut self,
         max_iterations: usize,
@@ -329,7 +328,7 @@ impl PoseGraph {
 
     /// One Gauss–Newton iteration; returns the largest step of a node (m and rad added).
     ///
-    /// NaN where the step could not be computed: an indefinite information matrix.
+    /// NaN if the step could not be computed, for example because of an indefinite information matrix.
     pub fn optimize_once(&mut self, huber: f64) -> f64 {
         self.optimizer.settings.kernel = RobustKernel::Huber { width: huber };
         self.chi2 = None;
@@ -337,10 +336,10 @@ impl PoseGraph {
         step.map_or(f64::NAN, |step| step.largest_step)
     }
 
-    /// Which edges are believed where each loop may be false: see [`select_inliers`].
+    /// Selects the inlier edges if any loop may be false: see [`select_inliers`].
     ///
     /// # Errors
-    /// Where the normal equations cannot be solved.
+    /// If the normal equations cannot be solved.
     pub fn inlier_edges(&self) -> InlierEdges {
         let trusted: Vec<bool> = self
             .kinds
@@ -354,7 +353,7 @@ impl PoseGraph {
         select_inliers(&self.problem, &trusted, solver, &GncSettings::default())
     }
 
-    /// The same graph with only those edges for which `keep` says so.
+    /// The same graph with only the edges for which `keep` is true.
     #[must_use]
     pub fn with_edges(&self, keep: impl FnMut(&EdgeView) -> bool) -> Self {
         let nodes: Vec<PoseNode> = self.nodes().map(|(_, node)| node).collect();
@@ -363,12 +362,12 @@ impl PoseGraph {
     }
 }
 
-/// The chapter's steps are Gauss–Newton's, each with a factor of its own; what is solved with the exact
-/// Jacobians is solved for its optimum alone.
+/// The chapter's steps are plain Gauss–Newton, each with a new factor; with the exact Jacobians only the optimum
+/// matters.
 fn factor_use(jacobians: JacobianModel) -> FactorUse {
     match jacobians {
         JacobianModel::Chapter => FactorUse::EveryStep,
-        JacobianModel::Exact => FactorUse::WhileItShrinks,
+        JacobianModel::Exact => FactorUse::WhileStepsShrink,
     }
 }
 

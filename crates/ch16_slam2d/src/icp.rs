@@ -1,15 +1,15 @@
 //! Iterative closest point: pair every point with its nearest, move the cloud, repeat.
 //!
 //! With `T = target_from_source`, one iteration pairs each moved point `T p_k` with the nearest
-//! map point `q_k` closer than τ, finds the motion that fits the pairs best, and puts it in front:
+//! map point `q_k` closer than τ, finds the motion that fits the pairs best, and composes it:
 //! `T ← increment ∘ T`. Point-to-point minimizes `Σ ‖p − q‖²` in closed form (Besl & McKay 1992),
 //! point-to-plane takes one Gauss–Newton step on `Σ (n·(p − q))²` (Chen & Medioni 1992).
 //!
-//! ICP finds the minimum of the basin in which it starts. It cannot tell a false minimum from the
-//! right one: a small `rmse` says that pairs agree, not that they are the right pairs.
+//! ICP finds the minimum of the basin of convergence in which it starts. It cannot detect a local minimum:
+//! a small `rmse` means that the pairs agree, not that they are correct.
 //!
-//! [`icp`] runs to the end. [`Icp`] goes one iteration at a time, and with an [`IcpWorkspace`]
-//! that is kept between registrations it does not allocate.
+//! [`icp`] runs to the end. [`Icp`] runs one iteration at a time, and does not allocate if its
+//! [`IcpWorkspace`] is kept between registrations.
 
 mod align;
 mod config;

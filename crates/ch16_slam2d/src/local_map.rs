@@ -1,13 +1,13 @@
-//! The surroundings of a robot: a few scans in one frame, to register a scan on and to score poses by.
+//! The surroundings of a robot: a few scans in one frame, as target of registrations and to score poses.
 //!
 //! [`LocalMap::register`] minimizes one cost from a start, the chapter's `p(z|s) p(s|u, ŝ)`: the squared
-//! point-to-plane distances under Huber's kernel, and the motion prior of the odometry. Normals are
-//! estimated from the points of all scans, and only where a scan needs one: with those of single scans,
-//! beams a degree apart, the heading drifts twice as much.
+//! point-to-plane distances with Huber's kernel, and the motion prior of the odometry. Normals are
+//! estimated from the points of all scans, on demand: with normals from single scans, whose beams are
+//! a degree apart, the heading drifts twice as much.
 //!
-//! [`LocalMap::fit`] is the one score by which poses are compared. A point costs its squared distance to
-//! the map, cut off at a miss. Space counts as well: a point behind everything that was seen costs less
-//! than one in space that a scan has looked through.
+//! [`LocalMap::fit`] is the score for comparing poses. A point costs its squared distance to
+//! the map, truncated at a miss. Free space counts as well: a point behind everything that was seen costs less
+//! than one in space that a scan has observed as free.
 
 mod locate;
 mod prior;
@@ -28,48 +28,49 @@ use crate::search::{
     LikelihoodConfig, ScanSearch, SearchMap, SearchNeighborhood, SearchResult, SearchWindow,
 };
 
-/// Side of a cell, m, and points that it keeps: twice as many change no error.
+/// Side of a cell, m, and points that it keeps: twice as many do not reduce the error.
 const CELLS: (f64, usize) = (0.135, 8);
-/// Neighbours that a normal needs, itself among them.
-const LEAST_NEIGHBORS: f64 = 4.0;
+/// Smallest number of neighbours for a normal, the point itself included.
+const MIN_NEIGHBORS: f64 = 4.0;
 /// Largest ratio of the scatter across a wall to that along it.
-const MOST_SCATTER: f64 = 0.35;
+const MAX_SCATTER_RATIO: f64 = 0.35;
 
-/// Cells and blur of a search, m: registration does the rest.
+/// Cells and blur of a search, m; registration refines its result.
 const SEARCH_GRID: LikelihoodConfig = LikelihoodConfig {
     cell_m: 0.1,
     sigma_m: 0.1,
 };
-/// A search gives up on poses that score less, 0 to 1: unseen space counts as a miss there.
-pub(crate) const LEAST_SEARCH_SCORE: f64 = 0.4;
+/// Smallest score of a search result, 0 to 1: unseen space counts as a miss there.
+pub(crate) const MIN_SEARCH_SCORE: f64 = 0.4;
 
-/// A point's normal: unknown until a registration needs it.
+/// A point's normal, computed when a registration needs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Normal {
     Unknown,
     Estimated(Option<Vector2<f64>>),
 }
 
-/// How well a scan fits at a pose.
+/// Fit of a scan at a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MapFit {
-    /// 1 where every point lies on the map, 0 where every point is a miss in free space.
+    /// 1 if every point lies on the map, 0 if every point is a miss in free space.
     pub score: f64,
     /// Points closer to the map than a miss.
     pub inliers: usize,
-    /// Points in space that a scan has looked through.
+    /// Points in space that a scan has observed as free.
     pub contradicting: usize,
     /// Root mean square distance of those, m; infinite without any.
     pub rmse_m: f64,
 }
 
-/// Points of a few scans with their normals, and what the scans have looked through.
+/// Points of a few scans with their normals, and the free space of the scans.
 #[derive(Clone, Debug)]
 pub struct LocalMap {
     cloud: PointCloud,
     points: DenseMap,
     normals: Vec<Normal>,
-    /// `body_from_map` of each scan, and how far it has seen.
+    /// `body_from_map` of each scan, and its ranges.
     views: Vec<(SE2, Arc<RangeProfile>)>,
 }
 
@@ -108,7 +109,7 @@ impl LocalMap {
         &self.cloud
     }
 
-    /// How well `scan` fits at `map_from_scan`.
+    /// The fit of `scan` at `map_from_scan`.
     #[must_use]
     pub fn fit(
         &self,
@@ -149,8 +150,8 @@ impl LocalMap {
         }
     }
 
-    /// The best pose of `scan` in a window, by branch and bound, and the best other one if it is behind by no
-    /// more than `margin`, 0 to 1; none where no pose fits, or where the points need too large a grid.
+    /// The best pose of `scan` in a window, by branch and bound, and the best distinct one if its score is lower
+    /// by at most `margin`, 0 to 1; `None` if no pose fits, or if the points need too large a grid.
     #[must_use]
     pub fn search(
         &self,
@@ -160,17 +161,17 @@ impl LocalMap {
     ) -> Option<SearchResult> {
         let map = Arc::new(SearchMap::build(&self.cloud, SEARCH_GRID).ok()?);
         let search = ScanSearch::new(map, scan, window, &SearchNeighborhood::default()).ok()?;
-        let search = search.with_min_score(LEAST_SEARCH_SCORE);
+        let search = search.with_min_score(MIN_SEARCH_SCORE);
         search.with_margin(margin).run()
     }
 
-    /// Whether any scan has looked through a point, newest scans first.
+    /// Whether any scan has observed a point as free, newest scans first.
     fn is_free(&self, at: Point2<f64>) -> bool {
         let mut views = self.views.iter().rev();
         views.any(|(body_from_map, profile)| profile.sees_through(body_from_map.transform(at)))
     }
 
-    /// The normal of point `index`, estimated when it is first needed.
+    /// The normal of point `index`, estimated on first use.
     fn normal(&mut self, index: usize, radius_m: f64) -> Option<Vector2<f64>> {
         match self.normals[index] {
             Normal::Estimated(normal) => normal,
@@ -182,7 +183,7 @@ impl LocalMap {
         }
     }
 
-    /// The direction of least scatter of the points around one; none where they are no wall.
+    /// The direction of least scatter of the points around one; `None` if they are not a wall.
     fn estimate_normal(&self, index: usize, radius_m: f64) -> Option<Vector2<f64>> {
         let center = self.points.point(index);
         let (xs, ys) = (self.points.xs(), self.points.ys());
@@ -196,8 +197,8 @@ impl LocalMap {
             xy += dx * dy;
             yy += dy * dy;
         });
-        if count < LEAST_NEIGHBORS {
-            // A far wall of few beams: its own scan has looked farther around.
+        if count < MIN_NEIGHBORS {
+            // A far wall of few beams: the normal of its own scan used a larger radius.
             return self.points.normal(index);
         }
         xx -= sum.x * sum.x / count;
@@ -205,10 +206,10 @@ impl LocalMap {
         yy -= sum.y * sum.y / count;
         let (middle, half_gap) = (0.5 * (xx + yy), math::norm2(0.5 * (xx - yy), xy));
         let (across, along) = (middle - half_gap, middle + half_gap);
-        if along <= 0.0 || across > MOST_SCATTER * along {
+        if along <= 0.0 || across > MAX_SCATTER_RATIO * along {
             return None;
         }
-        // Twice the angle of the direction of most scatter is that of (xx − yy, 2 xy).
+        // The direction of most scatter is half the angle of (xx − yy, 2 xy).
         let (sin, cos) = math::sin_cos(0.5 * math::atan2(2.0 * xy, xx - yy));
         Some(Vector2::new(-sin, cos))
     }

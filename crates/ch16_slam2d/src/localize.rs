@@ -1,16 +1,16 @@
-//! Where a robot is on a map that is known, and when it does not know.
+//! Localization of a robot on a known map, which also detects that the robot is lost.
 //!
 //! A [`KnownMap`] holds the keyframes of a session at their poses. A [`Localizer`] takes one frame at
-//! a time and never changes the map. While it knows where it is, each scan is registered on the
-//! keyframes around the prediction and weighed against it, by what each knows. While it does not,
-//! it gathers the sweeps of the last metres and searches for them: keyframes that look alike
-//! ([`ScanContext`](crate::places::ScanContext)) say how well a good place fits, branch and bound
-//! ([`search`](crate::search)) finds the best place of the whole map and the best other one, and
-//! registration with its fit decides. A place that another one is too close to is not localized: with
+//! a time and never changes the map. While the robot is localized, each scan is registered on the
+//! keyframes around the prediction and fused with it, weighted by information. While it is lost,
+//! the localizer accumulates the sweeps of the last metres and searches for them: similar keyframes
+//! ([`ScanContext`](crate::places::ScanContext)) give a lower bound of the score, branch and bound
+//! ([`search`](crate::search)) finds the best pose on the whole map and the best distinct one, and
+//! registration verifies the fit. If the runner-up is too close, the pose is not accepted: with
 //! more metres in the trail one of them wins.
 //!
-//! What it cannot do: two places that look the same for as long as the trail is remain two places,
-//! and it says so.
+//! Limitation: two locations that look the same for the whole length of the trail remain ambiguous,
+//! and the robot is then reported as lost or doubtful.
 
 mod belief;
 mod config;

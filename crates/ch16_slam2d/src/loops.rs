@@ -1,14 +1,13 @@
-//! Loop closure: which old keyframes might show the same place, whether the sweeps agree, and
-//! whether the answer is believable.
+//! Loop closure: which old keyframes might show the same location, whether the sweeps agree, and
+//! whether the result is plausible.
 //!
-//! A [`LoopDetector`] proposes, [`verify_loop`] registers and tests, and who proposes is never who
-//! decides. Three tests guard the graph, because one false loop ruins it: the registration has to fit
-//! (`rmse`), enough points have to take part (`inliers`), and the innovation
-//! `ν = log(T₀⁻¹ T̂)` between the graph's relative pose T₀ and the registered T̂ has to lie within
-//! what the odometry between the two nodes could have drifted: `νᵀ S⁻¹ ν ≤ χ²`.
+//! A [`LoopDetector`] proposes, [`verify_loop`] registers and tests; the two are independent. Three tests guard
+//! the graph, because one false loop ruins it: the registration has to fit (`rmse`), enough points have to be
+//! paired (`inliers`), and the innovation `ν = log(T₀⁻¹ T̂)` between the graph's relative pose T₀ and the
+//! registered T̂ has to lie within the possible drift of the odometry between the two nodes: `νᵀ S⁻¹ ν ≤ χ²`.
 //!
-//! The gate cannot tell a wrong place from the right one where both are within the drift, and it
-//! turns away a right loop where the drift was larger than assumed.
+//! The gate cannot distinguish two poses that are both within the drift, and it rejects a true loop if the drift
+//! was larger than assumed.
 
 mod candidates;
 mod config;

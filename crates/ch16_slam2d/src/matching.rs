@@ -1,9 +1,9 @@
-//! One door to all ways of registering a scan, for the front end and for loops alike.
+//! One interface for scan registration, for the front end and for loop closure.
 //!
-//! A [`Matcher`] takes a target cloud once and registers any number of scans on it. It answers with
-//! one value, a [`Match`]: the pose, how well it fits, why it stopped, the pairs and their information,
-//! and, if it searched, how far the runner-up was behind. [`MatcherKind`] names the matchers of this crate; a matcher of your own
-//! implements the trait and goes to [`Slam::with_parts`](crate::slam::Slam::with_parts).
+//! A [`Matcher`] takes a target cloud once and registers any number of scans on it. It returns one value, a
+//! [`Match`]: the pose, its fit, the stop reason, the pairs and their information, and, after a search, the margin
+//! to the runner-up. [`MatcherKind`] selects a matcher of this crate; a custom matcher implements the trait and is
+//! passed to [`Slam::with_parts`](crate::slam::Slam::with_parts).
 
 mod icp_matcher;
 mod information;

@@ -1,9 +1,8 @@
-//! How good a trajectory and a map are.
+//! Errors of a trajectory and of a map.
 //!
-//! Errors compare with the simulated truth, without alignment: the first pose is known, so any
-//! offset is an error. Map self-disagreement needs no truth: it is the distance between what was
-//! mapped on the way out and what was seen on the way back. It cannot see a map that is bent but
-//! agrees with itself.
+//! Errors are relative to the simulated truth, without alignment: the first pose is known, so any
+//! offset is an error. Map self-disagreement needs no truth: it is the distance between the map of
+//! the first pass and the sweeps of the second. It cannot detect a map that is bent but consistent.
 
 use pr_geom::{Point2, SE2, math};
 
@@ -15,7 +14,7 @@ pub fn position_error_m(estimate: &SE2, truth: &SE2) -> f64 {
     math::norm2(estimate.x() - truth.x(), estimate.y() - truth.y())
 }
 
-/// Root mean square of some errors; 0 of none.
+/// Root mean square of some errors; 0 if there are none.
 #[must_use]
 pub fn rms(errors: impl IntoIterator<Item = f64>) -> f64 {
     let (sum, count) = errors
@@ -28,14 +27,14 @@ pub fn rms(errors: impl IntoIterator<Item = f64>) -> f64 {
     }
 }
 
-/// How the two passes of a lap are compared.
+/// Settings for the comparison of the two passes of a lap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisagreementConfig {
     /// Side of a cell of the first pass' map in metres.
     pub cell_m: f64,
     /// Points kept in a cell.
     pub max_per_cell: usize,
-    /// Points without a neighbour within this distance (m) are not counted.
+    /// Points without a neighbour within this distance (m) are ignored.
     pub reach_m: f64,
 }
 
@@ -49,7 +48,7 @@ impl Default for DisagreementConfig {
     }
 }
 
-/// Map self-disagreement, gathered sweep by sweep.
+/// Map self-disagreement, accumulated sweep by sweep.
 ///
 /// The root mean square distance from the points of the second pass to the nearest of the first.
 #[derive(Clone, Debug)]
@@ -74,7 +73,7 @@ impl MapDisagreement {
         }
     }
 
-    /// Starts over with the sweeps of the first pass, each with its `world_from_body`.
+    /// Restarts with the sweeps of the first pass, each with its `world_from_body`.
     pub fn start<'a>(&mut self, first_pass: impl IntoIterator<Item = (&'a SE2, &'a PointCloud)>) {
         self.first_pass.clear();
         for (pose, cloud) in first_pass {
@@ -102,7 +101,7 @@ impl MapDisagreement {
         }
     }
 
-    /// Root mean square distance in metres; none before a point of the second pass was compared.
+    /// Root mean square distance in metres; `None` before a point of the second pass was compared.
     #[must_use]
     pub fn value_m(&self) -> Option<f64> {
         (self.count > 0).then(|| math::sqrt(self.sum_of_squares_m2 / self.count as f64))
@@ -145,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn moving_everything_changes_nothing() {
+    fn a_rigid_motion_of_everything_changes_no_error() {
         let mut disagreement = MapDisagreement::new(DisagreementConfig::default());
         let wall = wall();
         let second = SE2::new(0.02, 0.1, 0.05);
@@ -156,7 +155,7 @@ mod tests {
         };
         let here = value_after(SE2::identity());
         let there = value_after(SE2::new(3.0, -2.0, 0.0));
-        // 1e-12: the coordinates grow a few metres, cells stay filled below their limit.
+        // 1e-12: the coordinates grow by a few metres, cells stay below their limit.
         assert!((here - there).abs() < 1e-12);
     }
 }

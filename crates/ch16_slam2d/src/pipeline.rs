@@ -1,9 +1,9 @@
-//! A recorded log through the estimator: scans with odometry in, trajectory and map out.
+//! Runs the estimator on a recorded log: scans with odometry in, trajectory and map out.
 //!
-//! [`Pipeline::step`] takes one scan, [`Pipeline::finish`] ends the log, [`Pipeline::trajectory`] says where
-//! every scan was taken. The command, the page's worker and the recipes run this and nothing else.
+//! [`Pipeline::step`] takes one scan, [`Pipeline::finish`] ends the log, [`Pipeline::trajectory`] returns the
+//! pose of every scan. The command line, the page's worker and the examples all use it.
 //!
-//! It reads no file, and it repairs no stamps: scans come in the order of time.
+//! It reads no files and does not repair stamps: scans have to be in order of time.
 
 use pr_geom::SE2;
 
@@ -14,7 +14,7 @@ use crate::slam::{Conclusion, RobotConfig, Slam, SlamConfig, SlamReport, SlamSna
 /// A scan of a log, with the odometry at its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogFrame {
-    /// Time of the scan, s; the number of the scan if the log has no times.
+    /// Time of the scan, s; the index of the scan if the log has no times.
     pub stamp_s: f64,
     /// Pose of the body in the odometry's frame, if the log has one.
     pub odometry: Option<SE2>,
@@ -22,7 +22,7 @@ pub struct LogFrame {
     pub scan: LaserScan,
 }
 
-/// Where a scan was taken: in the frame of the keyframe before it, because loops move that.
+/// Pose of a scan in the frame of the previous keyframe, because loops move that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScanPose {
     /// Time of the scan, s.
@@ -33,17 +33,17 @@ pub struct ScanPose {
     pub keyframe_from_body: SE2,
 }
 
-/// Whether the odometry predicts the motion.
+/// Whether odometry predicts the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum OdometryUse {
     /// The odometry of the log predicts each scan.
     #[default]
     Log,
-    /// Scans alone: the velocity is expected to stay.
+    /// Scans alone: the prediction is constant velocity.
     None,
 }
 
-/// The estimator for recorded logs, with where each scan was taken.
+/// The estimator for recorded logs, with the pose of each scan.
 ///
 /// ```
 /// use ch16_slam2d::pipeline::{Pipeline, LogFrame};
@@ -74,12 +74,12 @@ pub struct Pipeline {
     slam: Option<Slam>,
     scans: Vec<ScanPose>,
     last_odometry: Option<SE2>,
-    /// The estimator after the last scan, before its keyframes were linked once more.
-    driven: Option<SlamSnapshot>,
+    /// The estimator after the last scan, before its keyframes were linked again.
+    before_finish: Option<SlamSnapshot>,
 }
 
 impl Pipeline {
-    /// A pipeline that has seen nothing and takes its numbers from the first scan.
+    /// A pipeline without scans that derives its settings from the first scan.
     #[must_use]
     pub fn new(odometry_use: OdometryUse) -> Self {
         Self {
@@ -88,14 +88,14 @@ impl Pipeline {
         }
     }
 
-    /// The same pipeline with these numbers.
+    /// The same pipeline with these settings.
     #[must_use]
     pub fn with_config(mut self, robot: RobotConfig) -> Self {
         self.robot = Some(robot);
         self
     }
 
-    /// A pipeline that goes on with an estimator, the poses of its scans and the last odometry.
+    /// A pipeline that continues with an estimator, the poses of its scans and the last odometry.
     #[must_use]
     pub fn resume(
         slam: Slam,
@@ -111,18 +111,18 @@ impl Pipeline {
         }
     }
 
-    /// The same pipeline with its log ended: its estimator was `driven` before its keyframes were linked once
-    /// more.
+    /// The same pipeline with its log ended; `before_finish` is its estimator before the keyframes were linked
+    /// again.
     #[must_use]
-    pub fn ended(mut self, driven: SlamSnapshot) -> Self {
-        self.driven = Some(driven);
+    pub fn resume_finished(mut self, before_finish: SlamSnapshot) -> Self {
+        self.before_finish = Some(before_finish);
         self
     }
 
     /// Takes the next scan.
     ///
     /// # Errors
-    /// If it is not after the one before it, or if its numbers are no scan; the pipeline stays as it was.
+    /// If it is not after the previous one, or if it is not a valid scan; the pipeline is unchanged.
     pub fn step(&mut self, recorded: &LogFrame) -> Result<SlamReport, FrameError> {
         let stamp_s = recorded.stamp_s;
         let frame = Frame {
@@ -137,7 +137,7 @@ impl Pipeline {
         });
         let report = slam.step(&frame)?;
         self.last_odometry = recorded.odometry;
-        self.driven = None;
+        self.before_finish = None;
         let keyframe = slam.keyframes().len() - 1;
         self.scans.push(ScanPose {
             stamp_s,
@@ -147,7 +147,7 @@ impl Pipeline {
         Ok(report)
     }
 
-    /// The motion since the scan before by the odometry; none if there is none, or if it is not used.
+    /// The motion since the previous scan by odometry; `None` if there is none, or if it is not used.
     #[must_use]
     pub fn motion(&self, recorded: &LogFrame) -> Option<SE2> {
         match (self.odometry_use, self.last_odometry, recorded.odometry) {
@@ -156,40 +156,47 @@ impl Pipeline {
         }
     }
 
-    /// Ends the log: loops that wait are closed if nothing contradicts them, and keyframes are linked once
-    /// more. What it did; none without a scan since the last time.
+    /// Ends the log: closes pending loops if nothing contradicts them, and links keyframes again. Returns `None` if
+    /// there was no scan since the last call.
     pub fn finish(&mut self) -> Option<Conclusion> {
-        let slam = self.slam.as_mut().filter(|_| self.driven.is_none())?;
-        self.driven = Some(slam.snapshot());
+        let slam = self
+            .slam
+            .as_mut()
+            .filter(|_| self.before_finish.is_none())?;
+        self.before_finish = Some(slam.snapshot());
         Some(slam.conclude())
     }
 
-    /// The estimator; none before the first scan.
+    /// The estimator; `None` before the first scan.
     #[must_use]
     pub fn slam(&self) -> Option<&Slam> {
         self.slam.as_ref()
     }
 
-    /// The estimator, for whoever changes its graph by hand; none before the first scan.
+    /// The estimator, mutable, for manual changes of its graph; `None` before the first scan.
     pub fn slam_mut(&mut self) -> Option<&mut Slam> {
         self.slam.as_mut()
     }
 
-    /// The estimator after the last scan, before [`finish`](Self::finish) linked its keyframes once more: what a
-    /// later log goes on with. None before the first scan.
+    /// The estimator after the last scan, before [`finish`](Self::finish) linked its keyframes again: the
+    /// start for a later log. `None` before the first scan.
     #[must_use]
-    pub fn driven(&self) -> Option<SlamSnapshot> {
+    pub fn snapshot_before_finish(&self) -> Option<SlamSnapshot> {
         let slam = self.slam.as_ref()?;
-        Some(self.driven.clone().unwrap_or_else(|| slam.snapshot()))
+        Some(
+            self.before_finish
+                .clone()
+                .unwrap_or_else(|| slam.snapshot()),
+        )
     }
 
     /// Whether the log was ended.
     #[must_use]
     pub fn is_finished(&self) -> bool {
-        self.driven.is_some()
+        self.before_finish.is_some()
     }
 
-    /// The scans that were taken, in order.
+    /// The scans so far, in order.
     #[must_use]
     pub fn scans(&self) -> &[ScanPose] {
         &self.scans
@@ -201,7 +208,7 @@ impl Pipeline {
         self.last_odometry
     }
 
-    /// Time (s) and pose `world_from_body` of every scan, by the graph as it is now.
+    /// Time (s) and pose `world_from_body` of every scan, by the present graph.
     pub fn trajectory(&self) -> impl Iterator<Item = (f64, SE2)> + '_ {
         let poses = self
             .slam
@@ -228,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn every_scan_has_a_pose_and_one_out_of_order_is_refused() {
+    fn every_scan_has_a_pose_and_one_out_of_order_is_rejected() {
         let mut pipeline = Pipeline::default();
         for step in 0..60 {
             pipeline.step(&recorded(step)).unwrap();

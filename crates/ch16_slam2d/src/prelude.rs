@@ -1,6 +1,6 @@
-//! What a user types and what the chapter's listings use, in one import.
+//! What a user types, and the names of the chapter's printed listings, in one import.
 //!
-//! Its first worked example: four points on the unit circle, turned and moved. The motion comes out
+//! Its first worked example: four points on the unit circle, rotated and translated. The motion follows
 //! in closed form.
 //!
 //! ```
@@ -13,8 +13,8 @@
 //! assert_eq!(format!("{:.2}", pose.theta().to_degrees()), "36.87");
 //! ```
 //!
-//! The second: two odometry edges of 1 m, and a loop that says 2.6 m. χ² falls from 0.36 to 0.12,
-//! and each edge takes a third of the contradiction.
+//! The second: two odometry edges of 1 m, and a loop of 2.6 m. χ² falls from 0.36 to 0.12,
+//! and each edge takes a third of the error.
 //!
 //! ```
 //! use ch16_slam2d::prelude::*;

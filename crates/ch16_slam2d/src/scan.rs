@@ -1,9 +1,8 @@
-//! What a robot hands to the estimator: frames of odometry and laser scans, and the clouds made of
-//! them.
+//! Input of the estimator: frames of odometry and laser scans, and the clouds made of them.
 //!
-//! A [`Frame`] carries a [`LaserScan`] with its geometry. [`ScanPreparer`] drops the beams that saw
-//! nothing, undoes the motion during the sweep, thins the points and gives them normals. Nothing
-//! here knows where the frames come from: a simulator, a log, a robot.
+//! A [`Frame`] carries a [`LaserScan`] with its geometry. [`ScanPreparer`] drops beams without a return,
+//! compensates the motion during the sweep, thins the points and estimates their normals. Frames may come
+//! from a simulator, a log or a robot.
 
 mod error;
 mod frame;

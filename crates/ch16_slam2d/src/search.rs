@@ -1,21 +1,21 @@
-//! Correlative matching: every pose of a window has a score, and bounds spare most of the work.
+//! Correlative scan matching: scores every pose of a window, and skips most of them by bounds.
 //!
-//! The map becomes a [`LikelihoodGrid`]: a cell's score says how near the next point of the map is.
-//! A pose puts every point of the scan into a cell, and its score is the sum over the points,
-//! `S(ξ) = Σ_k M(T_ξ p_k)`, whole numbers all of them. A [`SearchMap`] keeps the largest scores of
-//! squares of 2, 4, 8 … cells beside it, so one sum over the points bounds a whole box of poses from
-//! above. [`ScanSearch`] splits the most promising box and drops those whose bound is below the best
-//! pose that was scored: depth-first branch and bound over x, y and the heading. What it finds is
-//! what [`ScanSearch::exhaustive`] finds, to the last bit and with the same choice among equals.
+//! The map becomes a [`LikelihoodGrid`]: a cell's score decreases with its distance to the nearest point of the
+//! map. A pose puts every point of the scan into a cell, and its score is the sum over the points,
+//! `S(ξ) = Σ_k M(T_ξ p_k)`, in integers. A [`SearchMap`] also stores the largest scores of squares of 2, 4, 8 …
+//! cells, so one sum over the points bounds a whole box of poses from above. [`ScanSearch`] splits the most
+//! promising box and drops those whose bound is below the best scored pose: depth-first branch and bound over x, y
+//! and the heading. The result is that of [`ScanSearch::exhaustive`], to the last bit and with the same choice
+//! among equals.
 //!
-//! A window around a guess makes it a matcher for loops
-//! ([`SearchMatcher`](crate::matching::SearchMatcher)); a window as large as the map finds a robot
-//! that is lost. It says by how much the best *other* place is behind. It cannot tell apart what
-//! looks alike: a corridor's score is the same all along it, and then the margin says so.
+//! With a window around a guess it is a matcher for loops ([`SearchMatcher`](crate::matching::SearchMatcher));
+//! with a window as large as the map it relocalizes a lost robot. It also returns the margin to the best
+//! *distinct* pose. It cannot resolve ambiguity: the score is the same all along a corridor, and then the margin
+//! is small.
 //!
 //! Sources: Olson, "Real-time correlative scan matching", ICRA 2009; Hess, Kohler, Rapp, Andor,
 //! "Real-time loop closure in 2D LIDAR SLAM", ICRA 2016, §IV. Theirs branches over x and y at one
-//! heading; here far boxes hold neighbouring headings as well.
+//! heading; here coarse boxes also contain neighbouring headings.
 
 mod error;
 mod lattice;

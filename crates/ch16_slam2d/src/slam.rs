@@ -1,19 +1,19 @@
-//! The estimator: a front end that registers scans, a map that remembers, and loops that correct it.
+//! The estimator: a front end that registers scans, a map of keyframes, and loop closures that correct it.
 //!
-//! One frame: odometry predicts, registration on the last few sweeps corrects, every so often a keyframe
-//! enters the pose graph, and now and then an old place is recognized and the graph optimized.
-//! [`Slam::step`] takes one [`Frame`] and reports what it did with it.
+//! For each frame, odometry predicts and registration on the last few sweeps corrects. Every few frames a keyframe
+//! joins the pose graph, and after a loop closure the graph is optimized. [`Slam::step`] takes one [`Frame`] and
+//! reports the result.
 //!
-//! Three parts, each with its own state. The [`FrontEnd`] turns a frame into a pose and sees nothing but the
-//! last few scans. The [`Mapper`] holds keyframes and pose graph. The [`LoopCloser`] proposes loops and
-//! verifies them; it reads the map, asks it for covariances, and changes nothing. [`Slam`] alone lets one
-//! act on another: an accepted loop corrects the map, and its correction moves the front end.
+//! There are three parts with separate state. The [`FrontEnd`] estimates the pose of a frame from the
+//! last few scans only. The [`Mapper`] holds keyframes and pose graph. The [`LoopCloser`] proposes and
+//! verifies loops; it reads the map and its covariances, and does not change it. [`Slam`] connects them:
+//! an accepted loop corrects the map, and the correction moves the front end.
 //!
-//! It knows no truth and no world. [`SlamConfig::chapter`] and the default drive as the chapter does, with the
-//! matcher, the detector and the gate that they name; [`SlamConfig::for_robot`] is for recorded logs.
+//! [`SlamConfig::chapter`] and the default follow the chapter, with the configured matcher, detector and gate;
+//! [`SlamConfig::for_robot`] is for recorded logs.
 //!
-//! What it cannot fix: drift that no loop sees, such as the bend of a way out before the first
-//! loop, and a place that looks like another one within the gate.
+//! Limitations: drift that no loop observes, such as the bend of an outbound path before the first
+//! loop, and a location that looks like another one within the gate.
 
 mod agreement;
 mod bundle_loops;
@@ -71,14 +71,14 @@ pub struct Slam {
 }
 
 impl Slam {
-    /// An estimator that has seen nothing, with the parts that `config` names.
+    /// An estimator without frames, with the parts of `config`.
     #[must_use]
     pub fn new(config: SlamConfig) -> Self {
         let parts = SlamParts::from_config(&config);
         Self::with_parts(config, parts)
     }
 
-    /// An estimator with custom matchers and a custom loop detector; that for robots needs none.
+    /// An estimator with custom matchers and a custom loop detector; the estimator for robots ignores them.
     #[must_use]
     pub fn with_parts(config: SlamConfig, parts: SlamParts) -> Self {
         Self {
@@ -92,7 +92,7 @@ impl Slam {
         }
     }
 
-    /// The same estimator, which judges all loops together once some contradict the graph; without a test
+    /// The same estimator with an outlier test over all loops, which runs once some contradict the graph; without it
     /// they stay, and the optimizer's kernel bounds their weight.
     #[must_use]
     pub fn with_outlier_test(mut self, test: LoopOutlierTest) -> Self {
@@ -100,19 +100,19 @@ impl Slam {
         self
     }
 
-    /// Takes one frame: cleans its scan, registers it, and closes what loop it finds.
+    /// Takes one frame: prepares its scan, registers it, and closes loops.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the estimator stays as it was.
+    /// If the frame cannot be used; the estimator is unchanged.
     pub fn step(&mut self, frame: &Frame) -> Result<SlamReport, FrameError> {
         let prepared = self.prepare(frame)?;
         self.step_prepared(&prepared)
     }
 
-    /// [`Slam::step`] with a scan that is already a cloud.
+    /// [`Slam::step`] with a prepared scan.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the estimator stays as it was.
+    /// If the frame cannot be used; the estimator is unchanged.
     pub fn step_prepared(&mut self, frame: &PreparedFrame) -> Result<SlamReport, FrameError> {
         let mut pending = self.begin(frame)?;
         self.verify_loops(&mut pending);
@@ -123,19 +123,19 @@ impl Slam {
     /// The cloud that [`Slam::step`] makes of a frame.
     ///
     /// # Errors
-    /// Where the frame cannot be used.
+    /// If the frame cannot be used.
     pub fn prepare(&mut self, frame: &Frame) -> Result<PreparedFrame, FrameError> {
         let velocity = self.front_end.velocity();
         self.preparer
             .prepare_frame(frame, self.last_stamp_s, velocity, &self.config.scan)
     }
 
-    /// First part of a frame: predict, register, and take a keyframe where one is due.
+    /// First part of a frame: predicts, registers, and takes a keyframe if one is due.
     ///
-    /// The parts are for callers that look in between; [`Slam::step`] does all of them in order.
+    /// The parts are for callers that need the intermediate states; [`Slam::step`] runs all of them in order.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the estimator stays as it was.
+    /// If the frame cannot be used; the estimator is unchanged.
     pub fn begin(&mut self, frame: &PreparedFrame) -> Result<PendingFrame, FrameError> {
         let dt_s = frame.seconds_after(self.last_stamp_s, &self.front_end.estimate())?;
         self.last_stamp_s = frame.stamp_s;
@@ -152,7 +152,7 @@ impl Slam {
         Ok(PendingFrame::new(frame.stamp_s, registration, new_keyframe))
     }
 
-    /// Second part: looks for loops at a new keyframe.
+    /// Second part: searches for loops at a new keyframe.
     pub fn verify_loops(&mut self, pending: &mut PendingFrame) {
         if pending.new_keyframe().is_some() {
             let tried = self.loop_closer.find(&mut self.mapper, &self.config);
@@ -160,14 +160,16 @@ impl Slam {
         }
     }
 
-    /// Third part: adds the edges of the loops that passed and spreads the correction; reverts them if the
-    /// graph cannot be optimized with them.
+    /// Third part: adds the edges of the accepted loops and optimizes; reverts them if the graph cannot be
+    /// optimized with them.
     pub fn close_loop(&mut self, pending: &mut PendingFrame) {
         let accepted = pending.accepted();
         if accepted.is_empty() {
             return;
         }
-        let closed = self.mapper.close(&accepted, pending.trust(), &self.config);
+        let closed = self
+            .mapper
+            .close(&accepted, pending.consistency(), &self.config);
         if let Ok(effect) = &closed {
             self.front_end.correct(&effect.correction);
         }
@@ -188,8 +190,8 @@ impl Slam {
         }
     }
 
-    /// Once no frame follows: closes what waits or was not looked for yet, and links all keyframes once more
-    /// with the visits around them. The map is else what it was after the last frame.
+    /// Ends the run: closes pending loops, searches for loops at the last keyframe, and links all keyframes again
+    /// with the visits around them.
     pub fn conclude(&mut self) -> Conclusion {
         let mut pending = PendingFrame::new(self.last_stamp_s, None, None);
         let tried = self.loop_closer.conclude(&mut self.mapper, &self.config);
@@ -205,8 +207,8 @@ impl Slam {
         }
     }
 
-    /// Drops what is gone and takes out what was replaced around the newest keyframe; call it after a
-    /// frame that became one.
+    /// Removes points of objects that are gone and keyframes that were replaced around the newest keyframe; to be
+    /// called after a frame that became one.
     pub fn prune_map(&mut self, config: &MapPruningConfig) -> MapPruning {
         let radius_m = self.config.scan.normal_radius_m;
         map_pruning::prune_map(&mut self.mapper, &mut self.loop_closer, config, radius_m)
@@ -218,12 +220,12 @@ impl Slam {
         &self.config
     }
 
-    /// Looks for loops from now on, or no longer.
+    /// Switches loop closure on or off from now on.
     pub fn set_loop_closure(&mut self, loop_closure: LoopClosure) {
         self.config.loop_closure = loop_closure;
     }
 
-    /// Frames taken.
+    /// Number of frames.
     #[must_use]
     pub fn frames(&self) -> usize {
         self.frames
@@ -241,7 +243,7 @@ impl Slam {
         &self.mapper.graph
     }
 
-    /// The pose graph, to ask for covariances: they need the solver's memory.
+    /// The pose graph, mutable for covariance queries, which need the solver's memory.
     pub fn graph_mut(&mut self) -> &mut PoseGraph {
         &mut self.mapper.graph
     }
@@ -252,13 +254,13 @@ impl Slam {
         &self.mapper.keyframes
     }
 
-    /// What finds loops, and the loops that wait for others.
+    /// The loop closer, with its pending loops.
     #[must_use]
     pub fn loop_closer(&self) -> &LoopCloser {
         &self.loop_closer
     }
 
-    /// Submap and pairs of the chapter's last attempt to close a loop; none for robots.
+    /// Submap and pairs of the chapter's last attempt to close a loop; `None` for robots.
     #[must_use]
     pub fn loop_workspace(&self) -> Option<&LoopWorkspace> {
         self.loop_closer.workspace()
@@ -270,28 +272,28 @@ impl Slam {
         self.mapper.chi2
     }
 
-    /// Covariance of every keyframe against the first one: see [`Mapper::keyframe_covariances`].
+    /// Covariance of every keyframe relative to the first one: see [`Mapper::keyframe_covariances`].
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn keyframe_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
         self.mapper.keyframe_covariances()
     }
 
-    /// By how much the variances of the graph's measurements are larger than stated.
+    /// Ratio of actual to stated variance of the graph's measurements.
     #[must_use]
     pub fn variance_factor(&self) -> f64 {
         uncertainty::variance_factor(&self.mapper.graph)
     }
 
-    /// Registers keyframe `new` on what was seen around keyframe `old` and tests the result; the graph stays
-    /// as it is.
+    /// Registers keyframe `new` on the surroundings of keyframe `old` and tests the result; the graph is
+    /// unchanged.
     ///
     /// # Errors
-    /// Where the graph has no covariance to test it against.
+    /// If the graph has no covariance for the test.
     ///
     /// # Panics
-    /// Where a keyframe does not exist, or `new` is not after `old`.
+    /// If a keyframe does not exist, or `new` is not after `old`.
     pub fn register_loop(
         &mut self,
         old: usize,
@@ -312,7 +314,7 @@ impl Slam {
         });
     }
 
-    /// Adds a node where the estimate is far enough from the last keyframe.
+    /// Adds a node if the estimate is far enough from the last keyframe.
     fn take_keyframe(&mut self, frame: &PreparedFrame) -> Option<usize> {
         let graph = &mut self.mapper.graph;
         let last_node = self.mapper.keyframes.len() - 1;

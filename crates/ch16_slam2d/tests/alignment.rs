@@ -38,22 +38,22 @@ fn four_points_give_two_one_and_36_8699_degrees_with_trace_bound_four() {
 }
 
 #[test]
-fn a_reflection_is_not_taken_for_a_rotation() {
+fn a_reflection_is_not_aligned_as_a_rotation() {
     let mirrored = square().map(|p| Point2::new(-p.x, p.y));
     let found = closed_form(&square(), &mirrored);
-    // About the axes of a mirrored square every rotation is as good as any: tr(R H) = 0.
+    // About the axes of a mirrored square all rotations are equal: tr(R H) = 0.
     assert!(found.trace_bound < 1e-12);
 }
 
 #[test]
-fn without_pairs_nothing_moves() {
+fn without_pairs_the_increment_is_the_identity() {
     assert_eq!(svd_align(&[], &[]), SE2::identity());
     assert_eq!(point_to_plane_step(&[], &[], &[]), SE2::identity());
 }
 
 #[test]
 fn along_a_corridor_the_damped_step_is_zero() {
-    // Two walls along x; the cloud is off by (0.5, 0.1), and no normal sees the 0.5.
+    // Two walls along x; the cloud has an offset of (0.5, 0.1), and no normal constrains the 0.5.
     let walls: Vec<Point2<f64>> = (0..20)
         .flat_map(|k| {
             let x = 0.1 * f64::from(k);
@@ -65,7 +65,7 @@ fn along_a_corridor_the_damped_step_is_zero() {
     let step = point_to_plane_step(&source, &walls, &normals);
     let twist = step.translation();
     assert!(twist.x.abs() < 1e-12, "{step:?}");
-    // The ridge, 1e-4 of the mean eigenvalue, keeps that share of the step across.
+    // The ridge, 1e-4 of the mean eigenvalue, reduces the step across by that share.
     assert!((twist.y + 0.1).abs() < 2e-5, "{step:?}");
     assert!(step.theta().abs() < 1e-12, "{step:?}");
 }
@@ -109,7 +109,7 @@ prop_compose! {
 
 proptest! {
     #[test]
-    fn no_motion_near_the_closed_form_does_better(
+    fn no_motion_near_the_closed_form_has_a_lower_cost(
         (src, dst, _) in pairs(),
         dx in -0.1..0.1, dy in -0.1..0.1, turn in -0.1..0.1,
     ) {
@@ -134,7 +134,7 @@ proptest! {
     /// `(H + ridge) step = −g/2`, so with the right Jacobian it descends for any positive H.
     #[test]
     fn the_plane_step_goes_down_the_numeric_gradient((src, far, normals) in pairs()) {
-        // Targets a few centimetres away, so that the step stays in the reach of linearization.
+        // Targets a few centimetres away, so that the linearization is valid.
         let dst: Vec<_> = src.iter().zip(&far).map(|(p, q)| p + 0.01 * q.coords).collect();
         let wrapped: Vec<_> = normals.iter().copied().map(Some).collect();
         let step = point_to_plane_step(&src, &dst, &wrapped);

@@ -1,11 +1,11 @@
-//! Whatever a sensor says, the estimator answers with a report or with one sentence.
+//! Any sensor input gives a report or a typed error.
 
 use ch16_slam2d::matching::{MatcherKind, NdtMatcherConfig, SearchMatcherConfig};
 use ch16_slam2d::prelude::*;
 use ch16_slam2d::scan::{Frame, LaserScan};
 use ch16_slam2d::slam::{Slam, SlamConfig};
 
-/// Numbers that break what was not meant for them, among common ones.
+/// Numbers that provoke failures, among common ones.
 const NUMBERS: [f64; 14] = [
     0.0,
     -0.0,
@@ -38,7 +38,7 @@ impl Numbers {
         NUMBERS[self.below(NUMBERS.len())]
     }
 
-    /// One that a sensor may mean, three times of four.
+    /// A plausible value, three times of four.
     fn mostly(&mut self, usual: f64) -> f64 {
         match self.below(4) {
             0 => self.any(),
@@ -68,7 +68,7 @@ impl Numbers {
 }
 
 #[test]
-fn no_frame_makes_the_estimator_panic_or_leaves_it_without_a_pose() {
+fn no_frame_makes_the_estimator_panic_or_lose_its_pose() {
     for (seed, matcher) in [
         MatcherKind::PointToPoint,
         MatcherKind::PointToPlane,
@@ -110,14 +110,14 @@ fn no_frame_makes_the_estimator_panic_or_leaves_it_without_a_pose() {
 }
 
 #[test]
-fn a_jump_between_stamps_that_all_but_coincide_tells_no_velocity() {
+fn a_jump_between_nearly_equal_stamps_gives_no_velocity() {
     let scan = LaserScan {
         angle_step_rad: 0.15,
         ranges_m: vec![2.0; 40],
         ..LaserScan::default()
     };
     let mut slam = Slam::new(SlamConfig::for_robot(&scan));
-    // What is seen after the jump was not seen before: else the wheels would not be believed.
+    // The view after the jump is unseen space: otherwise the odometry would be rejected.
     let frame = |stamp_s, odometry, range_m| Frame {
         stamp_s,
         odometry,

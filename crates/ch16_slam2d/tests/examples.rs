@@ -1,4 +1,4 @@
-//! Every example runs, and what it shows is so.
+//! Runs every example and checks its claim.
 
 #[path = "../examples/align_two_clouds.rs"]
 mod align_two_clouds;
@@ -20,7 +20,7 @@ use ch16_slam2d::slam::SlamConfig;
 
 #[test]
 fn the_robot_of_the_aligned_clouds_moved_straight() {
-    // The room of the example moved by (−0.5, −0.2): the robot moved the other way.
+    // The room of the example moved by (−0.5, −0.2): the robot moved in the opposite direction.
     let expected = SE2::translation(0.5, 0.2);
     let motion = align_two_clouds::motion();
     assert!(expected.between(&motion).step_size() < 1e-12);
@@ -30,8 +30,8 @@ fn the_robot_of_the_aligned_clouds_moved_straight() {
 #[test]
 fn nine_cells_hold_the_nearest_point_that_the_map_finds() {
     let tau_m = 0.3;
-    // Points and queries all over 2 m × 2 m, on both sides of the origin, by two steps of no common
-    // measure.
+    // Points and queries all over 2 m × 2 m, on both sides of the origin, by two incommensurable
+    // steps.
     let spread = |k: i32, step: f64| (f64::from(k) * step).fract() * 2.0 - 1.0;
     let at = |k: i32, steps: [f64; 2]| Point2::new(spread(k, steps[0]), spread(k, steps[1]));
     let points: Vec<_> = (1..80).map(|k| at(k, [0.618_034, 0.414_214])).collect();
@@ -69,7 +69,7 @@ fn along_walls_point_to_plane_ends_nearer_than_point_to_point() {
 }
 
 #[test]
-fn the_loop_of_the_graph_brings_the_end_to_the_start() {
+fn the_loop_moves_the_end_of_the_graph_to_the_start() {
     let (mut graph, nodes) = optimize_a_graph::drive();
     let before_m = optimize_a_graph::gap_m(&graph, &nodes);
     assert!(graph.chi2() < 1e-12, "odometry alone contradicts nothing");
@@ -81,38 +81,38 @@ fn the_loop_of_the_graph_brings_the_end_to_the_start() {
 }
 
 #[test]
-fn the_walk_of_the_frames_is_followed_although_the_wheels_turn_too_far() {
+fn the_path_of_the_frames_is_tracked_despite_odometry_drift() {
     let pipeline = run_slam_on_your_frames::run().unwrap();
     let start = run_slam_on_your_frames::truth(0);
     let off_m = |pose: SE2, step| {
         let truth: SE2 = start.between(&run_slam_on_your_frames::truth(step));
         (pose.translation() - truth.translation()).norm()
     };
-    // The wheels alone claim 1.2 rad too much.
-    let wheels_m = off_m(run_slam_on_your_frames::wheels(120), 120);
-    assert!(wheels_m > 0.5, "{wheels_m}");
+    // The odometry alone has an error of 1.2 rad.
+    let odometry_m = off_m(run_slam_on_your_frames::odometry(120), 120);
+    assert!(odometry_m > 0.5, "{odometry_m}");
     for (step, (_, pose)) in pipeline.trajectory().enumerate() {
         let error_m = off_m(pose, step);
-        assert!(error_m < 0.2 * wheels_m, "{error_m} of {wheels_m}");
+        assert!(error_m < 0.2 * odometry_m, "{error_m} of {odometry_m}");
     }
     run_slam_on_your_frames::main();
 }
 
 #[test]
-fn a_matcher_that_looks_around_finds_the_heading_that_icp_misses() {
+fn a_matcher_with_many_headings_converges_where_icp_does_not() {
     let config = SlamConfig::default();
     let mut icp = IcpMatcher::with_variant(IcpVariant::PointToPoint, &config.chapter.local_map);
     let alone = write_your_own_matcher::off_rad(&mut icp);
     let mut many = write_your_own_matcher::ManyHeadings(icp);
     let around = write_your_own_matcher::off_rad(&mut many);
     assert!(alone.abs() > 0.3, "{alone}");
-    // Points stand 5 cm apart, about 1.5 m away: half a point is 0.017 rad, and ICP holds on to it.
+    // Points are 5 cm apart, about 1.5 m away: half a point is 0.017 rad, at which ICP converges.
     assert!(around.abs() < 0.02, "{around}");
-    // It drives the estimator, too.
+    // It works in the estimator, too.
     let mut slam = write_your_own_matcher::slam(config, many);
     for step in 0..10 {
         let log = run_slam_on_your_frames::frame(step);
-        let before = step.checked_sub(1).map(run_slam_on_your_frames::wheels);
+        let before = step.checked_sub(1).map(run_slam_on_your_frames::odometry);
         let frame = Frame {
             stamp_s: log.stamp_s,
             odometry: before.zip(log.odometry).map(|(from, to)| from.between(&to)),

@@ -1,7 +1,7 @@
-//! The signatures of the chapter's printed listings, through the one import that they name.
+//! The signatures of the chapter's printed listings, through the import that they name.
 //!
-//! What the functions compute is tested where they belong; here they must compile as printed, and
-//! every name must be the thing that the chapter means.
+//! The results are tested elsewhere; here the listings must compile as printed, and every name must have the
+//! chapter's meaning.
 
 use ch16_slam2d::prelude::*;
 
@@ -49,7 +49,7 @@ fn the_listings_on_registration_compile() {
     assert_eq!(neighbor.map(|found| found.index), Some(index));
     assert_eq!(map.nearest(&query, 0.1), None);
 
-    // No point is off by half the distance to its neighbour, so every pair is right at once.
+    // No point is off by half the distance to its neighbour, so all pairs are correct at once.
     let offset = SE2::new(0.01, -0.008, 0.004);
     let cloud: PointCloud = target.transformed(&offset.inverse());
     assert_eq!(cloud.stamp_s(), 0.25);
@@ -67,7 +67,7 @@ fn the_listings_on_registration_compile() {
             ref trace,
             ..
         } = result;
-        // 1e-4: the run ends at a step of that size, which the damping leaves to be made.
+        // 1e-4: the run ends at a step of that size, part of which remains because of the damping.
         assert!(pose.between(&offset).step_size() < 1e-4, "{variant:?}");
         assert!(rmse_m < 1e-4 && inliers == cloud.len(), "{variant:?}");
         assert_eq!(trace[0].pose, SE2::identity());

@@ -1,6 +1,6 @@
-//! The listings under their printed names give what the core gives.
+//! The listings under their printed names give the results of the core.
 //!
-//! 1e-9: the two add the same terms in another order, and solve them by other factorizations.
+//! 1e-9: the two add the same terms in another order, and use other factorizations.
 
 use std::sync::Arc;
 
@@ -91,7 +91,7 @@ fn a_map_keeps_and_finds_the_same_points_with_the_same_normals() {
 }
 
 #[test]
-fn a_returned_beam_is_a_point_and_a_lost_one_is_none() {
+fn a_return_is_a_point_and_a_lost_beam_is_not() {
     let ranges = [1.0, 6.0, 2.0, 5.98];
     let bearings = [0.0, 0.1, core::f64::consts::FRAC_PI_2, 0.3];
     let cloud = PointCloud::from_ranges(&ranges, &bearings, 6.0, 0.5);
@@ -123,9 +123,9 @@ fn both_increments_are_those_of_the_core() {
     assert_eq!(point_to_plane_step(&[]), SE2::identity());
 }
 
-/// Mirrored pairs: without the sign of the determinant the answer would be a reflection.
+/// Mirrored pairs: without the sign of the determinant the result would be a reflection.
 #[test]
-fn no_mirror_image_comes_out_of_the_decomposition() {
+fn the_decomposition_gives_no_reflection() {
     let src = [[2.0, 0.1], [-2.0, -0.1], [0.3, 1.0], [-0.3, -1.0]].map(Point2::from);
     let mirrored = src.map(|p| Point2::new(p.x, -p.y));
     let found = svd_align(&src, &mirrored);
@@ -137,7 +137,7 @@ fn no_mirror_image_comes_out_of_the_decomposition() {
 }
 
 #[test]
-fn a_registration_takes_the_same_steps_and_knows_the_same() {
+fn a_registration_has_the_same_steps_and_information() {
     let target = sweep(&origin(), 4);
     let moved = origin() * SE2::new(Vector2::new(0.15, -0.1), 0.1);
     let source = sweep(&moved, 5);
@@ -231,14 +231,14 @@ fn a_graph_takes_the_same_steps_to_the_same_poses() {
 }
 
 #[test]
-fn a_loop_is_proposed_and_judged_alike() {
+fn a_loop_is_proposed_and_tested_alike() {
     let [near, far] = [1.0, 8.0].map(verdicts_after);
     assert!(near.iter().all(|accepted| *accepted), "{near:?}");
     assert!(far.contains(&false), "{far:?}");
 }
 
-/// Round the room, and round again a hand's breadth beside the first time, in a graph that has drifted
-/// by so much: what is said of each candidate.
+/// Two laps of the room, a hand's breadth apart, in a graph with this drift; returns whether each
+/// candidate is accepted.
 fn verdicts_after(drift: f64) -> Vec<bool> {
     let nodes = 30;
     let place = |k: usize, off: f64| {
@@ -305,7 +305,7 @@ fn verdicts_after(drift: f64) -> Vec<bool> {
             assert!((listing.chi2 - core.gate.chi2).abs() < SAME * (1.0 + core.gate.chi2));
             assert_eq!(listing.accepted, core.accepted(), "{node} to {number}");
             if poses[number].theta() == 0.0 {
-                // The chapter turns its information by the heading that the candidate has in the world.
+                // The chapter rotates its information by the candidate's heading in the world.
                 let apart = listing.edge.omega - core.information;
                 assert!(apart.amax() < SAME * core.information.amax());
                 straight += 1;

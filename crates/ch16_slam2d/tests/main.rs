@@ -1,4 +1,4 @@
-//! The system from outside: one binary, one module for each part.
+//! Integration tests of the system: one binary, one module for each part.
 
 mod alignment;
 mod any_frame;
@@ -6,3 +6,4 @@ mod examples;
 mod listings;
 mod listings_and_core;
 mod nearest;
+mod reasons;

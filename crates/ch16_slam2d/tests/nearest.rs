@@ -1,4 +1,4 @@
-//! Every map finds the nearest point that a look at all points finds.
+//! Every map finds the nearest point of a linear scan.
 
 use ch16_slam2d::cloud::{DenseMap, NearestMap, NearestTable, PointCloud, QueryCache, VoxelMap};
 use pr_geom::{Point2, Vector2};
@@ -52,7 +52,7 @@ fn query() -> impl Strategy<Value = Point2<f64>> {
 
 proptest! {
     #[test]
-    fn all_maps_find_what_brute_force_finds(
+    fn all_maps_agree_with_brute_force(
         points in points(),
         queries in prop::collection::vec(query(), 1..20),
         cell_m in 0.05..0.8,
@@ -77,7 +77,7 @@ proptest! {
     }
 
     #[test]
-    fn a_query_that_remembers_finds_what_a_new_one_finds(
+    fn a_cached_query_agrees_with_a_new_one(
         points in points(),
         start in query(),
         steps in prop::collection::vec((-0.1..0.1, -0.1..0.1), 1..40),
@@ -87,7 +87,7 @@ proptest! {
         let mut cache = QueryCache::default();
         let mut query = start;
         for (k, (dx, dy)) in steps.into_iter().enumerate() {
-            // Steps of every size: large ones make it search, small ones make it remember.
+            // Steps of every size: large ones make it search, small ones use the cache.
             let size = 0.1_f64.powi(k as i32 % 4);
             query += Vector2::new(dx, dy) * size;
             let again = dense.neighbor_cached(query, radius_m, &mut cache);
@@ -97,7 +97,7 @@ proptest! {
 }
 
 #[test]
-fn a_table_beyond_its_budget_is_not_used_and_the_answers_stay() {
+fn a_table_beyond_its_budget_is_not_used_and_answers_are_unchanged() {
     let hall = |k: i32| Point2::new(3.0 * f64::from(k), 2.0 * f64::from(k % 7));
     let cloud: PointCloud = (0..1000).map(hall).collect();
     let map = DenseMap::from_cloud(&cloud, 0.25, 8);

@@ -1,4 +1,4 @@
-//! The chapter's two worked examples, by the chapter's listings and by the core that drives the laps.
+//! The chapter's two worked examples, by the chapter's listings and by the core.
 
 use ch16_slam2d::listings::{EdgeKind, PoseEdge, PoseGraph, SE2, svd_align};
 use ch16_slam2d::{graph, icp};

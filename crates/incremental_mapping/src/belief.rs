@@ -1,4 +1,4 @@
-//! A posterior over the pose, by particles.
+//! Particle filter: a posterior over the pose.
 
 use core::f64::consts::TAU;
 
@@ -8,10 +8,10 @@ use pr_geom::{Rng, SE2, math, wrap_angle};
 use super::LikelihoodMap;
 use ch16_slam2d::cloud::PointCloud;
 
-/// One point in so many is looked at, so that a particle costs little.
-const POINTS_SKIPPED: usize = 2;
+/// Stride of the scan's points in the likelihood of a particle, to reduce its cost.
+const POINT_STRIDE: usize = 2;
 
-/// How far particles agree.
+/// Spread of the particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeliefSpread {
     /// Standard deviation of the position, `√(σ_x² + σ_y²)`, m.
@@ -20,9 +20,9 @@ pub struct BeliefSpread {
     pub heading_rad: f64,
 }
 
-/// Particles with weights: where the body may be.
+/// Particles with weights, which represent the posterior of the pose.
 ///
-/// All randomness is that of the seed: the same calls give the same bits.
+/// The seed determines all random numbers: the same calls give the same bits.
 #[derive(Clone, Debug)]
 pub struct PoseBelief {
     rng: Rng,
@@ -31,7 +31,7 @@ pub struct PoseBelief {
 }
 
 impl PoseBelief {
-    /// So many particles at one pose, equally likely; at least one.
+    /// Equally likely particles at one pose; at least one.
     #[must_use]
     pub fn new(pose: SE2, particles: usize, seed: u32) -> Self {
         let count = particles.max(1);
@@ -54,7 +54,7 @@ impl PoseBelief {
         &self.weights
     }
 
-    /// Moves every particle by `motion`, each with noise of its own: standard deviations of x and y in
+    /// Moves every particle by `motion` with independent noise: standard deviations of x and y in
     /// metres and of the heading in radians.
     pub fn predict(&mut self, motion: &SE2, sigma_m: f64, sigma_rad: f64) {
         for particle in &mut self.particles {
@@ -67,11 +67,11 @@ impl PoseBelief {
         }
     }
 
-    /// Weighs every particle by the likelihood of `scan` on `map`, to the power of `weight`, and draws
-    /// new particles where few have all the weight.
+    /// Multiplies every weight by the likelihood of `scan` on `map`, to the power of `weight`, and resamples
+    /// if few particles have most of the weight.
     pub fn weigh(&mut self, map: &LikelihoodMap, scan: &PointCloud, weight: f64) {
-        let points: Vec<Point2<f64>> = scan.iter().step_by(POINTS_SKIPPED).collect();
-        let factor = weight * POINTS_SKIPPED as f64;
+        let points: Vec<Point2<f64>> = scan.iter().step_by(POINT_STRIDE).collect();
+        let factor = weight * POINT_STRIDE as f64;
         let logs: Vec<f64> = self
             .particles
             .iter()
@@ -94,7 +94,7 @@ impl PoseBelief {
         }
     }
 
-    /// Mean of the particles; headings are averaged as directions.
+    /// Mean of the particles, with the circular mean of the headings.
     #[must_use]
     pub fn mean(&self) -> SE2 {
         let (mut x, mut y, mut cos, mut sin) = (0.0, 0.0, 0.0, 0.0);
@@ -107,7 +107,7 @@ impl PoseBelief {
         SE2::new(x, y, math::atan2(sin, cos))
     }
 
-    /// How far the particles agree.
+    /// Spread of the particles.
     #[must_use]
     pub fn spread(&self) -> BeliefSpread {
         let mean = self.mean();
@@ -124,7 +124,7 @@ impl PoseBelief {
         }
     }
 
-    /// Weights that are no numbers, or all nothing, become equal ones.
+    /// Normalizes the weights; if their sum is zero or not finite, they become equal.
     fn normalize(&mut self) {
         let sum: f64 = self.weights.iter().sum();
         let equal = 1.0 / self.particles.len() as f64;
@@ -134,8 +134,7 @@ impl PoseBelief {
         }
     }
 
-    /// Draws as many particles by their weights with one random number (Thrun, Burgard, Fox 2005,
-    /// Table 4.4).
+    /// Low-variance resampling with one random number (Thrun, Burgard, Fox 2005, Table 4.4).
     fn resample(&mut self) {
         let count = self.particles.len();
         let step = 1.0 / count as f64;
@@ -160,7 +159,7 @@ mod tests {
     use super::super::LikelihoodMapConfig;
     use super::*;
 
-    /// A corner room with a post, seen from the origin.
+    /// A corner of a room with a post, seen from the origin.
     fn room() -> PointCloud {
         let wall = |k: i32| 0.1 * f64::from(k) - 2.0;
         let south = (0..40).map(|k| Point2::new(wall(k), -1.5));
@@ -172,14 +171,14 @@ mod tests {
     fn map() -> LikelihoodMap {
         let mut map = LikelihoodMap::new(LikelihoodMapConfig {
             sigma_m: 0.24,
-            ..LikelihoodMapConfig::of_cells(0.12)
+            ..LikelihoodMapConfig::from_cell_size(0.12)
         });
         map.insert(&room(), &SE2::identity());
         map
     }
 
     #[test]
-    fn particles_spread_as_the_way_drifts_and_meet_where_the_map_knows() {
+    fn particles_spread_by_drift_and_converge_on_known_map() {
         let mut belief = PoseBelief::new(SE2::identity(), 800, 7);
         for _ in 0..16 {
             belief.predict(&SE2::identity(), 0.05, 0.01);
@@ -203,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_place_changes_no_weight_and_the_same_seed_gives_the_same_bits() {
+    fn unseen_space_changes_no_weight_and_equal_seeds_give_equal_bits() {
         let run = |seed: u32| {
             let mut belief = PoseBelief::new(SE2::identity(), 50, seed);
             belief.predict(&SE2::new(40.0, 0.0, 0.1), 0.1, 0.1);

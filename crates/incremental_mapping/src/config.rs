@@ -1,4 +1,4 @@
-//! Every constant of the ancestor.
+//! The constants of incremental mapping.
 
 use pr_geom::SE2;
 
@@ -7,41 +7,42 @@ use crate::field::ClimbConfig;
 use ch16_slam2d::scan::ScanConfig;
 use ch16_slam2d::slam::{MotionNoise, SlamConfig};
 
-/// When particles are believed, and how far they spread.
+/// Criteria for closing a cycle, and the drift of the particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CycleConfig {
     /// Seed of the particles' noise.
     pub seed: u32,
     /// Number of particles.
     pub particles: usize,
-    /// Drift of x and of y over one keyframe, a standard deviation, m.
+    /// Drift of x and of y per keyframe, a standard deviation, m.
     pub drift_sigma_m: f64,
-    /// Drift of the heading over one keyframe, a standard deviation, rad.
+    /// Drift of the heading per keyframe, a standard deviation, rad.
     pub drift_sigma_rad: f64,
-    /// The old map holds keyframes that are at least so many nodes older.
+    /// The old map holds keyframes that are at least this many nodes older.
     pub min_gap_nodes: usize,
-    /// The old map as the particles see it: wider than that of the climb, or none of them hits.
+    /// The likelihood field of the old map for the particles: wider than that of the climb, so that some particle
+    /// hits.
     pub field: LikelihoodMapConfig,
-    /// How much a point counts in a particle's weight: points of one scan are not independent.
+    /// Exponent of a point's likelihood, because points of one scan are correlated.
     pub weight: f64,
-    /// A place is known where at least this share of the scan falls onto seen cells of the old map.
+    /// Smallest share of the scan on observed cells of the old map for a known location.
     pub min_known: f64,
-    /// Particles agree where their positions deviate by less, m.
+    /// Largest standard deviation of the particles' positions for a decision, m.
     pub max_spread_m: f64,
-    /// And their headings, rad.
+    /// Largest standard deviation of their headings, rad.
     pub max_spread_rad: f64,
-    /// A place fits where this share of what falls onto seen cells lies at a wall of the old map.
+    /// Smallest share of the scan's points on observed cells that lie at a wall of the old map.
     pub min_fit: f64,
-    /// A pose that is off by less needs no push, m.
+    /// Smallest position error that is corrected, m.
     pub min_shift_m: f64,
-    /// Nor one whose heading is, rad.
+    /// Smallest heading error that is corrected, rad.
     pub min_turn_rad: f64,
 }
 
 /// The parameters of an [`IncrementalMapper`](super::IncrementalMapper).
 #[derive(Clone, Debug, PartialEq)]
 pub struct IncrementalConfig {
-    /// Pose of the first frame: it lays down the map's frame.
+    /// Pose of the first frame, which defines the map's frame.
     pub start: SE2,
     /// How a scan becomes a cloud.
     pub scan: ScanConfig,
@@ -49,17 +50,17 @@ pub struct IncrementalConfig {
     pub map: LikelihoodMapConfig,
     /// The hill climbing.
     pub climb: ClimbConfig,
-    /// The motion prior where the wheels were read.
+    /// Noise of the motion prior by odometry.
     pub odometry_noise: MotionNoise,
-    /// The motion prior where the velocity is expected to stay.
+    /// Noise of the motion prior by constant velocity.
     pub prediction_noise: MotionNoise,
-    /// The velocity is expected to stay for so many times the last interval at most.
+    /// Constant velocity is assumed for at most this many times the last interval.
     pub extrapolation: f64,
     /// Distance in metres after which a scan is added to the map.
     pub keyframe_distance_m: f64,
     /// Turn in radians after which a scan is added to the map.
     pub keyframe_turn_rad: f64,
-    /// The variant for cycles; none for the incremental mapper alone.
+    /// Settings for closing cycles; `None` for the incremental mapper alone.
     pub cycles: Option<CycleConfig>,
 }
 
@@ -70,14 +71,13 @@ impl Default for IncrementalConfig {
 }
 
 impl IncrementalConfig {
-    /// The incremental mapper with the lengths of a pose-graph system: its cells, its keyframes, its
-    /// noise of the wheels.
+    /// The incremental mapper with the cells, keyframes and odometry noise of a pose-graph system.
     #[must_use]
     pub fn from_slam_config(slam: &SlamConfig) -> Self {
         Self {
             start: slam.start,
             scan: slam.scan,
-            map: LikelihoodMapConfig::of_cells(slam.scan.cell_m),
+            map: LikelihoodMapConfig::from_cell_size(slam.scan.cell_m),
             climb: ClimbConfig {
                 weight: 1.0,
                 max_steps: 30,
@@ -92,8 +92,7 @@ impl IncrementalConfig {
         }
     }
 
-    /// The same with the variant for cycles, whose drift and gap are those of the pose-graph system's
-    /// loops.
+    /// The same with cycle closing; drift and gap are those of the pose-graph system's loops.
     #[must_use]
     pub fn with_cycles(mut self, slam: &SlamConfig, seed: u32) -> Self {
         let cell_m = slam.scan.cell_m;

@@ -1,4 +1,4 @@
-//! The watch for cycles: particles on the old part of the map.
+//! Detection of cycles by particles on the old part of the map.
 
 use pr_geom::{Point2, SE2};
 
@@ -11,23 +11,23 @@ use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::metrics::position_error_m;
 use ch16_slam2d::slam::Keyframe;
 
-/// A posterior over the pose beside the incremental mapper, weighed on what is old.
+/// A posterior over the pose, weighted on the old map, next to the incremental mapper.
 ///
-/// The old map holds keyframes so many nodes back: what was mapped just now agrees with the pose by its
-/// making, and would hold all particles where the error is.
+/// The old map holds only keyframes at least `min_gap_nodes` back: recent scans agree with the pose by
+/// construction, and would hold all particles at the wrong pose.
 #[derive(Clone, Debug)]
 pub struct CycleWatch {
     config: CycleConfig,
     belief: PoseBelief,
     old_map: LikelihoodMap,
-    /// Keyframes in the old map.
+    /// Number of keyframes in the old map.
     old_nodes: usize,
-    /// The newest node at which a cycle was closed or confirmed: what lies before stays.
+    /// The newest node at which a cycle was closed or confirmed: earlier nodes are not moved again.
     last_known_node: usize,
 }
 
 impl CycleWatch {
-    /// A watch from the first keyframe on.
+    /// Starts at the first keyframe.
     #[must_use]
     pub fn new(config: CycleConfig, start: SE2) -> Self {
         Self {
@@ -45,13 +45,13 @@ impl CycleWatch {
         &self.belief
     }
 
-    /// The map that it is weighed on.
+    /// The map on which it is weighted.
     #[must_use]
     pub fn old_map(&self) -> &LikelihoodMap {
         &self.old_map
     }
 
-    /// Follows the mapper to its newest keyframe, and corrects `poses` where the particles know better.
+    /// Follows the mapper to its newest keyframe, and corrects `poses` if a cycle closes.
     pub(super) fn test(
         &mut self,
         poses: &mut [SE2],
@@ -84,7 +84,7 @@ impl CycleWatch {
             test.verdict = CycleVerdict::Undecided;
             return test;
         }
-        // From far to near: the particles see a wide field, the map is as sharp as the mapper's.
+        // Coarse to fine: the particles use a wide field, the map one as narrow as the mapper's.
         let mut pose = mean;
         for sigma_m in [config.field.sigma_m, mapper.map.sigma_m] {
             let field = self.old_map.field(sigma_m);
@@ -106,7 +106,7 @@ impl CycleWatch {
         test
     }
 
-    /// The place is known: the pose is right, or the path is corrected.
+    /// At a known location: confirms the pose, or corrects the path.
     fn close_or_confirm(&mut self, poses: &mut [SE2], pose: SE2) -> CycleVerdict {
         let node = poses.len() - 1;
         let before = poses[node];
@@ -130,7 +130,7 @@ impl CycleWatch {
         })
     }
 
-    /// The old keyframe that stands nearest to `pose`: there the cycle began.
+    /// The old keyframe nearest to `pose`, at which the cycle began.
     fn nearest_old(&self, poses: &[SE2], pose: &SE2) -> usize {
         let old = poses[..self.old_nodes].iter().enumerate();
         old.min_by(|(_, a), (_, b)| position_error_m(a, pose).total_cmp(&position_error_m(b, pose)))
@@ -146,21 +146,21 @@ impl CycleWatch {
         self.old_nodes = self.old_nodes.max(old);
     }
 
-    /// Share of the points for which `test` is true, among those for which it is anything.
+    /// Share of the points for which `test` is true, among those for which it is `Some`.
     fn share(
         &self,
         scan: &PointCloud,
         pose: &SE2,
         test: impl Fn(Point2<f64>) -> Option<bool>,
     ) -> f64 {
-        let (mut asked, mut passed) = (0_usize, 0_usize);
-        for answer in scan.iter().filter_map(|point| test(pose.transform(point))) {
-            asked += 1;
-            passed += usize::from(answer);
+        let (mut counted, mut passed) = (0_usize, 0_usize);
+        for passes in scan.iter().filter_map(|point| test(pose.transform(point))) {
+            counted += 1;
+            passed += usize::from(passes);
         }
-        if asked == 0 {
+        if counted == 0 {
             return 0.0;
         }
-        passed as f64 / asked as f64
+        passed as f64 / counted as f64
     }
 }

@@ -1,9 +1,8 @@
-//! Maps that are fields: a number for every place, smooth in between, and a scan that climbs on it.
+//! Maps as smooth fields, and hill climbing of a scan on them.
 //!
-//! [`TiledGrid`] holds what is known of cells and grows where something is learnt. A field reads it
-//! between the cells by bicubic interpolation and says of each point how well it lies there
-//! ([`PointScores`]): its score with slope and curvature. [`ScanClimb`] moves a scan uphill on the sum
-//! over its points, with a belief about its pose as one more term: the registration of the
+//! [`TiledGrid`] stores known cells and grows on demand. A field interpolates it bicubically and returns the
+//! score of a point with gradient and curvature ([`PointScores`]). [`ScanClimb`] maximizes the sum
+//! over a scan's points, plus a prior of its pose: the registration of the
 //! [`IncrementalMapper`](crate::IncrementalMapper) on its likelihood field.
 
 mod bicubic;

@@ -1,25 +1,25 @@
 #![doc = include_str!("../README.md")]
 //!
-//! The ancestor of pose graphs: one map, one pose, and never a look back, or only along the path.
+//! Incremental maximum likelihood mapping, the predecessor of pose-graph SLAM: one map, one pose, no revision.
 //!
-//! Incremental maximum likelihood mapping puts every scan where it fits best on the map of all scans
+//! Incremental maximum likelihood mapping puts every scan at its most likely pose on the map of all scans
 //! before it, `ŝ = argmax p(z | s, m) p(s | u, ŝ₋₁)`, and adds it there for good. The likelihood is a
-//! field: how near the next wall is ([`LikelihoodMap`]). The maximum is sought by hill climbing from
-//! where the wheels lead ([`ScanClimb`](crate::field::ScanClimb)).
+//! field of the distance to the nearest wall ([`LikelihoodMap`]). Hill climbing from the odometry prediction finds
+//! the maximum ([`ScanClimb`](crate::field::ScanClimb)).
 //!
-//! What is wrong once stays wrong: at the end of a cycle the map does not meet its own beginning, and
-//! climbing reaches only what is as near as the field is wide. The variant for cycles keeps a posterior
-//! over poses beside it ([`PoseBelief`]): particles that spread as the way drifts and are weighed on the
-//! old part of the map alone. Where they agree on a place, the cycle is closed: what the pose is off is
-//! pushed backwards along the path ([`push_backwards`]).
+//! Errors are never corrected: at the end of a cycle the map is inconsistent, and the basin of convergence of
+//! climbing is only as wide as the field. The variant with cycle closing also keeps a posterior
+//! over poses ([`PoseBelief`]): particles that spread with the drift and are weighted on the
+//! old part of the map alone. If they agree on a pose, the cycle is closed: the pose error is
+//! distributed backwards along the path ([`push_backwards`]).
 //!
-//! It cannot close a cycle that drifted farther than its particles reached, it cannot take back one that
-//! is false, and it weighs no two cycles against each other: one sparse solve does.
+//! It cannot close a cycle whose drift exceeds the spread of its particles, cannot revert a false
+//! closure, and does not weight several cycles against each other, as one sparse solve does.
 //!
 //! Sources: Thrun, Burgard, Fox, "A real-time algorithm for mobile robot mapping with applications to
 //! multi-robot and 3D mapping", ICRA 2000; Thrun, Burgard, Fox, "Probabilistic Robotics", 2005, §6.4
-//! (likelihood fields), §4.3 (particles). Theirs optimizes all poses of a cycle once more after the
-//! push; here they stay where it leaves them.
+//! (likelihood fields), §4.3 (particles). Theirs optimizes all poses of a cycle again after the
+//! correction; here they stay.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 

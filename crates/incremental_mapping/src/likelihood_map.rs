@@ -1,4 +1,4 @@
-//! A map of all scans as a likelihood field: how near the next wall is, and what was seen at all.
+//! A map of all scans as a likelihood field: distance to the nearest wall, and which cells were observed.
 
 use nalgebra::{Matrix2, Point2, Vector2};
 use pr_geom::{SE2, math};
@@ -7,14 +7,14 @@ use pr_grid::{Cell, bresenham};
 use crate::field::{PointScore, PointScores, TiledGrid};
 use ch16_slam2d::cloud::PointCloud;
 
-/// Most cells of a map: 64 MB, 120 m × 120 m at 0.06 m where all of it is walls.
+/// Largest number of cells of a map: 64 MB, 120 m × 120 m at 0.06 m if all of it is walls.
 pub const MAX_MAP_CELLS: usize = 1 << 22;
-/// Points farther from the body than so many cells draw no ray: they are nobody's.
+/// Points farther from the body than this many cells are ignored.
 const MAX_RAY_CELLS: f64 = 4096.0;
-/// The field ends so many standard deviations from a wall.
+/// The field ends at this many standard deviations from a wall.
 const REACH_SIGMAS: f64 = 3.0;
-/// Steps of the squared distance for which particles know the likelihood.
-const RATIO_STEPS: usize = 512;
+/// Resolution of the table of likelihoods for particles, in steps of the squared distance.
+const TABLE_STEPS: usize = 512;
 
 /// Cells and shape of a likelihood field.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,18 +23,18 @@ pub struct LikelihoodMapConfig {
     pub cell_m: f64,
     /// Standard deviation of a point's distance from its wall, m.
     pub sigma_m: f64,
-    /// A point with a normal stands for so much wall on either side, m.
+    /// Half length of the wall segment drawn at a point with a normal, m.
     pub wall_m: f64,
-    /// Likelihood of a point far from all walls, beside 1 at a wall.
+    /// Likelihood of a point far from all walls, relative to 1 at a wall.
     pub floor: f64,
-    /// Likelihood of a point where nothing was seen yet.
+    /// Likelihood of a point in unseen space.
     pub unseen: f64,
 }
 
 impl LikelihoodMapConfig {
     /// The field for clouds with points `cell_m` apart.
     #[must_use]
-    pub fn of_cells(cell_m: f64) -> Self {
+    pub fn from_cell_size(cell_m: f64) -> Self {
         Self {
             cell_m: 0.5 * cell_m,
             sigma_m: 0.6 * cell_m,
@@ -50,10 +50,10 @@ impl LikelihoodMapConfig {
     }
 }
 
-/// What is known of a cell.
+/// State of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Place {
-    /// Squared distance of its centre from the nearest wall, m²; that of the field's end beyond it.
+struct MapCell {
+    /// Squared distance of its centre from the nearest wall, m², clamped at the field's end.
     distance2_m2: f64,
     /// Whether a ray has passed it.
     is_seen: bool,
@@ -61,18 +61,18 @@ struct Place {
 
 /// The likelihood field of scans, `p(d) = exp(−d²/(2σ²)) + ε` at the distance d from a wall.
 ///
-/// A wall is drawn at every point: a piece of line along the point's normal where it has one, so that
-/// a scan may slide along. Between the cells the squared distance is interpolated; the score of a
+/// A wall segment is drawn at every point, perpendicular to its normal if it has one, so that
+/// a scan can slide along. The squared distance is interpolated between the cells; the score of a
 /// point is `ln p`.
 #[derive(Clone, Debug)]
 pub struct LikelihoodMap {
     config: LikelihoodMapConfig,
-    cells: TiledGrid<Place>,
+    cells: TiledGrid<MapCell>,
     /// Logarithms of likelihood ratios, by squared distance in steps of the field's end.
     log_ratios: Vec<f64>,
 }
 
-/// A likelihood field that is narrower than its map, or the map's own.
+/// A likelihood field of the map, possibly with a smaller standard deviation.
 #[derive(Clone, Copy, Debug)]
 pub struct LikelihoodField<'a> {
     map: &'a LikelihoodMap,
@@ -80,19 +80,19 @@ pub struct LikelihoodField<'a> {
 }
 
 impl LikelihoodMap {
-    /// A map of nothing.
+    /// An empty map.
     #[must_use]
     pub fn new(config: LikelihoodMapConfig) -> Self {
-        let unknown = Place {
+        let unknown = MapCell {
             distance2_m2: config.far2_m2(),
             is_seen: false,
         };
         Self {
             config,
             cells: TiledGrid::new(config.cell_m, unknown, MAX_MAP_CELLS),
-            log_ratios: (0..=RATIO_STEPS)
+            log_ratios: (0..=TABLE_STEPS)
                 .map(|k| {
-                    let distance2_m2 = config.far2_m2() * k as f64 / RATIO_STEPS as f64;
+                    let distance2_m2 = config.far2_m2() * k as f64 / TABLE_STEPS as f64;
                     let hit = math::exp(-distance2_m2 / (2.0 * config.sigma_m * config.sigma_m));
                     math::ln((hit + config.floor) / config.unseen)
                 })
@@ -100,24 +100,24 @@ impl LikelihoodMap {
         }
     }
 
-    /// The field with a standard deviation of its own, at most the map's, m.
+    /// The field with a custom standard deviation, at most the map's, m.
     #[must_use]
     pub fn field(&self, sigma_m: f64) -> LikelihoodField<'_> {
         LikelihoodField { map: self, sigma_m }
     }
 
-    /// Forgets everything.
+    /// Removes all scans.
     pub fn clear(&mut self) {
         self.cells.clear();
     }
 
-    /// Cells and shape.
+    /// Cell size and shape of the field.
     #[must_use]
     pub fn config(&self) -> &LikelihoodMapConfig {
         &self.config
     }
 
-    /// Cells that take memory.
+    /// Number of allocated cells.
     #[must_use]
     pub fn cell_count(&self) -> usize {
         self.cells.len()
@@ -130,9 +130,9 @@ impl LikelihoodMap {
         for (index, point) in scan.iter().enumerate() {
             let at = map_from_scan.transform(point);
             let reach_m = math::norm2(point.x, point.y);
-            // Also false where it is no number.
+            // False for NaN, too.
             if reach_m < MAX_RAY_CELLS * self.config.cell_m {
-                self.see(origin, self.cells.cell_of(at));
+                self.mark_seen(origin, self.cells.cell_of(at));
                 let normal = scan.normal(index).unwrap_or_default();
                 let (x, y) = rotation.rotate(normal.x, normal.y);
                 self.draw_wall(at, Vector2::new(x, y));
@@ -153,30 +153,30 @@ impl LikelihoodMap {
         self.cells.get(self.cells.cell_of(point)).distance2_m2 < near_m * near_m
     }
 
-    /// Logarithm of the likelihood of a point beside that of an unseen place, to the nearest cell.
+    /// Log-likelihood ratio of a point to unseen space, at the nearest cell.
     #[must_use]
     pub fn log_ratio(&self, point: Point2<f64>) -> f64 {
-        let place = self.cells.get(self.cells.cell_of(point));
-        let step = place.distance2_m2 / self.config.far2_m2() * RATIO_STEPS as f64;
-        let ratio = self.log_ratios[(step as usize).min(RATIO_STEPS)];
-        // Nobody sees the back of a wall, but a point there is near it all the same.
-        if place.is_seen {
+        let cell = self.cells.get(self.cells.cell_of(point));
+        let step = cell.distance2_m2 / self.config.far2_m2() * TABLE_STEPS as f64;
+        let ratio = self.log_ratios[(step as usize).min(TABLE_STEPS)];
+        // The back of a wall is never seen, but a point there is near it all the same.
+        if cell.is_seen {
             ratio
         } else {
             math::max(ratio, 0.0)
         }
     }
 
-    fn see(&mut self, from: (i32, i32), to: (i32, i32)) {
+    fn mark_seen(&mut self, from: (i32, i32), to: (i32, i32)) {
         let cell = |(column, row): (i32, i32)| Cell { column, row };
         for cell in bresenham(cell(from), cell(to)) {
-            if let Some(place) = self.cells.get_mut((cell.column, cell.row)) {
-                place.is_seen = true;
+            if let Some(cell) = self.cells.get_mut((cell.column, cell.row)) {
+                cell.is_seen = true;
             }
         }
     }
 
-    /// Lowers the distances of all cells around a piece of wall.
+    /// Lowers the distances of all cells around a wall segment.
     fn draw_wall(&mut self, at: Point2<f64>, normal: Vector2<f64>) {
         let has_normal = normal != Vector2::zeros();
         let half_m = if has_normal { self.config.wall_m } else { 0.0 };
@@ -201,9 +201,9 @@ impl LikelihoodMap {
                     gap.norm_squared()
                 };
                 if distance2_m2 < self.config.far2_m2()
-                    && let Some(place) = self.cells.get_mut((column, row))
+                    && let Some(cell) = self.cells.get_mut((column, row))
                 {
-                    place.distance2_m2 = math::min(place.distance2_m2, distance2_m2);
+                    cell.distance2_m2 = math::min(cell.distance2_m2, distance2_m2);
                 }
             }
         }
@@ -214,11 +214,11 @@ impl PointScores for LikelihoodField<'_> {
     fn at(&self, point: Point2<f64>) -> PointScore {
         let sigma2 = self.sigma_m * self.sigma_m;
         let floor = self.map.config.floor;
-        let found = self.map.cells.sample(point, |place| place.distance2_m2);
+        let found = self.map.cells.sample(point, |cell| cell.distance2_m2);
         let (q, slope) = (found.value, found.slope);
         let hit = math::exp(-q / (2.0 * sigma2));
         let share = hit / (hit + floor);
-        // As a function of the distance d = √q the score bends by share/σ² along ∇d = ∇q/(2d).
+        // As a function of the distance d = √q the score has the curvature share/σ² along ∇d = ∇q/(2d).
         let steepness = share / (4.0 * sigma2 * math::max(q, 0.01 * sigma2));
         PointScore {
             score: math::ln(hit + floor),
@@ -240,7 +240,7 @@ mod tests {
     use crate::field::{ClimbConfig, ScanClimb};
 
     fn map() -> LikelihoodMap {
-        let mut map = LikelihoodMap::new(LikelihoodMapConfig::of_cells(0.12));
+        let mut map = LikelihoodMap::new(LikelihoodMapConfig::from_cell_size(0.12));
         map.insert(&corner(), &SE2::new(0.3, -0.2, 0.4));
         map
     }
@@ -252,7 +252,7 @@ mod tests {
     };
 
     #[test]
-    fn the_gradient_of_the_likelihood_is_that_of_differences() {
+    fn the_gradient_of_the_likelihood_agrees_with_finite_differences() {
         let (map, scan) = (map(), corner());
         let field = map.field(0.07);
         let climb = ScanClimb::new(&field, &scan, SE2::identity(), None, CLIMB);
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_never_seen_says_nothing_and_what_was_seen_empty_speaks_against_a_wall() {
+    fn unseen_space_is_neutral_and_free_space_lowers_the_likelihood() {
         let map = map();
         let pose = SE2::new(0.3, -0.2, 0.4);
         let at = |x: f64, y: f64| map.log_ratio(pose.transform(Point2::new(x, y)));
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn points_beyond_all_numbers_are_nobodys() {
+    fn overflowing_points_are_ignored() {
         let mut map = map();
         let before = map.cell_count();
         let far = [(1e300, 0.0), (f64::NAN, 1.0), (f64::INFINITY, -1.0)];

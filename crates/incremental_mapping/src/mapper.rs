@@ -30,7 +30,7 @@ pub struct IncrementalMapper {
 }
 
 impl IncrementalMapper {
-    /// A mapper that has seen nothing.
+    /// A mapper without frames.
     #[must_use]
     pub fn new(config: IncrementalConfig) -> Self {
         Self {
@@ -50,10 +50,10 @@ impl IncrementalMapper {
         }
     }
 
-    /// Takes one frame: cleans its scan, climbs, and adds it to the map where a keyframe is due.
+    /// Takes one frame: prepares its scan, climbs, and adds it to the map if a keyframe is due.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the mapper stays as it was.
+    /// If the frame cannot be used; the mapper is unchanged.
     pub fn step(&mut self, frame: &Frame) -> Result<IncrementalReport, FrameError> {
         let prepared = self.preparer.prepare_frame(
             frame,
@@ -64,10 +64,10 @@ impl IncrementalMapper {
         self.step_prepared(&prepared)
     }
 
-    /// [`IncrementalMapper::step`] with a scan that is already a cloud.
+    /// [`IncrementalMapper::step`] with a prepared scan.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the mapper stays as it was.
+    /// If the frame cannot be used; the mapper is unchanged.
     pub fn step_prepared(
         &mut self,
         frame: &PreparedFrame,
@@ -95,7 +95,7 @@ impl IncrementalMapper {
         if self.is_keyframe_due() {
             self.take_keyframe(frame);
             report.new_keyframe = Some(self.poses.len() - 1);
-            report.cycle = self.watch_cycles();
+            report.cycle = self.test_cycle();
         }
         report.estimate = self.estimate;
         Ok(report)
@@ -119,7 +119,7 @@ impl IncrementalMapper {
         &self.keyframes
     }
 
-    /// Their poses as they are now, `world_from_body`.
+    /// Their present poses, `world_from_body`.
     #[must_use]
     pub fn poses(&self) -> &[SE2] {
         &self.poses
@@ -131,21 +131,21 @@ impl IncrementalMapper {
         &self.map
     }
 
-    /// The particles; none without the variant for cycles.
+    /// The detection of cycles; `None` without cycle closing.
     #[must_use]
     pub fn cycles(&self) -> Option<&CycleWatch> {
         self.cycles.as_ref()
     }
 
-    /// Climbs from where the motion leads; returns that and what the climb found.
+    /// Climbs from the motion prediction; returns prediction and result.
     fn climb(&mut self, frame: &PreparedFrame, dt_s: f64) -> (SE2, Climb) {
         let config = &self.config;
         let before = self.estimate;
-        let stays_s = dt_s.min(config.extrapolation * self.last_dt_s);
+        let extrapolated_s = dt_s.min(config.extrapolation * self.last_dt_s);
         let motion = frame
             .odometry
-            .unwrap_or_else(|| SE2::exp(&(self.velocity * stays_s)));
-        // A velocity from two stamps that all but coincide may lead anywhere: then it is none.
+            .unwrap_or_else(|| SE2::exp(&(self.velocity * extrapolated_s)));
+        // A velocity from nearly equal stamps may be arbitrary: then it is ignored.
         let motion = if is_finite(&(before * motion)) {
             motion
         } else {
@@ -188,8 +188,8 @@ impl IncrementalMapper {
         self.map.insert(&frame.cloud, &self.estimate);
     }
 
-    /// Asks the particles, and draws the map anew where they corrected the path.
-    fn watch_cycles(&mut self) -> Option<CycleTest> {
+    /// Tests for a cycle, and rebuilds the map if the path was corrected.
+    fn test_cycle(&mut self) -> Option<CycleTest> {
         let watch = self.cycles.as_mut()?;
         let test = watch.test(&mut self.poses, &self.keyframes, &self.config);
         if let CycleVerdict::Closed(_) = test.verdict {

@@ -1,14 +1,14 @@
-//! Backwards along the path: how what a cycle is off becomes small errors of its steps.
+//! Distributes the closing error of a cycle backwards over the path.
 
 use pr_geom::{SE2, wrap_angle};
 
 /// Moves `poses` so that the last one becomes `end`, the first one stays, and every step between takes
-/// an equal share; returns the farthest that a pose was moved, m.
+/// an equal share; returns the largest movement of a pose, m.
 ///
-/// Two passes. With dθ what the heading of the end is off and n steps, every step turns by dθ/n more, and
-/// the chain is laid anew; then every pose i of 0..=n is shifted by i/n of the gap that is left. For one
-/// cycle with equal, round noise in each step this is what a pose graph ends at, up to terms of the
-/// second order in dθ. A path without steps stays as it is.
+/// Two passes. With heading error dθ of the end and n steps, every step turns by dθ/n more, and
+/// the chain is recomputed; then every pose i of 0..=n is shifted by i/n of the remaining gap. For one
+/// cycle with equal isotropic noise in each step this is the optimum of a pose graph, up to terms of
+/// second order in dθ. A path without steps is unchanged.
 pub fn push_backwards(poses: &mut [SE2], end: &SE2) -> f64 {
     let steps = poses.len().saturating_sub(1);
     if steps == 0 {
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
     use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 
-    /// Around a square of 4 m, a metre a step, with headings that creep: the end misses the start.
+    /// Around a square of 4 m, a metre a step, with heading drift: the end misses the start.
     fn path() -> Vec<SE2> {
         let mut poses = vec![SE2::identity()];
         for k in 0..16 {
@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_is_where_it_shall_be_and_the_start_stays() {
+    fn the_end_reaches_its_target_and_the_start_stays() {
         let mut poses = path();
         let moved = push_backwards(&mut poses, &SE2::identity());
         assert_eq!((poses[0], poses[16]), (SE2::identity(), SE2::identity()));
@@ -91,8 +91,8 @@ mod tests {
         for (node, pose) in pushed.iter().enumerate() {
             let apart = ch16_slam2d::metrics::position_error_m(pose, &graph.pose(node));
             let moved = ch16_slam2d::metrics::position_error_m(pose, &path[node]);
-            // 2 cm beside up to 15 cm that poses moved: headings and positions are shared out one
-            // after the other, not together.
+            // 2 cm compared with movements of up to 15 cm: headings and positions are distributed one
+            // after the other, not jointly.
             assert!(apart < 0.02, "{node}: {apart} of {moved}");
         }
     }

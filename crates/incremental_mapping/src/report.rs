@@ -1,71 +1,71 @@
-//! What the ancestor reports of a frame.
+//! Reports of incremental mapping.
 
 use pr_geom::SE2;
 
 use super::BeliefSpread;
 use crate::field::Climb;
 
-/// What the particles say at a keyframe.
+/// Test for a cycle at a keyframe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CycleTest {
     /// The keyframe.
     pub node: usize,
-    /// How far the particles agree.
+    /// Spread of the particles.
     pub spread: BeliefSpread,
-    /// Share of the scan that falls onto seen cells of the old map, from the particles' mean.
+    /// Share of the scan on observed cells of the old map, at the particles' mean.
     pub known: f64,
-    /// Share of that which lies at a wall of the old map, where the particles' place was looked at.
+    /// Share of these points at a wall of the old map, if the particles agreed.
     pub fit: Option<f64>,
-    /// What follows.
+    /// Result of the test.
     pub verdict: CycleVerdict,
 }
 
-/// What the particles' test comes to.
+/// Result of the test for a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CycleVerdict {
-    /// The place is new: too little of the old map is in view.
+    /// The location is new: too little of the old map is in view.
     NewPlace,
     /// The particles do not agree.
     Undecided,
-    /// They agree on a place that the scan does not fit.
+    /// They agree on a pose that the scan does not fit.
     PoorFit,
-    /// The place is known, and the pose is right.
+    /// The location is known, and the pose is correct.
     Confirmed,
-    /// The place is known, and the pose is off: the path was corrected.
+    /// The location is known, and the pose was wrong: the path was corrected.
     Closed(CycleClosure),
 }
 
-/// A cycle that was closed.
+/// A closed cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CycleClosure {
-    /// The first keyframe that stays where it was.
+    /// The first keyframe, which stays.
     pub from_node: usize,
-    /// The keyframe whose pose was off.
+    /// The keyframe whose pose was corrected.
     pub to_node: usize,
     /// Its pose before, `world_from_body`.
     pub before: SE2,
-    /// Its pose by the old map.
+    /// Its pose after, on the old map.
     pub after: SE2,
-    /// Farthest that a keyframe moved, m.
+    /// Largest movement of a keyframe, m.
     pub max_shift_m: f64,
 }
 
-/// Everything that one frame did.
+/// Report of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IncrementalReport {
-    /// Number of the frame, counted from 0.
+    /// Index of the frame.
     pub frame: usize,
     /// Its time, s.
     pub stamp_s: f64,
-    /// Where the motion leads: `world_from_body`.
+    /// Motion prediction: `world_from_body`.
     pub prediction: SE2,
-    /// The climb; none for the first frame, which starts the map.
+    /// The climb; `None` for the first frame, which starts the map.
     pub climb: Option<Climb>,
-    /// Estimate at the end of the frame, a cycle's correction included: `world_from_body`.
+    /// Estimate at the end of the frame, including a cycle's correction: `world_from_body`.
     pub estimate: SE2,
     /// Keyframe that was taken.
     pub new_keyframe: Option<usize>,
-    /// What the particles say at it; none without the variant for cycles.
+    /// The test for a cycle at it; `None` without cycle closing.
     pub cycle: Option<CycleTest>,
 }
 

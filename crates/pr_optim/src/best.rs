@@ -1,66 +1,65 @@
-//! The cheapest poses on the way of a solve, remembered only where the cost rises.
+//! Lowest-cost poses of a solve, copied only if a step raises the cost.
 //!
-//! A step that lowers the cost leaves nothing worth keeping behind, so that a solve that only
-//! descends copies nothing.
+//! A solve that only descends copies nothing: its current poses are the best ones.
 
 use pr_geom::SE2;
 
-/// The cheapest poses that steps climbed away from.
+/// The lowest-cost poses before the cost rose.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BestPoses {
-    /// Steps so far.
+    /// Number of steps so far.
     steps: usize,
-    /// Where the last step came from; its poses are still in the solver's second buffer.
-    previous: Option<Place>,
-    /// The cheapest place before a rise.
-    lowest: Option<Place>,
+    /// Start of the last step; its poses are still in the solver's second buffer.
+    previous: Option<Visit>,
+    /// The lowest-cost point before a rise.
+    lowest: Option<Visit>,
     /// The poses of `lowest`.
     poses: Vec<SE2>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct Visit {
     cost: f64,
     /// Number of the step that was computed here.
     step: usize,
 }
 
 impl BestPoses {
-    /// Another solve begins.
-    pub fn forget(&mut self) {
+    /// Resets the record for a new solve.
+    pub fn reset(&mut self) {
         self.steps = 0;
         self.previous = None;
         self.lowest = None;
     }
 
-    /// The last step led to poses of this cost, from `previous`. A cost that is no number is a rise.
-    pub fn arrived(&mut self, cost: f64, previous: &[SE2]) {
-        let Some(place) = self.previous.take() else {
+    /// Records that the last step went from `previous` to poses of this cost. A NaN cost counts as a rise.
+    pub fn record_arrival(&mut self, cost: f64, previous: &[SE2]) {
+        let Some(visit) = self.previous.take() else {
             return;
         };
         let rose = !matches!(
-            cost.partial_cmp(&place.cost),
+            cost.partial_cmp(&visit.cost),
             Some(core::cmp::Ordering::Less | core::cmp::Ordering::Equal)
         );
-        if rose && self.lowest.is_none_or(|lowest| place.cost < lowest.cost) {
-            self.lowest = Some(place);
+        if rose && self.lowest.is_none_or(|lowest| visit.cost < lowest.cost) {
+            self.lowest = Some(visit);
             self.poses.clear();
             self.poses.extend_from_slice(previous);
         }
     }
 
-    /// A step was computed at poses of this cost, and taken or refused.
-    pub fn left(&mut self, cost: f64, accepted: bool) {
+    /// Records a step, accepted or rejected, that was computed at poses of this cost.
+    pub fn record_step(&mut self, cost: f64, accepted: bool) {
         let step = self.steps;
-        self.previous = accepted.then_some(Place { cost, step });
+        self.previous = accepted.then_some(Visit { cost, step });
         self.steps += 1;
     }
 
-    /// The cheapest poses before a rise, with the step that was computed there, where they cost
-    /// less than `cost`.
+    /// Returns the lowest-cost poses before a rise and the step computed there, if they cost less than
+    /// `cost`.
     pub fn cheaper_than(&self, cost: f64) -> Option<(usize, &[SE2])> {
         let lowest = self.lowest?;
-        // Also where `cost` is no number.
+        // True as well if `cost` is NaN.
         let is_cheaper = cost.is_nan() || lowest.cost < cost;
         is_cheaper.then_some((lowest.step, self.poses.as_slice()))
     }
@@ -70,19 +69,19 @@ impl BestPoses {
 mod tests {
     use super::*;
 
-    /// A walk over places of these costs, as a solve that takes every step sees it.
+    /// Simulates a solve that accepts every step and visits these costs.
     fn walk(costs: &[f64]) -> BestPoses {
         let mut best = BestPoses::default();
         let pose = |k: usize| [SE2::translation(k as f64, 0.0)];
         for (k, &cost) in costs.iter().enumerate() {
-            best.arrived(cost, &pose(k.saturating_sub(1)));
-            best.left(cost, true);
+            best.record_arrival(cost, &pose(k.saturating_sub(1)));
+            best.record_step(cost, true);
         }
         best
     }
 
     #[test]
-    fn the_cheapest_place_before_a_rise_is_kept() {
+    fn the_cheapest_poses_before_a_rise_is_kept() {
         let best = walk(&[9.0, 4.0, 7.0, 2.0, 3.0, 8.0]);
         let (step, poses) = best.cheaper_than(8.0).unwrap();
         assert_eq!((step, poses[0].x()), (3, 3.0));
@@ -90,12 +89,12 @@ mod tests {
     }
 
     #[test]
-    fn a_descent_keeps_nothing() {
+    fn a_descent_copies_no_poses() {
         assert!(walk(&[9.0, 4.0, 4.0, 2.0]).cheaper_than(1e9).is_none());
     }
 
     #[test]
-    fn a_cost_that_is_no_number_is_a_rise() {
+    fn a_nan_or_infinite_cost_is_a_rise() {
         for lost in [f64::NAN, f64::INFINITY] {
             let best = walk(&[9.0, 4.0, lost]);
             assert_eq!(best.cheaper_than(lost).map(|(step, _)| step), Some(1));
@@ -103,10 +102,10 @@ mod tests {
     }
 
     #[test]
-    fn a_refused_step_leads_nowhere() {
+    fn a_rejected_step_is_not_recorded() {
         let mut best = BestPoses::default();
-        best.left(4.0, false);
-        best.arrived(9.0, &[SE2::identity()]);
+        best.record_step(4.0, false);
+        best.record_arrival(9.0, &[SE2::identity()]);
         assert!(best.cheaper_than(9.0).is_none());
     }
 }

@@ -1,10 +1,10 @@
 //! Sparse Cholesky factorization of the 3×3 blocks, by the multifrontal method.
 //!
-//! Supernode by supernode, children first: its panel and the square of rows below (the update)
-//! start from the blocks of H and the updates of its children; the panel's columns are
-//! factorized; what they take from the square waits on a stack for the parent. There are two stacks:
-//! an update is formed on the one that its children's are not on, and stays where it is. All
-//! arithmetic runs on dense, contiguous memory.
+//! Supernodes are processed children first. The panel of a supernode and its update matrix (the square of rows
+//! below the panel) start from the blocks of H and the updates of the children. The panel's columns are
+//! factorized; their contribution to the square waits on a stack for the parent. There are two stacks: an update
+//! is formed on the stack that does not hold its children's updates, and stays there. All arithmetic runs on
+//! dense, contiguous memory.
 //!
 //! Source: Liu, "The multifrontal method for sparse matrix solution: theory and practice", 1992.
 
@@ -23,17 +23,17 @@ use solve::LANES;
 #[derive(Clone, Debug, Default)]
 pub struct BlockCholesky {
     supernodes: Supernodes,
-    /// The panels, column-major, rows of the run first.
+    /// The panels, column-major, own columns' rows first.
     values: Vec<f64>,
-    /// One over every diagonal entry of L.
+    /// Reciprocals of the diagonal entries of L.
     reciprocal: Vec<f64>,
-    /// Updates that wait for their parents; see [`Supernode::stack`].
+    /// Updates waiting for their parents; see [`Supernode::stack`].
     stacks: [Vec<f64>; 2],
-    /// Where on their stacks they are, the latest last.
+    /// Positions of the updates on their stacks, the latest last.
     waiting: Vec<Waiting>,
     /// Right-hand sides of one front.
     local: Vec<f64>,
-    /// Right-hand sides of all rows, zero but during a solve.
+    /// Right-hand sides of all rows, zero outside of a solve.
     sides: Vec<[f64; LANES]>,
 }
 
@@ -54,7 +54,7 @@ impl BlockCholesky {
         cholesky
     }
 
-    /// Analyses another pattern, and keeps the memory.
+    /// Analyses another pattern and reuses the memory.
     pub(crate) fn renew(&mut self, structure: &Structure) {
         self.supernodes = Supernodes::new(structure);
         let tallest = self.supernodes.list.iter().map(Supernode::height).max();
@@ -81,7 +81,7 @@ impl BlockCholesky {
         &self.supernodes
     }
 
-    /// The panel of a supernode, and one over the diagonal of its columns.
+    /// The panel of a supernode, and the reciprocals of the diagonal of its columns.
     #[must_use]
     pub fn panel(&self, supernode: &Supernode) -> (&[f64], &[f64]) {
         (
@@ -93,7 +93,7 @@ impl BlockCholesky {
     /// Factorizes `H` with every diagonal entry multiplied by `1 + damping`.
     ///
     /// # Errors
-    /// [`OptimizeError::NotPositiveDefinite`] where a pivot is not positive.
+    /// [`OptimizeError::NotPositiveDefinite`] if a pivot is not positive.
     pub fn factorize(
         &mut self,
         structure: &Structure,
@@ -107,8 +107,8 @@ impl BlockCholesky {
         })
     }
 
-    /// Factorizes one supernode, takes its children's updates off their stack and leaves its own on
-    /// the other; `tops` is how high the two are filled.
+    /// Factorizes one supernode, pops its children's updates off their stack and pushes its own onto the other;
+    /// `tops` is the fill level of both.
     fn factorize_front(
         &mut self,
         number: usize,
@@ -119,7 +119,7 @@ impl BlockCholesky {
     ) -> Result<(), OptimizeError> {
         let list = &self.supernodes.list;
         let supernode = list[number];
-        // Children come right before their parent: theirs are the last updates that wait.
+        // Children come directly before their parent, so theirs are the last waiting updates.
         let first_child = self.waiting.len() - supernode.child_count as usize;
         let own = supernode.stack as usize;
         let [even, odd] = &mut self.stacks;
@@ -208,7 +208,7 @@ fn put_block(columns: &mut [f64], height: usize, row: usize, block: &[f64; 9]) {
     }
 }
 
-/// What a child took from the rows below it, and where those rows are in its parent.
+/// The update of a child, and the positions of its rows in the parent.
 #[derive(Clone, Copy)]
 struct ChildUpdate<'a> {
     /// Lower triangle of blocks, column-major, stored as a full square.
@@ -263,7 +263,7 @@ impl ChildUpdate<'_> {
     }
 }
 
-/// Factorizes a panel, block column by block column; `Err` is the one that failed.
+/// Factorizes a panel, block column by block column; `Err` is the column that failed.
 fn factorize_panel(
     panel: &mut [f64],
     supernode: &Supernode,
@@ -282,7 +282,7 @@ fn factorize_panel(
     Ok(())
 }
 
-/// What the panel takes from the square of rows below it: the lower triangle of `−L_RC L_RCᵀ`.
+/// Computes the panel's update of the rows below it: the lower triangle of `−L_RC L_RCᵀ`.
 fn form_update(update: &mut [f64], panel: &[f64], supernode: &Supernode) {
     let height = 3 * supernode.height();
     let first_row = 3 * supernode.width as usize;

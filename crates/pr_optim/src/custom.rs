@@ -1,8 +1,8 @@
-//! Gauss–Newton steps with a residual and Jacobians of one's own, to see what they are worth.
+//! Gauss–Newton steps with a custom residual and custom Jacobians, for experiments with them.
 //!
-//! The graph, its analysis and its factorization are those of the [`Optimizer`](crate::Optimizer).
-//! Only what a factor adds to `H δ = −g` comes from outside: `JᵀΩJ` and `JᵀΩe` with any `e` and `J`.
-//! Nothing is damped, no kernel weighs, and no step is taken back.
+//! Graph, symbolic analysis and factorization are those of the [`Optimizer`](crate::Optimizer). Only the
+//! contribution of a factor to `H δ = −g` is supplied by the caller: `JᵀΩJ` and `JᵀΩe` with any `e` and `J`.
+//! There is no damping, no kernel, and no step is reverted.
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::twist_size;
@@ -16,7 +16,7 @@ use crate::settings::Settings;
 use crate::structure::FactorSlot;
 use crate::system::{Block, NormalEquations};
 
-/// A solver whose residuals and Jacobians the caller chooses, with its workspace.
+/// A solver with caller-supplied residuals and Jacobians, and its workspace.
 #[derive(Debug, Default)]
 pub struct CustomGaussNewton {
     linear: Option<LinearSolver>,
@@ -25,19 +25,19 @@ pub struct CustomGaussNewton {
 }
 
 impl CustomGaussNewton {
-    /// A solver without any analysis yet.
+    /// A solver without a symbolic analysis yet.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// One full step, taken wherever it leads.
+    /// Takes one full step, whether or not it lowers the cost.
     ///
-    /// `change` is given each measurement with its exact residual and Jacobians, and returns those
-    /// that count. The report's χ² is that of the residuals that count.
+    /// `change` receives each measurement with its exact residual and Jacobians, and returns the ones to use. The
+    /// reported χ² is that of the returned residuals.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite or not finite; the poses stay.
+    /// If the normal equations are not positive definite or not finite; the poses are unchanged.
     pub fn step(
         &mut self,
         problem: &mut Problem,
@@ -81,7 +81,7 @@ impl CustomGaussNewton {
         };
         let sizes = (0..poses.len()).map(|node| twist_size(&step_of(node)));
         let largest_step = sizes.fold(0.0, |largest, size| {
-            // `max` would drop a NaN.
+            // `max` would ignore a NaN.
             if size > largest || size.is_nan() {
                 size
             } else {
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn with_the_exact_jacobians_its_steps_are_those_of_the_optimizer() {
+    fn exact_jacobians_give_the_steps_of_the_optimizer() {
         let (mut own, mut other) = (bent(), bent());
         let mut custom = CustomGaussNewton::new();
         let mut optimizer = Optimizer::new(Settings {
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn the_jacobians_are_the_slopes_of_the_residual() {
+    fn the_jacobians_agree_with_finite_differences() {
         let problem = bent();
         let h = 1e-6;
         for (factor, prepared) in problem.factors().iter().zip(problem.prepared()) {
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn fixed_poses_stay_and_what_cannot_be_solved_moves_nothing() {
+    fn fixed_poses_and_unsolvable_problems_stay_unchanged() {
         let mut problem = bent();
         let before = problem.poses().to_vec();
         let mut custom = CustomGaussNewton::new();

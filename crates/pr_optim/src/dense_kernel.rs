@@ -1,15 +1,15 @@
-//! The two dense operations that a front is factorized with.
+//! The two dense operations that factorize a front.
 //!
-//! Matrices are column-major slices with a leading dimension. Tiles are six rows by three columns:
-//! two block rows of one block column, nine pairs of numbers that stay in registers while the
-//! inner loop runs. Every number is computed by the same operations in the same order whatever
-//! the width of the machine's vectors is, so all targets give the same bits.
+//! Matrices are column-major slices with a leading dimension. Tiles are six rows by three columns: two block
+//! rows of one block column, nine pairs of numbers that stay in registers in the inner loop. The order of
+//! operations for every number is independent of the machine's vector width, so all targets give the same
+//! bits.
 
-/// `target −= A Bᵀ` for one block column, or `target = −A Bᵀ` where `OVERWRITE` is set.
+/// `target −= A Bᵀ` for one block column, or `target = −A Bᵀ` if `OVERWRITE` is set.
 ///
-/// `panel` holds the columns of A, each `height` long; A is their rows from `first_row` on, B
-/// their rows `first_row..first_row + 3`. `target` is three columns, each `target_height` long,
-/// of which the last `height − first_row` rows are written.
+/// `panel` holds the columns of A, each `height` long; A is their rows from `first_row` on, B their rows
+/// `first_row..first_row + 3`. `target` is three columns, each `target_height` long, of which the last
+/// `height − first_row` rows are written.
 #[inline]
 pub fn subtract_product<const OVERWRITE: bool>(
     target: &mut [f64],
@@ -76,7 +76,7 @@ fn subtract_tile<const ROWS: usize, const OVERWRITE: bool>(
 /// Factorizes the 3×3 block at `first_row` of three columns and divides the rows below by it.
 ///
 /// `columns` is three columns, each `height` long. Writes the reciprocals of the diagonal to
-/// `reciprocal`. Returns `false` where a pivot is not positive.
+/// `reciprocal`. Returns `false` if a pivot is not positive.
 #[inline]
 pub fn factorize_columns(
     columns: &mut [f64],
@@ -99,7 +99,7 @@ pub fn factorize_columns(
     let zy = (y[2] - yx * zx) * inverse_y;
     let zz = z[2] - zx * zx - zy * zy;
     let inverse_z = 1.0 / pr_geom::math::sqrt(zz);
-    // Written so that a NaN pivot fails too.
+    // Written to reject a NaN pivot too.
     if !(xx > 0.0 && yy > 0.0 && zz > 0.0) {
         return false;
     }
@@ -117,7 +117,7 @@ pub fn factorize_columns(
 mod tests {
     use super::*;
 
-    /// Numbers without a pattern that a wrong index could hit by chance.
+    /// Pseudo-random numbers, so that a wrong index cannot match by chance.
     fn numbers(count: usize) -> Vec<f64> {
         (0..count)
             .map(|k| ((7 * k * k + 3 * k + 1) % 23) as f64 - 11.0)

@@ -1,7 +1,7 @@
-//! The elimination tree: which column waits for which.
+//! The elimination tree: which column depends on which.
 //!
-//! Column `p` is the parent of column `j` where `p` is the first row below the diagonal of column
-//! `j` of the factor. Source: Davis, "Direct Methods for Sparse Linear Systems", 2006, chapter 4.
+//! Column `p` is the parent of column `j` if `p` is the first row below the diagonal of column `j` of the factor.
+//! Source: Davis, "Direct Methods for Sparse Linear Systems", 2006, chapter 4.
 
 use crate::structure::Structure;
 
@@ -32,9 +32,9 @@ pub fn elimination_tree(structure: &Structure) -> Vec<u32> {
     parent
 }
 
-/// A renumbering in which every column comes after all of its descendants, as one run.
+/// A renumbering in which every column follows all of its descendants, which are contiguous.
 ///
-/// Element `k` is the old number of the new column `k`. It leaves the fill unchanged.
+/// Element `k` is the old number of the new column `k`. The fill-in does not change.
 #[must_use]
 pub fn postorder(parent: &[u32]) -> Vec<u32> {
     let nodes = parent.len();

@@ -1,4 +1,4 @@
-//! What can go wrong in a solve.
+//! Errors of a solve.
 
 use thiserror::Error;
 
@@ -8,7 +8,7 @@ pub enum OptimizeError {
     /// The factorization met a pivot that is not positive.
     #[error(
         "the normal equations are not positive definite at node {node}: \
-         nothing ties it to a fixed node, its measurements say nothing about a direction, \
+         a connection to a fixed node is missing, its measurements leave a direction unconstrained, \
          or an information matrix is indefinite"
     )]
     NotPositiveDefinite {
@@ -18,7 +18,7 @@ pub enum OptimizeError {
     /// The cost or the step is infinite or not a number.
     #[error(
         "the cost or the step is not finite: \
-         a pose, a measurement or an information matrix holds too large a number"
+         a pose, a measurement or an information matrix has too large a value"
     )]
     NotFinite,
 }

@@ -1,6 +1,6 @@
 //! One measurement between two poses: residual, Jacobians, contribution to the normal equations.
 //!
-//! A factor says that pose `j` was seen from pose `i` at `Z`, with information Ω (3×3, the order
+//! A factor is the measured pose `Z` of pose `j` in the frame of pose `i`, with information Ω (3×3, in the order
 //! of the tangent: x, y, θ). Its residual is
 //!
 //! ```text
@@ -27,19 +27,19 @@ pub use jacobians::Jacobians;
 /// Which derivative of the residual the solver uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum JacobianModel {
-    /// `−Ad(Z⁻¹)` and `I`: right where the residual is small, as in the chapter's listing.
+    /// `−Ad(Z⁻¹)` and `I`: exact for a zero residual, as in the chapter's listing.
     #[default]
     Chapter,
-    /// The exact derivative of the log residual: fewer iterations where residuals are large.
+    /// The exact derivative of the log residual: fewer iterations for large residuals.
     Exact,
 }
 
-/// A measured motion `from_from_to` between two poses, with its information matrix.
+/// A measured relative pose `from_from_to` of two poses, with its information matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Between {
-    /// Index of the pose that measured.
+    /// Index of the pose from which `to` was measured.
     pub from: usize,
-    /// Index of the pose that was measured.
+    /// Index of the measured pose.
     pub to: usize,
     /// The measured pose of `to` in the frame of `from`, metres and radians.
     pub measurement: SE2,
@@ -47,7 +47,7 @@ pub struct Between {
     pub information: Matrix3<f64>,
 }
 
-/// A pose with the sine and cosine of its heading worked out once for all its factors.
+/// A pose with precomputed sine and cosine of its heading, shared by all its factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreparedPose {
     /// x in metres.
@@ -61,7 +61,7 @@ pub struct PreparedPose {
 }
 
 impl PreparedPose {
-    /// Works out sine and cosine of `pose`.
+    /// Computes sine and cosine of `pose`.
     #[inline]
     #[must_use]
     pub fn new(pose: &SE2) -> Self {
@@ -83,11 +83,11 @@ impl PreparedPose {
     }
 }
 
-/// What one factor adds to the normal equations `H δ = −g`.
+/// Contribution of one factor to the normal equations `H δ = −g`.
 ///
-/// With `W = JⱼᵀΩJⱼ`, `B = −Ad` and `g_j = JⱼᵀΩe`, the blocks are `H_jj = W`, `H_ji = W B`,
-/// `H_ii = BᵀW B`, `g_i = Bᵀg_j`: only one 3×3 product with Ω is needed.
-/// A symmetric block is its upper triangle, xx, xy, xθ, yy, yθ, θθ; the other one is column-major.
+/// With `W = JⱼᵀΩJⱼ`, `B = −Ad` and `g_j = JⱼᵀΩe`, the blocks are `H_jj = W`, `H_ji = W B`, `H_ii = BᵀW B`,
+/// `g_i = Bᵀg_j`: only one 3×3 product with Ω is needed. A symmetric block is stored as its upper triangle, xx, xy, xθ,
+/// yy, yθ, θθ; the other one is column-major.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linearization {
     /// The symmetric block of pose `from`.
@@ -100,11 +100,11 @@ pub struct Linearization {
     pub gradient_from: [f64; 3],
     /// Half of the derivative of the cost with respect to pose `to`.
     pub gradient_to: [f64; 3],
-    /// `eᵀΩe`, not touched by the kernel.
+    /// `eᵀΩe`, without the kernel.
     pub squared_norm: f64,
 }
 
-/// The residual together with the scalars of `Jr⁻¹` that come with it.
+/// The residual and the scalars of `Jr⁻¹` that its computation yields.
 #[derive(Clone, Copy)]
 struct Residual {
     e: [f64; 3],
@@ -114,7 +114,7 @@ struct Residual {
     gamma: f64,
 }
 
-/// A [`Between`] in the form the inner loops read: sine and cosine of Z, six entries of Ω.
+/// A [`Between`] in the form that the inner loops read: sine and cosine of Z, six entries of Ω.
 #[derive(Clone, Copy, Debug)]
 pub struct PreparedFactor {
     measurement: PreparedPose,
@@ -123,7 +123,7 @@ pub struct PreparedFactor {
 }
 
 impl PreparedFactor {
-    /// Works out sine and cosine of the measurement. The upper triangle of Ω is read.
+    /// Computes sine and cosine of the measurement. Reads the upper triangle of Ω.
     #[must_use]
     pub fn new(factor: &Between) -> Self {
         let omega = &factor.information;
@@ -249,8 +249,8 @@ impl PreparedFactor {
     }
 }
 
-/// Fills in a [`Linearization`] from `W` and `g_j`, where `−B = Ad` is that of the motion with
-/// rotation `(cos, sin)` and translation `(x, y)`.
+/// Fills in a [`Linearization`] from `W` and `g_j`. `−B = Ad` is the adjoint of the motion with rotation
+/// `(cos, sin)` and translation `(x, y)`.
 #[inline]
 fn push_back(
     to_to: [f64; 6],
@@ -302,8 +302,8 @@ fn push_back(
 
 /// `(1 − (θ/2) cot(θ/2)) / θ²`, which is 1/12 at zero.
 ///
-/// The Taylor series has the Bernoulli numbers `B₂ₙ/(2n)!` as coefficients. Below 0.5 rad the
-/// first neglected term is under 1e-15 of the sum; small residuals so cost no call of sin or cos.
+/// The coefficients of the Taylor series are the Bernoulli numbers `B₂ₙ/(2n)!`. Below 0.5 rad the first
+/// neglected term is less than 1e-15 of the sum, so small residuals need no call of sin or cos.
 #[inline]
 fn log_curvature(theta: f64) -> f64 {
     let square = theta * theta;

@@ -1,8 +1,8 @@
 //! Sparse Cholesky factorization of the normal equations by `faer`.
 //!
-//! The block pattern is written out as scalars once; the symbolic analysis is made once and used
-//! by every numeric factorization. The simplicial algorithm is forced: it does the same
-//! operations in the same order natively and in WebAssembly, so both give the same bits.
+//! The block pattern is expanded to scalars once, and all numeric factorizations share one symbolic analysis. The
+//! simplicial algorithm is forced: it does the same operations in the same order natively and in WebAssembly, so
+//! both give the same bits.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltError;
@@ -38,7 +38,7 @@ impl FaerCholesky {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SIMPLICIAL,
             ..CholeskySymbolicParams::default()
         };
-        // `SymmetricOrdering::Identity` reads an upper triangle whatever side is named.
+        // `SymmetricOrdering::Identity` reads an upper triangle whichever side is named.
         let in_place: Vec<usize> = (0..3 * structure.node_count()).collect();
         let symbolic = factorize_symbolic_cholesky(
             pattern.as_ref(),
@@ -63,7 +63,7 @@ impl FaerCholesky {
     /// Factorizes `H` with every diagonal entry multiplied by `1 + damping`.
     ///
     /// # Errors
-    /// [`OptimizeError::NotPositiveDefinite`] where a pivot is not positive.
+    /// [`OptimizeError::NotPositiveDefinite`] if a pivot is not positive.
     pub fn factorize(
         &mut self,
         structure: &Structure,

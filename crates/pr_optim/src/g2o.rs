@@ -8,11 +8,9 @@
 //! FIX id …
 //! ```
 //!
-//! Any other record is kept as it is and written back in its place, with its bytes and its line end.
-//! Comments may be in any encoding, everything else is UTF-8. Where no `FIX` names a vertex, the
-//! first one holds the gauge.
-//! Source: Kümmerle, Grisetti, Strasdat, Konolige, Burgard, "g2o: a general framework for graph
-//! optimization", 2011.
+//! All other records are preserved and written back in place, with their bytes and line ends. Comments may have
+//! any encoding, everything else is UTF-8. Without a `FIX` record the first vertex is fixed. Source: Kümmerle,
+//! Grisetti, Strasdat, Konolige, Burgard, "g2o: a general framework for graph optimization", 2011.
 
 mod record;
 
@@ -25,17 +23,17 @@ use crate::factor::Between;
 use crate::problem::Problem;
 use record::{Record, content, is_kept, parse_record, printable};
 
-/// What is wrong with a file, and in which line.
+/// A problem in a file, with its line.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("line {line}: {problem}")]
 pub struct G2oError {
     /// Line number, from 1.
     pub line: usize,
-    /// What is wrong there.
+    /// The problem.
     pub problem: G2oProblem,
 }
 
-/// What can be wrong with a line.
+/// Problems of a line.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum G2oProblem {
     /// A record has too few or too many fields.
@@ -43,27 +41,27 @@ pub enum G2oProblem {
     FieldCount {
         /// Name of the record.
         record: &'static str,
-        /// How many fields it has.
+        /// Expected number of fields.
         expected: usize,
-        /// How many fields there are.
+        /// Number of fields found.
         found: usize,
     },
     /// A field is not a number.
     #[error("`{field}` is not a finite number")]
     NotANumber {
-        /// The field, fit to be printed.
+        /// The field, escaped and shortened for printing.
         field: String,
     },
     /// A field is not a vertex id.
     #[error("`{field}` is not a vertex id")]
     NotAnId {
-        /// The field, fit to be printed.
+        /// The field, escaped and shortened for printing.
         field: String,
     },
-    /// A record has bytes that are no text.
+    /// A record is not UTF-8.
     #[error("the line is not UTF-8 text")]
     NotText,
-    /// A FIX record stands alone.
+    /// A FIX record has no vertex id.
     #[error("FIX names no vertex")]
     EmptyFix,
     /// Two vertices have the same id.
@@ -71,7 +69,7 @@ pub enum G2oProblem {
     DuplicateVertex {
         /// The id.
         id: i64,
-        /// Where it was first.
+        /// Line of its first declaration.
         first_line: usize,
     },
     /// A record names a vertex that the file does not have.
@@ -89,8 +87,8 @@ pub enum G2oProblem {
     /// An information matrix has a negative eigenvalue.
     #[error("the information matrix is not positive semi-definite")]
     IndefiniteInformation,
-    /// Nothing ties a vertex to a fixed one.
-    #[error("no chain of edges ties vertex {id} to a fixed vertex")]
+    /// A vertex is not connected to a fixed one.
+    #[error("vertex {id} is not connected to a fixed vertex by edges")]
     Disconnected {
         /// The id.
         id: i64,
@@ -100,7 +98,7 @@ pub enum G2oProblem {
     Empty,
 }
 
-/// A file that was read: the graph, and the lines as they were.
+/// A parsed file: the graph, and the original lines.
 #[derive(Clone, Debug)]
 pub struct G2oFile {
     /// The graph; nodes are numbered in the order of the file.
@@ -119,18 +117,18 @@ struct VertexLine {
     line: usize,
 }
 
-/// What some editors put in front of UTF-8 text.
+/// Byte order mark, which some editors write before UTF-8 text.
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 impl G2oFile {
-    /// Reads a file's text.
+    /// Parses the text of a file.
     ///
     /// # Errors
-    /// The first line that is malformed, names a vertex that does not exist, carries an indefinite
-    /// information matrix, or declares a vertex that nothing ties to a fixed one.
+    /// The first line that is malformed, refers to an unknown vertex, has an indefinite information matrix, or
+    /// declares a vertex that is not connected to a fixed one.
     pub fn parse(text: impl AsRef<[u8]>) -> Result<Self, G2oError> {
         let mut text = text.as_ref();
-        // Files that were joined have more than one.
+        // Concatenated files have more than one.
         while let Some(rest) = text.strip_prefix(BYTE_ORDER_MARK) {
             text = rest;
         }
@@ -186,9 +184,9 @@ impl G2oFile {
         Ok(file)
     }
 
-    /// The file with the vertices at `problem`'s present poses, everything else as it was.
+    /// The file with the vertices at `problem`'s present poses, everything else unchanged.
     ///
-    /// A byte order mark is left out: other readers stumble over it.
+    /// Omits a byte order mark, because other readers fail on it.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut text = Vec::with_capacity(self.text.len());
@@ -207,7 +205,7 @@ impl G2oFile {
         text
     }
 
-    /// How many records of each type were kept without being understood; names fit to be printed.
+    /// Number of preserved records by unsupported type; names are escaped and shortened for printing.
     #[must_use]
     pub fn kept_records(&self) -> BTreeMap<String, usize> {
         let mut kept = BTreeMap::new();
@@ -220,25 +218,25 @@ impl G2oFile {
         kept
     }
 
-    /// The id in the file of a node of the problem.
+    /// The id in the file of a node.
     #[must_use]
     pub fn id_of(&self, node: usize) -> i64 {
         self.vertices[node].id
     }
 
-    /// The line, from 1, that declares a node of the problem.
+    /// The line, from 1, that declares a node.
     #[must_use]
     pub fn line_of(&self, node: usize) -> usize {
         self.vertices[node].line + 1
     }
 
-    /// The line, from 1, that holds a factor of the problem.
+    /// The line, from 1, of a factor.
     #[must_use]
     pub fn line_of_factor(&self, factor: usize) -> usize {
         self.edge_lines[factor] + 1
     }
 
-    /// Fixes the first vertex where none is, and checks that all hang on a fixed one.
+    /// Fixes the first vertex if none is fixed, and checks that all are connected to a fixed one.
     fn hold_gauge(&mut self) -> Result<(), G2oError> {
         if self.vertices.is_empty() {
             return Err(G2oError {

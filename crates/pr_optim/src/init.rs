@@ -1,4 +1,4 @@
-//! First guesses for the poses, made from the measurements alone.
+//! Initial guesses for the poses, from the measurements alone.
 
 mod chordal;
 mod spanning_tree;

@@ -1,9 +1,8 @@
-//! Robust kernels: how far one bad measurement may pull the graph.
+//! Robust kernels: bound the influence of an outlier on the graph.
 //!
-//! A kernel replaces the squared Mahalanobis norm `s = eᵀΩe` of a factor by a cost `ρ(s)` that
-//! grows more slowly. The solver scales Ω by the weight `w(s) = ρ'(s)` (iteratively reweighted
-//! least squares), so a kernel needs only these two functions. Neither changes χ², which the
-//! reports give unweighted.
+//! A kernel replaces the squared Mahalanobis norm `s = eᵀΩe` of a factor by a cost `ρ(s)` that grows more slowly.
+//! The solver scales Ω by the weight `w(s) = ρ'(s)` (iteratively reweighted least squares), so a kernel needs only
+//! these two functions. Neither changes χ², which reports give unweighted.
 
 use pr_geom::math;
 
@@ -21,7 +20,7 @@ pub enum RobustKernel {
         /// Mahalanobis norm at which the cost turns linear, above 0.
         width: f64,
     },
-    /// Dynamic covariance scaling: a factor far out is switched off smoothly.
+    /// Dynamic covariance scaling: smoothly reduces the weight of a factor with a large residual to zero.
     ///
     /// With `c = min(1, 2φ/(φ + s))`: `w = c²`. The cost with that derivative is `ρ = s` for
     /// `s ≤ φ` and `4φ²(1/(2φ) − 1/(φ + s)) + φ` beyond. It is bounded by `3φ`.
@@ -34,7 +33,7 @@ pub enum RobustKernel {
 }
 
 impl RobustKernel {
-    /// The factor by which Ω is scaled where the squared Mahalanobis norm is `squared_norm`.
+    /// The factor by which Ω is scaled at this squared Mahalanobis norm.
     #[inline]
     #[must_use]
     pub fn weight(&self, squared_norm: f64) -> f64 {
@@ -58,7 +57,7 @@ impl RobustKernel {
         }
     }
 
-    /// The cost `ρ(s)` of a factor whose squared Mahalanobis norm is `squared_norm`.
+    /// The cost `ρ(s)` at this squared Mahalanobis norm.
     #[inline]
     #[must_use]
     pub fn cost(&self, squared_norm: f64) -> f64 {

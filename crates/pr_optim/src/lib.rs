@@ -2,17 +2,17 @@
 //!
 //! Sparse nonlinear least squares over SE(2) blocks (Chapter 15).
 //!
-//! A [`Problem`] holds poses and measurements between them. An [`Optimizer`] lowers
-//! `Σ ρ(eᵀΩe)` by Gauss–Newton or Levenberg–Marquardt, one [`step`](Optimizer::step) at a time or
-//! all the way with [`run`](Optimizer::run), and reports why it stopped. A [`Session`] chooses the
-//! first guess too, and another one where the first leads to a minimum that is not to be trusted.
-//! Covariances of poses come [from the factor](Optimizer::joint_covariance), exact to first order.
+//! A [`Problem`] holds poses and measurements between them. An [`Optimizer`] minimizes `Σ ρ(eᵀΩe)` by Gauss–Newton
+//! or Levenberg–Marquardt, one [`step`](Optimizer::step) at a time or to the end with [`run`](Optimizer::run), and
+//! reports why it stopped. A [`Session`] also chooses the initial guess, and tries another one if the first
+//! converges to a suspicious minimum. Covariances of poses come [from the factor](Optimizer::joint_covariance),
+//! exact to first order.
 //!
-//! The way of an iteration: [`Problem`] → [`structure`] (which 3×3 blocks there are, in the order
+//! Data flow of an iteration: [`Problem`] → [`structure`] (which 3×3 blocks there are, in the order
 //! of [`ordering`]) → [`system`] (their values) → [`block_cholesky`] on [`supernodes`] → step.
 //!
-//! Nothing here reads a clock, depends on hash order or calls the platform's mathematics: the same
-//! input gives the same bits natively and in WebAssembly.
+//! The crate reads no clock, depends on no hash order and calls no mathematics of the platform: the same input
+//! gives the same bits natively and in WebAssembly.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 
@@ -27,7 +27,7 @@ mod factor;
 #[cfg(feature = "faer_cholesky")]
 pub mod faer_cholesky;
 pub mod g2o;
-mod growth;
+mod incremental;
 pub mod init;
 mod kernel;
 mod linear;

@@ -1,4 +1,4 @@
-//! The linear solver of an iteration: which factorization, and the analysis it rests on.
+//! The linear solver of an iteration: the chosen factorization and its symbolic analysis.
 
 use nalgebra::Matrix3;
 
@@ -18,12 +18,12 @@ pub enum Factorization {
     /// This crate's multifrontal factorization of 3×3 blocks.
     #[default]
     Block,
-    /// `faer`'s simplicial factorization of scalars, of the feature `faer_cholesky`.
+    /// `faer`'s simplicial factorization of scalars, with the feature `faer_cholesky`.
     #[cfg(feature = "faer_cholesky")]
     Faer,
 }
 
-/// The pattern of a graph with the factorization that belongs to it, kept while the graph stays.
+/// The pattern of a graph and its factorization, kept while the graph is unchanged.
 #[derive(Debug)]
 pub struct LinearSolver {
     structure: Structure,
@@ -44,7 +44,7 @@ impl LinearSolver {
         Self::renewed(problem, factorization, None)
     }
 
-    /// The same, in the memory of a solver that is no longer needed.
+    /// [`new`](Self::new) in the memory of a solver that is no longer needed.
     pub(crate) fn renewed(
         problem: &Problem,
         factorization: Factorization,
@@ -76,7 +76,7 @@ impl LinearSolver {
         &self.structure
     }
 
-    /// Whether the analysis is of this graph, for this factorization.
+    /// Whether the analysis belongs to this graph and factorization.
     #[must_use]
     pub fn fits(&self, problem: &Problem, factorization: Factorization) -> bool {
         let kind = match self.cholesky {
@@ -90,7 +90,7 @@ impl LinearSolver {
     /// Factorizes `H` with every diagonal entry multiplied by `1 + damping`.
     ///
     /// # Errors
-    /// [`OptimizeError::NotPositiveDefinite`] where a pivot is not positive.
+    /// [`OptimizeError::NotPositiveDefinite`] if a pivot is not positive.
     pub fn factorize(
         &mut self,
         equations: &NormalEquations,
@@ -105,8 +105,8 @@ impl LinearSolver {
 
     /// Covariance blocks of two nodes from the last factor, which was made without damping.
     ///
-    /// Right perturbations, tangent order x, y, θ. Zero for a fixed node.
-    /// `None` where the factorization is `faer`'s, which does not show its factor by blocks.
+    /// Right perturbations, tangent order x, y, θ. Zero for a fixed node. `None` if the factorization is `faer`'s,
+    /// which does not expose its factor by blocks.
     pub fn joint_covariance(
         &mut self,
         problem: &Problem,
@@ -127,7 +127,7 @@ impl LinearSolver {
 
     /// Covariance block of every node from the last factor, which was made without damping.
     ///
-    /// `None` where the factorization is `faer`'s, which does not show its factor by blocks.
+    /// `None` if the factorization is `faer`'s, which does not expose its factor by blocks.
     #[must_use]
     pub fn marginals(&self, problem: &Problem) -> Option<Vec<Matrix3<f64>>> {
         match &self.cholesky {
@@ -141,7 +141,7 @@ impl LinearSolver {
 
     /// Covariance blocks of the two ends of every measurement, in the order of [`Problem::factors`].
     ///
-    /// By the rules of [`joint_covariance`](Self::joint_covariance), all at once.
+    /// Computes [`joint_covariance`](Self::joint_covariance) for all at once.
     #[must_use]
     pub fn measured_covariances(&self, problem: &Problem) -> Option<Vec<JointCovariance>> {
         match &self.cholesky {
@@ -151,9 +151,9 @@ impl LinearSolver {
         }
     }
 
-    /// Overwrites three right-hand sides that stand side by side, in elimination order, with `H⁻¹` times them.
+    /// Overwrites three interleaved right-hand sides, in elimination order, with `H⁻¹` times them.
     ///
-    /// `None` where the factorization is `faer`'s, which solves for one at a time.
+    /// `None` if the factorization is `faer`'s, which solves for one at a time.
     pub(crate) fn solve_columns(&mut self, columns: &mut [[f64; 3]]) -> Option<()> {
         match &mut self.cholesky {
             Cholesky::Block(cholesky) => {

@@ -6,8 +6,8 @@
 //! - The blocks of all nodes, and of the two ends of every measurement, come from the
 //!   [selected inverse](SelectedInverse), all at once.
 //! - The blocks of any two nodes come from three triangular solves for each, along the paths from
-//!   the two to the root of the elimination tree. For a single pair that is less work than the
-//!   selected inverse, which has to square every front on the way, and it needs no shared front.
+//!   the two to the root of the elimination tree. For a single pair this is cheaper than the
+//!   selected inverse, which squares every front, and the nodes need not share a front.
 //!
 //! Source: Kaess & Dellaert, "Covariance recovery from a square root information matrix for data
 //! association", 2009.
@@ -25,7 +25,7 @@ use crate::structure::Structure;
 pub struct JointCovariance {
     /// The block of the first node.
     pub first: Matrix3<f64>,
-    /// The block between them, rows of the first, columns of the second.
+    /// The cross block: rows of the first node, columns of the second.
     pub cross: Matrix3<f64>,
     /// The block of the second node.
     pub second: Matrix3<f64>,
@@ -34,9 +34,8 @@ pub struct JointCovariance {
 impl JointCovariance {
     /// Covariance of the relative pose `T_a⁻¹ T_b`, in the tangent space at that pose.
     ///
-    /// Perturbing both poses moves the relative pose by `δ = δ_b − A δ_a`, `A = Ad((T_a⁻¹T_b)⁻¹)`,
-    /// so that `Σ = Σ_bb + A Σ_aa Aᵀ − A Σ_ab − (A Σ_ab)ᵀ`.
-    /// Solà, Deray, Atchuthan 2018, eq. (62) and (65).
+    /// Perturbing both poses changes the relative pose by `δ = δ_b − A δ_a`, `A = Ad((T_a⁻¹T_b)⁻¹)`. Its
+    /// covariance is `Σ = Σ_bb + A Σ_aa Aᵀ − A Σ_ab − (A Σ_ab)ᵀ`. Solà, Deray, Atchuthan 2018, eq. (62) and (65).
     #[must_use]
     pub fn relative(&self, first: &SE2, second: &SE2) -> Matrix3<f64> {
         let adjoint = second.between(first).adjoint();
@@ -47,9 +46,8 @@ impl JointCovariance {
 
 /// Covariance blocks of two nodes; `cholesky` has factorized H without damping.
 ///
-/// `Σ_ab = (L⁻¹E_a)ᵀ (L⁻¹E_b)`, where `E_a` are the three unit columns of node `a`. `L⁻¹E_a` has
-/// entries on the path from `a` to the root only, so nothing else is solved.
-/// A fixed node has no uncertainty: its blocks are zero.
+/// `Σ_ab = (L⁻¹E_a)ᵀ (L⁻¹E_b)`, with `E_a` the three unit columns of node `a`. `L⁻¹E_a` has entries only on the
+/// path from `a` to the root, so only those are solved for. A fixed node has no uncertainty: its blocks are zero.
 pub(crate) fn joint_covariance(
     structure: &Structure,
     fixed: &[bool],
@@ -108,7 +106,7 @@ pub(crate) fn all_measured(
         .collect()
 }
 
-/// The block of a node, or of two that a measurement ties; zero where one is fixed.
+/// The block of a node, or of two nodes with a measurement between them; zero if one is fixed.
 fn block_of(
     inverse: &SelectedInverse,
     structure: &Structure,

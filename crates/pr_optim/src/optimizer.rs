@@ -1,19 +1,19 @@
 //! Gauss–Newton and Levenberg–Marquardt over a [`Problem`], one iteration at a time.
 //!
 //! One iteration linearizes every factor, solves `(H + λD) δ = −g` with `D = diag H` by sparse
-//! Cholesky factorization, and moves every free pose by `T ← T exp(δ)`. Gauss–Newton is λ = 0 and
-//! takes every step. Levenberg–Marquardt raises λ until the cost does not rise.
+//! Cholesky factorization, and moves every free pose by `T ← T exp(δ)`. Gauss–Newton has λ = 0 and
+//! accepts every step. Levenberg–Marquardt raises λ until the cost does not rise.
 //!
-//! The cost has no factor ½, so with `g = JᵀΩe` and `H = JᵀΩJ` its quadratic model is
-//! `cost + 2 gᵀδ + δᵀHδ`. The step has `δᵀHδ = −gᵀδ − λ δᵀDδ`. The model so promises a decrease of
-//! `−gᵀδ + λ δᵀDδ`, against which the damping schedule measures what a step won.
+//! The cost has no factor ½, so with `g = JᵀΩe` and `H = JᵀΩJ` its quadratic model is `cost + 2 gᵀδ + δᵀHδ`. The
+//! step has `δᵀHδ = −gᵀδ − λ δᵀDδ`. The model therefore predicts a decrease of `−gᵀδ + λ δᵀDδ`, and the damping
+//! schedule compares the actual decrease with it.
 //!
-//! Full Gauss–Newton steps may climb. A whole run never ends above its start: see [`Optimizer::run`].
+//! Full Gauss–Newton steps may raise the cost. A whole run never ends above its start: see [`Optimizer::run`].
 //!
 //! Source: Nocedal & Wright, "Numerical Optimization", 2006, chapter 10.
 
 mod covariances;
-mod held_factor;
+mod factor_reuse;
 
 use nalgebra::Vector3;
 use pr_geom::{SE2, twist_size};
@@ -22,39 +22,39 @@ use crate::best::BestPoses;
 use crate::damping::{DAMPING_LIMIT, Damping};
 use crate::error::OptimizeError;
 use crate::factor::PreparedPose;
-use crate::growth::Growth;
+use crate::incremental::IncrementalCovariances;
 use crate::linear::{Factorization, LinearSolver};
 use crate::problem::Problem;
 use crate::report::{Report, StepReport, StopReason};
 use crate::settings::{FactorUse, Method, Settings};
 use crate::structure::Structure;
 use crate::system::NormalEquations;
-use held_factor::HeldFactor;
+use factor_reuse::FactorReuse;
 
-/// A solver with its workspace, which is kept from one solve to the next.
+/// A solver and its workspace, which persists between solves.
 ///
-/// Ordering and symbolic analysis are made again only where the graph itself has changed.
+/// Ordering and symbolic analysis are repeated only if the graph has changed.
 #[derive(Debug, Default)]
 pub struct Optimizer {
-    /// May be changed between iterations; a damping begins anew with [`restart`](Self::restart).
+    /// May be changed between iterations; [`restart`](Self::restart) resets the damping.
     pub settings: Settings,
     linear: Option<LinearSolver>,
-    /// Says what `linear` holds the factor of, where that is good for covariances.
-    growth: Option<Growth>,
+    /// Covariances for which `linear` holds the factor, if it is usable for them.
+    covariances: Option<IncrementalCovariances>,
     equations: NormalEquations,
     delta: Vec<f64>,
     trial: Vec<SE2>,
     schedule: Damping,
-    /// What the last accepted step promised, times `1 + λ`; 0 before the first.
-    last_promise: f64,
-    /// Whether `linear` holds a factor of this solve that is good for the next step.
-    held: HeldFactor,
-    /// Where the steps came from, as far as they led uphill.
+    /// Decrease predicted for the last accepted step, times `1 + λ`; 0 before the first.
+    last_predicted: f64,
+    /// Whether `linear` holds a factor of this solve that the next step can use.
+    factor_reuse: FactorReuse,
+    /// The lowest-cost poses before steps that raised the cost.
     best: BestPoses,
 }
 
 impl Optimizer {
-    /// A solver without any analysis yet.
+    /// A solver without a symbolic analysis yet.
     #[must_use]
     pub fn new(settings: Settings) -> Self {
         let mut optimizer = Self {
@@ -65,18 +65,18 @@ impl Optimizer {
         optimizer
     }
 
-    /// Forgets how the last solve went, its damping above all; the analysis is kept.
+    /// Resets the state of the last solve, such as its damping; keeps the analysis.
     pub fn restart(&mut self) {
         self.schedule = match self.settings.method {
             Method::GaussNewton => Damping::default(),
             Method::LevenbergMarquardt { initial_damping } => Damping::new(initial_damping),
         };
-        self.last_promise = 0.0;
-        self.held.forget();
-        self.best.forget();
+        self.last_predicted = 0.0;
+        self.factor_reuse.reset();
+        self.best.reset();
     }
 
-    /// λ of the next step. Gauss–Newton has none, also where the last steps were damped ones.
+    /// λ of the next step; 0 for Gauss–Newton, even after damped steps.
     fn damping(&self) -> f64 {
         match self.settings.method {
             Method::GaussNewton => 0.0,
@@ -87,20 +87,20 @@ impl Optimizer {
     /// One iteration: linearize, solve, move.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite or not finite; the poses stay.
+    /// If the normal equations are not positive definite or not finite; the poses are unchanged.
     pub fn step(&mut self, problem: &mut Problem) -> Result<StepReport, OptimizeError> {
         self.linearize(problem)?;
         self.solve_linearized(problem)
     }
 
-    /// The first half of a step: adds up the normal equations, and so knows the cost.
+    /// The first half of a step: assembles the normal equations and returns the cost.
     fn linearize(&mut self, problem: &Problem) -> Result<f64, OptimizeError> {
         let settings = self.settings;
         self.analyse(problem, settings.factorization);
         let linear = self.linear.as_ref().expect("it was analysed");
         let structure = linear.structure();
         let (jacobians, kernel) = (settings.jacobians, settings.kernel);
-        if self.held.is_held() {
+        if self.factor_reuse.is_reused() {
             self.equations
                 .assemble_gradient(problem, structure, jacobians, kernel);
         } else {
@@ -109,9 +109,9 @@ impl Optimizer {
         }
         let (cost, chi2) = (self.equations.cost, self.equations.chi2);
         let is_finite = cost.is_finite() && chi2.is_finite();
-        // A kernel's cost can look fine where χ² is infinite.
+        // A kernel's cost can be finite although χ² is not.
         let known = if is_finite { cost } else { f64::NAN };
-        self.best.arrived(known, &self.trial);
+        self.best.record_arrival(known, &self.trial);
         if is_finite {
             Ok(cost)
         } else {
@@ -119,7 +119,7 @@ impl Optimizer {
         }
     }
 
-    /// The second half: solves the normal equations that were added up at the present poses, and moves.
+    /// The second half: solves the assembled normal equations and moves the poses.
     fn solve_linearized(&mut self, problem: &mut Problem) -> Result<StepReport, OptimizeError> {
         let damping = self.damping();
         let settings = &self.settings;
@@ -128,7 +128,7 @@ impl Optimizer {
             .linear
             .as_mut()
             .expect("the graph was analysed for the equations");
-        if !self.held.is_held() {
+        if !self.factor_reuse.is_reused() {
             linear.factorize(&self.equations, damping)?;
         }
         self.delta.clear();
@@ -158,14 +158,14 @@ impl Optimizer {
             }
         };
         let is_plain = settings.method == Method::GaussNewton;
-        if is_plain && settings.factor_use == FactorUse::WhileItShrinks {
-            self.held.stepped(largest_step);
+        if is_plain && settings.factor_use == FactorUse::WhileStepsShrink {
+            self.factor_reuse.record_step(largest_step);
         } else {
-            self.held.forget();
+            self.factor_reuse.reset();
         }
-        self.best.left(cost, accepted);
+        self.best.record_step(cost, accepted);
         if accepted {
-            // From now on `trial` holds where this step came from.
+            // From now on `trial` holds the poses before this step.
             problem.swap_poses(&mut self.trial);
         }
         Ok(StepReport {
@@ -180,10 +180,9 @@ impl Optimizer {
 
     /// Iterates from the present poses until a stop rule of the [`Settings`] is met.
     ///
-    /// The cost at the end is finite and not above that at the start, where that is finite. Steps
-    /// that climb beyond it, and steps that climb and do not converge, are taken back:
-    /// [`Report::went_back_to`] says how far. Where not even the first step can be computed, the
-    /// poses stay and the report holds the error.
+    /// If the cost at the start is finite, the cost at the end is finite and not above it. Steps that climb above
+    /// the start, and steps that climb and do not converge, are reverted; see [`Report::reverted_to`]. If not even
+    /// the first step can be computed, the poses are unchanged and the report holds the error.
     pub fn run(&mut self, problem: &mut Problem) -> Report {
         self.restart();
         let mut steps = Vec::new();
@@ -195,8 +194,8 @@ impl Optimizer {
         self.final_report(problem, steps, stop)
     }
 
-    /// The report on steps that ended for that reason, with the poses that [`run`](Self::run)
-    /// promises in `problem`.
+    /// Reports on steps that ended for this reason, and restores the poses that [`run`](Self::run)
+    /// guarantees.
     pub(crate) fn final_report(
         &mut self,
         problem: &mut Problem,
@@ -205,19 +204,19 @@ impl Optimizer {
     ) -> Report {
         let kernel = self.settings.kernel;
         let mut report = Report::new(steps, problem, kernel, stop);
-        self.best.arrived(report.cost_or_nan(), &self.trial);
+        self.best.record_arrival(report.cost_or_nan(), &self.trial);
         if report.ended_well() {
             return report;
         }
         if let Some((step, poses)) = self.best.cheaper_than(report.cost_or_nan()) {
             problem.poses_mut().copy_from_slice(poses);
             report = Report::new(report.steps, problem, kernel, stop);
-            report.went_back_to = Some(step);
+            report.reverted_to = Some(step);
         }
         report
     }
 
-    /// One iteration, whose report is added to `steps`; the reason to stop, if there is one.
+    /// Runs one iteration and appends its report to `steps`; returns the reason to stop, if any.
     pub fn advance(
         &mut self,
         problem: &mut Problem,
@@ -226,8 +225,8 @@ impl Optimizer {
         self.advance_unless(problem, steps, |_, _| None)
     }
 
-    /// The same, unless `give_up` has a reason to stop: it sees the steps so far, and the cost that
-    /// the last of them led to, before a system is solved there.
+    /// [`advance`](Self::advance), unless `give_up` returns a reason to stop. It receives the steps so far and the
+    /// cost after the last one, before a system is solved there.
     pub(crate) fn advance_unless(
         &mut self,
         problem: &mut Problem,
@@ -269,16 +268,16 @@ impl Optimizer {
         })
     }
 
-    /// The convergence test that an accepted step meets, if there is one; see [`Settings`].
+    /// The convergence test that an accepted step meets, if any; see [`Settings`].
     fn convergence_at(&mut self, step: &StepReport) -> Option<StopReason> {
         let settings = &self.settings;
         let undamped = 1.0 + step.damping;
-        let expected = self.held.expected_size();
+        let expected = self.factor_reuse.expected_size();
         let size = expected.unwrap_or(undamped * step.largest_step);
-        let promise = undamped * step.predicted_decrease;
-        let before = core::mem::replace(&mut self.last_promise, promise);
+        let predicted = undamped * step.predicted_decrease;
+        let before = core::mem::replace(&mut self.last_predicted, predicted);
         let remaining = if step.cost_before > 0.0 {
-            promise * (promise / before).min(1.0) / step.cost_before
+            predicted * (predicted / before).min(1.0) / step.cost_before
         } else {
             0.0
         };
@@ -297,18 +296,18 @@ impl Optimizer {
         }
     }
 
-    /// The linear solver that the settings name for the graph of `problem`, analysed if need be.
+    /// The linear solver of the settings for the graph of `problem`, analysed if necessary.
     pub fn linear_for(&mut self, problem: &Problem) -> &mut LinearSolver {
-        self.held.lose();
+        self.factor_reuse.invalidate();
         self.analyse(problem, self.settings.factorization)
     }
 
-    /// The linear solver for that graph, made anew where the graph or the factorization has changed.
+    /// The linear solver for this graph, rebuilt if the graph or the factorization has changed.
     fn analyse(&mut self, problem: &Problem, factorization: Factorization) -> &mut LinearSolver {
-        self.growth = None;
+        self.covariances = None;
         let fits = |linear: &LinearSolver| linear.fits(problem, factorization);
         if !self.linear.as_ref().is_some_and(fits) {
-            self.held.lose();
+            self.factor_reuse.invalidate();
             let old = self.linear.take();
             self.linear = Some(LinearSolver::renewed(problem, factorization, old));
         }
@@ -334,7 +333,7 @@ fn move_poses(
         let k = 3 * position as usize;
         let step = Vector3::new(delta[k], delta[k + 1], delta[k + 2]);
         let size = twist_size(&step);
-        // `max` would drop a NaN.
+        // `max` would ignore a NaN.
         if size > largest || size.is_nan() {
             largest = size;
         }

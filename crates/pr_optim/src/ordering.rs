@@ -1,4 +1,4 @@
-//! The order in which nodes are eliminated, chosen so that the factor fills in little.
+//! Fill-reducing elimination order of the nodes.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMat;
@@ -7,7 +7,7 @@ use faer::sparse::linalg::amd;
 use crate::problem::Problem;
 use crate::structure::Structure;
 
-/// Approximate minimum degree on the graph of free nodes: element `k` is eliminated in place `k`.
+/// Approximate minimum degree on the graph of free nodes: element `k` is eliminated at position `k`.
 ///
 /// Nodes are ordered, not scalars: the graph has a third of the rows and a ninth of the entries.
 /// Amestoy, Davis, Duff, "An approximate minimum degree ordering algorithm", 1996.
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn the_centre_of_a_star_waits_for_its_leaves() {
-        // Centre first would tie all leaves to each other; leaves first adds nothing.
+        // Centre first would connect all leaves to each other; leaves first causes no fill-in.
         let problem = star(0, 40);
         let order = minimum_degree(&problem);
         let place = order.iter().position(|&node| node == 0).unwrap();
@@ -74,7 +74,7 @@ mod tests {
         let order = BlockCholesky::postordered(&structure);
         let cholesky = BlockCholesky::new(&Structure::new(&problem, order));
         let blocks = cholesky.supernodes().value_count / 9;
-        // 41 on the diagonal and 40 below, and the few zeros of a merged panel. Centre first: 861.
+        // 41 on the diagonal and 40 below, and a few zeros of a merged panel. Centre first: 861.
         assert!(blocks < 100, "{blocks} blocks");
     }
 }

@@ -1,4 +1,4 @@
-//! Poses and the measurements between them: what is to be solved.
+//! Poses and the measurements between them.
 
 use pr_geom::SE2;
 
@@ -7,8 +7,8 @@ use crate::kernel::RobustKernel;
 
 /// A pose graph as plain arrays.
 ///
-/// The cost is `Σ eᵀΩe` over the factors. Fixed poses hold the gauge: without any, a rigid motion
-/// of everything would change nothing, and the normal equations would be singular.
+/// The cost is `Σ eᵀΩe` over the factors. Fixed poses fix the gauge: without any, the cost is invariant under a
+/// rigid motion of the whole graph, and the normal equations are singular.
 #[derive(Clone, Debug, Default)]
 pub struct Problem {
     poses: Vec<SE2>,
@@ -32,17 +32,17 @@ impl Problem {
         self.poses.len() - 1
     }
 
-    /// Adds a pose that stays where it is; returns its index.
+    /// Adds a fixed pose; returns its index.
     pub fn add_fixed_pose(&mut self, pose: SE2) -> usize {
         let node = self.add_pose(pose);
         self.fixed[node] = true;
         node
     }
 
-    /// Keeps a pose where it is from now on.
+    /// Fixes a pose from now on.
     ///
     /// # Panics
-    /// Where the pose does not exist.
+    /// If the pose does not exist.
     pub fn fix(&mut self, node: usize) {
         self.fixed[node] = true;
     }
@@ -50,7 +50,7 @@ impl Problem {
     /// Adds a measurement.
     ///
     /// # Panics
-    /// Where an end does not exist, or both ends are the same.
+    /// If an end does not exist, or both ends are the same.
     pub fn add_factor(&mut self, factor: Between) {
         assert!(
             factor.from < self.poses.len() && factor.to < self.poses.len(),
@@ -64,7 +64,7 @@ impl Problem {
         self.factors.push(factor);
     }
 
-    /// Takes the newest measurement out again and returns it; none where there is none.
+    /// Removes the newest measurement and returns it, or `None` if there is none.
     pub fn pop_factor(&mut self) -> Option<Between> {
         self.prepared.pop();
         let factor = self.factors.pop();
@@ -72,15 +72,16 @@ impl Problem {
         factor
     }
 
-    /// How many measurements there were when a pose was last moved.
+    /// Number of measurements when a pose was last moved.
     ///
-    /// A solver that is asked for covariances adds what was measured since to the factor of what was before.
+    /// Covariance queries update the factor of these measurements with those added since.
     #[must_use]
     pub fn optimized_factors(&self) -> usize {
         self.optimized
     }
 
-    /// Says so of a problem that was built anew; more than there are count as all.
+    /// Sets [`optimized_factors`](Self::optimized_factors) of a rebuilt problem, at most the number of
+    /// factors.
     pub fn mark_optimized(&mut self, factors: usize) {
         self.optimized = factors.min(self.factors.len());
     }
@@ -97,20 +98,20 @@ impl Problem {
         &self.poses
     }
 
-    /// The poses, to be moved from outside.
+    /// The poses, mutable.
     pub fn poses_mut(&mut self) -> &mut [SE2] {
         self.optimized = self.factors.len();
         &mut self.poses
     }
 
-    /// Takes other poses for the same nodes, and leaves the present ones in `poses`.
+    /// Replaces the poses by others of the same nodes, and leaves the present ones in `poses`.
     pub(crate) fn swap_poses(&mut self, poses: &mut Vec<SE2>) {
         debug_assert_eq!(poses.len(), self.poses.len());
         self.optimized = self.factors.len();
         core::mem::swap(&mut self.poses, poses);
     }
 
-    /// Which poses stay where they are.
+    /// Which poses are fixed.
     #[must_use]
     pub fn fixed(&self) -> &[bool] {
         &self.fixed
@@ -128,8 +129,8 @@ impl Problem {
         &self.prepared
     }
 
-    /// The first so many poses, and the measurements that were added first, all of them between those.
-    pub(crate) fn beginning(&self, nodes: usize, factors: usize) -> Self {
+    /// The first `nodes` poses and the first `factors` measurements, all of them between those poses.
+    pub(crate) fn prefix(&self, nodes: usize, factors: usize) -> Self {
         Self {
             poses: self.poses[..nodes].to_vec(),
             fixed: self.fixed[..nodes].to_vec(),
@@ -139,8 +140,8 @@ impl Problem {
         }
     }
 
-    /// Takes what another problem has beyond this one, which is its [`beginning`](Self::beginning).
-    pub(crate) fn follow(&mut self, whole: &Self) {
+    /// Appends what `whole` has in addition to this problem, which is a [`prefix`](Self::prefix) of it.
+    pub(crate) fn append_from(&mut self, whole: &Self) {
         let (nodes, factors) = (self.node_count(), self.factors.len());
         self.poses.extend_from_slice(&whole.poses[nodes..]);
         self.fixed.extend_from_slice(&whole.fixed[nodes..]);
@@ -148,23 +149,23 @@ impl Problem {
         self.prepared.extend_from_slice(&whole.prepared[factors..]);
     }
 
-    /// Whether that is the [`beginning`](Self::beginning) of this problem, at the same poses.
-    pub(crate) fn begins_with(&self, beginning: &Self) -> bool {
-        self.poses.starts_with(&beginning.poses)
-            && self.fixed.starts_with(&beginning.fixed)
-            && self.factors.starts_with(&beginning.factors)
+    /// Whether `prefix` is a [`prefix`](Self::prefix) of this problem, at the same poses.
+    pub(crate) fn has_prefix(&self, prefix: &Self) -> bool {
+        self.poses.starts_with(&prefix.poses)
+            && self.fixed.starts_with(&prefix.fixed)
+            && self.factors.starts_with(&prefix.factors)
     }
 
-    /// The first pose that no chain of measurements ties to a fixed one, `None` where all are tied.
+    /// The first pose that is not connected to a fixed one, `None` if all are connected.
     ///
-    /// With a loose pose the normal equations are singular, but for the ridge.
+    /// An unconnected pose makes the normal equations singular, apart from the ridge.
     #[must_use]
     pub fn first_loose_node(&self) -> Option<usize> {
-        self.first_loose_of(self.node_count(), self.factors.len())
+        self.first_loose_in_prefix(self.node_count(), self.factors.len())
     }
 
-    /// The same of a [`beginning`](Self::beginning).
-    pub(crate) fn first_loose_of(&self, nodes: usize, factors: usize) -> Option<usize> {
+    /// [`first_loose_node`](Self::first_loose_node) of a [`prefix`](Self::prefix).
+    pub(crate) fn first_loose_in_prefix(&self, nodes: usize, factors: usize) -> Option<usize> {
         let mut parent: Vec<usize> = (0..nodes).collect();
         for factor in &self.factors[..factors] {
             let (a, b) = (
@@ -183,13 +184,13 @@ impl Problem {
     /// `eᵀΩe` of one measurement at the present poses, by its index among [`factors`](Self::factors).
     ///
     /// # Panics
-    /// Where the measurement does not exist.
+    /// If the measurement does not exist.
     #[must_use]
     pub fn factor_chi2(&self, factor: usize) -> f64 {
         self.factor_chi2_at(factor, &self.poses)
     }
 
-    /// The same at other poses, by index.
+    /// [`factor_chi2`](Self::factor_chi2) at other poses, by index.
     pub(crate) fn factor_chi2_at(&self, factor: usize, poses: &[SE2]) -> f64 {
         let Between { from, to, .. } = self.factors[factor];
         self.prepared[factor].squared_norm(
@@ -207,7 +208,7 @@ impl Problem {
             .collect()
     }
 
-    /// `χ² = Σ eᵀΩe`: no kernel, no factor ½.
+    /// `χ² = Σ eᵀΩe`, without kernel and factor ½.
     #[must_use]
     pub fn chi2(&self) -> f64 {
         self.cost_and_chi2(RobustKernel::None).1
@@ -220,7 +221,7 @@ impl Problem {
         self.cost_and_chi2_at(&poses, kernel)
     }
 
-    /// The same at other poses, by index.
+    /// [`cost_and_chi2`](Self::cost_and_chi2) at other poses, by index.
     pub(crate) fn cost_and_chi2_at(
         &self,
         poses: &[PreparedPose],
@@ -236,7 +237,7 @@ impl Problem {
     }
 }
 
-/// The representative of a node's component, with the path to it halved on the way.
+/// The representative of a node's component; halves the path to it.
 fn root_of(parent: &mut [usize], mut node: usize) -> usize {
     while parent[node] != node {
         parent[node] = parent[parent[node]];

@@ -1,64 +1,63 @@
-//! What a solve did, and why it stopped.
+//! Results of a solve, and why it stopped.
 
 use crate::error::OptimizeError;
 use crate::kernel::RobustKernel;
 use crate::problem::Problem;
 
-/// Why a solve stopped, with the value that was measured and the threshold.
+/// Why a solve stopped, with the measured value and the threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StopReason {
-    /// An accepted step moved no node by as much as the tolerance, damping taken out.
+    /// An accepted step, corrected for damping, moved no node by as much as the tolerance.
     SmallStep {
         /// Largest `‖(v_x, v_y)‖ + |ω|` over the nodes, metres and radians added, times `1 + λ`.
         step: f64,
-        /// Threshold that it fell below.
+        /// The threshold.
         tolerance: f64,
     },
-    /// After an accepted step, less than this share of the cost is estimated to be left to win.
+    /// After an accepted step, the estimated remaining decrease is below this share of the cost.
     SmallDecrease {
         /// Estimated decrease over cost; see [`Settings::decrease_tolerance`](crate::Settings).
         decrease: f64,
-        /// Threshold that it fell below.
+        /// The threshold.
         tolerance: f64,
     },
-    /// A step raised the cost, so that a [`Session`](crate::Session) gave up its cheap first guess.
+    /// A step raised the cost, and a [`Session`](crate::Session) has another start to try.
     CostRose {
         /// Cost before the step.
         before: f64,
         /// Cost after it.
         after: f64,
     },
-    /// The first step won so much less than it promised that the start is not trusted: a
-    /// [`Session`](crate::Session) looks for another.
-    PromiseBroken {
-        /// Decrease of the cost that the linear model promised.
-        promised: f64,
-        /// Decrease of the cost.
-        won: f64,
+    /// The gain ratio of the first step is too low: a [`Session`](crate::Session) tries another start.
+    LowGainRatio {
+        /// Decrease of the cost by the linear model.
+        predicted: f64,
+        /// Actual decrease of the cost.
+        actual: f64,
     },
-    /// A step that kept its promise showed that this attempt of a [`Session`](crate::Session) ends
-    /// no lower than one before.
-    Hopeless {
+    /// By a step with a good gain ratio, this attempt of a [`Session`](crate::Session) cannot end below an
+    /// earlier one.
+    CannotImprove {
         /// Cost at the minimum of the linear model.
-        reachable: f64,
-        /// Cost at which an attempt before converged.
+        predicted: f64,
+        /// Cost at which an earlier attempt converged.
         best: f64,
     },
-    /// The iterations ran out first.
+    /// The limit of iterations was reached.
     IterationLimit {
-        /// How many were allowed.
+        /// Allowed number of iterations.
         limit: usize,
     },
-    /// Levenberg–Marquardt found no damping, up to this one, that lowers the cost.
+    /// Levenberg–Marquardt found no damping up to the limit that lowers the cost.
     DampingLimit {
-        /// The damping of the step that was not tried any more.
+        /// The damping of the step that was no longer tried.
         damping: f64,
         /// The largest damping allowed.
         limit: f64,
     },
     /// A step could not be computed. The poses are those before it.
     Failed {
-        /// What went wrong.
+        /// The error.
         error: OptimizeError,
     },
 }
@@ -84,16 +83,16 @@ impl core::fmt::Display for StopReason {
             Self::CostRose { before, after } => {
                 write!(f, "the cost rose from {before:.6e} to {after:.6e}")
             }
-            Self::PromiseBroken { promised, won } => {
+            Self::LowGainRatio { predicted, actual } => {
                 write!(
                     f,
-                    "the first step won {won:.6e} of the {promised:.6e} it promised"
+                    "the first step lowered the cost by {actual:.6e} instead of the predicted {predicted:.6e}"
                 )
             }
-            Self::Hopeless { reachable, best } => {
+            Self::CannotImprove { predicted, best } => {
                 write!(
                     f,
-                    "it leads to {reachable:.6e} at best, {best:.6e} is found"
+                    "its predicted cost {predicted:.6e} is not below the best one, {best:.6e}"
                 )
             }
             Self::IterationLimit { limit } => write!(f, "limit of {limit} iterations"),
@@ -105,47 +104,47 @@ impl core::fmt::Display for StopReason {
     }
 }
 
-/// What one iteration did.
+/// Result of one iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepReport {
     /// χ² = Σ eᵀΩe at the poses where the step was computed, kernel not applied.
     pub chi2_before: f64,
-    /// `Σ ρ(eᵀΩe)` there: χ² where there is no kernel.
+    /// `Σ ρ(eᵀΩe)` there; equals χ² without a kernel.
     pub cost_before: f64,
     /// Largest `‖(v_x, v_y)‖ + |ω|` over the nodes.
     pub largest_step: f64,
-    /// Decrease of the cost that the quadratic model promises: `−gᵀδ + λ δᵀDδ` with `D = diag H`.
+    /// Decrease of the cost predicted by the quadratic model: `−gᵀδ + λ δᵀDδ` with `D = diag H`.
     ///
     /// The cost has no factor ½, and `g` is half of its derivative.
     pub predicted_decrease: f64,
     /// Damping λ that the step was computed with; 0 for Gauss–Newton.
     pub damping: f64,
-    /// Whether the step was taken. Levenberg–Marquardt refuses a step that raises the cost.
+    /// Whether the step was accepted. Levenberg–Marquardt rejects a step that raises the cost.
     pub accepted: bool,
 }
 
-/// What a whole solve did.
+/// Result of a whole solve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     /// Linear systems solved.
     pub iterations: usize,
-    /// χ² = Σ eᵀΩe where the first step was computed, kernel not applied.
+    /// χ² = Σ eᵀΩe at the start, kernel not applied.
     pub chi2_initial: f64,
     /// χ² at the end, kernel not applied.
     pub chi2: f64,
-    /// `Σ ρ(eᵀΩe)` at the end, what the solver lowered: χ² where there is no kernel.
+    /// `Σ ρ(eᵀΩe)` at the end, the minimized cost; equals χ² without a kernel.
     pub cost: f64,
     /// Why the solve stopped.
     pub stop: StopReason,
     /// One entry per iteration.
     pub steps: Vec<StepReport>,
-    /// The entry of `steps` at whose poses the solve ended after all, because the later ones climbed;
-    /// `None` where it ended where the last step led.
-    pub went_back_to: Option<usize>,
+    /// Index in `steps` of the step before which the solve ended, because later steps raised the cost;
+    /// `None` if it ended after the last step.
+    pub reverted_to: Option<usize>,
 }
 
 impl Report {
-    /// A report on `steps` that ended at the present poses of `problem`.
+    /// Reports on `steps` that ended at the present poses of `problem`.
     #[must_use]
     pub fn new(
         steps: Vec<StepReport>,
@@ -161,11 +160,11 @@ impl Report {
             cost,
             stop,
             steps,
-            went_back_to: None,
+            reverted_to: None,
         }
     }
 
-    /// The cost at the end; not a number where it or χ² is out of the range of numbers.
+    /// The cost at the end; NaN if it or χ² overflowed.
     pub(crate) fn cost_or_nan(&self) -> f64 {
         if self.cost.is_finite() && self.chi2.is_finite() {
             self.cost

@@ -1,9 +1,9 @@
-//! The inverse of H where its factor has blocks: the selected inverse.
+//! The inverse of H at the blocks that its factor has: the selected inverse.
 //!
-//! `Σ = H⁻¹` is dense and never formed. Its blocks inside a front follow from those of the parent's
-//! front: `Σ_RC = −Σ_RR Y` and `Σ_CC = (L_CC L_CCᵀ)⁻¹ − Yᵀ Σ_RC` with `Y = L_RC L_CC⁻¹`, where C are
-//! the columns of a supernode and R its rows below, which lie in its parent's front. So the way
-//! goes from the roots of the elimination tree to the leaves. Units are those of H, inverted.
+//! `Σ = H⁻¹` is dense and never formed. Its blocks inside a front follow from those of the parent's front:
+//! `Σ_RC = −Σ_RR Y` and `Σ_CC = (L_CC L_CCᵀ)⁻¹ − Yᵀ Σ_RC` with `Y = L_RC L_CC⁻¹`. C are the columns of a supernode
+//! and R its rows below, which lie in its parent's front. The recursion therefore runs from the roots of the
+//! elimination tree to the leaves. Units are those of H, inverted.
 //!
 //! Source: Takahashi, Fagan, Chin, "Formation of a sparse bus impedance matrix", 1973.
 
@@ -16,12 +16,12 @@ use crate::supernodes::{Supernode, Supernodes};
 /// Blocks of `H⁻¹`, front by front.
 pub(crate) struct SelectedInverse<'a> {
     supernodes: &'a Supernodes,
-    /// By supernode: a full square, column-major, rows of the run first.
+    /// By supernode: a full square, column-major, own columns' rows first.
     fronts: Vec<Vec<f64>>,
 }
 
 impl<'a> SelectedInverse<'a> {
-    /// Works out all blocks; `cholesky` has factorized H.
+    /// Computes all blocks; `cholesky` has factorized H.
     pub fn new(cholesky: &'a BlockCholesky) -> Self {
         let supernodes = cholesky.supernodes();
         let list = &supernodes.list;
@@ -43,7 +43,7 @@ impl<'a> SelectedInverse<'a> {
         Self { supernodes, fronts }
     }
 
-    /// The block of two elimination positions, `None` where the factor has none.
+    /// The block of two elimination positions, `None` if the factor has none.
     pub fn block(&self, positions: [usize; 2]) -> Option<Matrix3<f64>> {
         let shared = self.supernodes.shared_front(positions)?;
         let front = &self.fronts[shared.supernode];
@@ -75,7 +75,7 @@ fn take_rows(
     }
 }
 
-/// Fills in `Σ_RC`, its transpose and `Σ_CC`, columns of the run from the last to the first.
+/// Fills in `Σ_RC`, its transpose and `Σ_CC`, own columns from the last to the first.
 fn invert_front(front: &mut [f64], supernode: &Supernode, cholesky: &BlockCholesky) {
     let height = 3 * supernode.height();
     let width = 3 * supernode.width as usize;
@@ -83,7 +83,7 @@ fn invert_front(front: &mut [f64], supernode: &Supernode, cholesky: &BlockCholes
     let mut sums = Vec::with_capacity(height);
     for column in (0..width).rev() {
         let factor = &panel[column * height..(column + 1) * height];
-        // Σ L = L⁻ᵀ, read in this column: below the diagonal its right side is zero.
+        // Σ L = L⁻ᵀ in this column: below the diagonal the right side is zero.
         sums.clear();
         sums.resize(height - column - 1, 0.0);
         for k in column + 1..height {

@@ -1,19 +1,17 @@
-//! A solve from a first guess to the optimum: which guess, and what to do where it fails.
+//! A solve from an initial guess to the optimum, with other guesses if the first fails.
 //!
-//! Gauss–Newton finds the minimum in whose basin it starts. [`Start::Auto`] takes the better of
-//! two guesses that cost next to nothing, the poses as given and a spanning tree, and looks how its
-//! first step keeps its promise. Where that is broken, the cost rises on the way, the steps do not
-//! converge, or a measurement ends up turned by more than [`SUSPICIOUS_TURN_RAD`], that basin is not
-//! trusted: the solve begins again from the chordal relaxation, unless that costs more than what is
-//! reached. Where the result is not to be trusted either, damped steps follow from there, if full
-//! ones climbed or did not converge. An attempt that leads to no lower cost than one before is given
-//! up on the way. The best of what converged is kept, unless it costs more than the poses as given:
-//! then the best of all. This is a rule of thumb, not a proof of a global optimum.
-//! [`Outcome::tried`] lists what was tried.
+//! Gauss–Newton finds the minimum in whose basin of convergence it starts. [`Start::Auto`] takes the better of two
+//! cheap guesses, the given poses and a spanning tree, and checks the gain ratio of its first step. If that is
+//! low, the cost rises, the steps do not converge, or the heading residual of a measurement ends above
+//! [`SUSPICIOUS_TURN_RAD`], the minimum is suspicious: the solve restarts from the chordal relaxation, unless that
+//! costs more than the result so far. If that result is suspicious too, damped steps follow from there, provided
+//! that full steps raised the cost or did not converge. An attempt is abandoned once it cannot end below an
+//! earlier one. The best converged attempt is kept, unless it costs more than the given poses: then the best of
+//! all. This is a heuristic, not a proof of a global optimum. [`Outcome::tried`] lists all attempts.
 //!
-//! A robust kernel has many more false minima: from a poor guess it switches right measurements off.
-//! With one, [`Start::Auto`] goes on to solve the same graph without it, and from there once more
-//! with it: plain, and with damped steps where the cost rises. The lower robust cost is kept.
+//! A robust kernel has many more local minima: from a poor guess it rejects true measurements. With one,
+//! [`Start::Auto`] also solves the same graph without it, and from there again with it: with full steps, and with
+//! damped ones if the cost rises. The lower robust cost is kept.
 
 mod attempt;
 mod guess;
@@ -31,25 +29,25 @@ use crate::problem::Problem;
 use crate::report::{Report, StepReport, StopReason};
 use crate::settings::Method;
 
-/// A heading residual at a minimum that noise does not explain.
+/// Smallest heading residual at a minimum that noise does not explain.
 ///
-/// On seven recorded graphs the largest one is 0.71 rad at the best known optimum, of the graph
-/// with the worst headings, and at least 1.03 rad at every false minimum that was met.
+/// On seven recorded graphs the largest residual is 0.71 rad at the best known optimum, of the graph
+/// with the worst headings, and at least 1.03 rad at every local minimum that was observed.
 pub const SUSPICIOUS_TURN_RAD: f64 = 1.0;
 
 /// First damping of the attempt with damped steps.
 const FALLBACK_DAMPING: f64 = 1e-4;
 
-/// Where a solve starts.
+/// Initial guess of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Start {
-    /// The better of the given poses and the spanning tree. Where that fails, the chordal
-    /// relaxation, and then the same with damped steps.
+    /// The better of the given poses and the spanning tree. If that fails, the chordal relaxation, and then the
+    /// relaxation with damped steps.
     #[default]
     Auto,
-    /// The poses as given.
+    /// The given poses.
     Given,
-    /// Along a breadth-first tree of measurements from the fixed poses.
+    /// Poses along a breadth-first tree of measurements from the fixed poses.
     SpanningTree,
     /// Headings and positions by two linear problems.
     Chordal,
@@ -57,56 +55,56 @@ pub enum Start {
     LeastSquares,
 }
 
-/// What a session found.
+/// Result of a session.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// The solve that was kept.
     pub report: Report,
-    /// Where it started, never [`Start::Auto`].
+    /// Its initial guess, never [`Start::Auto`].
     pub start: Start,
     /// Linear systems solved by Gauss–Newton or Levenberg–Marquardt in all attempts.
     pub total_iterations: usize,
-    /// Every start that was looked at, in this order.
+    /// Every guess that was considered, in this order.
     pub tried: Vec<Trial>,
 }
 
-/// Which cost is lowered, and from where. Without a kernel there is only the first round.
+/// Cost and start of a round. Without a kernel there is only the first round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Round {
     /// The caller's cost, from guesses.
     Guess,
-    /// Plain least squares in spite of the caller's kernel, from guesses.
+    /// Plain least squares without the caller's kernel, from guesses.
     LeastSquares,
     /// The caller's kernel, from the least-squares solution.
     Refine,
 }
 
-/// How far a round has got.
+/// Progress of a round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
-    /// From what costs next to nothing, or where the caller wants.
+    /// From a cheap guess, or from the caller's start.
     First,
-    /// From the chordal relaxation, or from the first guess again where that costs less.
+    /// From the chordal relaxation, or from the first guess again if that costs less.
     Second,
     /// With damped steps.
     Damped,
 }
 
-/// A solve that goes on step by step.
+/// A solve that runs step by step.
 ///
-/// Dropped before [`finish`](Self::finish), it leaves the poses where the last step put them.
-/// Either way the optimizer has the method again that it came with.
+/// If dropped before [`finish`](Self::finish), it leaves the poses after the last step. In both cases the
+/// optimizer gets its original method back.
 #[derive(Debug)]
 pub struct Session<'a> {
     optimizer: &'a mut Optimizer,
     problem: &'a mut Problem,
-    /// What the caller asked for. Later attempts solve with another; dropping restores it.
+    /// The caller's method. Later attempts use another; dropping restores it.
     method: Method,
-    /// What the caller asked for; dropping restores it.
+    /// The caller's kernel; dropping restores it.
     kernel: RobustKernel,
-    /// The poses as they came.
+    /// The given poses.
     given: Vec<SE2>,
-    /// Cost of the poses as they came, where [`Start::Auto`] began with them as one of its guesses.
+    /// Cost of the given poses, if [`Start::Auto`] considered them as a guess.
     given_cost: Option<f64>,
     /// Where the refinement starts: the least-squares solution.
     origin: Vec<SE2>,
@@ -119,17 +117,17 @@ pub struct Session<'a> {
     last_step: Option<StepReport>,
     /// The attempts of this round that have ended.
     ended: Vec<Attempt>,
-    /// The attempts of earlier rounds that count at the end.
+    /// Attempts of earlier rounds that compete for the result.
     kept: Vec<Attempt>,
     total_iterations: usize,
     finished: bool,
 }
 
 impl<'a> Session<'a> {
-    /// Moves `problem` to its first guess.
+    /// Moves `problem` to its initial guess.
     ///
     /// # Errors
-    /// Where the start that is asked for cannot be computed or is not finite; the poses stay.
+    /// If the requested start cannot be computed or is not finite; the poses are unchanged.
     pub fn new(
         optimizer: &'a mut Optimizer,
         problem: &'a mut Problem,
@@ -166,7 +164,7 @@ impl<'a> Session<'a> {
         Ok(session)
     }
 
-    /// One iteration; returns whether there is more to do.
+    /// Runs one iteration; returns whether there is more to do.
     pub fn step(&mut self) -> bool {
         if self.finished {
             return false;
@@ -186,13 +184,13 @@ impl<'a> Session<'a> {
         !self.finished
     }
 
-    /// What the last iteration did; `None` before the first.
+    /// Report of the last iteration; `None` before the first.
     #[must_use]
     pub fn last_step(&self) -> Option<&StepReport> {
         self.last_step.as_ref()
     }
 
-    /// Iterates to the end, and leaves the poses of the attempt that was kept in the problem.
+    /// Iterates to the end, and leaves the poses of the kept attempt in the problem.
     #[must_use]
     pub fn run(mut self) -> Outcome {
         while self.step() {}
@@ -201,12 +199,12 @@ impl<'a> Session<'a> {
 
     /// Ends here, and leaves the best poses so far in the problem.
     ///
-    /// Their cost is finite, and not above that of the start: of the poses as they came, and of the
-    /// spanning tree, with [`Start::Auto`]. Where no start has a finite cost, the poses stay as they
-    /// came and the report says [`OptimizeError::NotFinite`].
+    /// Their cost is finite, and not above that of the start: of the given poses, and of the spanning tree, for
+    /// [`Start::Auto`]. If no start has a finite cost, the poses are unchanged and the report holds
+    /// [`OptimizeError::NotFinite`].
     ///
-    /// Attempts that converged go before others, then the lower cost. An attempt that is cut off
-    /// is reported with [`StopReason::IterationLimit`].
+    /// Converged attempts rank before others, then by lower cost. An attempt that is cut off is reported with
+    /// [`StopReason::IterationLimit`].
     #[must_use]
     pub fn finish(mut self) -> Outcome {
         if !self.finished {
@@ -214,7 +212,7 @@ impl<'a> Session<'a> {
             self.automatic = false;
             self.end_attempt(StopReason::IterationLimit { limit });
             if self.round == Round::LeastSquares {
-                // What it found counts by the caller's cost.
+                // Its result is compared by the caller's cost.
                 self.begin_refinement();
                 self.end_attempt(StopReason::IterationLimit { limit });
             }
@@ -223,7 +221,7 @@ impl<'a> Session<'a> {
         attempts.append(&mut self.ended);
         let mut best = best_of(attempts, self.given_cost);
         if best.report.cost_or_nan().is_nan() {
-            // No guess was one to start from.
+            // No guess was usable.
             best.poses.clone_from(&self.given);
             best.report.stop = StopReason::Failed {
                 error: OptimizeError::NotFinite,
@@ -238,16 +236,16 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// What the attempt that goes on is given up for.
+    /// The condition on which the current attempt is abandoned.
     fn watch(&self) -> Watch {
         let settings = &self.optimizer.settings;
         let is_plain = settings.kernel == RobustKernel::None;
         if !self.automatic {
-            return Watch::Nothing;
+            return Watch::Never;
         }
         if self.stage == Stage::First {
-            return Watch::Climbs {
-                and_promise: is_plain && settings.method == Method::GaussNewton,
+            return Watch::StopOnRise {
+                and_gain_ratio: is_plain && settings.method == Method::GaussNewton,
             };
         }
         let converged = self.ended.iter().filter(|attempt| attempt.is_converged());
@@ -255,8 +253,8 @@ impl<'a> Session<'a> {
             .map(|attempt| attempt.report.cost)
             .min_by(f64::total_cmp);
         match best {
-            Some(best) if is_plain => Watch::Beats(best),
-            _ => Watch::Nothing,
+            Some(best) if is_plain => Watch::MustBeat(best),
+            _ => Watch::Never,
         }
     }
 
@@ -283,8 +281,8 @@ impl<'a> Session<'a> {
         self.finished = !goes_on;
     }
 
-    /// From the chordal relaxation; then damped steps from there; then no more. A refinement goes on
-    /// from where it began, with damped steps.
+    /// Starts the next attempt: from the chordal relaxation, then with damped steps from there. A refinement
+    /// continues from its start with damped steps.
     fn begin_next_attempt(&mut self) -> bool {
         let may_damp = self.method == Method::GaussNewton;
         let damped = Method::LevenbergMarquardt {
@@ -307,7 +305,7 @@ impl<'a> Session<'a> {
             (_, Stage::Second) if may_damp => {
                 let last = self.ended.last().expect("the second attempt has ended");
                 let (steady, start) = (last.is_converged() && !last.climbed(), last.start);
-                // Where full steps only descended to a minimum, damped ones lead there, too.
+                // If full steps only descended to a minimum, damped ones end there too.
                 if steady && start == Start::Chordal {
                     return false;
                 }
@@ -319,7 +317,8 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// With a kernel: the least-squares solution, then the caller's cost from there; then no more.
+    /// With a kernel: starts the least-squares round, then the round with the caller's cost from its
+    /// solution.
     fn begin_next_round(&mut self) -> bool {
         match self.round {
             Round::Guess if self.kernel != RobustKernel::None => {
@@ -354,9 +353,9 @@ impl<'a> Session<'a> {
             .expect("poses that are known need no solution");
     }
 
-    /// Whether some measurement's heading residual is beyond what noise explains.
+    /// Whether the heading residual of some measurement exceeds what noise explains.
     ///
-    /// A robust kernel is there to leave false measurements where they are: with one, nothing is.
+    /// Always false with a robust kernel, which is meant to leave outliers with large residuals.
     fn is_twisted(&self) -> bool {
         if self.optimizer.settings.kernel != RobustKernel::None {
             return false;

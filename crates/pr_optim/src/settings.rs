@@ -1,67 +1,65 @@
-//! What an [`Optimizer`](crate::Optimizer) solves with, and when it stops.
+//! Settings of an [`Optimizer`](crate::Optimizer) and its stop rules.
 
 use crate::factor::JacobianModel;
 use crate::kernel::RobustKernel;
 use crate::linear::Factorization;
 
-/// How a step is made from the linearized problem.
+/// Computation of a step from the linearized problem.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Method {
-    /// Full steps, also where they raise the cost on the way.
+    /// Full steps, even if they raise the cost.
     #[default]
     GaussNewton,
-    /// Damped steps; none that raises the cost is taken.
+    /// Damped steps; a step that raises the cost is rejected.
     LevenbergMarquardt {
         /// First damping, relative to the diagonal of H; at least 0.
         initial_damping: f64,
     },
 }
 
-/// Which factor of the normal equations solves a step of Gauss–Newton.
+/// Which factor of the normal equations solves a Gauss–Newton step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum FactorUse {
-    /// One of its own, at the poses where the step begins.
+    /// A new one at the poses where the step starts.
     #[default]
     EveryStep,
-    /// That of an earlier step of the same solve, once steps are short and as long as each is much shorter
-    /// than the one before it: the gradient decides where a solve ends, and the factor only how fast.
+    /// The factor of an earlier step of the same solve, once steps are short and while each is much shorter than
+    /// the one before: the gradient determines the result, and the factor only the speed.
     ///
     /// This is the chord method of Kelley, "Iterative Methods for Linear and Nonlinear Equations", 1995,
     /// section 5.4.
-    WhileItShrinks,
+    WhileStepsShrink,
 }
 
-/// What to solve with, and when to stop.
+/// Settings of a solve and its stop rules.
 ///
-/// Only an accepted step can end a solve as converged, and not because damping made it small:
-/// both tests below see it multiplied by `1 + λ`. Without damping that is the step itself, and
-/// with much of it `(1 + λ) δ` tends to `−D⁻¹g`, the gradient in the scale of `D = diag H`.
+/// Only an accepted step can end a solve as converged, and not because damping made it small: both tests below
+/// multiply it by `1 + λ`. Without damping that is the step itself; for strong damping `(1 + λ) δ` tends to
+/// `−D⁻¹g`, the gradient in the scale of `D = diag H`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Gauss–Newton or Levenberg–Marquardt.
     pub method: Method,
     /// The chapter's Jacobians or the exact ones.
     pub jacobians: JacobianModel,
-    /// Cost of a factor.
+    /// Robust kernel of the factors.
     pub kernel: RobustKernel,
-    /// Largest number of linear systems solved; in a [`Session`](crate::Session), by one attempt.
+    /// Largest number of linear systems solved; for a [`Session`](crate::Session), in one attempt.
     pub max_iterations: usize,
-    /// Stop where `1 + λ` times the largest `‖(v_x, v_y)‖ + |ω|` over the nodes, metres and radians
+    /// Stop if `1 + λ` times the largest `‖(v_x, v_y)‖ + |ω|` over the nodes, metres and radians
     /// added, falls below this; 0 never stops.
     ///
-    /// With [`FactorUse::WhileItShrinks`] a step that is shorter than the one before by some factor counts
-    /// as the one that would follow it, which is shorter by that factor once more.
+    /// With [`FactorUse::WhileStepsShrink`] the steps shrink by about a constant factor, and the test applies to
+    /// the expected next step.
     pub step_tolerance: f64,
-    /// Stop where less than this share of the cost is still to be won, by the estimate below;
-    /// 0 never stops.
+    /// Stop if the estimated remaining decrease falls below this share of the cost; 0 never stops.
     ///
-    /// The model promises a decrease `p` with every step. Near the optimum the promises shrink by
-    /// the same factor or faster, so that about `p²/p'` is left after a step that promised `p`
-    /// where the accepted one before promised `p'`. A step so needs no other to confirm that it was
-    /// the last.
+    /// The model predicts a decrease `p` for every step. Near the optimum the predictions shrink by at least a
+    /// constant factor, so about `p²/p'` remains after a step with prediction `p` if that of the accepted step
+    /// before was `p'`. No further step is needed to confirm that one was the last.
     pub decrease_tolerance: f64,
-    /// Added to every diagonal entry of H, 1/m² and 1/rad²: keeps H invertible where a measurement
-    /// says nothing about a direction.
+    /// Added to every diagonal entry of H, 1/m² and 1/rad²: keeps H invertible if the measurements leave a
+    /// direction unconstrained.
     pub ridge: f64,
     /// Which sparse Cholesky factorization to use.
     pub factorization: Factorization,

@@ -1,14 +1,14 @@
-//! Which 3×3 blocks the normal equations have, and in which order their nodes are eliminated.
+//! Block pattern of the normal equations and the elimination order of their nodes.
 //!
-//! Everything here depends on the graph alone, not on poses: it is worked out once and used again
-//! in every iteration, and in every solve until the graph grows.
+//! Both depend on the graph alone, not on the poses: they are computed once and reused in every iteration and
+//! every solve until the graph grows.
 
 use crate::problem::Problem;
 
-/// Where the off-diagonal block of a factor goes.
+/// Position of the off-diagonal block of a factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FactorSlot {
-    /// Index into the off-diagonal blocks, or [`FactorSlot::NONE`] where an end is fixed.
+    /// Index into the off-diagonal blocks, or [`FactorSlot::NONE`] if an end is fixed.
     pub slot: u32,
     /// Whether pose `from` is eliminated after pose `to`: the block is stored transposed.
     pub transposed: bool,
@@ -21,7 +21,7 @@ impl FactorSlot {
 
 /// The block pattern of the normal equations in elimination order, lower triangle by columns.
 ///
-/// A fixed node keeps its place with an identity block and nothing beside it: the same as
+/// A fixed node keeps its position with an identity block and no off-diagonal blocks, which is equivalent to
 /// clearing its rows and columns and putting ones on the diagonal.
 #[derive(Clone, Debug, Default)]
 pub struct Structure {
@@ -33,18 +33,18 @@ pub struct Structure {
     pub column_start: Vec<u32>,
     /// Row of every off-diagonal block, below the diagonal, ascending in each column.
     pub row: Vec<u32>,
-    /// Where the block of every factor goes.
+    /// Position of every factor's block.
     pub factor_slots: Vec<FactorSlot>,
-    /// What the structure was made from: fixed flags and ends of the factors.
+    /// Fixed flags and ends of the factors from which the structure was made.
     fixed: Vec<bool>,
     ends: Vec<(u32, u32)>,
 }
 
 impl Structure {
-    /// Works out pattern and slots for `problem`, eliminating node `node_at[k]` in place `k`.
+    /// Computes pattern and slots for `problem`, with node `node_at[k]` eliminated at position `k`.
     ///
     /// # Panics
-    /// Where `node_at` is not a permutation of the nodes.
+    /// If `node_at` is not a permutation of the nodes.
     #[must_use]
     pub fn new(problem: &Problem, node_at: Vec<u32>) -> Self {
         let nodes = problem.node_count();
@@ -78,7 +78,7 @@ impl Structure {
         structure
     }
 
-    /// Whether `problem` still has the graph that this structure was made from.
+    /// Whether `problem` still has the graph of this structure.
     #[must_use]
     pub fn fits(&self, problem: &Problem) -> bool {
         self.fixed == problem.fixed()
@@ -148,7 +148,7 @@ impl Structure {
     }
 }
 
-/// What decides the structure of a problem.
+/// The parts of a problem that determine its structure.
 fn signature(problem: &Problem) -> (Vec<bool>, Vec<(u32, u32)>) {
     let ends = problem
         .factors()
@@ -219,7 +219,7 @@ mod tests {
         let [there, back] = [structure.factor_slots[1], structure.factor_slots[4]];
         assert_eq!(there.slot, back.slot);
         assert_ne!(there.transposed, back.transposed);
-        // Factor 1 goes from node 1 (place 2) to node 2 (place 1): its rows belong to `from`.
+        // Factor 1 goes from node 1 (position 2) to node 2 (position 1): its rows belong to `from`.
         assert!(there.transposed);
     }
 

@@ -1,8 +1,8 @@
 //! Symbolic factorization: which columns of the factor share their rows.
 //!
-//! A supernode is a run of columns whose rows below the run are the same. It is stored as one
-//! dense panel, and factorized with dense kernels. A child is merged into its parent also where
-//! that stores a few zeros, as long as the estimated work falls (relaxed amalgamation).
+//! A supernode is a run of columns with the same rows below the run. It is stored as one dense panel, and
+//! factorized with dense kernels. A child is merged into its parent even if that stores a few zeros, as long as
+//! the estimated work falls (relaxed amalgamation).
 //!
 //! Sources: Liu, "The multifrontal method for sparse matrix solution", 1992; Ashcraft & Grimes,
 //! "The influence of relaxed supernode partitions on the multifrontal method", 1989.
@@ -17,17 +17,17 @@ pub struct Supernode {
     pub first: u32,
     /// Number of block columns.
     pub width: u32,
-    /// Where its rows below the run start in [`Supernodes::rows`].
+    /// Start of its rows below the run in [`Supernodes::rows`].
     pub rows_start: u32,
     /// Number of block rows below the run.
     pub rows_len: u32,
-    /// Where its panel starts among the factor's values.
+    /// Start of its panel among the factor's values.
     pub panel_start: usize,
-    /// The supernode that its update goes to, `u32::MAX` for a root.
+    /// The supernode that receives its update, `u32::MAX` for a root.
     pub parent: u32,
-    /// How many supernodes have this one as their parent.
+    /// Number of supernodes with this one as parent.
     pub child_count: u32,
-    /// Which of the two stacks its update waits on: the one on which its children's do not.
+    /// Which of the two stacks holds its update: the one that does not hold its children's.
     pub stack: u8,
 }
 
@@ -44,20 +44,20 @@ impl Supernode {
         self.first as usize..(self.first + self.width) as usize
     }
 
-    /// The columns of the run, three numbers to a block.
+    /// The scalar columns of the run, three to a block.
     #[must_use]
     pub fn scalars(&self) -> core::ops::Range<usize> {
         let columns = self.columns();
         3 * columns.start..3 * columns.end
     }
 
-    /// Where the rows below the run are.
+    /// Range of the rows below the run.
     #[must_use]
     pub fn rows(&self) -> core::ops::Range<usize> {
         self.rows_start as usize..(self.rows_start + self.rows_len) as usize
     }
 
-    /// Where the panel's values are.
+    /// Range of the panel's values.
     #[must_use]
     pub fn panel(&self) -> core::ops::Range<usize> {
         self.panel_start..self.panel_start + 9 * self.height() * self.width as usize
@@ -77,11 +77,11 @@ pub struct Supernodes {
     pub row_of_slot: Vec<u32>,
     /// Number of values of all panels.
     pub value_count: usize,
-    /// Number of values of all updates that wait at the same time, at most, on each stack.
+    /// Largest number of values of waiting updates on each stack.
     pub stack_size: [usize; 2],
 }
 
-/// A front in which two block columns meet.
+/// A front that contains two block columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SharedFront {
     /// Number of the supernode.
@@ -94,11 +94,11 @@ pub struct SharedFront {
 struct Draft {
     first: u32,
     width: u32,
-    /// Where its rows below the run are among all.
+    /// Range of its rows below the run among all rows.
     rows: core::ops::Range<usize>,
 }
 
-/// All of them, with their rows one after the other; merging leaves a child's unused.
+/// All drafts and their rows; merging leaves a child's rows unused.
 struct Drafts {
     list: Vec<Draft>,
     rows: Vec<u32>,
@@ -115,16 +115,17 @@ impl Supernodes {
         supernodes
     }
 
-    /// Number of the supernode whose run holds a block column.
+    /// Number of the supernode whose run contains a block column.
     #[must_use]
     pub fn holding(&self, column: usize) -> usize {
         self.list
             .partition_point(|supernode| supernode.columns().end <= column)
     }
 
-    /// The front that holds both block columns, or `None` where the factor has no block of the two.
+    /// The front that contains both block columns, or `None` if the factor has no block of the two.
     ///
-    /// It is that of the one eliminated first: the other is in its run, in its rows below, or nowhere.
+    /// It is the front of the column eliminated first: the other is in its run, in its rows below, or
+    /// nowhere.
     #[must_use]
     pub fn shared_front(&self, columns: [usize; 2]) -> Option<SharedFront> {
         let supernode = self.holding(columns[0].min(columns[1]));
@@ -188,12 +189,12 @@ impl Supernodes {
         supernodes
     }
 
-    /// Finds the place of every row in the parent's panel, and of every slot in its own.
+    /// Finds the position of every row in the parent's panel, and of every slot in its own.
     fn locate_rows(&mut self, structure: &Structure) {
         let mut place = vec![0_u32; structure.node_count()];
         self.row_in_parent = vec![0; self.rows.len()];
         self.row_of_slot = vec![0; structure.row.len()];
-        // Children come right before their parent: theirs are the last that wait.
+        // Children come directly before their parent, so theirs are the last waiting ones.
         let mut waiting: Vec<usize> = Vec::new();
         let mut height = [0; 2];
         for (number, supernode) in self.list.iter().enumerate() {
@@ -238,7 +239,7 @@ fn find_fundamental(structure: &Structure, parent: &[u32]) -> Drafts {
     let nodes = structure.node_count();
     let mut list: Vec<Draft> = Vec::new();
     let mut rows: Vec<u32> = Vec::new();
-    // The drafts that wait for a column to take their rows, as a chain from the last to the first.
+    // Drafts whose rows a column will merge, as a linked list from the last to the first.
     let mut last_waiting = vec![NO_PARENT; nodes];
     let mut waiting_before: Vec<u32> = Vec::new();
     let mut mark = vec![NO_PARENT; nodes];
@@ -271,7 +272,7 @@ fn find_fundamental(structure: &Structure, parent: &[u32]) -> Drafts {
                     && newest as usize + 1 == waiting_before.len()
                     && last.rows.len() == height + 1 =>
             {
-                // The column is the first of the rows below it: what is left are the others.
+                // The column itself is the first of the rows below: the others remain.
                 rows.truncate(start);
                 last.width += 1;
                 last.rows.start += 1;
@@ -296,7 +297,7 @@ fn find_fundamental(structure: &Structure, parent: &[u32]) -> Drafts {
     Drafts { list, rows }
 }
 
-/// Merges a supernode into the one after it where that is its parent and the work falls.
+/// Merges a supernode into the next one if that is its parent and the work falls.
 fn merge(drafts: Drafts) -> Drafts {
     let Drafts { list, rows } = drafts;
     let mut merged: Vec<Draft> = Vec::with_capacity(list.len());

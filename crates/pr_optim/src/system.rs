@@ -21,7 +21,7 @@ pub struct NormalEquations {
     pub gradient: Vec<f64>,
     /// `Σ eᵀΩe` at the poses of the assembly, kernel not applied.
     pub chi2: f64,
-    /// `Σ ρ(eᵀΩe)`, what the solver lowers.
+    /// `Σ ρ(eᵀΩe)`, the minimized cost.
     pub cost: f64,
     poses: Vec<PreparedPose>,
 }
@@ -29,7 +29,7 @@ pub struct NormalEquations {
 impl NormalEquations {
     /// Linearizes every factor of `problem` at its present poses and adds up the blocks.
     ///
-    /// With a kernel every factor's Ω counts times its weight. `ridge` is added to every diagonal
+    /// With a kernel every factor's Ω is multiplied by its weight. `ridge` is added to every diagonal
     /// entry. Fixed nodes get an identity block, plus `ridge`.
     pub fn assemble(
         &mut self,
@@ -44,7 +44,7 @@ impl NormalEquations {
         self.hold_fixed(problem, structure, ridge);
     }
 
-    /// [`assemble`](Self::assemble) of the gradient alone; the blocks stay as they are.
+    /// [`assemble`](Self::assemble) of the gradient alone; the blocks are unchanged.
     pub(crate) fn assemble_gradient(
         &mut self,
         problem: &Problem,
@@ -92,17 +92,16 @@ impl NormalEquations {
         }
     }
 
-    /// `Σ ρ(eᵀΩe)` at other poses of the same graph; the blocks stay as they are.
+    /// `Σ ρ(eᵀΩe)` at other poses of the same graph; the blocks are unchanged.
     ///
-    /// Not finite wherever `Σ eᵀΩe` is not: no step can be computed there, cheap as a kernel makes it.
+    /// Not finite if `Σ eᵀΩe` is not: no step can be computed there, even if the kernel bounds the cost.
     pub fn cost_at(&mut self, problem: &Problem, poses: &[SE2], kernel: RobustKernel) -> f64 {
         self.prepare(poses);
         let (cost, chi2) = problem.cost_and_chi2_at(&self.poses, kernel);
         if chi2.is_finite() { cost } else { chi2 }
     }
 
-    /// Fills the workspace of poses with their sines and cosines; headings that are there already
-    /// keep theirs.
+    /// Fills the workspace of poses with their sines and cosines; unchanged headings keep theirs.
     fn prepare(&mut self, poses: &[SE2]) {
         let kept = self.poses.len().min(poses.len());
         self.poses.truncate(kept);
@@ -178,7 +177,7 @@ impl NormalEquations {
         }
     }
 
-    /// Gives every fixed node an identity block, plus `ridge`, and no gradient: it will not move.
+    /// Gives every fixed node an identity block, plus `ridge`, and zero gradient, so that it does not move.
     pub(crate) fn hold_fixed(&mut self, problem: &Problem, structure: &Structure, ridge: f64) {
         let one = 1.0 + ridge;
         for position in fixed_positions(problem, structure) {
@@ -194,7 +193,7 @@ impl NormalEquations {
     }
 }
 
-/// Where the fixed nodes are in the order of elimination.
+/// Positions of the fixed nodes in the elimination order.
 fn fixed_positions(problem: &Problem, structure: &Structure) -> impl Iterator<Item = usize> {
     let nodes = problem.fixed().iter().zip(&structure.position_of);
     nodes

@@ -69,8 +69,8 @@ proptest! {
 }
 
 #[test]
-fn both_name_the_node_that_nothing_holds() {
-    // No fixed pose and no ridge: the last pivot of the component is zero or less.
+fn both_report_the_unconstrained_node() {
+    // No fixed pose and no ridge: the last pivot of the component is zero or negative.
     let mut problem = Problem::new();
     problem.add_pose(SE2::identity());
     problem.add_pose(SE2::identity());

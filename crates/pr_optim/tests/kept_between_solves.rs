@@ -1,4 +1,4 @@
-//! What a solver keeps from one step or graph to the next changes how long it takes, not what comes out.
+//! State kept between steps or graphs changes the time of a solve, not its result.
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
@@ -6,7 +6,7 @@ use pr_optim::{
     Between, FactorUse, JacobianModel, JointCovariance, Optimizer, Problem, Settings, StopReason,
 };
 
-/// A way around a square of `side` steps a side, every step off by a little, and the loop at its end.
+/// A path around a square of `side` steps a side, with an error in every step, and the loop at its end.
 fn square(side: usize, off: f64) -> Problem {
     let mut problem = Problem::new();
     let turned = |k: usize| if k.is_multiple_of(side) { 1.57 } else { 0.0 };
@@ -47,25 +47,25 @@ fn optimizer(factor_use: FactorUse) -> Optimizer {
 }
 
 #[test]
-fn an_earlier_factor_leads_to_the_same_optimum() {
-    // A loop that closes by centimetres, by decimetres, and by metres.
+fn a_reused_factor_gives_the_same_optimum() {
+    // Loops with closing errors of centimetres, decimetres and metres.
     for off in [0.002, 0.03, 0.3] {
         let mut every = close(square(12, off));
         let mut kept = every.clone();
         let expected = optimizer(FactorUse::EveryStep).run(&mut every);
-        let report = optimizer(FactorUse::WhileItShrinks).run(&mut kept);
+        let report = optimizer(FactorUse::WhileStepsShrink).run(&mut kept);
         assert!(matches!(report.stop, StopReason::SmallStep { .. }));
         for (a, b) in kept.poses().iter().zip(every.poses()) {
             assert!(a.between(b).log().norm() < 1e-8, "{off}: {a:?} {b:?}");
         }
         assert!((report.chi2 - expected.chi2).abs() < 1e-12 * expected.chi2_initial);
-        // Neither the factor nor the last step costs more than a few short steps.
+        // Factor reuse and the stop rule cost only a few short steps.
         assert!(report.iterations <= expected.iterations + 3, "{off}");
     }
 }
 
 #[test]
-fn a_factor_is_not_kept_beyond_its_graph_or_a_covariance() {
+fn a_factor_is_not_reused_for_another_graph_or_after_a_covariance() {
     let open = square(12, 0.002);
     let closed = close(open.clone());
     let stepped = |optimizer: &mut Optimizer, problem: &Problem| {
@@ -74,7 +74,7 @@ fn a_factor_is_not_kept_beyond_its_graph_or_a_covariance() {
         (step.largest_step.to_bits(), problem.poses().to_vec())
     };
     let expected = stepped(&mut optimizer(FactorUse::EveryStep), &closed);
-    let mut kept = optimizer(FactorUse::WhileItShrinks);
+    let mut kept = optimizer(FactorUse::WhileStepsShrink);
     let _ = stepped(&mut kept, &open);
     assert_eq!(stepped(&mut kept, &closed), expected, "another graph");
     kept.joint_covariance(&closed, 5, 30).unwrap();
@@ -85,7 +85,7 @@ fn a_factor_is_not_kept_beyond_its_graph_or_a_covariance() {
 
 #[test]
 fn graphs_of_any_size_can_follow_each_other() {
-    let mut kept = optimizer(FactorUse::WhileItShrinks);
+    let mut kept = optimizer(FactorUse::WhileStepsShrink);
     let answers = |optimizer: &mut Optimizer, side: usize| -> (Vec<SE2>, JointCovariance) {
         let mut problem = close(square(side, 0.01));
         optimizer.run(&mut problem);
@@ -93,7 +93,7 @@ fn graphs_of_any_size_can_follow_each_other() {
         (problem.poses().to_vec(), joint.unwrap())
     };
     for side in [20, 7, 40, 2, 20] {
-        let fresh = answers(&mut optimizer(FactorUse::WhileItShrinks), side);
+        let fresh = answers(&mut optimizer(FactorUse::WhileStepsShrink), side);
         assert_eq!(answers(&mut kept, side), fresh, "{side}");
     }
 }

@@ -1,4 +1,4 @@
-//! The solver against other ways to the same answer: one binary, one module for each.
+//! The solver against other methods: one binary, one module for each.
 
 mod block_against_faer;
 mod damped_steps;

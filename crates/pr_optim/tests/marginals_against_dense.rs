@@ -33,7 +33,7 @@ fn grid(nodes: usize) -> Problem {
     problem
 }
 
-/// Adds a measurement that is so far off.
+/// Adds a measurement with this error.
 fn measure(
     problem: &mut Problem,
     [from, to]: [usize; 2],
@@ -163,7 +163,7 @@ fn along_a_chain_the_relative_covariance_is_that_of_the_one_measurement() {
     assert!(joint.first.trace() > 3.0 * expected.trace());
 }
 
-/// A graph whose end hangs on one measurement each: two branches, one of them measured backwards.
+/// A graph that ends with one measurement for each node: two branches, one of them measured backwards.
 fn grid_with_tail() -> Problem {
     let mut problem = grid(24);
     for (from, to) in [(23, 24), (25, 24), (20, 26), (26, 27), (25, 28)] {
@@ -176,7 +176,7 @@ fn grid_with_tail() -> Problem {
     problem
 }
 
-/// The blocks of all pairs, one after the other, against the dense inverse.
+/// Compares the blocks of all pairs, one after the other, with the dense inverse.
 fn assert_that_every_pair_equals_the_dense_inverse(problem: &Problem) {
     let dense = dense_covariance(problem);
     let block = |a: usize, b: usize| dense.fixed_view::<3, 3>(3 * a, 3 * b).into_owned();
@@ -196,11 +196,11 @@ fn assert_that_every_pair_equals_the_dense_inverse(problem: &Problem) {
 }
 
 #[test]
-fn behind_the_last_loop_covariances_follow_from_those_before_it() {
+fn covariances_after_the_last_loop_follow_by_propagation() {
     assert_that_every_pair_equals_the_dense_inverse(&grid_with_tail());
 }
 
-/// The same, and loops from its end, one of them between nodes that were there long before.
+/// [`grid_with_tail`] with loops from its end, one of them between two early nodes.
 fn grid_with_loops() -> Problem {
     let mut problem = grid_with_tail();
     for (from, to) in [(28, 3), (5, 17), (27, 24), (2, 26)] {
@@ -212,17 +212,17 @@ fn grid_with_loops() -> Problem {
 }
 
 #[test]
-fn loops_that_were_closed_since_are_taken_off_the_covariances_before() {
+fn later_loops_update_the_covariances_of_the_prefix() {
     let mut problem = grid_with_loops();
-    // Some of its loops belong to the beginning, and the last ones, and those of the grid's end, do not.
-    for settled in [0, 31, problem.factors().len() - 4, problem.factors().len()] {
-        problem.mark_optimized(settled);
+    // Some of its loops belong to the prefix; the last ones, and those of the grid's end, do not.
+    for optimized in [0, 31, problem.factors().len() - 4, problem.factors().len()] {
+        problem.mark_optimized(optimized);
         assert_that_every_pair_equals_the_dense_inverse(&problem);
     }
 }
 
 #[test]
-fn a_measurement_that_knows_far_more_than_the_graph_is_a_part_of_the_factor() {
+fn a_measurement_far_more_certain_than_the_graph_is_factorized() {
     let mut problem = grid_with_tail();
     problem.mark_optimized(problem.factors().len());
     let measurement = problem.poses()[3].between(&problem.poses()[28]);
@@ -241,10 +241,10 @@ fn a_measurement_that_knows_far_more_than_the_graph_is_a_part_of_the_factor() {
     };
     let known = relative(&problem);
     let far = Optimizer::new(Settings::default()).largest_move_since(&problem);
-    assert_eq!(far, Ok(f64::INFINITY), "nobody can say");
+    assert_eq!(far, Ok(f64::INFINITY), "unknown");
     problem.mark_optimized(problem.factors().len());
     assert_eq!(known, relative(&problem));
-    // What is not positive definite is told where it is added, as it is where it is factorized.
+    // A matrix that is not positive definite is reported when it is added, as when it is factorized.
     problem.pop_factor();
     problem.add_factor(Between {
         information: Matrix3::identity() * -1e3,
@@ -259,7 +259,7 @@ fn a_measurement_that_knows_far_more_than_the_graph_is_a_part_of_the_factor() {
 }
 
 #[test]
-fn how_far_loops_would_move_a_graph_is_what_a_step_moves_it() {
+fn the_largest_move_by_loops_is_that_of_a_step() {
     let mut problem = grid_with_tail();
     let mut optimizer = Optimizer::new(Settings {
         jacobians: JacobianModel::Exact,
@@ -283,7 +283,7 @@ fn how_far_loops_would_move_a_graph_is_what_a_step_moves_it() {
 }
 
 #[test]
-fn a_covariance_has_the_same_bits_whatever_was_asked_for_before() {
+fn a_covariance_has_the_same_bits_whatever_was_queried_before() {
     let whole = grid_with_loops();
     let mut problem = grid(24);
     problem.mark_optimized(problem.factors().len());
@@ -303,7 +303,7 @@ fn a_covariance_has_the_same_bits_whatever_was_asked_for_before() {
             assert_eq!(joint, fresh(&problem, old, newest), "{old} {newest}");
         }
     }
-    // What was kept is of other poses, of other values, or of another ridge.
+    // The kept factor is of other poses, other values, or another ridge.
     kept.step(&mut problem).unwrap();
     assert_eq!(
         kept.joint_covariance(&problem, 2, 28),

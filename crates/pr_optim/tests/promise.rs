@@ -1,6 +1,6 @@
-//! What every solve promises: a finite result that costs no more than its start, or a typed error.
+//! Guarantee of every solve: a finite result that costs no more than its start, or a typed error.
 //!
-//! The fuzz target `graphs` looks for graphs that break it; these are the ones that led to it.
+//! The fuzz target `graphs` searches for graphs that violate it; these are its findings.
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
@@ -27,8 +27,8 @@ fn problem(poses: &[[f64; 3]], measured: &[(usize, usize, [f64; 3])]) -> Problem
     problem
 }
 
-/// Three measurements of one pose that contradict each other. The chapter's Jacobians lead
-/// Gauss–Newton to a place where its steps end, and that costs more than the start.
+/// Three contradictory measurements of one pose. With the chapter's Jacobians, Gauss–Newton converges
+/// to a pose that costs more than the start.
 fn contradiction() -> Problem {
     problem(
         &[[0.0; 3], [1.5, -1.0, 0.5]],
@@ -40,7 +40,7 @@ fn contradiction() -> Problem {
     )
 }
 
-/// A square whose steps with the chapter's Jacobians first descend and then climb without end.
+/// A square whose steps with the chapter's Jacobians first descend and then diverge.
 fn square() -> Problem {
     problem(
         &[
@@ -68,7 +68,7 @@ fn solver(max_iterations: usize) -> Optimizer {
 }
 
 #[test]
-fn full_steps_climb_above_the_start_and_a_run_gives_the_start_back() {
+fn a_run_whose_steps_climb_above_the_start_restores_it() {
     let mut stepped = contradiction();
     let start = stepped.chi2();
     let mut optimizer = solver(100);
@@ -81,12 +81,12 @@ fn full_steps_climb_above_the_start_and_a_run_gives_the_start_back() {
     let report = optimizer.run(&mut solved);
     assert!(report.stop.is_converged(), "{}", report.stop);
     assert_eq!(solved.poses(), contradiction().poses());
-    assert_eq!(report.went_back_to, Some(0));
+    assert_eq!(report.reverted_to, Some(0));
     assert_eq!((report.cost, report.chi2_initial), (start, start));
 }
 
 #[test]
-fn steps_that_do_not_converge_end_at_the_best_poses_on_the_way() {
+fn steps_that_do_not_converge_end_at_the_best_poses() {
     let mut stepped = square();
     let mut optimizer = solver(8);
     let mut cheapest = (square().chi2(), square());
@@ -103,9 +103,9 @@ fn steps_that_do_not_converge_end_at_the_best_poses_on_the_way() {
     assert_eq!(report.stop, StopReason::IterationLimit { limit: 8 });
     assert_eq!(report.cost, cheapest.0);
     assert_eq!(solved.poses(), cheapest.1.poses());
-    let step = report.went_back_to.unwrap();
+    let step = report.reverted_to.unwrap();
     assert_eq!(report.steps[step].cost_before, report.cost);
-    // A session that is told where to start keeps the same promise.
+    // A session with a given start has the same guarantee.
     let mut optimizer = solver(8);
     let mut in_session = square();
     let session = Session::new(&mut optimizer, &mut in_session, Start::Given).unwrap();
@@ -114,7 +114,7 @@ fn steps_that_do_not_converge_end_at_the_best_poses_on_the_way() {
 }
 
 #[test]
-fn a_run_that_descends_goes_nowhere_back() {
+fn a_run_that_descends_reverts_no_step() {
     let mut problem = contradiction();
     let report = Optimizer::new(Settings {
         jacobians: JacobianModel::Exact,
@@ -123,12 +123,12 @@ fn a_run_that_descends_goes_nowhere_back() {
     })
     .run(&mut problem);
     assert!(report.stop.is_converged(), "{}", report.stop);
-    assert_eq!(report.went_back_to, None);
+    assert_eq!(report.reverted_to, None);
     assert!(report.cost < contradiction().chi2());
 }
 
 #[test]
-fn poses_beyond_all_numbers_stay_as_they_came_and_the_error_says_why() {
+fn overflowing_poses_are_unchanged_and_the_error_is_reported() {
     // The cost of a pose at 1e308 overflows, and so do the guesses from a measurement of 1e308.
     let far = |pose: f64, measured: f64| {
         problem(
@@ -145,12 +145,12 @@ fn poses_beyond_all_numbers_stay_as_they_came_and_the_error_says_why() {
     ];
     for kernel in [RobustKernel::None, RobustKernel::Dcs { phi: 1.0 }] {
         for start in starts {
-            let mut hopeless = far(1e308, 1e308);
+            let mut unsolvable = far(1e308, 1e308);
             let mut optimizer = Optimizer::new(Settings {
                 kernel,
                 ..Settings::default()
             });
-            let error = match Session::new(&mut optimizer, &mut hopeless, start) {
+            let error = match Session::new(&mut optimizer, &mut unsolvable, start) {
                 Err(error) => error,
                 Ok(session) => match session.run().report.stop {
                     StopReason::Failed { error } => error,
@@ -158,10 +158,10 @@ fn poses_beyond_all_numbers_stay_as_they_came_and_the_error_says_why() {
                 },
             };
             assert_eq!(error, OptimizeError::NotFinite, "{start:?}");
-            assert_eq!(hopeless.poses(), far(1e308, 1e308).poses(), "{start:?}");
+            assert_eq!(unsolvable.poses(), far(1e308, 1e308).poses(), "{start:?}");
         }
     }
-    // A tree of measurements that are not at fault leads back into the range of numbers.
+    // A tree of valid measurements leads back into the range of numbers.
     let mut lost = far(1e308, 1.0);
     let mut optimizer = Optimizer::new(Settings::default());
     let session = Session::new(&mut optimizer, &mut lost, Start::Auto).unwrap();

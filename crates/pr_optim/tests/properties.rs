@@ -1,4 +1,4 @@
-//! Laws that every solve keeps, on random graphs.
+//! Properties of every solve, on random graphs.
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
@@ -7,7 +7,7 @@ use pr_optim::{
 };
 use proptest::prelude::*;
 
-/// A chain of poses with loops back, its measurements off by what the strategy drew.
+/// A chain of poses with loop closures, and random measurement errors.
 #[derive(Clone, Debug)]
 struct Graph {
     poses: Vec<SE2>,

@@ -1,4 +1,4 @@
-//! First guesses, false minima and false measurements.
+//! Initial guesses, local minima and outliers.
 
 use core::f64::consts::TAU;
 
@@ -11,12 +11,12 @@ use pr_optim::{
 
 const NODES: usize = 24;
 
-/// A ring whose measurements agree, with first poses that wind `turns` times around it.
+/// A ring with consistent measurements, and initial poses that wind `turns` times around it.
 fn ring(turns: f64) -> Problem {
     ring_measured(turns, 1.0)
 }
 
-/// The same with measurements that wind `measured_turns` times around it.
+/// [`ring`] with measurements that wind `measured_turns` times around it.
 fn ring_measured(turns: f64, measured_turns: f64) -> Problem {
     let step = |turns: f64| SE2::new(1.0, 0.0, turns * TAU / NODES as f64);
     let mut problem = Problem::new();
@@ -50,10 +50,10 @@ fn solve(problem: &mut Problem, start: Start, kernel: RobustKernel) -> Outcome {
 }
 
 #[test]
-fn automatic_start_leaves_the_false_minimum_of_a_ring_wound_twice() {
+fn automatic_start_escapes_the_local_minimum_of_a_ring_wound_twice() {
     let mut stuck = ring(2.0);
     let outcome = solve(&mut stuck, Start::Given, RobustKernel::None);
-    // Every edge is turned by 2π/24 too much: at least 24 · 100 · 0.2618² = 164.
+    // The heading error of every edge is 2π/24: at least 24 · 100 · 0.2618² = 164.
     assert!(
         outcome.report.stop.is_converged(),
         "{}",
@@ -67,8 +67,8 @@ fn automatic_start_leaves_the_false_minimum_of_a_ring_wound_twice() {
     }
 }
 
-/// A ring whose headings add up to so much too much, with poses that say nothing: the tree leaves
-/// all of it to one measurement.
+/// A ring whose headings sum up to a closing error of `radians`, with uninformative poses: the tree leaves all of
+/// it to one measurement.
 fn ring_opened_by(radians: f64) -> Problem {
     let mut problem = ring_measured(1.0, (TAU + radians) / TAU);
     problem.poses_mut().fill(SE2::identity());
@@ -76,7 +76,7 @@ fn ring_opened_by(radians: f64) -> Problem {
 }
 
 #[test]
-fn a_start_whose_first_step_keeps_its_promise_is_followed() {
+fn a_start_with_a_high_first_gain_ratio_is_followed() {
     let outcome = solve(&mut ring_opened_by(0.1), Start::Auto, RobustKernel::None);
     assert_eq!(outcome.start, Start::SpanningTree);
     let [given, tree] = outcome.tried.as_slice() else {
@@ -92,7 +92,7 @@ fn a_start_whose_first_step_keeps_its_promise_is_followed() {
 }
 
 #[test]
-fn a_graph_without_any_contradiction_is_solved_at_once() {
+fn a_consistent_graph_is_solved_at_once() {
     let mut problem = Problem::new();
     problem.add_fixed_pose(SE2::identity());
     problem.add_pose(SE2::translation(1.0, 0.0));
@@ -114,7 +114,7 @@ fn a_graph_without_any_contradiction_is_solved_at_once() {
 
 #[test]
 fn automatic_start_keeps_given_poses_that_are_the_better_guess() {
-    // The tree goes through a long measurement that is wrong, and hardly trusted.
+    // The tree contains a long measurement that is wrong and has low information.
     let mut problem = ring(1.0);
     problem.add_factor(Between {
         from: 0,
@@ -136,7 +136,7 @@ fn automatic_start_keeps_given_poses_that_are_the_better_guess() {
 }
 
 #[test]
-fn a_kernel_leaves_a_false_loop_behind_that_least_squares_follows() {
+fn a_kernel_rejects_a_false_loop_that_bends_least_squares() {
     let far = NODES / 2;
     let error = |kernel| {
         let mut problem = ring(1.0);
@@ -154,7 +154,7 @@ fn a_kernel_leaves_a_false_loop_behind_that_least_squares_follows() {
     assert!(error(RobustKernel::Dcs { phi: 1.0 }) < 0.01);
 }
 
-/// A ring with a measurement that contradicts it by half a turn: no minimum is to be trusted.
+/// A ring with a measurement that contradicts it by half a turn: every minimum is suspicious.
 fn untrusted_ring() -> Problem {
     let mut problem = ring(1.0);
     problem.add_factor(Between {
@@ -175,7 +175,7 @@ fn stubborn() -> Optimizer {
 }
 
 #[test]
-fn the_method_that_was_asked_for_is_there_after_the_fallback() {
+fn the_original_method_is_restored_after_the_fallback() {
     let mut problem = untrusted_ring();
     let mut optimizer = stubborn();
     let session = Session::new(&mut optimizer, &mut problem, Start::Auto).unwrap();
@@ -186,7 +186,7 @@ fn the_method_that_was_asked_for_is_there_after_the_fallback() {
 }
 
 #[test]
-fn a_session_dropped_during_the_fallback_gives_the_method_back() {
+fn a_session_dropped_during_the_fallback_restores_the_method() {
     let mut problem = untrusted_ring();
     let mut optimizer = stubborn();
     let mut session = Session::new(&mut optimizer, &mut problem, Start::Auto).unwrap();
@@ -199,7 +199,7 @@ fn a_session_dropped_during_the_fallback_gives_the_method_back() {
     assert_eq!(step.damping, 0.0);
 }
 
-/// The same by 0.5 rad.
+/// [`ring_opened_by`] 0.5 rad.
 fn open_ring() -> Problem {
     ring_opened_by(0.5)
 }
@@ -207,16 +207,16 @@ fn open_ring() -> Problem {
 const DCS: RobustKernel = RobustKernel::Dcs { phi: 1.0 };
 
 #[test]
-fn automatic_start_with_a_kernel_keeps_right_measurements_that_a_guess_switches_off() {
+fn automatic_start_with_a_kernel_keeps_true_measurements_that_a_guess_rejects() {
     let tree = solve(&mut open_ring(), Start::SpanningTree, DCS);
-    // One measurement is off by 0.5 rad, s = 100 · 0.25 = 25: by itself 3 − 4/26 = 2.8.
+    // One measurement has an error of 0.5 rad, s = 100 · 0.25 = 25: alone it costs 3 − 4/26 = 2.8.
     assert!(tree.report.stop.is_converged());
     assert!(tree.report.cost > 2.0, "{}", tree.report.cost);
     let mut problem = open_ring();
     let outcome = solve(&mut problem, Start::Auto, DCS);
     assert_eq!(outcome.start, Start::LeastSquares);
     assert!(outcome.report.stop.is_converged());
-    // Spread over 24 measurements, 24 · 100 · (0.5/24)² = 1.04 for the headings alone, and none is
+    // Distributed over 24 measurements, 24 · 100 · (0.5/24)² = 1.04 for the headings alone, and none is
     // beyond φ: the least-squares optimum is the optimum with the kernel.
     let plain = solve(&mut open_ring(), Start::Auto, RobustKernel::None);
     assert!(plain.report.chi2 < 1.05, "{}", plain.report.chi2);
@@ -226,7 +226,7 @@ fn automatic_start_with_a_kernel_keeps_right_measurements_that_a_guess_switches_
 }
 
 #[test]
-fn automatic_start_with_a_kernel_keeps_the_guess_where_least_squares_leads_astray() {
+fn automatic_start_with_a_kernel_keeps_the_guess_if_least_squares_diverges() {
     let far = NODES / 2;
     let mut problem = ring(1.0);
     let truth = problem.poses()[far];
@@ -243,7 +243,7 @@ fn automatic_start_with_a_kernel_keeps_the_guess_where_least_squares_leads_astra
 }
 
 #[test]
-fn a_session_that_is_left_early_reports_the_cost_with_the_kernel() {
+fn a_session_that_ends_early_reports_the_cost_with_the_kernel() {
     let settings = Settings {
         jacobians: JacobianModel::Exact,
         kernel: DCS,

@@ -105,7 +105,7 @@ impl LogRun {
         let mut slam = Slam::restore(&session.driven)?;
         *slam.graph_mut() = session.graph();
         let mut run = Self::holding(session, slam, OdometryUse::Log);
-        run.pipeline = run.pipeline.ended(session.driven.clone());
+        run.pipeline = run.pipeline.resume_finished(session.driven.clone());
         Ok(run)
     }
 
@@ -258,7 +258,7 @@ impl LogRun {
         let slam = self.slam().filter(|_| self.pipeline.is_finished());
         let graph = slam.map(Slam::graph);
         Some(Session {
-            driven: self.pipeline.driven()?,
+            driven: self.pipeline.snapshot_before_finish()?,
             mapped: graph.map(MappedGraph::from_graph),
             places: places_kept(self.pipeline.scans()),
             sensor: self.sensor.clone(),

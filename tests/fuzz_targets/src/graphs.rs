@@ -115,7 +115,7 @@ fn settings(bytes: &mut Unstructured<'_>) -> Result<Settings> {
     };
     // Without a byte of its own: the inputs that were found stay what they are.
     if !settings.max_iterations.is_multiple_of(2) {
-        settings.factor_use = FactorUse::WhileItShrinks;
+        settings.factor_use = FactorUse::WhileStepsShrink;
     }
     Ok(settings)
 }

@@ -1,4 +1,4 @@
-//! A correspondence distance that follows how wrong the predictions were.
+//! A correspondence distance that adapts to the errors of the predictions.
 
 use pr_geom::{SE2, math};
 
@@ -8,8 +8,8 @@ const MIN_SAMPLES: usize = 3;
 /// The adaptive threshold of KISS-ICP: τ is three times the root mean square deviation of the
 /// registered pose from the predicted one.
 ///
-/// A deviation `(Δt, Δθ)` counts as `δ = ‖Δt‖ + 2 r_max sin(|Δθ|/2)`, how far it can move a point
-/// of the scan. Deviations below `min_motion_m` are ignored. Until three are in, τ stays initial.
+/// A deviation `(Δt, Δθ)` counts as `δ = ‖Δt‖ + 2 r_max sin(|Δθ|/2)`, the largest displacement of a point
+/// of the scan. Deviations below `min_motion_m` are ignored. τ keeps its initial value until there are three.
 ///
 /// Source: Vizzo et al. 2023, "KISS-ICP", section III-B.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub struct AdaptiveThreshold {
 }
 
 impl AdaptiveThreshold {
-    /// A threshold that starts at `initial_m` for a sensor that sees `max_range_m` far.
+    /// A threshold that starts at `initial_m` for a sensor with a range of `max_range_m`.
     #[must_use]
     pub fn new(initial_m: f64, min_motion_m: f64, max_range_m: f64) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl AdaptiveThreshold {
         (self.sum_of_squares_m2, self.samples)
     }
 
-    /// The same threshold once it has seen these deviations; see [`seen`](Self::seen).
+    /// The threshold after these deviations; see [`seen`](Self::seen).
     #[must_use]
     pub fn having_seen(self, sum_of_squares_m2: f64, samples: usize) -> Self {
         Self {
@@ -59,7 +59,7 @@ impl AdaptiveThreshold {
         }
     }
 
-    /// Takes in one registration: what was predicted and what was found, in the same frame.
+    /// Adds one registration: the predicted and the registered pose, in the same frame.
     pub fn update(&mut self, predicted: &SE2, registered: &SE2) {
         let deviation = predicted.between(registered);
         let delta_m = math::norm2(deviation.x(), deviation.y())

@@ -1,4 +1,4 @@
-//! The constants of the chapter's rules, and the systems that drive by them.
+//! The constants of the chapter's rules.
 
 use pr_geom::SE2;
 
@@ -9,42 +9,42 @@ use crate::matching::{MapConfig, MatcherKind, TrustConfig};
 use crate::scan::ScanConfig;
 use crate::slam::{LoopClosure, MotionNoise, SlamConfig};
 
-/// A point's normal comes from its neighbours within so many cells.
+/// Radius of the neighbours for a point's normal, in cells.
 ///
-/// A cell is 2.4 σ wide at least, so a wall through n cells has a normal that is off by
-/// `σ √12 / (n cell √n)` = `1.44 / n^1.5` rad at most: 7.4° with the chapter's ratio, n = 5, and 3.4° here.
-/// Normals that are off hold a sweep back along the wall, as pairs of points do.
+/// A cell is at least 2.4 σ wide, so the normal of a wall through n cells has an error of at most
+/// `σ √12 / (n cell √n)` = `1.44 / n^1.5` rad: 7.4° with the chapter's ratio, n = 5, and 3.4° here.
+/// Wrong normals hold a sweep back along the wall, as point pairs do.
 pub(super) const NORMAL_RADIUS_CELLS: f64 = 4.2;
 
 /// The adaptive correspondence threshold (Vizzo et al., "KISS-ICP", 2023, §III-B).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThresholdConfig {
-    /// Threshold in metres until three corrections were seen.
+    /// Threshold in metres until there are three corrections.
     pub initial_m: f64,
-    /// Corrections smaller than this (m) do not count.
+    /// Smaller corrections (m) are ignored.
     pub min_motion_m: f64,
-    /// Range at which a rotation is turned into a displacement, in metres.
+    /// Range at which a rotation is converted to a displacement, in metres.
     pub max_range_m: f64,
 }
 
-/// How the chapter registers scans, weighs edges and finds loops; the default is its own lap.
+/// Registration, edge information and loop closure of the chapter; the default is its own lap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChapterConfig {
-    /// What registers a scan on the local map.
+    /// Registers a scan on the local map.
     pub matcher: MatcherKind,
     /// The local map.
     pub local_map: MapConfig,
-    /// Most iterations of a registration against the local map.
+    /// Largest number of iterations of a registration against the local map.
     pub max_iterations: usize,
     /// The adaptive correspondence threshold.
     pub threshold: ThresholdConfig,
     /// In which frame the information of edges is expressed.
     pub information_frame: InformationFrame,
-    /// Trust in the edge between two keyframes.
+    /// Covariance scale and noise for the edge between two keyframes.
     pub odometry_trust: TrustConfig,
-    /// Trust in measured odometry, where the registration was refused.
+    /// Noise of measured odometry, if the registration was rejected.
     pub odometry_noise: MotionNoise,
-    /// Trust in the guess of constant velocity, where there is no odometry either.
+    /// Noise of the constant-velocity prediction, if there is no odometry either.
     pub prediction_noise: MotionNoise,
     /// Detection and verification of loops.
     pub loops: LoopConfig,
@@ -77,7 +77,7 @@ impl Default for ChapterConfig {
 }
 
 impl ChapterConfig {
-    /// How far a motion is trusted that the wheels measured, or that nobody did.
+    /// Noise of a motion that was measured by odometry, or predicted.
     pub(super) fn motion_noise(&self, is_measured: bool) -> &MotionNoise {
         if is_measured {
             &self.odometry_noise
@@ -111,8 +111,8 @@ impl Default for SlamConfig {
 }
 
 impl SlamConfig {
-    /// The chapter's system: every sweep joins the window, one candidate is tried, and information is
-    /// turned as in its figures.
+    /// The chapter's system: every sweep joins the window, one candidate is tested, and the information is
+    /// rotated as in its figures.
     #[must_use]
     pub fn chapter() -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! The gate's drift: a diagonal covariance that grows with the path, or that of the graph.
+//! The drift that the loop gate assumes: a diagonal covariance that grows with the path, or that of the graph.
 
 use nalgebra::{Matrix3, Vector3};
 use pr_optim::OptimizeError;
@@ -6,8 +6,7 @@ use pr_optim::OptimizeError;
 use crate::graph::PoseGraph;
 use crate::loops::{GateModel, LoopConfig};
 
-/// Information of the drift over a path of `gap` nodes: diagonal, standard deviations that grow
-/// with √gap.
+/// Information of the drift over a path of `gap` nodes: diagonal, with standard deviations proportional to √gap.
 #[must_use]
 pub fn path_information(gap: usize, config: &LoopConfig) -> Matrix3<f64> {
     let steps = gap as f64;
@@ -29,15 +28,14 @@ pub(super) fn gate_information(
     }
 }
 
-/// Information of the drift as the graph knows it: the exact covariance of the pose of `new` in
-/// the frame of `old`, inverted; see [`PoseGraph::relative_covariance`].
+/// Information of the drift by the graph: the inverse of the exact covariance of the pose of `new` in
+/// the frame of `old`; see [`PoseGraph::relative_covariance`].
 ///
 /// # Errors
-/// Where the graph has no covariance: its normal equations are not positive definite, or hold
-/// numbers that are not finite.
+/// If the graph has no covariance: its normal equations are not positive definite or not finite.
 ///
 /// # Panics
-/// Where a node does not exist.
+/// If a node does not exist.
 pub fn marginal_information(
     graph: &mut PoseGraph,
     old: usize,

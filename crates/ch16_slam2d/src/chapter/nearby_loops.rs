@@ -1,4 +1,4 @@
-//! The chapter's loops: a detector proposes, a matcher registers on the keyframes around, the drift decides.
+//! The chapter's loop closure: a detector proposes, a matcher registers on nearby keyframes, the drift gate tests.
 
 use super::drift_gate::gate_information;
 use crate::loops::{
@@ -8,7 +8,7 @@ use crate::loops::{
 use crate::matching::Matcher;
 use crate::slam::{Mapper, SlamConfig};
 
-/// Candidates are verified in order, and the first that passes is closed.
+/// Verifies candidates in order and closes the first that passes.
 #[derive(Clone)]
 pub(crate) struct NearbyLoops {
     pub detector: Box<dyn LoopDetector>,
@@ -23,7 +23,7 @@ impl NearbyLoops {
         }
     }
 
-    /// The candidates of the newest keyframe that were verified, up to the first that passes.
+    /// Verifies the candidates of the newest keyframe, up to the first that passes.
     pub fn find(&mut self, mapper: &mut Mapper, config: &SlamConfig) -> Vec<LoopVerification> {
         let node = mapper.keyframes.len() - 1;
         let mut query = LoopQuery::new(&mut mapper.graph, &mapper.keyframes);

@@ -1,23 +1,23 @@
-//! What of the estimator can be exchanged.
+//! The exchangeable parts of the estimator.
 
 use crate::loops::{DetectorKind, LoopDetector, NearbyDetector};
 use crate::matching::Matcher;
 use crate::places::PlaceDetector;
 use crate::slam::SlamConfig;
 
-/// The parts of the estimator that can be exchanged.
+/// The exchangeable parts of the estimator.
 #[derive(Clone)]
 pub struct SlamParts {
     /// Registers each scan on the local map.
     pub front_end: Box<dyn Matcher>,
-    /// Registers a new keyframe on the submap of a loop's candidate.
+    /// Registers a new keyframe on the submap of a loop candidate.
     pub loops: Box<dyn Matcher>,
     /// Proposes loops.
     pub detector: Box<dyn LoopDetector>,
 }
 
 impl SlamParts {
-    /// The parts that `config` names.
+    /// The parts that `config` selects.
     #[must_use]
     pub fn from_config(config: &SlamConfig) -> Self {
         let chapter = &config.chapter;

@@ -1,4 +1,4 @@
-//! Lengths from the sensor: the same system for a room and for a hall.
+//! Lengths derived from the sensor: the same system for a room and for a hall.
 
 use super::config::{ChapterConfig, NORMAL_RADIUS_CELLS, ThresholdConfig};
 use crate::loops::LoopConfig;
@@ -9,22 +9,21 @@ use crate::slam::SlamConfig;
 
 /// Cells of thinned sweeps across one cell of a map; the chapter's ratio of 0.25 to 0.12 m.
 const CELLS_PER_MAP_CELL: f64 = 2.1;
-/// A cell is so many standard deviations of the range noise wide, at least.
+/// Smallest width of a cell in standard deviations of the range noise.
 const CELL_SIGMAS: f64 = 2.4;
-/// Share of the typical range that a cell takes, at least: about 100 cells around the robot.
+/// Smallest width of a cell as a share of the typical range: about 100 cells around the robot.
 const CELL_SHARE: f64 = 0.02;
 /// Share of the typical range between two keyframes.
 const KEYFRAME_SHARE: f64 = 0.2;
 
 impl SlamConfig {
-    /// The default system with all lengths taken from a scan and from the noise of its ranges
-    /// (a standard deviation, m).
+    /// The default system with all lengths derived from a scan and the noise of its ranges (a standard deviation,
+    /// m).
     ///
-    /// The typical range r is the root mean square of the returns: the radius of a circle as large as
-    /// what a full turn sees. Cells hold one beam at r: they are
-    /// `max(r · angle step, 0.02 r, 2.4 σ)` wide. Normals, maps, thresholds and keyframes follow from
-    /// the cell and r by the ratios of the chapter's lap. A scan without returns gives the
-    /// default.
+    /// The typical range r is the root mean square of the returns: the radius of a circle with the area that a
+    /// full turn sees. Cells hold one beam at r: they are `max(r · angle step, 0.02 r, 2.4 σ)` wide. Normals,
+    /// maps, thresholds and keyframes follow from the cell and r by the ratios of the chapter's lap. A scan
+    /// without returns gives the default.
     #[must_use]
     pub fn for_scan(scan: &LaserScan, range_sigma_m: f64) -> Self {
         let default = Self::default();
@@ -40,7 +39,7 @@ impl SlamConfig {
             cell_m: CELLS_PER_MAP_CELL * cell_m,
             max_per_cell,
         };
-        // A point is off by the noise and by where in its cell the wall was sampled.
+        // A point's error is the noise and the sampling within its cell.
         let sigma_m = range_sigma_m.max(0.4 * cell_m);
         let keyframe_distance_m = KEYFRAME_SHARE * typical_m;
         Self {
@@ -90,7 +89,7 @@ fn returns(scan: &LaserScan) -> impl Iterator<Item = f64> + '_ {
 fn typical_range_m(scan: &LaserScan) -> Option<f64> {
     returns(scan).next()?;
     let typical_m = rms(returns(scan));
-    // Ranges whose squares are beyond all numbers, or below them, are nobody's.
+    // Rejects ranges whose squares overflow or underflow.
     (typical_m.is_finite() && typical_m > 0.0).then_some(typical_m)
 }
 
@@ -128,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn the_chapters_sensor_in_a_room_of_two_metres_gets_about_the_chapters_lengths() {
+    fn the_chapters_sensor_gets_about_the_chapters_lengths() {
         let config = SlamConfig::for_scan(&circle(120, 2.0), 0.05);
         let chapter = SlamConfig::chapter();
         for (of_sensor, of_chapter) in [
@@ -167,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scan_that_saw_nothing_gives_the_default() {
+    fn a_scan_without_returns_gives_the_default() {
         let empty = circle(40, f64::NAN);
         assert_eq!(SlamConfig::for_scan(&empty, 0.02), SlamConfig::default());
     }

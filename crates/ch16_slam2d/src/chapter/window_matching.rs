@@ -8,7 +8,7 @@ use crate::cloud::PointCloud;
 use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
 use crate::matching::{MatchRequest, MatchSummary, Matcher, match_information};
 
-/// A matcher with its target, and the threshold that follows its corrections.
+/// A matcher with its target, and the threshold that adapts to its corrections.
 #[derive(Clone)]
 pub(crate) struct WindowMatching {
     pub threshold: AdaptiveThreshold,
@@ -16,7 +16,7 @@ pub(crate) struct WindowMatching {
     pub matcher: Box<dyn Matcher>,
     /// The pairs of the last registration.
     pairs: Vec<Pair>,
-    /// Covariance of the motions since the last registration that was accepted, none after one.
+    /// Covariance of the motions since the last accepted registration, `None` directly after one.
     pub unregistered: Option<Matrix3<f64>>,
 }
 
@@ -35,7 +35,7 @@ impl WindowMatching {
         }
     }
 
-    /// Registers a scan from `prediction`; the chapter forgets the motion after that.
+    /// Registers a scan from `prediction`; the chapter ignores the motion after that.
     pub fn register(
         &mut self,
         scan: &PointCloud,
@@ -48,7 +48,7 @@ impl WindowMatching {
         found.summary
     }
 
-    /// Keeps the covariance of what was driven without a registration.
+    /// Accumulates the covariance of motion without an accepted registration.
     pub fn remember(
         &mut self,
         accepted: bool,
@@ -65,7 +65,7 @@ impl WindowMatching {
         self.unregistered = Some(noise.then(&before, motion));
     }
 
-    /// Information of `estimate` about the last keyframe's edge, whose heading is `source_theta`.
+    /// Information of `estimate` for the edge from the last keyframe, whose heading is `source_theta`.
     pub fn information(
         &self,
         estimate: &SE2,

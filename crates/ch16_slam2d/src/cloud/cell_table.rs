@@ -1,4 +1,4 @@
-//! Where in a sorted array of points the points of a cell are.
+//! Index of the points of each cell in a sorted array.
 
 use core::ops::Range;
 
@@ -6,17 +6,17 @@ use pr_geom::math;
 
 use super::PointCloud;
 
-/// Cells a table may have for every point; beyond that the table gets coarser cells.
+/// Largest number of cells for every point; beyond that the table gets coarser cells.
 const CELLS_PER_POINT: i64 = 64;
 
-/// Cells for every point where the table may choose: along a wall, a few points in each.
+/// Cells for every point if the table may choose: along a wall, a few points in each.
 const CHOSEN_CELLS_PER_POINT: f64 = 3.0;
 
-/// Chosen cells are larger than this, m: the squares of distances between neighbouring cells do not
-/// vanish, so that ties are seen.
+/// Chosen cells are larger than this, m, so that squared distances between neighbouring cells do not underflow
+/// and ties can be detected.
 const MIN_CHOSEN_M: f64 = 1e-150;
 
-/// Where each cell's run of points starts.
+/// Start of each cell's run of points.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CellTable {
     /// Cells joined along one side of a table cell: 1 unless the extent is very large.
@@ -69,9 +69,9 @@ impl CellTable {
     }
 
     #[inline]
-    /// Index in `starts` of the table cell that holds a cell.
+    /// Index in `starts` of the table cell that contains a cell.
     pub(super) fn slot(&self, (i, j): (i32, i32)) -> usize {
-        // Divisions cost more than all the rest here, and almost always they are by 1.
+        // Divisions dominate the cost here, and almost always they are by 1.
         let (i, j) = match self.factor {
             1 => (i, j),
             factor => (i.div_euclid(factor), j.div_euclid(factor)),
@@ -84,16 +84,16 @@ impl CellTable {
     fn range(&self, center: f64, reach: f64, origin: i32, count: usize) -> Option<(usize, usize)> {
         let low = (center - reach) * self.per_metre - f64::from(origin);
         let high = (center + reach) * self.per_metre - f64::from(origin);
-        // Written so that a query that is not a number touches nothing.
+        // Written so that a NaN query touches no cell.
         if !(high >= 0.0 && low < count as f64) {
             return self.outermost(low, high, origin, count);
         }
-        // The casts cut off at zero from below; through u32 they are single instructions.
+        // The casts saturate at zero; through u32 they are single instructions.
         Some((low as u32 as usize, (high as u32 as usize).min(count - 1)))
     }
 
-    /// The table index that a range beyond the table still touches: a cell at either end of all cells
-    /// also holds whatever lies farther out, see [`cell_index`](super::cell_index).
+    /// The table index that a range beyond the table still touches: the cell at either end of all cells
+    /// also holds everything farther out, see [`cell_index`](super::cell_index).
     #[cold]
     fn outermost(&self, low: f64, high: f64, origin: i32, count: usize) -> Option<(usize, usize)> {
         let last = count.checked_sub(1)?;
@@ -130,7 +130,7 @@ impl CellTable {
     }
 }
 
-/// Smallest and largest of the finite values; ∞ and −∞ where there are none.
+/// Smallest and largest of the finite values; ∞ and −∞ if there are none.
 pub(super) fn finite_range(values: &[f64]) -> (f64, f64) {
     let finite = values.iter().filter(|value| value.is_finite());
     finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| {

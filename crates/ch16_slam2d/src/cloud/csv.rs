@@ -7,28 +7,29 @@ use thiserror::Error;
 
 use super::PointCloud;
 
-/// What some editors put in front of UTF-8 text.
+/// Byte order mark, which some editors write before UTF-8 text.
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
-/// Why a text is no cloud.
+/// Why a text is not a cloud.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum CsvError {
     /// A line is not a point.
     #[error("line {line}: expected x,y or x,y,nx,ny as finite numbers")]
     Line {
-        /// Which line, counted from 1.
+        /// Line number, from 1.
         line: usize,
     },
-    /// There is no point at all.
+    /// The text has no point.
     #[error("no points")]
     Empty,
 }
 
 impl PointCloud {
-    /// Reads a cloud; a normal of (0, 0) is none, any other is scaled to length 1.
+    /// Reads a cloud. A normal of (0, 0) means none; any other is scaled to length 1.
     ///
     /// # Errors
-    /// The first line that is not a point, or that there is none.
+    /// The first line that is not a point, or [`CsvError::Empty`].
     pub fn from_csv(text: impl AsRef<[u8]>) -> Result<Self, CsvError> {
         let text = text.as_ref();
         let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
@@ -64,7 +65,7 @@ fn parse_point(line: &str) -> Option<(Point2<f64>, Option<Vector2<f64>>)> {
     }
 }
 
-/// The direction of a vector, also where its square is out of the range of numbers.
+/// The direction of a vector, even if its square overflows or underflows.
 fn unit(x: f64, y: f64) -> Option<Vector2<f64>> {
     let largest = x.abs().max(y.abs());
     if largest == 0.0 {
@@ -106,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_wrong_line_is_named_and_empty_ones_are_counted() {
+    fn the_first_wrong_line_is_reported_counting_empty_ones() {
         let read = |text: &[u8]| PointCloud::from_csv(text);
         assert_eq!(
             read("\u{feff}1,2\r\n\r\n 3 , 4 \r\n".as_bytes())

@@ -7,21 +7,21 @@ use rustc_hash::FxHashMap;
 use super::cell_table::{CellTable, finite_range, free_cell_m};
 use super::{NearestMap, Neighbor, PointCloud, QueryCache, cell_index};
 
-/// Marks "no point" where an index would stand.
+/// Index value for "no point".
 const NONE: u32 = QueryCache::NO_POINT;
 
-/// A remembered search looked this share of the radius beyond it, so that "nothing there" lasts.
+/// A cached search looks beyond the radius by this share of it, so that an empty result stays valid longer.
 const LOOK_AHEAD: f64 = 0.25;
 
-/// Distances that differ by less than this, m, are compared by a new search, not from cache.
+/// If two distances differ by less than this, m, a new search decides instead of the cache.
 const ROUNDING_M: f64 = 1e-9;
 
-/// A [`VoxelMap`](super::VoxelMap) frozen for queries: built at once, the same answers, no hashing.
+/// An immutable [`VoxelMap`](super::VoxelMap) for queries: built at once, the same answers, no hashing.
 ///
-/// The points lie sorted by cell, x index first, so the cells of one column that a query has to
-/// see are one contiguous run. Where the extent is so large that a table of the map's cells would
-/// be mostly empty, the table joins cells to larger ones; where cells have no limit, it chooses
-/// cells that hold a few points each. That changes the time, not the answers.
+/// The points are sorted by cell, x index first, so the cells of one column that a query visits are
+/// one contiguous run. If a table of the map's cells would be mostly empty because of a large extent,
+/// the table joins cells to larger ones; if cells have no limit of points, it chooses a size with a
+/// few points in each. This affects the time, not the answers.
 #[derive(Clone, Debug)]
 pub struct DenseMap {
     cell_m: f64,
@@ -29,23 +29,23 @@ pub struct DenseMap {
     table: CellTable,
     xs: Vec<f64>,
     ys: Vec<f64>,
-    /// `(0, 0)` where a point has no normal; empty where no point has one.
+    /// `(0, 0)` if a point has no normal; empty if no point has one.
     normals: Vec<(f64, f64)>,
     source_indices: Vec<u32>,
     scratch: Vec<u32>,
 }
 
-/// What a scan of some cells found.
+/// Result of a search.
 #[derive(Clone, Copy)]
 struct Found {
     /// The nearest point, or [`NONE`].
     index: u32,
     distance_squared_m2: f64,
-    /// No other point is nearer than this.
+    /// Lower bound of the distance to every other point.
     clearance_m: f64,
 }
 
-/// The nearest and the second nearest of the points seen.
+/// The nearest and the second nearest of the visited points.
 struct Scan {
     index: u32,
     best: f64,
@@ -73,7 +73,7 @@ impl DenseMap {
             source_indices: Vec::new(),
             scratch: Vec::new(),
         };
-        // A search widens its box by cells until it covers the radius: the table needs their size.
+        // A search widens its box by cells until it covers the radius, so it needs the cell size.
         map.rebuild(&PointCloud::default());
         map
     }
@@ -105,7 +105,7 @@ impl DenseMap {
             if cell == NONE {
                 continue;
             }
-            // Filling from the front moves each start to its end; it is moved back below.
+            // Filling moves each start to its end; it is moved back below.
             let slot = self.table.starts[cell as usize] as usize;
             self.table.starts[cell as usize] += 1;
             self.xs[slot] = xs[index];
@@ -119,9 +119,9 @@ impl DenseMap {
         self.table.starts[0] = 0;
     }
 
-    /// As [`NearestMap::neighbor`], looking first near the point `hint`.
+    /// [`NearestMap::neighbor`] that starts near the point `hint`.
     ///
-    /// The hint changes the time, never the answer.
+    /// The hint affects the time, never the answer.
     #[inline]
     #[must_use]
     pub fn neighbor_from(
@@ -138,7 +138,7 @@ impl DenseMap {
         })
     }
 
-    /// Index in the cloud that the map was built from, of point `index` of the map.
+    /// Index of the map's point `index` in the source cloud.
     #[must_use]
     pub fn source_index(&self, index: usize) -> usize {
         self.source_indices[index] as usize
@@ -176,13 +176,13 @@ impl DenseMap {
         });
     }
 
-    /// Widens a box of cells: it swallows the rounding of cell edges, and gives clearance.
+    /// Margin of a box of cells: absorbs the rounding of cell edges, and gives clearance.
     #[inline]
     fn margin(&self) -> f64 {
         0.0625 * self.table.cell_m
     }
 
-    /// The nearest point closer than `radius_m`, looking first near the point `hint`.
+    /// The nearest point closer than `radius_m`; the search starts near the point `hint`.
     #[inline]
     fn find(&self, x: f64, y: f64, radius_m: f64, hint: u32) -> Found {
         let mut reach = if let Some(&hint_x) = self.xs.get(hint as usize) {
@@ -209,7 +209,7 @@ impl DenseMap {
                     clearance_m: math::min(next, covered),
                 };
             }
-            // A point beyond the box bounds the search; an empty box says to look twice as far.
+            // A point beyond the box bounds the search; an empty box doubles the reach.
             let next = if scan.index == NONE {
                 2.0 * covered
             } else {
@@ -228,11 +228,11 @@ impl DenseMap {
         };
         self.table.for_each_run(x, y, reach, |run| {
             let points = self.xs[run.clone()].iter().zip(&self.ys[run.clone()]);
-            // A range counts without a check of its own for overflow, unlike `enumerate`.
+            // A range has no overflow check, unlike `enumerate`.
             for (index, (&px, &py)) in run.zip(points) {
                 let (dx, dy) = (px - x, py - y);
                 let squared = dx * dx + dy * dy;
-                // Selections instead of branches: which point is nearer cannot be predicted.
+                // Selections instead of branches, because the branch is unpredictable.
                 let nearer = squared < scan.best;
                 let loser = math::max(squared, scan.best);
                 scan.second = math::min(loser, scan.second);
@@ -246,12 +246,12 @@ impl DenseMap {
         scan
     }
 
-    /// Whether the points lie in the order in which the chapter's loop visits them.
+    /// Whether the points are in the order in which the chapter's loop visits them.
     pub(super) fn is_in_visit_order(&self) -> bool {
         self.table.cell_m == self.cell_m
     }
 
-    /// Sorts points as the chapter's loop visits them.
+    /// Sort key of the order in which the chapter's loop visits points.
     pub(super) fn visit_order(&self, index: u32) -> (i32, i32, u32) {
         let index = index as usize;
         (
@@ -261,7 +261,7 @@ impl DenseMap {
         )
     }
 
-    /// Of all points at exactly this squared distance, the one that the chapter's loop visits first.
+    /// Among the points at exactly this squared distance, the one that the chapter's loop visits first.
     #[cold]
     fn first_of_equals(&self, x: f64, y: f64, reach: f64, squared_m2: f64) -> u32 {
         let mut first = NONE;
@@ -280,7 +280,7 @@ impl DenseMap {
 
     /// Lays out the table: `scratch` holds the cell of each point, `starts` where its run begins.
     fn sort_into_cells(&mut self, cloud: &PointCloud) -> usize {
-        // Without a limit on their points, cells only serve the search, and their size is free.
+        // Without a limit of points per cell, cells serve only the search, and their size is free.
         let chosen_m = (self.max_per_cell == usize::MAX).then(|| free_cell_m(cloud));
         let cell_m = chosen_m.flatten().unwrap_or(self.cell_m);
         let cells = |index: usize| {
@@ -296,7 +296,7 @@ impl DenseMap {
         }
         self.table.clear(low, high, cell_m, cloud.len());
 
-        // Only joined cells need a count of their own for each map cell.
+        // Only joined cells need separate counts for each map cell.
         let mut counts = FxHashMap::<(i32, i32), usize>::default();
         self.scratch.clear();
         for index in 0..cloud.len() {
@@ -349,8 +349,8 @@ impl NearestMap for DenseMap {
         self.neighbor_from(query, radius_m, None)
     }
 
-    /// After the query moved by m, the point it remembers is still the nearest if its distance
-    /// plus m is below the clearance: every other point was at least that far from the anchor.
+    /// If the query moved by m, the cached point is still the nearest if its distance plus m is below the
+    /// clearance, because every other point was at least that far from the anchor.
     #[inline]
     fn neighbor_cached(
         &self,

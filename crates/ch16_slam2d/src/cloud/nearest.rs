@@ -1,4 +1,4 @@
-//! What every map can be asked.
+//! The common interface of all maps.
 
 use nalgebra::{Point2, Vector2};
 
@@ -11,14 +11,14 @@ pub struct Neighbor {
     pub distance_squared_m2: f64,
 }
 
-/// What a moving query remembers of its last search, so that the next one can often do without.
+/// Cached result of the last search of a moving query, which often makes the next one unnecessary.
 ///
-/// A memory belongs to one query point and one map. It changes the time, never the answer.
+/// A cache belongs to one query point and one map. It affects the time, never the answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QueryCache {
-    /// The nearest point found then, or [`QueryCache::NO_POINT`].
+    /// The nearest point of the last search, or [`QueryCache::NO_POINT`].
     pub(super) index: u32,
-    /// Where the query was then.
+    /// Query position of the last search.
     pub(super) anchor: (f64, f64),
     /// No other point was nearer to the anchor than this, m.
     pub(super) clearance_m: f64,
@@ -27,7 +27,7 @@ pub struct QueryCache {
 impl QueryCache {
     pub(super) const NO_POINT: u32 = u32::MAX;
 
-    /// A memory of no search, but of a point of the map that is likely to be near.
+    /// An empty cache with a point of the map that is likely to be near.
     #[must_use]
     pub fn near(index: usize) -> Self {
         Self {
@@ -38,7 +38,7 @@ impl QueryCache {
 }
 
 impl Default for QueryCache {
-    /// Remembers nothing.
+    /// An empty cache.
     fn default() -> Self {
         Self {
             index: Self::NO_POINT,
@@ -48,13 +48,13 @@ impl Default for QueryCache {
     }
 }
 
-/// A map of points that finds nearest neighbours.
+/// A map of points with nearest-neighbour search.
 ///
-/// All maps agree on the answer to the last bit. Among points at exactly the same distance the
+/// All maps give the same answer to the last bit. Among points at exactly the same distance the
 /// one in the cell with the smaller x index wins, then the smaller y index, then the one that was
 /// inserted first: the order in which the chapter's double loop visits them.
 pub trait NearestMap {
-    /// Number of points that were kept.
+    /// Number of stored points.
     fn len(&self) -> usize;
 
     /// Whether the map has no points.
@@ -65,13 +65,13 @@ pub trait NearestMap {
     /// Point `index`, m.
     fn point(&self, index: usize) -> Point2<f64>;
 
-    /// Unit normal of point `index`, where it has one.
+    /// Unit normal of point `index`, if it has one.
     fn normal(&self, index: usize) -> Option<Vector2<f64>>;
 
     /// The nearest point strictly closer than `radius_m`.
     fn neighbor(&self, query: Point2<f64>, radius_m: f64) -> Option<Neighbor>;
 
-    /// As [`NearestMap::neighbor`], for a query that moves a little from call to call.
+    /// [`NearestMap::neighbor`] for a query that moves a little from call to call.
     #[inline]
     fn neighbor_cached(
         &self,

@@ -1,4 +1,4 @@
-//! The map for very many queries: the answer to each is all but written down beforehand.
+//! The map for very many queries: precomputed candidates for every small square.
 
 use core::hint::select_unpredictable;
 
@@ -7,18 +7,17 @@ use pr_geom::math;
 
 use super::{DenseMap, NearestMap, Neighbor, QueryCache};
 
-/// Squared distances that differ by less than this, m², count as equal when a point is ruled out.
+/// Squared distances that differ by less than this, m², count as equal when candidates are excluded.
 const ROUNDING_M2: f64 = 1e-12;
 
-/// Most squares of a table, and most candidates in it: 120 MB. A room takes a hundredth of it.
+/// Largest number of squares and of candidates in a table: 120 MB. A room takes a hundredth of it.
 const BUDGET: usize = 1 << 22;
 
-/// A [`DenseMap`] with a table: for every small square, the points that can be nearest to
-/// anything in it.
+/// A [`DenseMap`] with a table: for every small square, the points that can be nearest to a query in it.
 ///
-/// A query is a look at the few points of its square. Building costs a search for every square,
-/// about 3 ms for a room; it pays after about 100,000 queries. The answers are those of the map.
-/// Queries off the table go to the map; where the table would grow beyond a budget, all of them.
+/// A query compares the few points of its square. Building takes a search for every square, about 3 ms
+/// for a room, which pays off after about 100,000 queries. The answers are those of the map. Queries
+/// off the table go to the map, and so do all queries if the table would exceed its budget.
 #[derive(Clone, Debug)]
 pub struct NearestTable {
     map: DenseMap,
@@ -26,10 +25,10 @@ pub struct NearestTable {
     per_metre: f64,
     columns: usize,
     rows: usize,
-    /// `starts[column * rows + row]` to the next entry are the candidates of a square, two and two.
+    /// `starts[column * rows + row]` to the next entry are the candidates of a square, in pairs.
     starts: Vec<u32>,
-    /// One that is left alone stands twice. Four queries of five have one or two candidates, so there is
-    /// seldom a number of them to guess.
+    /// A single candidate is stored twice. Four queries of five have one or two candidates, so the branch on their
+    /// number is rarely mispredicted.
     candidates: Vec<[Candidate; 2]>,
 }
 
@@ -40,7 +39,7 @@ struct Candidate {
     index: u32,
 }
 
-/// The box that a table covers, m.
+/// The extent of a table, m.
 #[derive(Clone, Copy)]
 struct Extent {
     low: (f64, f64),
@@ -71,7 +70,7 @@ impl NearestTable {
                 squares(extent.low.0, extent.high.0),
                 squares(extent.low.1, extent.high.1),
             );
-            // Written so that an extent that is not a number has no table.
+            // Written so that a NaN extent has no table.
             if columns * rows <= BUDGET as f64 {
                 table.columns = columns as usize;
                 table.rows = rows as usize;
@@ -93,7 +92,7 @@ impl NearestTable {
         &self.map
     }
 
-    /// Kept out of line, so that the look-up itself is short.
+    /// Out of line to keep the look-up itself short.
     #[cold]
     fn off_table(&self, query: Point2<f64>, radius_m: f64) -> Option<Neighbor> {
         self.map.neighbor(query, radius_m)
@@ -145,10 +144,9 @@ impl NearestTable {
     }
 }
 
-/// Drops the points to which another one is preferable in the whole square.
+/// Drops points that are farther than another one in the whole square.
 ///
-/// The difference of two squared distances is affine in the query, so it is enough to compare at
-/// the four corners.
+/// The difference of two squared distances is affine in the query, so comparing at the four corners is enough.
 fn keep_candidates(map: &DenseMap, low: Point2<f64>, square_m: f64, near: &mut Vec<u32>) {
     let corners = |index: u32| {
         let dx = map.xs()[index as usize] - low.x;
@@ -223,8 +221,8 @@ impl NearestMap for NearestTable {
             for candidate in pair {
                 let (dx, dy) = (candidate.x - query.x, candidate.y - query.y);
                 let squared = dx * dx + dy * dy;
-                // Candidates lie in the chapter's order: the first of equals stays. Which one is nearer
-                // nobody can predict, so nothing may branch on it.
+                // Candidates are in the chapter's order: the first of equals stays. The comparison is
+                // unpredictable, so it must not branch.
                 let nearer = squared < least;
                 least = math::min(squared, least);
                 best = select_unpredictable(nearer, candidate.index, best);

@@ -5,24 +5,24 @@ use pr_geom::math;
 
 use super::{DenseMap, PointCloud};
 
-/// Fewer neighbours than this, the point itself included, give no normal.
+/// Smallest number of neighbours for a normal, the point itself included.
 const MIN_NEIGHBORS: usize = 4;
-/// Above this ratio of smallest to largest scatter the neighbourhood is no line.
+/// Above this ratio of smallest to largest scatter the neighbourhood is not a line.
 const MAX_FLATNESS: f64 = 0.35;
 /// Smallest cell of the neighbour search, m.
 const MIN_CELL_M: f64 = 0.05;
 /// Neighbour search keeps this many points of a cell.
 const MAX_PER_CELL: usize = 64;
 
-/// Estimates normals: the direction in which a point's neighbours scatter least.
+/// Estimates normals: the direction of least scatter of a point's neighbours.
 ///
-/// For the neighbours `p_k` within the radius (inclusive, the point itself among them) with mean
+/// For the neighbours `p_k` within the radius (inclusive, including the point itself) with mean
 /// `m`, the scatter is `Σ (p_k − m)(p_k − m)ᵀ`, 2×2. The normal is the unit eigenvector of the
 /// smaller eigenvalue; its sign is arbitrary. There is none with fewer than 4 neighbours, or
-/// where the smaller eigenvalue exceeds 0.35 of the larger: a corner or a blob has no normal.
+/// if the smaller eigenvalue exceeds 0.35 of the larger: a corner or a blob has no normal.
 ///
 /// The estimator keeps its memory between clouds. [`NormalEstimator::prepare`] followed by
-/// [`NormalEstimator::normal_at`] works out single normals on demand.
+/// [`NormalEstimator::normal_at`] computes single normals on demand.
 #[derive(Clone, Debug, Default)]
 pub struct NormalEstimator {
     map: Option<DenseMap>,
@@ -104,6 +104,6 @@ fn normal_of(neighbors: &[(f64, f64)]) -> Option<Vector2<f64>> {
         (xy, yy - smallest)
     };
     let length = math::norm2(along_x, along_y);
-    // Of points 1e150 m apart it is infinite.
+    // Infinite for points 1e150 m apart.
     (length > 0.0 && length.is_finite()).then(|| Vector2::new(-along_y / length, along_x / length))
 }

@@ -1,4 +1,4 @@
-//! The cloud itself: one array a coordinate, normals kept beside the points.
+//! The point cloud: one array per coordinate, normals stored separately.
 
 use nalgebra::{Point2, Vector2};
 use pr_geom::{Rotation, SE2};
@@ -6,9 +6,9 @@ use rustc_hash::FxHashMap;
 
 use super::{NormalEstimator, cell_index};
 
-/// Points in metres in one frame, with unit normals where they are known, and the time of the sweep.
+/// Points in metres in one frame, with unit normals if they are known, and the time of the sweep.
 ///
-/// A normal of `(0, 0)` in the arrays means that the point has none; [`PointCloud::normal`] hides it.
+/// A normal of `(0, 0)` in the arrays means that the point has none; [`PointCloud::normal`] returns `None` for it.
 /// The sign of a normal is arbitrary.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PointCloud {
@@ -29,7 +29,7 @@ impl PointCloud {
         }
     }
 
-    /// When the points were measured, s; 0 where nobody said.
+    /// Time of measurement, s; 0 if unknown.
     #[must_use]
     pub fn stamp_s(&self) -> f64 {
         self.stamp_s
@@ -73,14 +73,14 @@ impl PointCloud {
             .map(|(&x, &y)| Point2::new(x, y))
     }
 
-    /// The unit normal of point `index`, where one is known.
+    /// The unit normal of point `index`, if it is known.
     #[must_use]
     pub fn normal(&self, index: usize) -> Option<Vector2<f64>> {
         let (x, y) = self.raw_normal(index);
         (x != 0.0 || y != 0.0).then(|| Vector2::new(x, y))
     }
 
-    /// The normal as stored: `(0, 0)` where there is none.
+    /// The normal as stored: `(0, 0)` if there is none.
     #[inline]
     pub(crate) fn raw_normal(&self, index: usize) -> (f64, f64) {
         if self.normal_xs.is_empty() {
@@ -126,7 +126,7 @@ impl PointCloud {
         self.normal_ys.clear();
     }
 
-    /// The cloud moved by `target_from_source`; its normals turn with it.
+    /// The cloud moved by `target_from_source`, with rotated normals.
     #[must_use]
     pub fn transformed(&self, target_from_source: &SE2) -> Self {
         let mut moved = Self {
@@ -137,7 +137,7 @@ impl PointCloud {
         moved
     }
 
-    /// Adds the points of `other`, moved by `target_from_source`, with their normals turned.
+    /// Adds the points of `other`, moved by `target_from_source`, with rotated normals.
     pub fn extend_transformed(&mut self, other: &Self, target_from_source: &SE2) {
         let rotation = target_from_source.rotation();
         let (tx, ty) = (target_from_source.x(), target_from_source.y());
@@ -158,9 +158,9 @@ impl PointCloud {
         self.ys.extend(points.map(|(x, y)| sin * x + cos * y + ty));
     }
 
-    /// One point for every cell of `cell_m`: the centroid of the points in it, without normals.
+    /// One point for every cell of `cell_m`: the centroid of its points, without normals.
     ///
-    /// The order is that of the first point that fell into each cell.
+    /// The order is that of the first point in each cell.
     #[must_use]
     pub fn downsample(&self, cell_m: f64) -> Self {
         let mut thinned = Self::default();
@@ -196,7 +196,7 @@ impl FromIterator<Point2<f64>> for PointCloud {
     }
 }
 
-/// Voxel thinning with its memory kept between clouds; see [`PointCloud::downsample`].
+/// Voxel downsampling that keeps its memory between clouds; see [`PointCloud::downsample`].
 #[derive(Clone, Debug, Default)]
 pub struct Downsampler {
     slot_of_cell: FxHashMap<(i32, i32), u32>,

@@ -1,4 +1,4 @@
-//! The chapter's map: a hash of cells, a short bucket of points in each.
+//! The chapter's map: a hash of cells with a short list of points in each.
 
 use nalgebra::{Point2, Vector2};
 use rustc_hash::FxHashMap;
@@ -8,8 +8,8 @@ use super::{NearestMap, Neighbor, PointCloud, cell_index};
 
 /// Points hashed by cell, at most `max_per_cell` in each; further points of a full cell are ignored.
 ///
-/// A query looks at the cells around it, ring by ring, and stops as soon as no farther ring can
-/// hold a nearer point. The answer is exact within the radius.
+/// A query visits the cells around it, ring by ring, until no farther ring can contain a nearer
+/// point. The answer is exact within the radius.
 #[derive(Clone, Debug)]
 pub struct VoxelMap {
     cell_m: f64,
@@ -45,10 +45,10 @@ impl VoxelMap {
         map
     }
 
-    /// Adds points in order, each with its unit normal where it has one.
+    /// Adds points in order, each with its unit normal if it has one.
     ///
-    /// A point is ignored where its cell is full or a coordinate is not finite. The points that
-    /// were kept are numbered from 0 in the order of insertion.
+    /// A point is ignored if its cell is full or a coordinate is not finite. The stored points are
+    /// numbered from 0 in the order of insertion.
     ///
     /// # Panics
     /// If the slices differ in length.
@@ -89,7 +89,7 @@ impl VoxelMap {
         self.cell_m
     }
 
-    /// The points that were kept, in the order of insertion.
+    /// The stored points, in the order of insertion.
     #[must_use]
     pub fn points(&self) -> &PointCloud {
         &self.points
@@ -110,7 +110,7 @@ impl VoxelMap {
     }
 }
 
-/// The best point so far, with the cell that breaks ties.
+/// The best point so far, with its cell to break ties.
 struct Best {
     distance_squared_m2: f64,
     cell: (i32, i32),
@@ -123,7 +123,7 @@ impl Best {
         let dx = points.xs()[index as usize] - query.x;
         let dy = points.ys()[index as usize] - query.y;
         let distance_squared_m2 = dx * dx + dy * dy;
-        // Within a bucket the first of equals stays; across buckets the smaller cell wins.
+        // Within a cell the first of equals stays; across cells the smaller cell wins.
         let tie = distance_squared_m2 == self.distance_squared_m2
             && self.index.is_some()
             && cell < self.cell;
@@ -152,13 +152,13 @@ impl VoxelMap {
         }
     }
 
-    /// A distance that no point of a cell `ring` or more cells away can undercut.
+    /// A lower bound of the distance to the points of cells `ring` or more cells away.
     fn ring_distance(&self, ring: i32, query: Point2<f64>, (ci, cj): (i32, i32)) -> f64 {
         let to_edge = |coordinate: f64, cell: i32| {
             let low = coordinate - f64::from(cell) * self.cell_m;
             low.min(self.cell_m - low)
         };
-        // The division that picks a cell rounds: a point may sit that much outside of its cell.
+        // The division that selects a cell rounds, so a point may lie that far outside of its cell.
         let rounding = 1e-12 * (self.cell_m + query.x.abs() + query.y.abs());
         f64::from(ring - 1) * self.cell_m + to_edge(query.x, ci).min(to_edge(query.y, cj))
             - rounding
@@ -193,7 +193,7 @@ impl NearestMap for VoxelMap {
             if bound > 0.0 && bound * bound > best.distance_squared_m2 {
                 break;
             }
-            // Far from a small map the rings are many and empty: looking at every point is cheaper.
+            // Far from a small map the rings are many and empty: a linear scan is cheaper.
             if i64::from(ring) * i64::from(ring) > self.points.len() as i64 {
                 self.scan_all(query, &mut best);
                 break;

@@ -1,4 +1,4 @@
-//! What the graph knows of its poses: exact covariances.
+//! Exact covariances of the poses.
 
 use nalgebra::Matrix3;
 use pr_optim::OptimizeError;
@@ -6,19 +6,18 @@ use pr_optim::OptimizeError;
 use super::{NodeId, PoseGraph};
 
 impl PoseGraph {
-    /// Exact covariance of the relative pose `T_i⁻¹ T_j`, as all edges together know it.
+    /// Exact covariance of the relative pose `T_i⁻¹ T_j`, given all edges.
     ///
-    /// Taken from the factor of the whole graph, at the present poses: 3×3, in the tangent space of
-    /// right perturbations of the relative pose, order x, y, θ, m² and rad². Other ways around,
-    /// closed loops among them, make it smaller than the sum along the path.
-    /// Kaess & Dellaert, "Covariance recovery from a square root information matrix for data
-    /// association", 2009.
+    /// Computed from the factor of the whole graph, at the present poses: 3×3, in the tangent space of right
+    /// perturbations of the relative pose, order x, y, θ, m² and rad². Other paths between the two nodes, such as
+    /// closed loops, make it smaller than the sum along the path. Kaess & Dellaert, "Covariance recovery from a
+    /// square root information matrix for data association", 2009.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     ///
     /// # Panics
-    /// Where a node does not exist.
+    /// If a node does not exist.
     pub fn relative_covariance(
         &mut self,
         i: impl Into<NodeId>,
@@ -31,30 +30,30 @@ impl PoseGraph {
         Ok(joint.relative(&self.pose(i), &self.pose(j)))
     }
 
-    /// How far the farthest node would move, m and rad added, if the graph was optimized: to first order, by the
-    /// edges since it was optimized last. Infinite where those are too many.
+    /// Largest move of any node, m and rad added, if the graph was optimized: to first order, by the edges since the
+    /// last optimization. Infinite if those are too many.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn largest_move_since(&mut self) -> Result<f64, OptimizeError> {
         self.optimizer.largest_move_since(&self.problem)
     }
 
-    /// Exact covariance of every pose against the fixed ones, by node; zero for those.
+    /// Exact covariance of every pose relative to the fixed ones, by node; zero for fixed nodes.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn pose_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
         self.optimizer.marginals(&self.problem)
     }
 
     /// Exact covariance of the relative pose at every edge, in the order in which they were added.
     ///
-    /// The same as [`relative_covariance`](Self::relative_covariance) of its two nodes, but all from
-    /// one selected inverse of the factor.
+    /// Computes [`relative_covariance`](Self::relative_covariance) for all edges from one selected
+    /// inverse of the factor.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn edge_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
         let measured = self.optimizer.measured_covariances(&self.problem)?;
         let poses = self.problem.poses();

@@ -1,18 +1,17 @@
-//! A node is taken out, and what its edges told of the nodes around it is kept.
+//! Marginalization of a node: removes it and keeps the information of its edges.
 //!
 //! The edges of node v measure its neighbours from it: `bᵢ = v Tᵢ exp(εᵢ)` with covariances Σᵢ. Without
-//! v they still measure each neighbour from each other one,
+//! v they still measure the relative poses of the neighbours,
 //!
 //! ```text
 //! bᵢ⁻¹ bⱼ = Mᵢⱼ exp(ε),  Mᵢⱼ = Tᵢ⁻¹ Tⱼ,  Cᵢⱼ = Σⱼ + A Σᵢ Aᵀ,  A = Ad(Mᵢⱼ⁻¹)
 //! ```
 //!
-//! and all together, since they share the errors of v: the Schur complement is dense. A tree over the
-//! neighbours has as many measurements as relative poses, so each edge keeps its own marginal Cᵢⱼ, and
-//! of all trees the nearest in Kullback–Leibler divergence is the one with the smallest
-//! `Σ ln det Cᵢⱼ`: a minimum spanning tree. The divergence is half of what that sum exceeds
-//! `ln det` of the dense covariance by, in nats; with two neighbours it is zero. It holds to first
-//! order in the covariances.
+//! but all jointly, because they share the errors of v: the Schur complement is dense. It is approximated by a
+//! tree over the neighbours. Each of its edges keeps its marginal Cᵢⱼ, and the tree of smallest Kullback–Leibler
+//! divergence is the minimum spanning tree with weights `ln det Cᵢⱼ`. The divergence, in nats, is half of the
+//! excess of their sum over `ln det` of the dense covariance; for two neighbours it is zero. All to first order in
+//! the covariances.
 //!
 //! Sources: Chow & Liu, "Approximating discrete probability distributions with dependence trees", 1968;
 //! Mazuran, Burgard, Tipaldi, "Nonlinear factor recovery for long-term SLAM", 2016.
@@ -23,27 +22,29 @@ use thiserror::Error;
 
 use super::{EdgeKind, EdgeView, NodeId, PoseEdge, PoseGraph, PoseNode};
 
-/// What taking a node out did.
+/// Result of a marginalization.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Marginalized {
-    /// Nodes that it was tied to.
+    /// Number of neighbours of the node.
     pub neighbours: usize,
-    /// What the tree leaves out of what the edges told, nats.
+    /// Kullback–Leibler divergence of the tree from the exact marginal, nats.
     pub divergence: f64,
 }
 
-/// Why a node stays.
+/// Why a node cannot be marginalized.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum MarginalizeError {
-    /// It holds the gauge.
-    #[error("node {0} is fixed; the graph hangs on it")]
+    /// The node is fixed.
+    #[error("node {0} is fixed: marginalizing it would leave the gauge free")]
     Fixed(usize),
     /// An edge has no covariance.
-    #[error("an edge of node {0} has an information without inverse")]
+    #[error("an edge of node {0} has a singular information matrix")]
     NoCovariance(usize),
 }
 
-/// A neighbour as the node in the middle measures it.
+/// A neighbour as measured from the marginalized node.
 #[derive(Clone, Copy, Debug)]
 struct Spoke {
     node: usize,
@@ -63,16 +64,16 @@ struct Recovered {
 }
 
 impl PoseGraph {
-    /// Takes a node out; later nodes get the number before theirs, and so do edges.
+    /// Marginalizes a node; the numbers of later nodes and edges decrease.
     ///
-    /// Edges between two nodes that are tied already are made one, of the kind of odometry: what is
-    /// left of a node belongs to the way, and no loop that is tested again.
+    /// An edge between two nodes that already have one is merged with it, as odometry: the remains of a node
+    /// belong to the path and are not tested again as a loop.
     ///
     /// # Errors
-    /// Where the node is fixed, or an edge has no covariance; the graph stays as it was.
+    /// If the node is fixed, or an edge has no covariance; the graph is unchanged.
     ///
     /// # Panics
-    /// Where the node does not exist.
+    /// If the node does not exist.
     pub fn marginalize(
         &mut self,
         node: impl Into<NodeId>,
@@ -107,7 +108,7 @@ impl PoseGraph {
         }
         let mut graph = Self::from_parts(&nodes, &edges);
         graph.optimizer.settings = self.optimizer.settings;
-        // A loop that is yet to correct the graph may be a part of any edge now.
+        // A loop that is not optimized yet may now be part of any edge.
         let newer = &self.kinds[self.optimized_edges()..];
         if newer.iter().all(|kind| *kind == EdgeKind::Odometry) {
             graph.mark_optimized(graph.edge_count());
@@ -120,8 +121,8 @@ impl PoseGraph {
     }
 }
 
-/// What an edge of the middle node measures; none where it is no edge of it, and no spoke where it has
-/// no covariance.
+/// The measurement of a neighbour by an edge of the middle node; `None` if it is not an edge of that node, and
+/// `Some(None)` if it has no covariance.
 fn spoke(view: &EdgeView, middle: usize) -> Option<Option<Spoke>> {
     let (from, to) = (view.from.index(), view.to.index());
     let PoseEdge {
@@ -149,7 +150,7 @@ fn spoke(view: &EdgeView, middle: usize) -> Option<Option<Spoke>> {
     }
 }
 
-/// Adds a spoke; a second one to the same neighbour is made one with the first.
+/// Adds a neighbour; a second measurement of the same one is fused with the first.
 fn add_spoke(spokes: &mut Vec<Spoke>, spoke: Spoke) {
     let known = spokes.iter_mut().find(|known| known.node == spoke.node);
     let both = known.and_then(|known| {
@@ -168,7 +169,7 @@ fn add_spoke(spokes: &mut Vec<Spoke>, spoke: Spoke) {
     }
 }
 
-/// Two measurements of one relative pose as one: `Z₁ exp((Ω₁ + Ω₂)⁻¹ Ω₂ log(Z₁⁻¹ Z₂))`.
+/// Fuses two measurements of one relative pose: `Z₁ exp((Ω₁ + Ω₂)⁻¹ Ω₂ log(Z₁⁻¹ Z₂))`.
 fn merged(
     (a, of_a): (&SE2, Matrix3<f64>),
     (b, of_b): (&SE2, Matrix3<f64>),
@@ -182,7 +183,7 @@ fn ln_det(matrix: &Matrix3<f64>) -> f64 {
     math::ln(matrix.determinant())
 }
 
-/// Pose of spoke `to` from spoke `from`, with its covariance.
+/// Pose of neighbour `to` in the frame of neighbour `from`, with its covariance.
 fn between(from: &Spoke, to: &Spoke) -> (SE2, Matrix3<f64>) {
     let pose = from.pose.between(&to.pose);
     let adjoint = pose.inverse().adjoint();
@@ -190,7 +191,7 @@ fn between(from: &Spoke, to: &Spoke) -> (SE2, Matrix3<f64>) {
     (pose, covariance)
 }
 
-/// The tree over the neighbours that is nearest to what the spokes tell, and how far it is, nats.
+/// The tree over the neighbours with the smallest divergence, and that divergence, nats.
 fn nearest_tree(spokes: &[Spoke]) -> Option<(Vec<Recovered>, f64)> {
     let Some((root, others)) = spokes.split_first() else {
         return Some((Vec::new(), 0.0));
@@ -204,7 +205,7 @@ fn nearest_tree(spokes: &[Spoke]) -> Option<(Vec<Recovered>, f64)> {
         dense += ln_det(&other.covariance);
     }
     dense += ln_det(&inner);
-    // Prim's tree: the neighbour next taken is the one that is known best from one in the tree.
+    // Prim's algorithm: next comes the neighbour with the smallest covariance from one in the tree.
     let mut tree = Vec::with_capacity(others.len());
     let mut sum = 0.0;
     let mut outside: Vec<(usize, usize, f64)> = (1..spokes.len())
@@ -237,12 +238,12 @@ fn nearest_tree(spokes: &[Spoke]) -> Option<(Vec<Recovered>, f64)> {
             }
         }
     }
-    // Rounding may leave a little less than nothing where the tree is all there is.
+    // Rounding may give a value slightly below zero if the tree is exact.
     let divergence = math::max(0.5 * (sum - dense), 0.0);
     Some((tree, if others.is_empty() { 0.0 } else { divergence }))
 }
 
-/// Adds a recovered edge; one between the same nodes is made one with it.
+/// Adds a recovered edge, or fuses it with an edge between the same nodes.
 fn add_edge(edges: &mut Vec<EdgeView>, edge: Recovered) {
     let known = edges.iter_mut().find_map(|view| {
         let ends = (view.from.index(), view.to.index());

@@ -1,6 +1,6 @@
 use super::*;
 
-/// Three poses on a line; the loop says that the last is at 2.6 where odometry says 2.0.
+/// Three poses on a line; the loop measures the last at 2.6, odometry at 2.0.
 fn chapter_example() -> PoseGraph {
     let mut graph = PoseGraph::new();
     let a = graph.add_fixed_node(SE2::identity());
@@ -55,7 +55,7 @@ fn chi2_is_the_sum_over_the_edges() {
 }
 
 #[test]
-fn chi2_that_is_kept_has_the_bits_of_a_new_sum() {
+fn cached_chi2_has_the_bits_of_a_new_sum() {
     let mut graph = chapter_example();
     let mut compared = 0;
     let mut compare = |graph: &PoseGraph| {
@@ -80,14 +80,14 @@ fn chi2_that_is_kept_has_the_bits_of_a_new_sum() {
     compare(&graph);
     graph.optimize(10, 1e-9);
     compare(&graph);
-    // An indefinite measurement: the solver gives up.
+    // An indefinite measurement: the solver fails.
     graph.add_edge(0, node, step, -Matrix3::identity() * 9.0, EdgeKind::Loop);
     graph.optimize(10, 1e-9);
     compare(&graph);
 }
 
 #[test]
-fn huber_lets_a_false_loop_pull_less() {
+fn huber_reduces_the_influence_of_a_false_loop() {
     let mut plain = chapter_example();
     let mut robust = chapter_example();
     plain.optimize(50, 1e-9);
@@ -130,7 +130,7 @@ fn a_closed_loop_makes_the_relative_pose_more_certain() {
     // Along the line x adds up over three edges, and so does θ. 1e-7: the solver's ridge.
     assert!((open[(0, 0)] - 3.0 / 100.0).abs() < 1e-7);
     assert!((open[(2, 2)] - 3.0 / 400.0).abs() < 1e-7);
-    // y has the three edges' own share and the turns of the first two over 2 m and 1 m.
+    // y has the three edges' own share and the heading noise of the first two over 2 m and 1 m.
     assert!((open[(1, 1)] - (3.0 / 50.0 + 5.0 / 400.0)).abs() < 1e-7);
     graph.add_edge(
         nodes[1],
@@ -151,7 +151,7 @@ fn a_closed_loop_makes_the_relative_pose_more_certain() {
     assert!((covariances[1][(0, 0)] - 1.0 / 100.0).abs() < 1e-7);
 }
 
-/// A square that its last step misses by 0.3 m and a tenth of a turn, tied together by a loop.
+/// A square with a closing error of 0.3 m and a tenth of a turn, and a loop.
 fn torn_square(graph: PoseGraph) -> PoseGraph {
     let mut graph = graph;
     let information = Matrix3::identity();

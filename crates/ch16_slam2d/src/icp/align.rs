@@ -6,20 +6,21 @@ use pr_geom::{Rotation, SE2, math};
 /// Pairs with normals that a point-to-plane step needs: one for every degree of freedom.
 const MIN_NORMALS: usize = 3;
 
-/// The rigid motion that brings paired points together, and what it achieves.
+/// The rigid motion that aligns paired points, and the bound that it reaches.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Alignment {
     /// The motion `dst_from_src`.
     pub pose: SE2,
     /// The largest `tr(R H)` over all rotations, m²: the cost is `Σ‖p‖² + Σ‖q‖² − 2 tr(R H)` about
-    /// the centroids, so no rotation does better.
+    /// the centroids, so no rotation has a lower cost.
     pub trace_bound: f64,
 }
 
 /// The motion that minimizes `Σ ‖R p_k + t − q_k‖²` over paired points.
 ///
-/// This is what the singular value decomposition of `H = Σ (p_k − p̄)(q_k − q̄)ᵀ` yields, reflections
-/// excluded; in the plane it has a closed form, see [`closed_form`]. No pairs give the identity.
+/// Equals the solution by the singular value decomposition of `H = Σ (p_k − p̄)(q_k − q̄)ᵀ`, without
+/// reflections; in the plane it has a closed form, see [`closed_form`]. No pairs give the identity.
 ///
 /// Source: Arun, Huang & Blostein 1987.
 ///
@@ -30,7 +31,7 @@ pub fn svd_align(src: &[Point2<f64>], dst: &[Point2<f64>]) -> SE2 {
     closed_form(src, dst).pose
 }
 
-/// [`svd_align`] with the trace that its rotation reaches.
+/// [`svd_align`] with the trace of its rotation.
 ///
 /// `θ = atan2(Σ p × q, Σ p · q)` about the centroids, and `tr(R H) = hypot` of the same two sums.
 ///
@@ -49,8 +50,8 @@ pub fn closed_form(src: &[Point2<f64>], dst: &[Point2<f64>]) -> Alignment {
 
 /// One Gauss–Newton step on `Σ (n_k·(p_k − q_k))²` over motions of the points `src`.
 ///
-/// The step `(t_x, t_y, ω)` turns about the centroid of the points that have normals. It is damped
-/// by `1e-4 · tr(H)/3 + 1e-12`, so a direction that no normal sees, as along a corridor, gets no
+/// The step `(t_x, t_y, ω)` rotates about the centroid of the points that have normals. It is damped
+/// by `1e-4 · tr(H)/3 + 1e-12`, so an unconstrained direction, as along a corridor, gets a zero
 /// step instead of an arbitrary one. Fewer than 3 normals give the identity.
 ///
 /// Source: Chen & Medioni 1992.
@@ -138,7 +139,7 @@ pub(super) fn point_to_plane(pairs: impl Iterator<Item = PlanePair>) -> SE2 {
     let (mut count, mut cx, mut cy) = (0_usize, 0.0, 0.0);
     let mut hessian = PlaneHessian::default();
     let (mut gx, mut gy, mut gw) = (0.0, 0.0, 0.0);
-    // The levers are about the map's origin here, and moved to the centroid once it is known.
+    // The levers are about the map's origin here, and moved to the centroid later.
     for pair in pairs {
         count += 1;
         cx += pair.source.0;

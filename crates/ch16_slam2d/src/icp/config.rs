@@ -1,6 +1,6 @@
 //! The settings of a registration.
 
-/// Which error the increments reduce.
+/// The error that increments minimize.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum IcpVariant {
     /// The distance between paired points (Besl & McKay 1992).
@@ -13,9 +13,9 @@ pub enum IcpVariant {
 /// The settings of a registration; the defaults are the chapter's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IcpConfig {
-    /// Which error the increments reduce.
+    /// The error that increments minimize.
     pub variant: IcpVariant,
-    /// At most so many increments.
+    /// Largest number of increments.
     pub max_iterations: usize,
     /// Points farther than this from the map have no pair, m.
     pub tau_m: f64,
@@ -25,7 +25,7 @@ pub struct IcpConfig {
     pub min_pairs: usize,
     /// Share of the pairs to drop, the longest first; 0 keeps all (Chetverikov et al. 2002).
     pub trim: f64,
-    /// Residual beyond which a pair's weight falls as width/residual, m; infinite weighs all pairs alike
+    /// Residual beyond which a pair's weight falls as width/residual, m; an infinite width weights all pairs equally
     /// (Huber 1964).
     pub huber_width_m: f64,
 }

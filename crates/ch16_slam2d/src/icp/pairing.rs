@@ -1,4 +1,4 @@
-//! Data association: which map point each cloud point is paired with.
+//! Data association: pairs each cloud point with a map point.
 
 use nalgebra::{Point2, Vector2};
 use pr_geom::{SE2, math};
@@ -18,7 +18,7 @@ pub struct Pair {
     pub source: Point2<f64>,
     /// The map point, m.
     pub target: Point2<f64>,
-    /// Unit normal of the map point, where it has one.
+    /// Unit normal of the map point, if it has one.
     pub normal: Option<Vector2<f64>>,
 }
 
@@ -39,9 +39,9 @@ impl Pair {
     }
 }
 
-/// The pairs that a registration would use with the cloud at `target_from_source`.
+/// The pairs of a registration with the cloud at `target_from_source`.
 ///
-/// Pairs are closer than `config.tau_m`; trimming has dropped the longest share of them.
+/// Pairs are closer than `config.tau_m`; trimming drops the longest share of them.
 #[must_use]
 pub fn correspondences<M: NearestMap>(
     cloud: &PointCloud,
@@ -55,7 +55,7 @@ pub fn correspondences<M: NearestMap>(
     workspace.pairs(map).collect()
 }
 
-/// A pair as the inner loops use it; normal `(0, 0)` where there is none.
+/// A pair as the inner loops use it; normal `(0, 0)` if there is none.
 #[derive(Clone, Copy)]
 struct RawPair {
     source: (f64, f64),
@@ -78,7 +78,7 @@ impl RawPair {
             + self.normal.1 * (self.source.1 - self.target.1)
     }
 
-    /// The squared residual: along the normal, where there is one.
+    /// The squared residual, along the normal if there is one.
     #[inline]
     fn square_m2(&self) -> f64 {
         if self.has_normal() {
@@ -90,10 +90,10 @@ impl RawPair {
     }
 }
 
-/// The memory of a registration, kept between calls so that none allocates.
+/// The memory of a registration, reused between calls to avoid allocation.
 #[derive(Clone, Default)]
 pub struct IcpWorkspace {
-    /// What is known of the neighbour of each cloud point; empty where nothing is.
+    /// Cached neighbour of each cloud point; empty if there is no cache.
     cache: Vec<QueryCache>,
     pairs: Vec<RawPair>,
     distances: Vec<f64>,
@@ -105,7 +105,7 @@ pub struct IcpWorkspace {
 }
 
 impl IcpWorkspace {
-    /// A workspace that has not grown yet.
+    /// An empty workspace.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -117,7 +117,7 @@ impl IcpWorkspace {
         &self.trace
     }
 
-    /// The last pairs, which `map` has to have produced.
+    /// The last pairs; `map` has to be the map of that registration.
     pub fn pairs<'a, M: NearestMap>(&'a self, map: &'a M) -> impl Iterator<Item = Pair> + 'a {
         self.pairs.iter().map(|pair| Pair {
             source_index: pair.source_index as usize,
@@ -134,7 +134,7 @@ impl IcpWorkspace {
         self.pairs.len()
     }
 
-    /// Forgets the neighbours: another cloud follows, or another map.
+    /// Clears the cached neighbours, for another cloud or map.
     pub(crate) fn forget(&mut self) {
         self.cache.clear();
     }
@@ -193,7 +193,7 @@ impl IcpWorkspace {
         }
     }
 
-    /// Drops the pairs that do not count by a rule.
+    /// Drops the pairs that a rule rejects.
     pub(super) fn reject(&mut self, rule: &dyn PairRejection) {
         if self.pairs.is_empty() {
             return;
@@ -207,7 +207,7 @@ impl IcpWorkspace {
         self.sum_of_squares_m2 = self.pairs.iter().map(RawPair::square_m2).sum();
     }
 
-    /// The motion that the last pairs ask for.
+    /// The increment by the last pairs.
     pub(super) fn increment(&self, config: &IcpConfig) -> SE2 {
         let width = config.huber_width_m;
         let weight = |residual_m: f64| {
@@ -247,7 +247,7 @@ impl IcpWorkspace {
 
     /// Root mean square residual of the last pairs, m; infinite without pairs.
     ///
-    /// Point-to-plane counts the distance along the normal, where the pair has one.
+    /// Point-to-plane uses the distance along the normal, if the pair has one.
     pub(super) fn rmse_m(&self) -> f64 {
         if self.pairs.is_empty() {
             return f64::INFINITY;

@@ -1,13 +1,13 @@
-//! Which pairs count: outlier rejection before each increment.
+//! Outlier rejection of pairs before each increment.
 
 /// A rule that rejects pairs by their distance.
 pub trait PairRejection {
-    /// The largest squared distance of a pair that counts, m²; `squared_m2` holds those of all pairs, in any order
+    /// The largest squared distance of an accepted pair, m²; `squared_m2` holds those of all pairs, in any order
     /// and at least one, and may be reordered.
     fn largest_m2(&self, squared_m2: &mut [f64]) -> f64;
 }
 
-/// Pairs up to a distance count.
+/// Accepts pairs up to a distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaxDistance {
     /// The distance, m.
@@ -20,7 +20,7 @@ impl PairRejection for MaxDistance {
     }
 }
 
-/// All but the longest pairs count (Chetverikov et al. 2002); those as long as the last that stays, stay with it.
+/// Accepts all but the longest pairs (Chetverikov et al. 2002); ties with the longest accepted pair are accepted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trimmed {
     /// Share of the pairs to drop, 0 to 1.
@@ -43,7 +43,7 @@ mod tests {
     use crate::cloud::{PointCloud, VoxelMap};
     use crate::icp::{Icp, IcpConfig, IcpWorkspace};
 
-    /// Three times the median distance: a rule of the reader's own.
+    /// Three times the median distance: a custom rule.
     struct TimesMedian(f64);
 
     impl PairRejection for TimesMedian {
@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn a_custom_rule_keeps_a_box_that_moved_from_pulling_the_scan() {
+    fn a_custom_rule_rejects_the_pairs_of_a_moved_box() {
         let wall = |k: i32| Point2::new(0.05 * f64::from(k), 0.0);
         let side = |k: i32| Point2::new(0.0, 0.05 * f64::from(k));
         let room: PointCloud = (0..80).flat_map(|k| [wall(k), side(k)]).collect();

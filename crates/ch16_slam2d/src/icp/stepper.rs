@@ -7,6 +7,7 @@ use crate::cloud::{NearestMap, PointCloud};
 
 /// The state of a registration after one association.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct IcpTrace {
     /// `target_from_source`.
     pub pose: SE2,
@@ -14,11 +15,11 @@ pub struct IcpTrace {
     pub pairs: usize,
     /// Root mean square residual of the pairs, m; infinite without pairs.
     pub rmse_m: f64,
-    /// Mean over the cloud of `min(d², τ²)`, m²: what point-to-point ICP never raises.
+    /// Mean over the cloud of `min(d², τ²)`, m²: point-to-point ICP never raises it.
     pub truncated_cost_m2: f64,
 }
 
-/// Why a registration ended, with what was measured.
+/// Why a registration ended, with the measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StopReason {
     /// The last increment was smaller than the tolerance: converged.
@@ -28,7 +29,7 @@ pub enum StopReason {
         /// [`IcpConfig::tolerance`].
         tolerance: f64,
     },
-    /// All the iterations were used up.
+    /// The limit of iterations was reached.
     IterationLimit {
         /// [`IcpConfig::max_iterations`].
         max_iterations: usize,
@@ -40,7 +41,7 @@ pub enum StopReason {
         /// [`IcpConfig::min_pairs`].
         min_pairs: usize,
     },
-    /// The next increment is out of the range of numbers, as for points 1e200 m away; the pose stays.
+    /// The next increment is not finite, as for points 1e200 m away; the pose is unchanged.
     NotFinite,
 }
 
@@ -52,10 +53,28 @@ impl StopReason {
     }
 }
 
-/// One iteration: where it led, and whether it was the last.
+impl core::fmt::Display for StopReason {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::SmallStep { step, tolerance } => {
+                write!(f, "step {step:.2e} below {tolerance:.2e}")
+            }
+            Self::IterationLimit { max_iterations } => {
+                write!(f, "limit of {max_iterations} iterations")
+            }
+            Self::TooFewPairs { pairs, min_pairs } => {
+                write!(f, "{pairs} pairs, at least {min_pairs} are needed")
+            }
+            Self::NotFinite => write!(f, "the next increment is not finite"),
+        }
+    }
+}
+
+/// Result of one iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct IcpStep {
-    /// The state after the iteration; unchanged where none was made.
+    /// The state after the iteration; unchanged if none was made.
     pub trace: IcpTrace,
     /// Set once the registration has ended.
     pub stop: Option<StopReason>,
@@ -63,6 +82,7 @@ pub struct IcpStep {
 
 /// The outcome of a registration without its history.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct IcpSummary {
     /// `target_from_source`.
     pub pose: SE2,
@@ -126,7 +146,7 @@ pub fn icp<M: NearestMap>(cloud: &PointCloud, map: &M, init: SE2, config: &IcpCo
     }
 }
 
-/// A registration under way.
+/// A running registration.
 pub struct Icp<'a, M> {
     cloud: &'a PointCloud,
     map: &'a M,
@@ -168,7 +188,7 @@ impl<'a, M: NearestMap> Icp<'a, M> {
         registration
     }
 
-    /// The same registration, in which only those pairs count that `rule` lets pass, from the guess on.
+    /// The same registration with only the pairs that `rule` accepts, from the initial guess on.
     #[must_use]
     pub fn with_rejection(mut self, rule: &'a dyn PairRejection) -> Self {
         self.rejection = Some(rule);

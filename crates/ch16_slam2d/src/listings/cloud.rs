@@ -5,11 +5,11 @@ use pr_geom::math;
 
 use super::{SE2, VoxelMap};
 
-/// A return at this share of the longest range or beyond is no point: the beam hit nothing.
+/// A return at this share of the longest range or beyond is not a point: the beam hit nothing.
 const RANGE_LIMIT_SHARE: f64 = 0.995;
-/// Fewer neighbours than this, the point itself among them, give no normal.
+/// Smallest number of neighbours for a normal, the point itself included.
 const MIN_NEIGHBORS: usize = 4;
-/// Above this ratio of the smaller to the larger scatter a neighbourhood is no line.
+/// Above this ratio of the smaller to the larger scatter a neighbourhood is not a line.
 const MAX_FLATNESS: f64 = 0.35;
 /// Smallest cell of the search for neighbours, m, and how many points of a cell it keeps.
 const NORMAL_CELL: (f64, usize) = (0.05, 64);

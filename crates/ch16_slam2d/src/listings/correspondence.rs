@@ -1,4 +1,4 @@
-//! Which point of the sweep belongs to which point of the map.
+//! Data association: which point of the map belongs to each point of the sweep.
 
 use nalgebra::{Point2, Vector2};
 use smallvec::{SmallVec, smallvec};
@@ -33,7 +33,7 @@ impl Correspondence {
     }
 }
 
-/// Pairs each point, moved by `map_from_cloud`, with its nearest within `tau`; what has none stays alone.
+/// Pairs each point, moved by `map_from_cloud`, with its nearest within `tau`; others stay unpaired.
 #[must_use]
 pub fn associate(
     cloud: &PointCloud,

@@ -1,4 +1,4 @@
-//! How much a registration knows.
+//! The information of a registration.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -24,7 +24,7 @@ pub fn icp_information(pairs: &[Correspondence], sigma: f64, inflate: f64) -> Ma
 
 /// The information with `ridge` on its diagonal, scaled so that no diagonal entry exceeds `cap`.
 ///
-/// Scaling keeps the matrix positive definite; cutting off single entries would not.
+/// Scaling keeps the matrix positive definite; clipping single entries would not.
 #[must_use]
 pub fn regularize(omega: Matrix3<f64>, ridge: f64, cap: f64) -> Matrix3<f64> {
     let ridged = omega + Matrix3::identity() * ridge;

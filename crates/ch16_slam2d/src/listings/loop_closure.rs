@@ -14,23 +14,23 @@ use crate::chi_squared::CHAPTER_GATE;
 pub struct LoopConfig {
     /// Candidates lie within this distance in the graph, m.
     pub radius: f64,
-    /// And at least so many nodes back.
+    /// Candidates are at least this many nodes older.
     pub min_gap: usize,
-    /// The submap holds so many nodes on either side of the candidate.
+    /// The submap holds this many nodes on either side of the candidate.
     pub half_width: usize,
     /// Cells of the submap, m, and points in each.
     pub submap: (f64, usize),
-    /// Reach of the estimate of normals, m.
+    /// Radius for the estimation of normals, m.
     pub normal_radius: f64,
-    /// First test: the fit may be no worse, m,
+    /// First test: largest accepted error of the fit, m.
     pub max_rmse: f64,
-    /// and over no fewer pairs.
+    /// First test: smallest accepted number of pairs.
     pub min_inliers: usize,
-    /// Second test: drift of one node, standard deviations, m and rad; it grows with √gap.
+    /// Second test: drift per node, standard deviations, m and rad; it grows with √gap.
     pub drift: (f64, f64),
-    /// The largest squared innovation that this drift explains.
+    /// Second test: largest accepted squared innovation.
     pub gate: f64,
-    /// Noise of a point, m, and how often a beam repeats what its neighbours said.
+    /// Noise of a point, m, and the covariance scale for correlated beams.
     pub trust: (f64, f64),
 }
 
@@ -51,18 +51,18 @@ impl Default for LoopConfig {
     }
 }
 
-/// What the registration found, and what the tests say.
+/// Result of the registration and of the tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VerifiedLoop {
-    /// The edge from the candidate to the new node, should it be added.
+    /// The edge from the candidate to the new node.
     pub edge: PoseEdge,
     /// Root mean square distance of the pairs, m.
     pub rmse: f64,
-    /// How many there are.
+    /// Number of the pairs.
     pub inliers: usize,
     /// The squared innovation in units of the drift.
     pub chi2: f64,
-    /// Whether both tests were passed.
+    /// Whether both tests passed.
     pub accepted: bool,
 }
 
@@ -85,7 +85,7 @@ pub fn detect_loop_candidates(
     candidates
 }
 
-/// Registers the sweep of `node` on the submap round `candidate`, and tests what comes out.
+/// Registers the sweep of `node` on the submap around `candidate`, and tests the result.
 ///
 /// `sweeps[k]` is the sweep of node k, body frame, thinned.
 #[must_use]
@@ -133,7 +133,7 @@ pub fn verify_loop(
     }
 }
 
-/// The sweeps round a node at their poses in the graph, in the frame of that node.
+/// The sweeps around a node at their poses in the graph, in the frame of that node.
 fn submap(
     graph: &PoseGraph,
     sweeps: &[PointCloud],
@@ -147,7 +147,7 @@ fn submap(
     for (k, sweep) in sweeps.iter().enumerate().take(last + 1).skip(first) {
         let pose = graph.pose(NodeIndex::new(k));
         let normals = sweep.normals(cfg.normal_radius);
-        // Through the world: the last bit decides which cell a point on an edge falls into.
+        // Through the world frame: the last bit decides which cell a point on an edge belongs to.
         let in_center = sweep.transformed(&pose).transformed(&center_from_world);
         let turn = SE2::new(Vector2::zeros(), pose.theta() + center_from_world.theta());
         let turned: Vec<_> = normals.iter().map(|n| n.map(|n| turn.rotate(&n))).collect();

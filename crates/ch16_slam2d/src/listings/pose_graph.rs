@@ -14,28 +14,28 @@ pub use crate::graph::EdgeKind;
 /// Added to each diagonal entry of the normal equations.
 const RIDGE: f64 = 1e-9;
 
-/// A measured motion between two nodes.
+/// A measured relative pose of two nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseEdge {
     /// The measured pose of the second node in the frame of the first.
     pub z: SE2,
     /// Inverse covariance of the residual, translation first.
     pub omega: Matrix3<f64>,
-    /// Where the measurement comes from.
+    /// Origin of the measurement.
     pub kind: EdgeKind,
 }
 
 /// Poses and the measurements between them.
 #[derive(Clone, Debug)]
 pub struct PoseGraph {
-    /// An edge remembers the order of its ends: it measures its target in the frame of its source.
+    /// An edge keeps the order of its ends: it measures its target in the frame of its source.
     pub graph: UnGraph<SE2, PoseEdge>,
-    /// The node that is held: it chooses the axes and adds no knowledge.
+    /// The fixed node: it fixes the gauge and adds no information.
     pub fixed: NodeIndex,
 }
 
 impl PoseGraph {
-    /// A graph of one node, which is held.
+    /// A graph of one fixed node.
     #[must_use]
     pub fn new(first: SE2) -> Self {
         let mut graph = UnGraph::new_undirected();
@@ -48,7 +48,7 @@ impl PoseGraph {
         self.graph.add_node(pose)
     }
 
-    /// Adds the measurement that `j` is at `edge.z` in the frame of `i`.
+    /// Adds the measured pose `edge.z` of `j` in the frame of `i`.
     pub fn add_edge(&mut self, i: NodeIndex, j: NodeIndex, edge: PoseEdge) {
         self.graph.add_edge(i, j, edge);
     }
@@ -59,13 +59,13 @@ impl PoseGraph {
         self.graph[node]
     }
 
-    /// `e = log(Z⁻¹ Tᵢ⁻¹ Tⱼ)`: zero where the poses say what was measured.
+    /// `e = log(Z⁻¹ Tᵢ⁻¹ Tⱼ)`: zero if the poses agree with the measurement.
     #[must_use]
     pub fn residual(&self, i: NodeIndex, j: NodeIndex, edge: &PoseEdge) -> Vector3<f64> {
         (edge.z.inverse() * self.graph[i].inverse() * self.graph[j]).log()
     }
 
-    /// `χ² = Σ eᵀ Ω e`: no kernel, no factor ½.
+    /// `χ² = Σ eᵀ Ω e`, without kernel and factor ½.
     #[must_use]
     pub fn chi2(&self) -> f64 {
         let squares = self.graph.edge_references().map(|edge| {
@@ -88,9 +88,8 @@ impl PoseGraph {
 
     /// One Gauss–Newton step; returns the largest correction of a node, m and rad added.
     ///
-    /// The Jacobians are `−Ad(Z⁻¹)` and the identity: they leave the right Jacobian out. An edge beyond
-    /// `huber` standard deviations pulls with a force that grows no more. NaN, and nothing moves, where
-    /// the matrix is not positive definite.
+    /// The Jacobians are `−Ad(Z⁻¹)` and the identity, without the right Jacobian. The gradient of an edge beyond
+    /// `huber` standard deviations is bounded. Returns NaN and moves no node if the matrix is not positive definite.
     pub fn optimize_once(&mut self, huber: f64) -> f64 {
         let size = 3 * self.graph.node_count();
         let mut entries = Vec::new();
@@ -122,7 +121,7 @@ impl PoseGraph {
             let diagonal = Matrix3::identity() * (held + RIDGE);
             push_block(&mut entries, node.index(), node.index(), &diagonal);
         }
-        // Entries at the same place are added up.
+        // Entries at the same position are summed.
         let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(size, size, &entries);
         let Some(factor) = matrix.ok().and_then(|h| h.sp_cholesky(Side::Lower).ok()) else {
             return f64::NAN;

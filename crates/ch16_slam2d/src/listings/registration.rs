@@ -4,7 +4,7 @@ use pr_geom::math;
 
 use super::{Correspondence, PointCloud, SE2, VoxelMap, associate, point_to_plane_step, svd_align};
 
-/// Which error an increment reduces.
+/// The error that an increment minimizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum IcpVariant {
     /// The distance between paired points (Besl & McKay 1992).
@@ -17,15 +17,15 @@ pub enum IcpVariant {
 /// The settings of a registration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IcpConfig {
-    /// Which error an increment reduces.
+    /// The error that an increment minimizes.
     pub variant: IcpVariant,
     /// Points farther than this from the map have no partner, m.
     pub tau: f64,
-    /// At most so many increments.
+    /// Largest number of increments.
     pub max_iters: usize,
     /// With fewer pairs the registration ends.
     pub min_pairs: usize,
-    /// An increment smaller than this, m and rad added, ends it, too.
+    /// An increment smaller than this, m and rad added, ends the registration.
     pub tolerance: f64,
     /// Share of the pairs to drop, the longest first (Chetverikov et al. 2002).
     pub trim: f64,
@@ -44,7 +44,7 @@ impl Default for IcpConfig {
     }
 }
 
-/// Where a registration ended.
+/// Result of a registration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IcpResult {
     /// `map_from_cloud`.
@@ -86,7 +86,7 @@ pub fn icp(cloud: &PointCloud, map: &VoxelMap, init: SE2, cfg: &IcpConfig) -> Ic
     }
 }
 
-/// The pairs without the longest share; at least one is kept.
+/// Drops the longest share of the pairs; keeps at least one.
 fn trimmed(mut pairs: Vec<Correspondence>, share: f64) -> Vec<Correspondence> {
     if share <= 0.0 || pairs.is_empty() {
         return pairs;
@@ -98,7 +98,7 @@ fn trimmed(mut pairs: Vec<Correspondence>, share: f64) -> Vec<Correspondence> {
     pairs
 }
 
-/// Root mean square of what the variant reduces; a pair without a normal counts its distance.
+/// Root mean square of the variant's residual; a pair without a normal counts its distance.
 fn rmse(pairs: &[Correspondence], variant: IcpVariant) -> f64 {
     if pairs.is_empty() {
         return f64::INFINITY;

@@ -16,7 +16,7 @@ impl SE2 {
         Self(pr_geom::SE2::new(translation.x, translation.y, theta))
     }
 
-    /// The motion that changes nothing.
+    /// The identity.
     #[must_use]
     pub fn identity() -> Self {
         Self::default()
@@ -40,13 +40,13 @@ impl SE2 {
         self.0.transform(*point)
     }
 
-    /// `R v`: a direction turned, not moved.
+    /// `R v`: rotates a direction.
     #[must_use]
     pub fn rotate(&self, vector: &Vector2<f64>) -> Vector2<f64> {
         self.0.rotation_matrix() * vector
     }
 
-    /// The motion that undoes this one.
+    /// The inverse motion.
     #[must_use]
     pub fn inverse(&self) -> Self {
         Self(self.0.inverse())
@@ -70,7 +70,7 @@ impl SE2 {
         self.0.adjoint()
     }
 
-    /// `‖(v_x, v_y)‖ + |ω|` of the log: how large a step is.
+    /// `‖(v_x, v_y)‖ + |ω|` of the log: the size of a step.
     #[must_use]
     pub fn step_size(&self) -> f64 {
         self.0.step_size()

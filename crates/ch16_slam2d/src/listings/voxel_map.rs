@@ -8,16 +8,16 @@ use crate::cloud::cell_index;
 
 /// Points hashed by cell, at most `max_per_cell` in each.
 ///
-/// The bound is what keeps passers-by out: the walls that were there first fill their cells.
+/// The bound rejects most points of moving objects, because the walls fill their cells first.
 #[derive(Clone, Debug)]
 pub struct VoxelMap {
     /// Width of a cell, m.
     pub cell: f64,
     /// Further points of a full cell are ignored.
     pub max_per_cell: usize,
-    /// Numbers of the points in each cell.
+    /// Indices of the points in each cell.
     pub cells: FxHashMap<(i32, i32), SmallVec<[u32; 4]>>,
-    /// The points that were kept, m.
+    /// The stored points, m.
     pub pts: Vec<Point2<f64>>,
     /// Their unit normals.
     pub normals: Vec<Option<Vector2<f64>>>,
@@ -42,7 +42,7 @@ impl VoxelMap {
         (cell_index(p.x, self.cell), cell_index(p.y, self.cell))
     }
 
-    /// Adds points in order, each with its normal where it has one.
+    /// Adds points in order, each with its normal if it has one.
     pub fn insert(&mut self, points: &[Point2<f64>], normals: &[Option<Vector2<f64>>]) {
         for (p, normal) in points.iter().zip(normals) {
             let key = self.key(p);
@@ -79,7 +79,7 @@ impl VoxelMap {
         found
     }
 
-    /// Calls `look` with number and squared distance of each point in the cells that `reach` touches.
+    /// Calls `look` with index and squared distance of each point in the cells that `reach` touches.
     fn visit(&self, query: &Point2<f64>, reach: f64, mut look: impl FnMut(u32, f64)) {
         let rings = ((reach / self.cell).ceil() as i32).max(1);
         let (ci, cj) = self.key(query);

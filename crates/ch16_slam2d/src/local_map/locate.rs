@@ -1,4 +1,4 @@
-//! Where a scan was taken, by one cost: from the prediction, and from other starts if the scan fits poorly there.
+//! Pose of a scan by one cost: from the prediction, and from other starts if the scan fits poorly there.
 
 use pr_geom::SE2;
 
@@ -6,23 +6,23 @@ use super::{LocalMap, MapRegistration, MapRegistrationConfig, MotionPrior};
 use crate::cloud::PointCloud;
 use crate::search::SearchWindow;
 
-/// A scan that fits so well needs no other start, 0 to 1.
-const GOOD_WITHOUT_WHEELS: f64 = 0.9;
-/// Other starts where the prediction is off by more than a registration reaches: along the heading (m) and
-/// turned by (rad).
+/// A scan with at least this fit needs no other start, 0 to 1.
+const GOOD_SCORE: f64 = 0.9;
+/// Other starts if the prediction is outside of the basin of convergence: offsets along the heading (m) and of the
+/// heading (rad).
 const STARTS: ([f64; 5], [f64; 9]) = (
     [0.0, -0.5, 0.5, -1.0, 1.0],
     [0.0, -0.3, 0.3, -0.6, 0.6, -0.9, 0.9, -1.2, 1.2],
 );
 
-/// A prior that costs more is off by more than three standard deviations.
-const UNLIKELY: f64 = 6.0;
-/// Share of a scan in space that was looked through, above which it was taken elsewhere.
-const REFUTED: f64 = 0.05;
+/// A larger prior cost means a deviation of more than three standard deviations.
+const MAX_PRIOR_COST: f64 = 6.0;
+/// Share of points in observed free space above which a pose contradicts the map.
+const MAX_CONTRADICTING: f64 = 0.05;
 
 impl LocalMap {
-    /// The pose of lowest cost among those that registrations end at: from the prediction, from `others`, and
-    /// from the best pose of the window around the prediction.
+    /// The pose of lowest cost among the registrations from the prediction, from `others`, and from the best pose of
+    /// the window around the prediction.
     #[must_use]
     pub fn locate(
         &mut self,
@@ -34,22 +34,22 @@ impl LocalMap {
         let stages = [config.max_correspondence_m, config.inlier_distance_m];
         let near = &stages[1..];
         let mut best = self.register(scan, prior.pose, &stages, Some(prior), config);
-        // A registration from afar slides along a wall where the scan fits better at the prediction.
+        // A registration from a distant start may slide along a wall although the scan fits better at the prediction.
         if self.fit(scan, &prior.pose, config).score > best.fit.score {
             best = cheaper(
                 best,
                 self.register(scan, prior.pose, near, Some(prior), config),
             );
         }
-        // Where few points have pairs, these pull the scan farther than they know.
-        if prior.cost(&best.registered.pose) > UNLIKELY {
+        // With few pairs the registration is pulled farther than its information justifies.
+        if prior.cost(&best.registered.pose) > MAX_PRIOR_COST {
             best = cheaper(
                 best,
                 self.register(scan, prior.pose, &[], Some(prior), config),
             );
         }
         let is_vague = 2.0 * prior.sigma_m > config.max_correspondence_m;
-        if is_vague && best.fit.score < GOOD_WITHOUT_WHEELS {
+        if is_vague && best.fit.score < GOOD_SCORE {
             for turn_rad in STARTS.1 {
                 for ahead_m in STARTS.0 {
                     let start = prior.pose * SE2::new(ahead_m, 0.0, turn_rad);
@@ -71,9 +71,10 @@ impl LocalMap {
                 );
             }
         }
-        // A scan of what was never seen fits anywhere: only one that contradicts the map was taken elsewhere.
-        let is_refuted = best.fit.contradicting as f64 >= REFUTED * scan.len() as f64;
-        if is_poor(&best) && is_refuted {
+        // A scan of unseen space fits anywhere: only one that contradicts the map was taken elsewhere.
+        let is_contradicted =
+            best.fit.contradicting as f64 >= MAX_CONTRADICTING * scan.len() as f64;
+        if is_poor(&best) && is_contradicted {
             let window = SearchWindow::around(prior.pose, config.search_m, config.search_rad);
             if let Some(found) = self.search(scan, &window, 0.0) {
                 best = cheaper(
@@ -105,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_that_nobody_has_seen_is_not_laid_on_a_known_one() {
+    fn an_unmapped_wall_is_not_matched_to_a_mapped_one() {
         // A corridor along x; through its door, three metres behind its wall, the robot sees another wall.
         let south = wall(200, |x| Point2::new(x, -1.0));
         let north = wall(200, |x| Point2::new(x, 1.0));
@@ -125,7 +126,7 @@ mod tests {
         let others = [pose * SE2::new(-0.5, 0.0, 0.0)];
         let found = map.locate(&seen, &prior, &others, &config);
         assert!(pose.between(&found.registered.pose).step_size() < 0.05);
-        // The wall would fit on the corridor's, half a turn away.
+        // The wall would fit on the corridor's at a quarter turn.
         let laid = SE2::new(5.0, 3.0, -core::f64::consts::FRAC_PI_2);
         assert!(map.fit(&seen, &laid, &config).score > found.fit.score + 0.2);
     }

@@ -1,4 +1,4 @@
-//! What the odometry says of a pose before the scan is looked at.
+//! Motion prior: the distribution of the pose by odometry, before the scan is used.
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::{SE2, math};
@@ -6,16 +6,16 @@ use pr_geom::{SE2, math};
 /// Degrees of freedom of Student's distribution: between 1 and 30 the errors are the same.
 const FREEDOM: f64 = 3.0;
 
-/// How likely a large deviation is.
+/// Tail of the distribution of deviations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PriorTail {
-    /// Wheels that slip or are pushed: Student's distribution, for position and heading apart.
+    /// Slipping or pushed wheels: Student's t-distribution, for position and heading separately.
     Student,
-    /// A robot that goes on as before: a normal distribution.
+    /// Constant velocity: a normal distribution.
     Normal,
 }
 
-/// A pose with standard deviations, along both axes alike.
+/// A predicted pose with standard deviations, equal along both axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionPrior {
     /// The prediction, `map_from_body`.
@@ -24,7 +24,7 @@ pub struct MotionPrior {
     pub sigma_m: f64,
     /// Standard deviation of the heading, rad.
     pub sigma_rad: f64,
-    /// How likely a large deviation is.
+    /// Tail of the distribution of deviations.
     pub tail: PriorTail,
 }
 
@@ -35,7 +35,7 @@ impl MotionPrior {
         self.pose.between(pose).log()
     }
 
-    /// Negative logarithm of the density at a pose, but for a constant.
+    /// Negative logarithm of the density at a pose, up to a constant.
     #[must_use]
     pub fn cost(&self, pose: &SE2) -> f64 {
         let (position, heading) = self.squared(&self.deviation(pose));
@@ -50,8 +50,8 @@ impl MotionPrior {
         }
     }
 
-    /// Weights of the deviation's squares, 1/m², 1/m², 1/rad²: what iteratively reweighted least squares
-    /// puts in place of the inverse variances.
+    /// Weights of the squared deviations, 1/m², 1/m², 1/rad², which replace the inverse variances in iteratively
+    /// reweighted least squares.
     #[must_use]
     pub fn weights(&self, deviation: &Vector3<f64>) -> Vector3<f64> {
         let (position, heading) = self.squared(deviation);
@@ -64,7 +64,7 @@ impl MotionPrior {
         Vector3::new(xy, xy, theta)
     }
 
-    /// Covariance of the motion to a pose that was found: wide where the wheels have slipped.
+    /// Covariance of the motion to the estimated pose: large if the odometry deviates from it.
     #[must_use]
     pub fn covariance(&self, pose: &SE2) -> Matrix3<f64> {
         let weights = self.weights(&self.deviation(pose));
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_weights_are_the_slope_of_the_cost() {
+    fn the_weights_are_the_derivative_of_the_cost() {
         for tail in [PriorTail::Student, PriorTail::Normal] {
             let prior = MotionPrior {
                 pose: SE2::new(1.0, -2.0, 0.4),
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slip_of_ten_deviations_costs_a_student_little_more() {
+    fn a_slip_of_ten_sigmas_costs_little_under_students_distribution() {
         let prior = |tail| MotionPrior {
             pose: SE2::identity(),
             sigma_m: 0.05,

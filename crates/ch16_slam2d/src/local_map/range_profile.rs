@@ -1,4 +1,4 @@
-//! How far a scan has seen, by bearing.
+//! Observed free space of a scan, by bearing.
 
 use core::f64::consts::TAU;
 
@@ -7,13 +7,13 @@ use pr_geom::math;
 
 use crate::cloud::PointCloud;
 
-/// Bearings that are told apart: 2° each.
+/// Number of sectors: 2° each.
 const SECTORS: usize = 180;
 
 /// The range of the nearest return in each sector around the body.
 ///
-/// What lies in front of it was looked through. Sectors without a return say nothing: a beam that came
-/// back from nothing may have met glass.
+/// The space in front of it is free. A sector without a return gives no information: the beam may have hit
+/// glass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RangeProfile {
     /// Squared ranges, m²; 0 without a return.
@@ -35,7 +35,7 @@ impl RangeProfile {
         Self { nearest_m2 }
     }
 
-    /// Whether the scan has looked through a point, body frame.
+    /// Whether the scan has observed a point as free, body frame.
     #[must_use]
     pub fn sees_through(&self, point: Point2<f64>) -> bool {
         point.coords.norm_squared() < self.nearest_m2[sector(point)]
@@ -44,7 +44,7 @@ impl RangeProfile {
 
 fn sector(point: Point2<f64>) -> usize {
     let turn = math::atan2(point.y, point.x) / TAU + 0.5;
-    // Also where it is no number: `as` saturates.
+    // NaN included: `as` saturates.
     ((turn * SECTORS as f64) as usize).min(SECTORS - 1)
 }
 
@@ -53,11 +53,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_scan_looks_through_what_is_in_front_of_its_returns() {
+    fn space_in_front_of_returns_is_observed_as_free() {
         let scan = [Point2::new(3.0, 0.05), Point2::new(2.0, 0.04)];
         let profile = RangeProfile::new(&scan.into_iter().collect());
         assert!(profile.sees_through(Point2::new(1.9, 0.02)));
-        // Behind the nearer of two returns, and where there is no return.
+        // Behind the nearer of two returns, and in a sector without a return.
         assert!(!profile.sees_through(Point2::new(2.5, 0.05)));
         assert!(!profile.sees_through(Point2::new(0.0, 1.0)));
         assert!(!profile.sees_through(Point2::new(f64::NAN, 1.0)));

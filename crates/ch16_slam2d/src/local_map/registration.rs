@@ -1,4 +1,4 @@
-//! A scan on a local map: one cost of point-to-plane distances and a prior.
+//! Registration of a scan on a local map: one cost of point-to-plane distances and a prior.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 use pr_geom::{SE2, math};
@@ -6,31 +6,31 @@ use pr_geom::{SE2, math};
 use super::{LocalMap, MapFit, MotionPrior};
 use crate::cloud::{NearestMap, PointCloud, QueryCache};
 
-/// A step below this, m and rad added, is the last.
+/// A step below this, m and rad added, ends a stage.
 const TOLERANCE: f64 = 1e-4;
-/// Most steps of a stage.
+/// Largest number of steps of a stage.
 const STEPS: usize = 10;
-/// Residual beyond which a pair weighs less, m.
+/// Residual beyond which the weight of a pair decreases, m.
 const HUBER_M: f64 = 0.05;
-/// Smallest information of any direction, 1/m² and 1/rad²: the normal equations have a solution.
+/// Smallest information of any direction, 1/m² and 1/rad²: makes the normal equations solvable.
 const RIDGE: f64 = 1e-6;
 
-/// How scans are registered and scored.
+/// Settings for registering and scoring scans.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapRegistrationConfig {
-    /// Radius within which points of the map give each other normals, m.
+    /// Radius of the neighbours for normals of the map, m.
     pub normal_radius_m: f64,
     /// Largest distance of a pair in the first stage, m.
     pub max_correspondence_m: f64,
-    /// Largest distance of a pair in the last stage, and of a point that fits, m.
+    /// Largest distance of a pair in the last stage, and of an inlier, m.
     pub inlier_distance_m: f64,
     /// Standard deviation of a point across its wall, m.
     pub point_sigma_m: f64,
-    /// A scan counts as so many independent points at most: errors of neighbours are alike.
+    /// Largest number of independent points of a scan, because the errors of neighbours are correlated.
     pub independent_points: f64,
-    /// What a point in space that was never seen costs, as a share of a miss.
+    /// Cost of a point in unseen space, as a share of a miss.
     pub unseen_cost: f64,
-    /// With a lower score the window around the prediction is searched, 0 to 1.
+    /// If the score is lower, the window around the prediction is searched, 0 to 1.
     pub good_score: f64,
     /// Half the width of that window, m.
     pub search_m: f64,
@@ -38,8 +38,9 @@ pub struct MapRegistrationConfig {
     pub search_rad: f64,
 }
 
-/// A pose by least squares, and what the pairs know of it.
+/// A pose by least squares, and the information of its pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Registered {
     /// `map_from_scan`.
     pub pose: SE2,
@@ -49,19 +50,20 @@ pub struct Registered {
     pub iterations: usize,
 }
 
-/// A registration with the score by which it is compared.
+/// A registration with the score for comparisons.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MapRegistration {
     /// The pose and its information.
     pub registered: Registered,
-    /// How well the scan fits there.
+    /// The fit of the scan there.
     pub fit: MapFit,
-    /// Negative logarithm of the posterior density, but for a constant: misfit and prior.
+    /// Negative logarithm of the posterior density, up to a constant: misfit and prior.
     pub cost: f64,
 }
 
 impl MapRegistration {
-    /// Information of the pairs, less where only part of the scan fits: that may fit elsewhere as well.
+    /// Information of the pairs, reduced if only part of the scan fits, because that part may fit elsewhere as well.
     #[must_use]
     pub fn information(&self) -> Matrix3<f64> {
         let score = math::max(self.fit.score, 0.0);
@@ -76,7 +78,7 @@ impl MapRegistrationConfig {
         math::min(share, 1.0) / (self.point_sigma_m * self.point_sigma_m)
     }
 
-    /// What the misfit of a scan costs, as a negative logarithm of its likelihood.
+    /// Cost of the misfit of a scan, as a negative log-likelihood.
     ///
     /// A miss is as unlikely as a distance of `inlier_distance_m` with a standard deviation of a third of that.
     #[must_use]
@@ -87,7 +89,7 @@ impl MapRegistrationConfig {
 }
 
 impl LocalMap {
-    /// Registers a scan from `start` in stages of these reaches, m, and scores where it ends.
+    /// Registers a scan from `start` in stages with these correspondence distances, m, and scores the result.
     #[must_use]
     pub fn register(
         &mut self,
@@ -120,7 +122,7 @@ impl LocalMap {
 
     /// Gauss–Newton on the pairs within `max_correspondence_m` and the prior, reweighted at every step.
     ///
-    /// A pair's row is `J = (Rᵀn, p × Rᵀn)` with the point p in the body's frame: right perturbations.
+    /// A pair's row is `J = (Rᵀn, p × Rᵀn)` with the point p in the body's frame, for right perturbations.
     fn minimize(
         &mut self,
         scan: &PointCloud,

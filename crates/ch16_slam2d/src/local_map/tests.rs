@@ -41,7 +41,7 @@ const CONFIG: MapRegistrationConfig = MapRegistrationConfig {
     search_rad: 1.6,
 };
 
-fn wheels(pose: SE2) -> MotionPrior {
+fn odometry(pose: SE2) -> MotionPrior {
     MotionPrior {
         pose,
         sigma_m: 0.05,
@@ -51,30 +51,30 @@ fn wheels(pose: SE2) -> MotionPrior {
 }
 
 #[test]
-fn a_scan_in_a_room_comes_home_and_the_wheels_hardly_hold_it_back() {
+fn registration_in_a_room_converges_despite_the_odometry_prior() {
     let scan = room();
     let mut map = map_of(&scan);
     let start = SE2::new(0.12, -0.08, 0.05);
-    let found = map.register(&scan, start, &[0.3, 0.15], Some(&wheels(start)), &CONFIG);
+    let found = map.register(&scan, start, &[0.3, 0.15], Some(&odometry(start)), &CONFIG);
     let pose = found.registered.pose;
-    // 0.01 m, 0.002 rad: the wheels' 5 cm against 28 points of 2.5 cm.
+    // 0.01 m, 0.002 rad: the odometry's 5 cm against 28 points of 2.5 cm.
     assert!(math::norm2(pose.x(), pose.y()) < 0.01, "{pose:?}");
     assert!(pose.theta().abs() < 0.002, "{pose:?}");
     assert!(found.fit.score > 0.98, "{:?}", found.fit);
 }
 
 #[test]
-fn along_a_corridor_the_wheels_decide_and_across_it_the_scan() {
+fn odometry_determines_the_pose_along_a_corridor_and_the_scan_across() {
     let scan = corridor();
     let mut map = map_of(&scan);
     let start = SE2::new(0.2, 0.1, 0.0);
-    let found = map.register(&scan, start, &[0.3, 0.15], Some(&wheels(start)), &CONFIG);
+    let found = map.register(&scan, start, &[0.3, 0.15], Some(&odometry(start)), &CONFIG);
     let pose = found.registered.pose;
     assert!(
         (pose.x() - 0.2).abs() < 0.005 && pose.y().abs() < 0.005,
         "{pose:?}"
     );
-    // Nothing but the two ends of the walls is known along it.
+    // Along the corridor only the two ends of the walls constrain the pose.
     let information = found.information();
     assert!(
         information[(0, 0)] < 1e-3 * information[(1, 1)],
@@ -83,7 +83,7 @@ fn along_a_corridor_the_wheels_decide_and_across_it_the_scan() {
 }
 
 #[test]
-fn a_miss_in_free_space_costs_more_than_one_that_was_never_seen() {
+fn a_miss_in_free_space_costs_more_than_in_unseen_space() {
     let scan = room();
     let map = map_of(&scan);
     let at = |x: f64| {

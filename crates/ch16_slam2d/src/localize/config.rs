@@ -4,70 +4,69 @@ use pr_geom::SE2;
 
 use crate::search::{LikelihoodConfig, SearchNeighborhood};
 
-/// What is known of the first pose.
+/// Prior knowledge of the first pose.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum StartPose {
-    /// Nothing: the robot was carried away, or switched on anywhere.
+    /// Unknown: the robot was carried away, or switched on anywhere.
     #[default]
     Anywhere,
-    /// About here, `map_from_body`.
+    /// Approximately known, `map_from_body`.
     Near(SE2),
 }
 
-/// When a place is localized, and for how long; lengths are those of rooms and corridors.
+/// Thresholds of localization; lengths are those of rooms and corridors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocalizeConfig {
-    /// Keyframes within this distance of the prediction are what a scan is registered on, m.
+    /// A scan is registered on the keyframes within this distance of the prediction, m.
     pub near_m: f64,
-    /// At most so many of them, the nearest.
+    /// Largest number of these keyframes, the nearest.
     pub near_keyframes: usize,
-    /// With this score a scan fits, 0 to 1.
+    /// A scan with at least this score fits, 0 to 1.
     pub good_score: f64,
-    /// With a lower one the registration is not listened to, 0 to 1.
+    /// A registration with a lower score is ignored, 0 to 1.
     pub poor_score: f64,
-    /// After so many scans in a row that do not fit the robot is lost.
+    /// The robot is lost after this many consecutive scans that do not fit.
     pub lost_after: usize,
-    /// A scan whose score is lower than usual by so much is doubted; after as many of them in a row the
-    /// robot is looked for everywhere: elsewhere it may fit better.
+    /// A scan whose score is lower than usual by this much makes the pose doubtful. After `lost_after` of them in
+    /// a row the whole map is searched, because the scans may fit better elsewhere.
     pub score_drop: f64,
-    /// Standard deviation of the position beyond which a pose is doubted, m.
+    /// Standard deviation of the position beyond which a pose is doubtful, m.
     pub doubt_m: f64,
-    /// Cells and blur of the whole map; larger cells are taken where it needs them.
+    /// Cells and blur of the whole map; the cells are enlarged if the map needs too many.
     pub grid: LikelihoodConfig,
-    /// Points farther from the robot are not searched with, m: they make the steps of the heading
-    /// small.
+    /// Farther points are not used by the search, m, because they require small steps of the heading.
     pub search_reach_m: f64,
-    /// The trail is searched with a point a cell of this side, m.
+    /// Cell of the trail's points for the search, m.
     pub search_cell_m: f64,
-    /// A search that is not decided after so many sums over the points is given up: a frame has to end.
+    /// A search is given up after this many sums over the points, to bound the time of a frame.
     pub most_sums: u64,
-    /// What counts as another place.
+    /// What counts as a distinct pose.
     pub neighborhood: SearchNeighborhood,
-    /// A search whose best score is lower found nothing, 0 to 1.
+    /// Smallest score of a search result, 0 to 1.
     pub min_score: f64,
-    /// A best place with a lower score is told and not localized, 0 to 1: walls stand as far apart in
-    /// other buildings, too.
+    /// A best pose with a lower score is reported but not accepted, 0 to 1, because walls have similar distances in
+    /// other buildings.
     pub found_score: f64,
-    /// Where scans usually fit worse, the robot is doubted and looked for everywhere, 0 to 1.
+    /// If the usual score is lower, the pose is doubtful and the whole map is searched, 0 to 1.
     pub usual_score: f64,
-    /// A best place is localized if the best other one is behind by so much, and the next search
-    /// finds it again.
+    /// A best pose is accepted if its margin to the runner-up is at least this, and the next search
+    /// confirms it.
     pub min_margin: f64,
-    /// With this margin it is localized at once.
+    /// With this margin it is accepted without confirmation.
     pub unconfirmed_margin: f64,
-    /// Sweeps of the trail, at most.
+    /// Largest number of sweeps of the trail.
     pub trail_sweeps: usize,
-    /// Way between two sweeps of the trail, m.
+    /// Distance between two sweeps of the trail, m.
     pub trail_step_m: f64,
     /// Or turn between them, rad.
     pub trail_turn_rad: f64,
-    /// Keyframes that look alike and are looked at first.
+    /// Number of similar keyframes that are searched first.
     pub alike: usize,
-    /// How well a given start is known: standard deviations, m.
+    /// Uncertainty of a given start: standard deviation, m.
     pub start_sigma_m: f64,
-    /// The same for its heading, rad.
+    /// Uncertainty of its heading, rad.
     pub start_sigma_rad: f64,
-    /// Largest squared innovation against a given start; 999 of 1,000 lie below.
+    /// Largest squared innovation against a given start: the 99.9 % quantile.
     pub gate_chi2: f64,
 }
 

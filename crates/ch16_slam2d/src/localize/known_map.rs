@@ -1,4 +1,4 @@
-//! The map that a robot is looked for on.
+//! The map for localization.
 
 use std::sync::Arc;
 
@@ -14,21 +14,22 @@ use crate::search::{
 };
 use crate::slam::Keyframe;
 
-/// So many times a grid's cells are doubled until the map fits; then it is beyond all places.
+/// Largest number of doublings of the grid's cells until the map fits.
 const DOUBLINGS: usize = 8;
 
-/// A keyframe that looks like a scan.
+/// A keyframe that looks similar to a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PlaceGuess {
-    /// Its number.
+    /// Its index.
     pub keyframe: usize,
-    /// How different both look, 0 to 1.
+    /// Dissimilarity, 0 to 1.
     pub distance: f64,
-    /// Its place at the heading at which both look most alike, `map_from_body`.
+    /// The keyframe's position with the heading of the best match, `map_from_body`.
     pub pose: SE2,
 }
 
-/// Keyframes at their poses: registered on where the place is known, searched where it is not.
+/// Keyframes at their poses: for registration while tracking, for search while lost.
 #[derive(Clone, Debug)]
 pub struct KnownMap {
     keyframes: Vec<Keyframe>,
@@ -44,7 +45,7 @@ impl KnownMap {
     /// The map of these keyframes, `map_from_body` each.
     ///
     /// # Errors
-    /// Where they have no point, or lie farther apart than any grid reaches.
+    /// If they have no point, or are too far apart for any grid.
     pub fn new(
         keyframes: Vec<Keyframe>,
         poses: Vec<SE2>,
@@ -106,16 +107,16 @@ impl KnownMap {
         &self.poses
     }
 
-    /// All points, thinned to a cell of the grid each.
+    /// All points, thinned to one per cell of the grid.
     #[must_use]
     pub fn points(&self) -> &PointCloud {
         &self.points
     }
 
-    /// A search for a scan, or for a trail of scans, that has not begun.
+    /// A new search for a scan, or for a trail of scans.
     ///
     /// # Errors
-    /// Where the scan has no finite point or the window cannot be numbered.
+    /// If the scan has no finite point or the window has too many poses.
     pub fn search(
         &self,
         scan: &PointCloud,
@@ -131,7 +132,7 @@ impl KnownMap {
         SearchWindow::whole(self.search.grid())
     }
 
-    /// The keyframes that look most like a scan, the best first.
+    /// The keyframes most similar to a scan, the best first.
     #[must_use]
     pub fn alike(&self, scan: &PointCloud, most: usize) -> Vec<PlaceGuess> {
         let here = ScanContext::new(scan, &self.looks);
@@ -160,7 +161,7 @@ impl KnownMap {
         guesses
     }
 
-    /// The keyframes within `near_m` (m) of a pose, at most so many, the nearest, by number.
+    /// The keyframes within `near_m` (m) of a pose, at most `most`, the nearest, by index.
     #[must_use]
     pub fn near(&self, pose: &SE2, near_m: f64, most: usize) -> Vec<usize> {
         let distances = self.poses.iter().map(|at| position_error_m(at, pose));
@@ -175,7 +176,7 @@ impl KnownMap {
         near
     }
 
-    /// Makes `local` the map of some keyframes, map frame.
+    /// Builds `local` from these keyframes, in the map frame.
     pub(super) fn build_local(&self, keyframes: &[usize], local: &mut LocalMap) {
         local.rebuild(keyframes.iter().map(|&keyframe| {
             let scan = &*self.keyframes[keyframe].scan;

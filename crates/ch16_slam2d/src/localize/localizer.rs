@@ -1,4 +1,4 @@
-//! One frame at a time: follow the pose, or look for it.
+//! The localizer: tracks the pose, or searches for it, one frame at a time.
 
 use std::sync::Arc;
 
@@ -18,20 +18,20 @@ use crate::scan::{Frame, FrameError, PreparedFrame, ScanPreparer};
 use crate::search::{SearchResult, SearchWindow};
 use crate::slam::{RobotConfig, SlamConfig};
 
-/// Disagreement of scan and prediction that both allow: 99 of 100 lie below.
-const BELIEVED_CHI2: f64 = 11.34;
-/// A place that a search finds again is so near to the one before, m and rad.
-const AGAIN: f64 = 0.4;
-/// A search is made at least once in so many frames while the robot is lost.
+/// Largest squared disagreement of scan and prediction for a pose that is not doubtful: the 99 % quantile.
+const GATE_CHI2: f64 = 11.34;
+/// A search result confirms the previous one within this distance, m and rad.
+const CONFIRMATION_REACH: f64 = 0.4;
+/// While the robot is lost, a search starts at least every this many frames.
 const SEARCH_EVERY: usize = 20;
-/// After searches that found nothing so many sweeps of the trail are awaited at most.
-const MOST_AWAITED: usize = 4;
-/// By so much the usual score follows each scan.
-const USUAL_RATE: f64 = 0.1;
-/// Standard deviations of a given start within which it is looked for.
+/// Largest number of further sweeps to wait for after unsuccessful searches.
+const MAX_AWAITED: usize = 4;
+/// Rate of the running average of the score.
+const SCORE_RATE: f64 = 0.1;
+/// Half width of the search around a given start, in standard deviations.
 const START_SIGMAS: f64 = 3.0;
 
-/// Follows a robot on a map that stays as it is, and finds it where it is lost.
+/// Tracks a robot on a fixed map, and relocalizes it if it is lost.
 #[derive(Clone)]
 pub struct Localizer {
     map: Arc<KnownMap>,
@@ -40,7 +40,7 @@ pub struct Localizer {
     preparer: ScanPreparer,
     robot: RobotConfig,
     registration: MapRegistrationConfig,
-    /// The keyframes around the robot, and which they are.
+    /// The local map, and its keyframes.
     local: LocalMap,
     near: Vec<usize>,
     trail: Trail,
@@ -48,18 +48,17 @@ pub struct Localizer {
     last_stamp_s: f64,
     start: StartPose,
     belief: Option<Belief>,
-    /// The place that the last search found, moved on since, while it is not localized.
+    /// The unconfirmed result of the last search, propagated by the motion since.
     candidate: Option<SE2>,
     searched_ago: usize,
-    /// Sweeps that still have to join the trail before the next search, and how many it was told to
-    /// await: where the map knows nothing, every search is as long as it is vain.
+    /// Sweeps that still have to join the trail before the next search, and the last number of them: in an unmapped
+    /// area every search is slow and in vain.
     awaited: usize,
     patience: usize,
 }
 
 impl Localizer {
-    /// A localizer that has seen nothing; `slam` says how scans become clouds and how far wheels are
-    /// trusted, as in the session of the map.
+    /// A localizer without frames; `slam` holds the scan preparation and the odometry noise of the map's session.
     #[must_use]
     pub fn new(
         map: Arc<KnownMap>,
@@ -98,7 +97,7 @@ impl Localizer {
     /// Takes one frame.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the localizer stays as it was.
+    /// If the frame cannot be used; the localizer is unchanged.
     pub fn step(&mut self, frame: &Frame) -> Result<LocalizeReport, FrameError> {
         let velocity = self.trail.velocity();
         let prepared =
@@ -107,22 +106,22 @@ impl Localizer {
         self.step_prepared(&prepared)
     }
 
-    /// [`Localizer::step`] with a scan that is already a cloud.
+    /// [`Localizer::step`] with a prepared scan.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the localizer stays as it was.
+    /// If the frame cannot be used; the localizer is unchanged.
     pub fn step_prepared(&mut self, frame: &PreparedFrame) -> Result<LocalizeReport, FrameError> {
         let mut pending = self.begin(frame)?;
         while self.search_step(&mut pending) {}
         Ok(pending.report)
     }
 
-    /// First part of a frame: the pose is followed, or a search for it is begun.
+    /// First part of a frame: tracks the pose, or starts a search for it.
     ///
-    /// The parts are for callers that look in between; [`Localizer::step`] does all of them in order.
+    /// The parts are for callers that need the intermediate states; [`Localizer::step`] runs all of them in order.
     ///
     /// # Errors
-    /// Where the frame cannot be used; the localizer stays as it was.
+    /// If the frame cannot be used; the localizer is unchanged.
     pub fn begin(&mut self, frame: &PreparedFrame) -> Result<PendingFix, FrameError> {
         let here = self.belief.map_or_else(SE2::identity, |belief| belief.pose);
         let dt_s = frame.seconds_after(self.last_stamp_s, &here)?;
@@ -169,7 +168,7 @@ impl Localizer {
         Ok(pending)
     }
 
-    /// Second part, until it is false: one box of the search, or what the search found is judged.
+    /// Second part, until it returns false: expands one box of the search, or evaluates its result.
     pub fn search_step(&mut self, pending: &mut PendingFix) -> bool {
         let Some(search) = &mut pending.search else {
             return false;
@@ -181,15 +180,15 @@ impl Localizer {
         pending.search = None;
         match pending.start.take() {
             Some(start) => {
-                self.judge_near(&start, result, pending);
+                self.evaluate_near(&start, result, pending);
                 self.plan_search(pending);
             }
-            None => self.judge_everywhere(result, pending),
+            None => self.evaluate_whole_map(result, pending),
         }
         pending.search.is_some()
     }
 
-    /// Registers the scan around the prediction and weighs both.
+    /// Registers the scan around the prediction and fuses both.
     fn follow(&mut self, motion: &SE2, frame: &PreparedFrame, report: &mut LocalizeReport) {
         let Some(belief) = self.belief else { return };
         let noise = self.robot.motion_noise(frame.odometry.is_some());
@@ -201,7 +200,7 @@ impl Localizer {
             sigma_rad: math::sqrt(covariance.m33),
             tail: PriorTail::Student,
         };
-        self.approach(&prediction);
+        self.rebuild_local_map(&prediction);
         let found = self
             .local
             .locate(&frame.cloud, &prior, &[], &self.registration);
@@ -222,22 +221,22 @@ impl Localizer {
         }
         if score < belief.usual_score - self.config.score_drop {
             if belief.drops == 0 {
-                // What was seen before it may have been seen elsewhere.
+                // Earlier sweeps may have been taken elsewhere.
                 self.trail.restart(frame, self.frames - 1);
             }
             next.drops += 1;
         } else if !self.is_suspect(&belief) {
             next.drops = 0;
-            next.usual_score += USUAL_RATE * (score - belief.usual_score);
+            next.usual_score += SCORE_RATE * (score - belief.usual_score);
         }
         let mut is_sure = next.misses == 0 && next.drops == 0 && self.is_usual(&next);
         if score >= self.config.poor_score {
             let (position, heading) = prior.squared(&prior.deviation(&found.registered.pose));
-            is_sure &= position + heading <= BELIEVED_CHI2;
+            is_sure &= position + heading <= GATE_CHI2;
             next.pose = found.registered.pose;
-            // Wide where the odometry predicted something else.
+            // Large if the odometry predicted a different pose.
             let before = covariance.try_inverse().unwrap_or_default()
-                * math::min(BELIEVED_CHI2 / (position + heading), 1.0);
+                * math::min(GATE_CHI2 / (position + heading), 1.0);
             let joint = found.information() + before;
             let joint = regularize(joint, INFORMATION_RIDGE, INFORMATION_CAP);
             next.covariance = joint.try_inverse().unwrap_or(covariance);
@@ -255,18 +254,23 @@ impl Localizer {
         report.score = Some(score);
     }
 
-    /// Whether scans have fitted so much worse than before, and so often, that the robot may be elsewhere.
+    /// Whether enough scans have fitted clearly worse than usual, so the robot may be elsewhere.
     fn is_suspect(&self, belief: &Belief) -> bool {
         belief.drops >= self.config.lost_after
     }
 
-    /// Whether scans usually fit here as they do where the robot is.
+    /// Whether the usual score is as high as at a correct pose.
     fn is_usual(&self, belief: &Belief) -> bool {
         belief.usual_score >= self.config.usual_score
     }
 
-    /// Holds what was found around a given start against it.
-    fn judge_near(&mut self, start: &SE2, result: Option<SearchResult>, pending: &mut PendingFix) {
+    /// Tests the result of a search around a given start against it.
+    fn evaluate_near(
+        &mut self,
+        start: &SE2,
+        result: Option<SearchResult>,
+        pending: &mut PendingFix,
+    ) {
         let Some(result) = result else { return };
         let square = |sigma: f64| 1.0 / (sigma * sigma);
         let xy = square(self.config.start_sigma_m);
@@ -276,12 +280,12 @@ impl Localizer {
         let innovation = start.between(&found.registered.pose).log();
         let gate = chi_squared_gate(&innovation, &localized, self.config.gate_chi2);
         if gate.passes() {
-            self.take(&found, Some(localized), &mut pending.report);
+            self.accept(&found, Some(localized), &mut pending.report);
         }
         pending.report.search = Some(result);
     }
 
-    /// Begins to search the whole map for the trail, where the place is not known and it is time.
+    /// Starts a search of the whole map for the trail, if the robot is not localized and a search is due.
     fn plan_search(&mut self, pending: &mut PendingFix) {
         let is_settled = |belief: Belief| self.is_usual(&belief) && !self.is_suspect(&belief);
         if self.belief.is_some_and(is_settled) {
@@ -300,11 +304,11 @@ impl Localizer {
         pending.search = Some(search);
     }
 
-    /// Believes the best place of the whole map, or not.
-    fn judge_everywhere(&mut self, result: Option<SearchResult>, pending: &mut PendingFix) {
+    /// Accepts or rejects the best pose on the whole map.
+    fn evaluate_whole_map(&mut self, result: Option<SearchResult>, pending: &mut PendingFix) {
         let Some(result) = result else {
             self.candidate = None;
-            self.patience = (2 * self.patience).min(MOST_AWAITED);
+            self.patience = (2 * self.patience).min(MAX_AWAITED);
             self.awaited = self.patience;
             return;
         };
@@ -314,10 +318,11 @@ impl Localizer {
         let margin = result.margin().unwrap_or(1.0);
         let best = result.best.pose;
         let is_best = |pose: &SE2| {
-            position_error_m(pose, &best) < AGAIN && pose.between(&best).theta().abs() < AGAIN
+            position_error_m(pose, &best) < CONFIRMATION_REACH
+                && pose.between(&best).theta().abs() < CONFIRMATION_REACH
         };
         if let Some(belief) = self.belief.as_mut().filter(|belief| is_best(&belief.pose)) {
-            // It is here after all: what is seen here has changed.
+            // The pose is correct after all: the environment has changed.
             belief.drops = 0;
             belief.usual_score = report.score.unwrap_or_default();
             return;
@@ -328,7 +333,7 @@ impl Localizer {
             && (margin >= self.config.unconfirmed_margin
                 || (margin >= self.config.min_margin && is_again));
         let found = self.register(&pending.scan, best);
-        if (is_localized && self.take(&found, None, report)) || self.belief.is_some() {
+        if (is_localized && self.accept(&found, None, report)) || self.belief.is_some() {
             return;
         }
         report.verdict = Verdict::Doubtful;
@@ -336,8 +341,8 @@ impl Localizer {
         report.score = Some(found.fit.score);
     }
 
-    /// Believes a registration that fits; whether it did.
-    fn take(
+    /// Accepts a registration if it fits; returns whether it did.
+    fn accept(
         &mut self,
         found: &MapRegistration,
         prior: Option<Matrix3<f64>>,
@@ -369,9 +374,9 @@ impl Localizer {
         true
     }
 
-    /// Registers a scan around a pose that a search has found.
+    /// Registers a scan around a pose from a search.
     fn register(&mut self, scan: &PointCloud, guess: SE2) -> MapRegistration {
-        self.approach(&guess);
+        self.rebuild_local_map(&guess);
         let stages = [
             self.registration.max_correspondence_m,
             self.registration.inlier_distance_m,
@@ -380,8 +385,8 @@ impl Localizer {
             .register(scan, guess, &stages, None, &self.registration)
     }
 
-    /// Makes the local map that of the keyframes around a pose.
-    fn approach(&mut self, pose: &SE2) {
+    /// Rebuilds the local map from the keyframes around a pose.
+    fn rebuild_local_map(&mut self, pose: &SE2) {
         let LocalizeConfig {
             near_m,
             near_keyframes,

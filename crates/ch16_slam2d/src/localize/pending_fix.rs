@@ -13,20 +13,20 @@ pub struct PendingFix {
     pub(super) scan: Arc<PointCloud>,
     /// Whether the sweep joined the trail.
     pub(super) joined: bool,
-    /// The given start around which is looked; none where it is everywhere.
+    /// The given start around which to search; `None` for the whole map.
     pub(super) start: Option<SE2>,
     pub(super) search: Option<MapSearch>,
     pub(super) report: LocalizeReport,
 }
 
 impl PendingFix {
-    /// The search under way; none where none is needed, or where it has ended.
+    /// The running search; `None` if none is needed or it has ended.
     #[must_use]
     pub fn search(&self) -> Option<&MapSearch> {
         self.search.as_ref()
     }
 
-    /// What the frame says so far, or in the end.
+    /// The report so far, and at the end the final one.
     #[must_use]
     pub fn report(&self) -> &LocalizeReport {
         &self.report

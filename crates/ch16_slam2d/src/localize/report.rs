@@ -1,26 +1,26 @@
-//! What a frame says of the robot's place.
+//! Result of one frame of localization.
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
 use crate::search::{ScoredPose, SearchResult};
 
-/// How far a pose is to be localized.
+/// Reliability of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The place was searched for and found in this frame.
+    /// The pose was found by a search in this frame.
     Found,
-    /// The pose follows from the one before, and the scan fits there.
+    /// The pose follows from the previous one, and the scan fits there.
     Tracking,
-    /// A pose is told, but the scan fits poorly, the pose is not known well, or another place fits
+    /// The pose is reported, but the scan fits poorly, its covariance is large, or another pose fits
     /// about as well.
     Doubtful,
-    /// Nobody knows.
+    /// The pose is unknown.
     Lost,
 }
 
 impl Verdict {
-    /// Its name.
+    /// Name in lower case.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -31,41 +31,47 @@ impl Verdict {
         }
     }
 
-    /// Whether the pose is one to drive by.
+    /// Whether the pose is reliable enough to navigate by.
     #[must_use]
     pub fn is_localized(self) -> bool {
         matches!(self, Self::Found | Self::Tracking)
     }
 }
 
-/// What one frame did.
+impl core::fmt::Display for Verdict {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// Result of one frame.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LocalizeReport {
-    /// Number of the frame, counted from 0.
+    /// Index of the frame.
     pub frame: usize,
     /// Its time, s.
     pub stamp_s: f64,
-    /// How far the pose is to be localized.
+    /// Reliability of the pose.
     pub verdict: Verdict,
-    /// `map_from_body`; none where it is lost.
+    /// `map_from_body`; `None` if the robot is lost.
     pub pose: Option<SE2>,
     /// Covariance of the pose in the body's frame, 3×3, translation first: m², rad².
     pub covariance: Option<Matrix3<f64>>,
     /// Share of the scan that fits at the pose, 0 to 1.
     pub score: Option<f64>,
-    /// The search of this frame, where one was made and found something.
+    /// Result of this frame's search, if there was one and it found a pose.
     pub search: Option<SearchResult>,
 }
 
 impl LocalizeReport {
-    /// By how much the best other place was behind, where a search found one that is close enough to
-    /// be asked about.
+    /// Margin of the search result to the best distinct pose, if the search found a competing one.
     #[must_use]
     pub fn margin(&self) -> Option<f64> {
         self.search?.margin()
     }
 
-    /// The best other place, where a search found one.
+    /// The best distinct pose, if a search found one.
     #[must_use]
     pub fn runner_up(&self) -> Option<ScoredPose> {
         self.search?.runner_up

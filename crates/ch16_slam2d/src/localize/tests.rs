@@ -35,7 +35,7 @@ fn error_m(report: &LocalizeReport, step: usize) -> f64 {
 }
 
 #[test]
-fn a_given_start_is_mended_followed_and_told_with_a_covariance() {
+fn a_given_start_is_corrected_tracked_and_has_a_covariance() {
     let (map, config) = known();
     let off = truth(40) * SE2::new(0.3, -0.4, 0.2);
     let mut localizer = localizer(&map, &config, StartPose::Near(off));
@@ -47,7 +47,7 @@ fn a_given_start_is_mended_followed_and_told_with_a_covariance() {
             Verdict::Tracking
         };
         assert_eq!(report.verdict, expected, "{step}");
-        // 0.05: a cell of the thinned scans, and a map that was driven itself.
+        // 0.05: a cell of the thinned scans, and the error of the map itself.
         assert!(
             error_m(&report, step) < 0.05,
             "{step}: {}",
@@ -59,7 +59,7 @@ fn a_given_start_is_mended_followed_and_told_with_a_covariance() {
 }
 
 #[test]
-fn a_rectangular_room_looks_the_same_after_half_a_turn_and_is_doubted() {
+fn a_rectangular_room_is_ambiguous_and_not_localized() {
     let (map, config) = known();
     let mut localizer = localizer(&map, &config, StartPose::Anywhere);
     for step in 40..60 {
@@ -77,7 +77,7 @@ fn a_rectangular_room_looks_the_same_after_half_a_turn_and_is_doubted() {
 }
 
 #[test]
-fn frames_out_of_order_are_refused_and_change_nothing() {
+fn frames_out_of_order_are_rejected_and_change_no_state() {
     let (map, config) = known();
     let mut localizer = localizer(&map, &config, StartPose::Near(truth(40)));
     localizer.step(&frame(40)).unwrap();

@@ -1,4 +1,4 @@
-//! The sweeps of the last metres, held together by the front end alone.
+//! The sweeps of the last metres, aligned by the front end alone.
 
 use std::sync::Arc;
 
@@ -10,13 +10,13 @@ use crate::metrics::position_error_m;
 use crate::scan::PreparedFrame;
 use crate::slam::{FrontEnd, SlamConfig, WindowSweep};
 
-/// A sweep that fits worse on the ones before it was taken elsewhere, 0 to 1.
-const TORN_SCORE: f64 = 0.3;
+/// A sweep with a lower score on the previous ones starts a new trail, 0 to 1.
+const MIN_TRAIL_SCORE: f64 = 0.3;
 
-/// What a sweep did to the trail.
+/// Result of adding a sweep to the trail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrailStep {
-    /// Motion since the last frame as scans and wheels tell it; none where the trail is torn.
+    /// Motion since the last frame by scans and odometry; `None` if the trail was interrupted.
     pub motion: Option<SE2>,
     /// Whether the sweep joined the trail.
     pub joined: bool,
@@ -48,7 +48,7 @@ impl Trail {
         self.front_end.velocity()
     }
 
-    /// Takes a frame that is `dt_s` seconds after the last one.
+    /// Takes a frame `dt_s` seconds after the last one.
     pub fn step(&mut self, frame: &PreparedFrame, dt_s: f64, config: &LocalizeConfig) -> TrailStep {
         if self.frames == 0 {
             self.begin(frame);
@@ -61,8 +61,11 @@ impl Trail {
         let number = self.frames;
         self.frames += 1;
         let found = self.front_end.register(frame, dt_s, number, &self.config);
-        let is_torn = found.matched.score.is_some_and(|score| score < TORN_SCORE);
-        if is_torn || !found.accepted {
+        let is_interrupted = found
+            .matched
+            .score
+            .is_some_and(|score| score < MIN_TRAIL_SCORE);
+        if is_interrupted || !found.accepted {
             *self = Self::new(self.config.clone());
             self.begin(frame);
             return TrailStep {
@@ -86,8 +89,8 @@ impl Trail {
         }
     }
 
-    /// All sweeps in the body's frame now, the newest scan among them, thinned and cut off where the
-    /// search ends.
+    /// All sweeps in the present body frame, including the newest scan, thinned and cropped to the search
+    /// range.
     pub fn cloud(&self, newest: &PointCloud, config: &LocalizeConfig) -> PointCloud {
         let body_from_start = self.front_end.estimate().inverse();
         let mut all = newest.clone();
@@ -102,7 +105,7 @@ impl Trail {
         near.downsample(config.search_cell_m)
     }
 
-    /// Forgets all sweeps before this frame's, which is the newest; the motion goes on.
+    /// Drops all sweeps before this frame's; the motion estimate continues.
     pub fn restart(&mut self, frame: &PreparedFrame, number: usize) {
         let mut alone = self.front_end.snapshot();
         let pose = alone.estimate;

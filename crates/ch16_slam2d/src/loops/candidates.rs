@@ -1,25 +1,25 @@
-//! Which old keyframes might show the same place.
+//! Loop candidates: which old keyframes might show the same location.
 
 use pr_geom::{SE2, math};
 
 use super::LoopConfig;
 
-/// An old node that may show the same place as the new one.
+/// An old node that may show the same location as the new one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopCandidate {
     /// The old node.
     pub node: usize,
     /// Its distance from the new node in the graph, m.
     pub distance_m: f64,
-    /// Where the new node is in the old one's frame, as the detector sees it; registration starts
-    /// there. None starts at the graph's belief.
+    /// Pose of the new node in the old one's frame, by the detector; registration starts there. `None` starts at
+    /// the graph's relative pose.
     pub proposal: Option<SE2>,
 }
 
 /// The nodes near `poses[node]` that are old enough, nearest first; of equals the older first.
 ///
-/// `poses` are the graph's, `world_from_body`. Nearness in the graph is all that is looked at: the
-/// drift that a loop would remove also hides it, where it exceeds the radius.
+/// `poses` are the graph's, `world_from_body`. The only criterion is the distance in the graph, so a
+/// drift that exceeds the radius hides the loop that would correct it.
 #[must_use]
 pub fn detect_loop_candidates(
     poses: &[SE2],
@@ -31,7 +31,7 @@ pub fn detect_loop_candidates(
     candidates
 }
 
-/// The same by number.
+/// [`detect_loop_candidates`] by index.
 fn nearby(poses: &[SE2], node: usize, config: &LoopConfig) -> Vec<LoopCandidate> {
     let here = poses[node];
     let old_enough = (node + 1).saturating_sub(config.min_gap_nodes);
@@ -47,20 +47,20 @@ fn nearby(poses: &[SE2], node: usize, config: &LoopConfig) -> Vec<LoopCandidate>
         .collect()
 }
 
-/// The cheapest first, and the older first where two cost the same.
+/// Sorts by cost; of equal costs the older first.
 fn sort_by(candidates: &mut [LoopCandidate], cost: &dyn Fn(&LoopCandidate) -> f64) {
     candidates.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
 }
 
-/// A gap of so many nodes between two near ones ends a visit.
+/// A gap of this many nodes between two near ones ends a visit.
 const VISIT_GAP_NODES: usize = 5;
-/// So far a node stands back for each radian by which it looks another way, m.
+/// Distance equivalent of a heading difference, m per radian.
 const METRES_PER_RADIAN: f64 = 0.5;
 
 /// The best node of every visit to the surroundings of `poses[node]`, nearest first.
 ///
-/// A visit is a run of nodes within the radius. The best of it is the nearest, where a radian of
-/// heading counts as half a metre: scans that look the same way show the same things.
+/// A visit is a run of nodes within the radius. The best of it is the nearest; a radian of heading difference
+/// counts as half a metre, because scans with similar headings overlap more.
 #[must_use]
 pub fn detect_visits(poses: &[SE2], node: usize, config: &LoopConfig) -> Vec<LoopCandidate> {
     let here = poses[node];
@@ -90,7 +90,7 @@ pub fn detect_visits(poses: &[SE2], node: usize, config: &LoopConfig) -> Vec<Loo
 mod tests {
     use super::*;
 
-    /// A drive along x with nodes 0.5 m apart, and back again.
+    /// A path along x with nodes 0.5 m apart, and back again.
     fn there_and_back() -> Vec<SE2> {
         let pose = |x: f64| SE2::translation(x, 0.0);
         let out = (0..20).map(|k| pose(0.5 * f64::from(k)));
@@ -102,7 +102,7 @@ mod tests {
     fn candidates_are_near_and_old_and_the_nearest_comes_first() {
         let poses = there_and_back();
         let config = LoopConfig::default();
-        // Node 32 stands at x = 3.6 m; node 7 at 3.5 m is nearest, nodes up to 10 are old enough.
+        // Node 32 is at x = 3.6 m; node 7 at 3.5 m is nearest, nodes up to 10 are old enough.
         let candidates = detect_loop_candidates(&poses, 32, &config);
         assert_eq!(candidates[0].node, 7);
         assert!((candidates[0].distance_m - 0.1).abs() < 1e-12);
@@ -134,8 +134,8 @@ mod tests {
     }
 
     #[test]
-    fn every_visit_has_one_candidate_and_the_one_that_looks_the_same_way_comes_first() {
-        // Out, back with the heading turned, and out again.
+    fn every_visit_has_one_candidate_and_similar_headings_come_first() {
+        // Out, back with the opposite heading, and out again.
         let turned = |pose: &SE2| *pose * SE2::new(0.0, 0.0, core::f64::consts::PI);
         let mut poses = there_and_back();
         for pose in &mut poses[20..] {
@@ -146,7 +146,7 @@ mod tests {
             min_gap_nodes: 5,
             ..LoopConfig::default()
         };
-        // Node 50 stands at x = 5 m: node 10 was there on the way out, node 29 on the way back.
+        // Node 50 is at x = 5 m: node 10 was there on the way out, node 29 on the way back.
         let visits = detect_visits(&poses, 50, &config);
         let nodes: Vec<usize> = visits.iter().map(|visit| visit.node).collect();
         assert_eq!(nodes, [10, 29]);

@@ -4,7 +4,7 @@ use crate::chi_squared::CHAPTER_GATE;
 use crate::matching::{MapConfig, MatcherKind, TrustConfig};
 use crate::places::PlaceDetectorConfig;
 
-/// What the gate takes for the drift between two nodes.
+/// The drift between two nodes that the gate assumes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum GateModel {
     /// The chapter's: a diagonal covariance that grows with the number of nodes on the path.
@@ -12,8 +12,8 @@ pub enum GateModel {
     PathApproximation,
     /// The exact covariance of the relative pose in the graph, earlier loops included.
     ///
-    /// It is only as honest as the information of the edges: scan matching that is too sure of
-    /// itself makes this gate turn away good loops.
+    /// It is only as accurate as the information of the edges: overconfident scan matching makes this gate
+    /// reject true loops.
     ExactMarginal,
 }
 
@@ -23,60 +23,60 @@ pub enum Detection {
     /// The chapter's: all of them, the nearest first.
     #[default]
     Nearest,
-    /// The nearest of every visit: of each run of keyframes that passed by.
+    /// The nearest of every visit: of each run of near keyframes.
     Visits,
 }
 
-/// Who proposes loops.
+/// The source of loop candidates.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum DetectorKind {
-    /// The chapter's: what is near in the graph.
+    /// The chapter's: keyframes that are near in the graph.
     #[default]
     Nearby,
-    /// What looks alike, wherever it is in the graph.
+    /// Keyframes of similar appearance, wherever they are in the graph.
     Place(PlaceDetectorConfig),
 }
 
 /// Detection, verification and gating of loops; the defaults are the chapter's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopConfig {
-    /// Who proposes loops; the next two fields belong to what is near.
+    /// The source of loop candidates; the next two fields belong to [`DetectorKind::Nearby`].
     pub detector: DetectorKind,
     /// Which of the near keyframes are proposed.
     pub detection: Detection,
     /// Candidates lie within this distance of the new node in the graph, m.
     pub radius_m: f64,
-    /// Candidates are at least so many nodes older.
+    /// Candidates are at least this many nodes older.
     pub min_gap_nodes: usize,
-    /// At most one attempt in so many nodes.
+    /// At most one attempt in this many nodes.
     pub attempt_every_nodes: usize,
-    /// At most so many candidates are verified at a node, best first; the first that passes is closed.
+    /// Largest number of candidates verified at a node, best first; the first that passes is closed.
     pub candidates_tried: usize,
-    /// The submap holds the candidate and so many nodes on either side of it.
+    /// The submap holds the candidate and this many nodes on either side of it.
     pub submap_half_width: usize,
     /// The submap.
     pub submap: MapConfig,
-    /// What registers the new sweep on the submap.
+    /// Registers the new sweep on the submap.
     pub matcher: MatcherKind,
-    /// Most iterations of the registration against the submap.
+    /// Largest number of iterations of the registration on the submap.
     pub max_iterations: usize,
-    /// Correspondence distance in metres, unless half the radius is more.
+    /// Smallest correspondence distance in metres; half the radius is used if it is larger.
     pub min_tau_m: f64,
-    /// A registration that fits worse than this is turned away, m.
+    /// Largest error of an accepted registration, m.
     pub max_rmse_m: f64,
-    /// A registration with fewer pairs is turned away.
+    /// Smallest number of pairs of an accepted registration.
     pub min_inliers: usize,
-    /// A registration whose score is lower is turned away, in the unit of the matcher's score.
+    /// Smallest score of an accepted registration, in the unit of the matcher's score.
     pub min_score: f64,
-    /// Trust in the pairs of an accepted loop.
+    /// Covariance scale and noise for the pairs of an accepted loop.
     pub trust: TrustConfig,
-    /// What the gate takes for the drift; the two fields below belong to the path approximation.
+    /// The assumed drift; the two fields below belong to the path approximation.
     pub gate_model: GateModel,
     /// Drift of x and of y over one node, a standard deviation in metres; grows with √gap.
     pub drift_sigma_m: f64,
     /// Drift of the heading over one node, a standard deviation in radians; grows with √gap.
     pub drift_sigma_rad: f64,
-    /// The largest squared innovation that is believed; see [`CHAPTER_GATE`].
+    /// The largest accepted squared innovation; see [`CHAPTER_GATE`].
     pub gate_chi2: f64,
 }
 

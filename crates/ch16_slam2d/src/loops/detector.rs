@@ -1,4 +1,4 @@
-//! Who proposes loops: the seam for place recognition of any kind.
+//! The interface for place recognition of any kind.
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
@@ -9,7 +9,7 @@ use crate::cloud::PointCloud;
 use crate::graph::PoseGraph;
 use crate::slam::Keyframe;
 
-/// What a detector may look at.
+/// Input of a detector.
 pub struct LoopQuery<'a> {
     graph: &'a mut PoseGraph,
     keyframes: &'a [Keyframe],
@@ -22,7 +22,7 @@ impl<'a> LoopQuery<'a> {
         Self { graph, keyframes }
     }
 
-    /// The node for which loops are looked for: the newest.
+    /// The node for which loops are searched: the newest.
     #[must_use]
     pub fn node(&self) -> usize {
         self.keyframes.len().saturating_sub(1)
@@ -43,20 +43,20 @@ impl<'a> LoopQuery<'a> {
     /// The thinned scan of a keyframe with its normals, body frame.
     ///
     /// # Panics
-    /// Where the keyframe does not exist.
+    /// If the keyframe does not exist.
     #[must_use]
     pub fn scan(&self, node: usize) -> &PointCloud {
         &self.keyframes[node].scan
     }
 
-    /// Exact covariance of the pose of `new` in the frame of `old`; see
-    /// [`PoseGraph::relative_covariance`]. It is worked out when it is asked for.
+    /// Exact covariance of the pose of `new` in the frame of `old`; see [`PoseGraph::relative_covariance`].
+    /// Computed on demand.
     ///
     /// # Errors
-    /// Where the graph has none.
+    /// If the graph has none.
     ///
     /// # Panics
-    /// Where a node does not exist.
+    /// If a node does not exist.
     pub fn relative_covariance(
         &mut self,
         old: usize,
@@ -66,21 +66,21 @@ impl<'a> LoopQuery<'a> {
     }
 }
 
-/// Proposes old keyframes that may show the same place as the newest.
+/// Proposes old keyframes that may show the same location as the newest.
 ///
-/// It says where to look, not what to believe: every candidate is registered and gated.
+/// A proposal is not yet a loop: every candidate is registered and gated.
 pub trait LoopDetector: CloneDetector + Send {
     /// Candidates for the newest keyframe, best first.
     fn detect(&mut self, query: &mut LoopQuery<'_>) -> Vec<LoopCandidate>;
 
-    /// A keyframe is no longer there, and later ones have the number before theirs; a detector that
-    /// remembers keyframes by their number forgets it.
-    fn forget(&mut self, _node: usize) {}
+    /// Handles the removal of a keyframe, which decreases the index of later ones. A detector that
+    /// stores keyframes by index has to remove it.
+    fn remove_keyframe(&mut self, _node: usize) {}
 }
 
-/// A detector that can be copied behind its trait; every `Clone` detector is one.
+/// A detector that can be cloned behind its trait; implemented for every `Clone` detector.
 pub trait CloneDetector {
-    /// A copy that answers as this one does.
+    /// A clone of this detector.
     fn clone_detector(&self) -> Box<dyn LoopDetector>;
 }
 
@@ -96,8 +96,7 @@ impl Clone for Box<dyn LoopDetector> {
     }
 }
 
-/// The chapter's detector: what is near in the graph and old enough, see
-/// [`detect_loop_candidates`].
+/// The chapter's detector: old keyframes that are near in the graph, see [`detect_loop_candidates`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearbyDetector {
     config: LoopConfig,

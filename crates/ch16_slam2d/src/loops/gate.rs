@@ -1,8 +1,8 @@
-//! Whether an innovation is believable.
+//! The χ² gate of an innovation.
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Whether an innovation is believable.
+/// Result of the χ² gate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GateTest {
     /// `νᵀ Ω ν`.

@@ -1,11 +1,11 @@
-//! A loop that waits for others.
+//! A loop that waits for confirmation.
 
 use super::LoopVerification;
 
-/// A loop that passed its own tests and waits until another one along the path agrees with it.
+/// A loop that passed its own tests and waits until another one along the path confirms it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PendingLoop {
-    /// What is known of it.
+    /// Result of its verification.
     pub verification: LoopVerification,
     /// Path length over the keyframes from the first to its new node, m.
     pub path_m: f64,

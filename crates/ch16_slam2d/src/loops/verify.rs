@@ -1,4 +1,4 @@
-//! Whether the sweeps of two keyframes agree, and what the tests say of it.
+//! Verification of a loop: whether the sweeps of two keyframes agree, and the tests of the result.
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::SE2;
@@ -12,7 +12,7 @@ use crate::icp::{INFORMATION_CAP, INFORMATION_RIDGE, Pair, regularize};
 use crate::matching::{MatchRequest, MatchSummary, Matcher};
 use crate::slam::Keyframe;
 
-/// Why a loop was turned away, with what was measured.
+/// Why a loop was rejected, with the measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LoopRejection {
     /// The sweeps do not fit.
@@ -22,7 +22,7 @@ pub enum LoopRejection {
         /// The largest that is accepted.
         max_rmse_m: f64,
     },
-    /// Too few points take part.
+    /// Too few points are paired.
     FewInliers {
         /// Pairs of the registration.
         inliers: usize,
@@ -36,52 +36,103 @@ pub enum LoopRejection {
         /// The lowest that is accepted.
         min_score: f64,
     },
-    /// No place of the window that was searched fits.
+    /// No pose of the searched window fits.
     NoPlace {
         /// Half of the window's width, m.
         half_width_m: f64,
-        /// The lowest score that is looked for.
+        /// The smallest accepted score.
         min_score: f64,
     },
-    /// Another place fits about as well.
+    /// Another pose fits about as well.
     Ambiguous {
-        /// By how much the best other place was behind, in the unit of the matcher's score.
+        /// Margin to the best distinct pose, in the unit of the matcher's score.
         margin: f64,
         /// The smallest that is accepted.
         min_margin: f64,
     },
-    /// It waits for others that say the same.
+    /// It waits for confirmation by other loops.
     Waiting {
-        /// Loops that agree, itself among them.
+        /// Number of loops that agree, including itself.
         agreeing: usize,
-        /// How many have to.
+        /// Required number.
         needed: usize,
     },
     /// The innovation is larger than the drift explains.
     OutsideGate(GateTest),
-    /// The graph has no covariance to test against.
+    /// The graph has no covariance for the test.
     NoCovariance(OptimizeError),
-    /// It passed, but with it the graph could not be optimized, so it was taken out again.
+    /// It passed, but the graph could not be optimized with it, so it was reverted.
     OptimizationFailed(StopReason),
-    /// It passed, but the optimization raised the robust cost, so it was taken out again.
+    /// It passed, but the optimization raised the robust cost, so it was reverted.
     CostRose {
         /// `Σ ρ(eᵀΩe)` with the loop, before the optimization.
         before: f64,
-        /// The same after it.
+        /// `Σ ρ(eᵀΩe)` after the optimization.
         after: f64,
     },
 }
 
-/// A verified loop: what the registration found and what the tests say of it.
+impl core::fmt::Display for LoopRejection {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::PoorFit { rmse_m, max_rmse_m } => {
+                write!(
+                    f,
+                    "the inliers' RMSE is {rmse_m:.3} m, above {max_rmse_m:.3} m"
+                )
+            }
+            Self::FewInliers {
+                inliers,
+                min_inliers,
+            } => write!(f, "{inliers} inliers, at least {min_inliers} are needed"),
+            Self::LowScore { score, min_score } => {
+                write!(
+                    f,
+                    "a score of {score:.2}, at least {min_score:.2} is needed"
+                )
+            }
+            Self::NoPlace {
+                half_width_m,
+                min_score,
+            } => write!(
+                f,
+                "no pose within {half_width_m:.1} m has a score of at least {min_score:.2}"
+            ),
+            Self::Ambiguous { margin, min_margin } => write!(
+                f,
+                "ambiguous: the margin over the next best pose is {margin:.2}, at least {min_margin:.2} is needed"
+            ),
+            Self::Waiting { agreeing, needed } => {
+                write!(f, "pending: {agreeing} loops agree, {needed} are needed")
+            }
+            Self::OutsideGate(gate) => {
+                write!(
+                    f,
+                    "chi-squared {:.1} is above {:.1}",
+                    gate.chi2, gate.gate_chi2
+                )
+            }
+            Self::NoCovariance(error) => write!(f, "the graph has no covariance: {error}"),
+            Self::OptimizationFailed(stop) => {
+                write!(f, "the graph cannot be optimized with it: {stop}")
+            }
+            Self::CostRose { before, after } => {
+                write!(f, "the cost rose from {before:.1} to {after:.1}")
+            }
+        }
+    }
+}
+
+/// A verified loop: the registration and the results of the tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopVerification {
     /// The new node.
     pub from_node: usize,
     /// The old node.
     pub candidate: LoopCandidate,
-    /// `candidate_from_new` by the graph, T₀: what the gate tests against.
+    /// `candidate_from_new` by the graph, T₀: the reference of the gate.
     pub belief: SE2,
-    /// `candidate_from_new` where the registration started: the candidate's proposal, or the belief.
+    /// `candidate_from_new` at the start of the registration: the candidate's proposal, or T₀.
     pub initial: SE2,
     /// `candidate_from_new` by the registration, T̂.
     pub registered: SE2,
@@ -91,25 +142,25 @@ pub struct LoopVerification {
     pub inliers: usize,
     /// Iterations of the registration.
     pub iterations: usize,
-    /// The matcher's score of it, where it has one.
+    /// The matcher's score, if it has one.
     pub score: Option<f64>,
-    /// By how much the best other place was behind, in the unit of the matcher's score, as far as it was
-    /// looked for; none where nobody looked.
+    /// Margin to the best distinct pose, in the unit of the matcher's score, within the searched range;
+    /// `None` if there was no search.
     pub margin: Option<f64>,
     /// `log(T₀⁻¹ T̂)`, in m, m, rad.
     pub innovation: Vector3<f64>,
-    /// The information that the gate assumed of the innovation, S⁻¹; zero where the graph has none.
+    /// The information that the gate assumed for the innovation, S⁻¹; zero if the graph has none.
     pub gate_information: Matrix3<f64>,
-    /// The gate's verdict.
+    /// Result of the gate.
     pub gate: GateTest,
-    /// Information of the loop edge, should it be added.
+    /// Information of the loop edge.
     pub information: Matrix3<f64>,
-    /// Why it was turned away; none where it was accepted.
+    /// Why it was rejected; `None` if it was accepted.
     pub rejection: Option<LoopRejection>,
 }
 
 impl LoopVerification {
-    /// Whether all tests were passed.
+    /// Whether all tests passed.
     #[must_use]
     pub fn accepted(&self) -> bool {
         self.rejection.is_none()
@@ -122,7 +173,7 @@ impl LoopVerification {
     }
 }
 
-/// The graph and the sweeps as [`verify_loop`] needs them.
+/// The graph and the sweeps for [`verify_loop`].
 #[derive(Clone, Copy)]
 pub struct KeyframeView<'a> {
     /// Poses of all nodes in the graph, `world_from_body`.
@@ -131,7 +182,7 @@ pub struct KeyframeView<'a> {
     pub keyframes: &'a [Keyframe],
 }
 
-/// The memory of [`verify_loop`], kept between attempts.
+/// The memory of [`verify_loop`], reused between attempts.
 #[derive(Clone)]
 pub struct LoopWorkspace {
     world: PointCloud,
@@ -174,7 +225,7 @@ impl LoopWorkspace {
                 .extend_transformed(&view.keyframes[near].scan, &view.poses[near]);
         }
         // Through the world frame, not by relative poses: the beams straight ahead and abeam of the
-        // candidate lie on an edge of a cell, and their last bits decide which cell they fill.
+        // candidate lie on the edge of a cell, and their last bits decide which cell they belong to.
         self.submap.clear();
         self.submap
             .extend_transformed(&self.world, &view.poses[candidate].inverse());
@@ -186,8 +237,8 @@ impl LoopWorkspace {
 ///
 /// The submap is built in the candidate's frame from the keyframes around it; registration starts
 /// at the candidate's proposal, or at the graph's relative pose. `gate_information` is the S⁻¹ of the
-/// gate: that of [`path_information`](crate::chapter::path_information), or the graph's own; an error turns
-/// the loop away.
+/// gate: that of [`path_information`](crate::chapter::path_information), or the graph's own; an error rejects
+/// the loop.
 #[must_use]
 pub fn verify_loop(
     view: KeyframeView<'_>,

@@ -1,4 +1,4 @@
-//! ICP as a matcher: a dense map of the target and a workspace, kept between calls.
+//! ICP as a matcher: a dense map of the target and a workspace, reused between calls.
 
 use pr_geom::SE2;
 
@@ -36,7 +36,7 @@ impl IcpMatcher {
         Self::new(config, map)
     }
 
-    /// The settings of a registration that is asked for by `request`.
+    /// The settings for the registration of `request`.
     #[must_use]
     pub fn settings(&self, request: &MatchRequest) -> IcpConfig {
         IcpConfig {
@@ -52,7 +52,7 @@ impl IcpMatcher {
         &self.map
     }
 
-    /// The pairs of `source` at `target_from_source`, counted as a registration counts them.
+    /// The pairs of `source` at `target_from_source`, by the rules of a registration.
     pub(super) fn fit(&mut self, source: &PointCloud, at: SE2, tau_m: f64) -> Match {
         self.register(source, &MatchRequest::new(at, tau_m, 0))
     }

@@ -1,23 +1,23 @@
-//! How much a registration knows of the pose that it found, and in which frame that is said.
+//! The information of a registration about its pose.
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
 use crate::icp::{Pair, centroid, icp_information, move_information};
 
-/// How far matched points are trusted: `1/(σ² · covariance_scale)` a pair.
+/// Information of a pair: `1/(σ² · covariance_scale)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrustConfig {
     /// Standard deviation of a point in metres.
     pub sigma_m: f64,
-    /// Pairs are not independent: the variance is multiplied by this.
+    /// Factor on the variance, because pairs are correlated.
     pub covariance_scale: f64,
 }
 
 /// The information of `pairs` about the pose `target_from_body`, 3×3, translation first.
 ///
-/// With `p` the point in the body's frame, `R` the rotation of the pose and `n` the direction that a
-/// pair measures, `Σ J Jᵀ / (σ² · covariance_scale)` with `J = (Rᵀ n, p × Rᵀ n)`: the Gauss–Newton Hessian of
+/// With `p` the point in the body's frame, `R` the rotation of the pose and `n` the measured direction of a
+/// pair, `Σ J Jᵀ / (σ² · covariance_scale)` with `J = (Rᵀ n, p × Rᵀ n)`: the Gauss–Newton Hessian of
 /// `½ Σ (n · (T exp(δ) p − q))² / (σ² · covariance_scale)` at δ = 0. A pair with a normal measures along it,
 /// one without along both axes.
 #[must_use]
@@ -46,7 +46,7 @@ mod tests {
         covariance_scale: 3.0,
     };
 
-    /// Pairs that fit without a residual: the body sees a corner of two walls and a post.
+    /// Pairs with zero residual: the body sees a corner of two walls and a post.
     fn pairs() -> Vec<Pair> {
         let in_target = |k: i32| {
             let along = 0.3 * f64::from(k);
@@ -70,7 +70,7 @@ mod tests {
             .collect()
     }
 
-    /// The cost whose Hessian is asked for, at the pose `T exp(δ)`.
+    /// The cost at the pose `T exp(δ)`, for a numerical Hessian.
     fn cost(pairs: &[Pair], pose: &SE2, delta: &Vector3<f64>) -> f64 {
         let moved = pose.boxplus(delta) * pose.inverse();
         let weight = 1.0 / (TRUST.sigma_m * TRUST.sigma_m * TRUST.covariance_scale);
@@ -107,8 +107,8 @@ mod tests {
             let hessian = numerical_hessian(&pairs, &pose);
             let exact = match_information(&pairs, &pose, &TRUST);
             let chapter = chapter_information(&pairs, theta, &TRUST);
-            // 1e-6: the quotient of steps 1e-4 is off by 1e-8 of the fourth derivative, and by
-            // rounding of 1e-16/1e-8.
+            // 1e-6: steps of 1e-4 have an error of 1e-8 of the fourth derivative, and a rounding error of
+            // 1e-16/1e-8.
             assert!(off(&hessian, &exact) < 1e-6, "{theta}");
             assert!(off(&hessian, &chapter) > 0.1, "{theta}");
         }

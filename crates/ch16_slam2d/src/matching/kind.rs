@@ -6,7 +6,7 @@ use super::{
 };
 use crate::icp::{IcpConfig, IcpVariant};
 
-/// Which matcher a front end or the verification of loops uses.
+/// The matcher of a front end or of loop verification.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum MatcherKind {
     /// Point-to-point ICP, the chapter's.
@@ -14,16 +14,16 @@ pub enum MatcherKind {
     PointToPoint,
     /// Point-to-plane ICP.
     PointToPlane,
-    /// ICP with trimming, a kernel or a tolerance of one's own.
+    /// ICP with custom trimming, kernel or tolerance.
     Icp(IcpConfig),
     /// The normal distributions transform.
     Ndt(NdtMatcherConfig),
-    /// Every pose of a window around the guess, then ICP.
+    /// Branch and bound over a window around the guess, then ICP.
     Search(SearchMatcherConfig),
 }
 
 impl MatcherKind {
-    /// The settings of its ICP, but for τ and the number of iterations; none where it is none.
+    /// The settings of its ICP, except τ and the number of iterations; `None` if it is not ICP.
     #[must_use]
     pub fn icp(&self) -> Option<IcpConfig> {
         let of = |variant| IcpConfig {
@@ -38,7 +38,7 @@ impl MatcherKind {
         }
     }
 
-    /// The matcher, with targets of the make `map`.
+    /// Builds the matcher, with targets built by `map`.
     #[must_use]
     pub fn build(&self, map: &MapConfig) -> Box<dyn Matcher> {
         match *self {

@@ -1,4 +1,4 @@
-//! What every matcher can be asked.
+//! The matcher interface.
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
@@ -17,16 +17,16 @@ pub struct MapConfig {
     pub max_per_cell: usize,
 }
 
-/// One registration, as it is asked for.
+/// A request for one registration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatchRequest {
-    /// Where to start: `target_from_source`.
+    /// Initial guess: `target_from_source`.
     pub guess: SE2,
-    /// Points farther than this from the target do not take part, m.
+    /// Points farther than this from the target are not paired, m.
     pub tau_m: f64,
-    /// At most so many iterations.
+    /// Largest number of iterations.
     pub max_iterations: usize,
-    /// A fit with a lower score is of no use: a matcher may give up where it will not come to that, 0 to 1.
+    /// Smallest useful score, 0 to 1: a matcher may stop early if it cannot be reached.
     pub min_score: f64,
 }
 
@@ -42,30 +42,42 @@ impl MatchRequest {
         }
     }
 
-    /// The same request for a fit of this score at least.
+    /// The same request with this smallest useful score.
     #[must_use]
     pub fn with_min_score(self, min_score: f64) -> Self {
         Self { min_score, ..self }
     }
 }
 
-/// Why a matcher stopped, with what it measured.
+/// Why a matcher stopped, with the measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum MatchStop {
-    /// ICP's reason.
+    /// Stop reason of ICP.
     Icp(StopReason),
-    /// NDT's reason.
+    /// Stop reason of NDT.
     Ndt(NdtStop),
     /// The whole window was searched.
     Searched {
-        /// Poses that were scored.
+        /// Number of scored poses.
         poses: usize,
     },
-    /// A matcher of the reader's own, in its words.
+    /// Stop reason of a custom matcher.
     Other(&'static str),
 }
 
-/// The best pose that is another place than the answer.
+impl core::fmt::Display for MatchStop {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Icp(stop) => write!(f, "ICP: {stop}"),
+            Self::Ndt(stop) => write!(f, "NDT: {stop}"),
+            Self::Searched { poses } => write!(f, "the window was searched: {poses} poses scored"),
+            Self::Other(stop) => write!(f, "{stop}"),
+        }
+    }
+}
+
+/// The best pose that is distinct from the answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunnerUp {
     /// `target_from_source`.
@@ -74,34 +86,34 @@ pub struct RunnerUp {
     pub score: f64,
 }
 
-/// What a registration found.
+/// Result of a registration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatchSummary {
     /// `target_from_source`.
     pub pose: SE2,
     /// Root mean square residual of the pairs, m; infinite without pairs.
     pub rmse_m: f64,
-    /// Points of the scan that have a partner in the target.
+    /// Points of the scan with a partner in the target.
     pub inliers: usize,
     /// Iterations made.
     pub iterations: usize,
-    /// Score of the pose, larger is better, where the matcher has one.
+    /// Score of the pose, larger is better, if the matcher has one.
     pub score: Option<f64>,
-    /// The second best place, where the matcher looked for one.
+    /// The best distinct pose, if the matcher searched for one.
     pub runner_up: Option<RunnerUp>,
     /// Why it stopped.
     pub stop: MatchStop,
 }
 
 impl MatchSummary {
-    /// By how much the runner-up is behind, in the unit of the score.
+    /// Margin of the score to the runner-up.
     #[must_use]
     pub fn margin(&self) -> Option<f64> {
         Some(self.score? - self.runner_up?.score)
     }
 }
 
-/// The answer of a matcher: what it found, and the pairs that say so.
+/// Result of a matcher with its pairs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Match {
     /// Pose, fit and reason to stop.
@@ -111,8 +123,8 @@ pub struct Match {
 }
 
 impl Match {
-    /// How much the pairs know of the pose: 3×3, translation first, in its tangent space, about the body's
-    /// origin; neither ridge nor cap is applied. See [`match_information`].
+    /// Information of the pairs about the pose: 3×3, translation first, in its tangent space, about the body's
+    /// origin, without ridge and cap. See [`match_information`].
     #[must_use]
     pub fn information(&self, trust: &TrustConfig) -> Matrix3<f64> {
         match_information(&self.pairs, &self.summary.pose, trust)
@@ -130,9 +142,9 @@ pub trait Matcher: CloneMatcher + Send {
     fn register(&mut self, source: &PointCloud, request: &MatchRequest) -> Match;
 }
 
-/// A matcher that can be copied behind its trait; every `Clone` matcher is one.
+/// A matcher that can be cloned behind its trait; implemented for every `Clone` matcher.
 pub trait CloneMatcher {
-    /// A copy that answers as this one does.
+    /// A clone of this matcher.
     fn clone_matcher(&self) -> Box<dyn Matcher>;
 }
 

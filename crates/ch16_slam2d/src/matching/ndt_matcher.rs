@@ -1,4 +1,4 @@
-//! NDT as a matcher: Gaussians to register on, points to measure the fit by.
+//! NDT as a matcher: registration on Gaussians, fit measured on points.
 
 use super::{IcpMatcher, MapConfig, Match, MatchRequest, MatchStop, MatchSummary, Matcher};
 use crate::cloud::PointCloud;
@@ -8,9 +8,9 @@ use crate::ndt::{NdtAlign, NdtConfig, NdtMap};
 /// The cells and the solver of an [`NdtMatcher`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NdtMatcherConfig {
-    /// Width of a cell, m: the basin is about as wide.
+    /// Width of a cell, m: about the width of the basin of convergence.
     pub cell_m: f64,
-    /// Points that a cell needs.
+    /// Smallest number of points of a cell.
     pub min_points: usize,
     /// Damping and tolerance; the number of iterations comes with each request.
     pub solver: NdtConfig,
@@ -28,9 +28,9 @@ impl Default for NdtMatcherConfig {
 
 /// NDT on the Gaussians of the target.
 ///
-/// A score alone does not say whether a scan fits: it grows with the number of points. So the fit is
-/// measured with the ruler of ICP, the distance to the nearest point closer than τ, and the tests of
-/// a loop mean the same for every matcher.
+/// The score alone does not measure the fit, because it grows with the number of points. The fit is
+/// therefore measured as for ICP, by the distance to the nearest point closer than τ, and the tests of
+/// a loop are comparable between matchers.
 #[derive(Clone)]
 pub struct NdtMatcher {
     config: NdtMatcherConfig,
@@ -39,7 +39,7 @@ pub struct NdtMatcher {
 }
 
 impl NdtMatcher {
-    /// A matcher without a target; `map` is that of the points by which the fit is measured.
+    /// A matcher without a target; `map` is that of the points for measuring the fit.
     #[must_use]
     pub fn new(config: NdtMatcherConfig, map: &MapConfig) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! The search of a whole window as a matcher: no guess is too far off that lies within it.
+//! The search of a whole window as a matcher: converges from any guess whose window contains the pose.
 
 use core::f64::consts::PI;
 use std::sync::Arc;
@@ -14,20 +14,20 @@ use crate::search::{
     LikelihoodConfig, ScanSearch, ScoredPose, SearchMap, SearchNeighborhood, SearchWindow,
 };
 
-/// The window of a [`SearchMatcher`], and what becomes of its answer.
+/// The window of a [`SearchMatcher`], and the refinement of its result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SearchMatcherConfig {
     /// Cells and blur of the target.
     pub grid: LikelihoodConfig,
     /// Half the window's width around the guess, along x and along y, m.
     pub half_width_m: f64,
-    /// Half its range of headings around the guess, rad; π is the whole turn.
+    /// Half its range of headings around the guess, rad; π is the full turn.
     pub half_turn_rad: f64,
-    /// What counts as the same place when the runner-up is looked for.
+    /// Poses this near to the best one are not distinct.
     pub neighborhood: SearchNeighborhood,
-    /// A best pose that scores less, 0 to 1, is no match: the answer has no pairs then.
+    /// A best pose with a lower score, 0 to 1, is no match: the result has no pairs then.
     pub min_score: f64,
-    /// The registration from the best pose; its τ is used, its iterations come with each request.
+    /// The registration from the best pose; its τ is used, the number of iterations comes with each request.
     pub refine: IcpConfig,
 }
 
@@ -50,10 +50,9 @@ impl Default for SearchMatcherConfig {
 
 /// Branch and bound over the window around the guess, then ICP from the best pose.
 ///
-/// The search is as fine as its cells; ICP does the rest. Both look at the target's points, and the
-/// fit is measured with the ruler of every matcher: the distance to the nearest point closer than
-/// the request's τ. A target that no grid can hold, or one without points, is registered as if the
-/// guess had been the answer.
+/// The search is as accurate as its cells; ICP refines its result. Both use the target's points, and the fit is
+/// measured as for every matcher: by the distance to the nearest point closer than the request's τ. If the target
+/// is empty or too large for a grid, the result is the fit at the guess.
 #[derive(Clone)]
 pub struct SearchMatcher {
     config: SearchMatcherConfig,
@@ -72,7 +71,7 @@ impl SearchMatcher {
         }
     }
 
-    /// The target as the search sees it.
+    /// The target in the form of the search.
     #[must_use]
     pub fn map(&self) -> Option<&Arc<SearchMap>> {
         self.map.as_ref()
@@ -149,7 +148,7 @@ mod tests {
         max_per_cell: 8,
     };
 
-    /// Two walls and a post: no turn of it looks like another.
+    /// Two walls and a post, without rotational symmetry.
     fn corner() -> PointCloud {
         let long = (0..60).map(|k| Point2::new(0.05 * f64::from(k), 0.0));
         let short = (0..30).map(|k| Point2::new(0.0, 0.05 * f64::from(k)));
@@ -158,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_guess_that_icp_cannot_use_is_as_good_as_any_within_the_window() {
+    fn the_search_converges_from_a_guess_outside_of_icps_basin() {
         let target = corner();
         let truth = SE2::new(1.1, -0.7, 2.4);
         let source = target.transformed(&truth.inverse());
@@ -174,7 +173,7 @@ mod tests {
         search.set_target(&target);
         let found = search.register(&source, &request).summary;
         let error = truth.between(&found.pose).log();
-        // 0.05: points lie 5 cm apart, and a point may settle between two others.
+        // 0.05: points lie 5 cm apart, and a point may end between two others.
         assert!(error.norm() < 0.05, "{error}");
         assert_eq!(found.inliers, target.len());
         assert!(found.margin().unwrap() > 0.1);
@@ -182,11 +181,11 @@ mod tests {
     }
 
     #[test]
-    fn a_place_below_the_score_that_is_asked_for_is_not_looked_for() {
+    fn a_search_ends_early_if_the_minimum_score_is_unreachable() {
         let target = corner();
         let mut search = SearchMatcher::new(SearchMatcherConfig::default(), &MAP);
         search.set_target(&target);
-        // Forty points of another corner, of which the map knows nothing: two thirds of the scan fit.
+        // Forty unmapped points of another corner: two thirds of the scan fit.
         let other = target.transformed(&SE2::new(8.0, 5.0, 1.0));
         let scan: PointCloud = target.iter().chain(other.iter().take(40)).collect();
         let request = MatchRequest::new(SE2::new(0.2, 0.1, 0.1), 1.0, 30);
@@ -201,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fits_nowhere_has_no_pairs_and_what_has_no_map_stays_at_the_guess() {
+    fn a_poor_fit_has_no_pairs_and_an_empty_target_returns_the_guess() {
         let request = MatchRequest::new(SE2::new(0.1, 0.2, 0.3), 0.6, 30);
         let mut search = SearchMatcher::new(SearchMatcherConfig::default(), &MAP);
         let alone = search.register(&corner(), &request).summary;

@@ -6,23 +6,23 @@ use pr_geom::{Rotation, SE2, twist_size};
 use super::NdtMap;
 use crate::cloud::PointCloud;
 
-/// Added to every diagonal entry, so that a cloud far from every cell still has a solvable system.
+/// Added to every diagonal entry, so that the system of a cloud far from every cell is solvable.
 const RIDGE: f64 = 1e-9;
-/// Smallest damping that successes leave.
+/// Smallest damping after successful steps.
 const MIN_DAMPING: f64 = 1e-6;
-/// Terms smaller than this add nothing to gradient and Hessian.
+/// Smaller terms are left out of gradient and Hessian.
 const MIN_TERM: f64 = 1e-9;
 
 /// The settings of [`ndt_align`]; the defaults are the chapter's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NdtConfig {
-    /// At most so many steps.
+    /// Largest number of steps.
     pub max_iterations: usize,
     /// Gradient below which the run ends, `‖g_xy‖ + |g_θ|`.
     pub gradient_tolerance: f64,
-    /// First damping λ: diagonal entries grow by the factor 1 + λ.
+    /// Initial damping λ: diagonal entries grow by the factor 1 + λ.
     pub initial_damping: f64,
-    /// Dampings tried for one step, each six times the one before.
+    /// Dampings tried for one step, each six times the previous one.
     pub max_tries: usize,
 }
 
@@ -37,10 +37,10 @@ impl Default for NdtConfig {
     }
 }
 
-/// Why an NDT registration ended, with what was measured.
+/// Why an NDT registration ended, with the measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NdtStop {
-    /// The score is flat here: a maximum, or a place where no cell is near.
+    /// The gradient is below the tolerance: a maximum, or a pose without near cells.
     SmallGradient {
         /// `‖g_xy‖ + |g_θ|`.
         gradient: f64,
@@ -52,15 +52,33 @@ pub enum NdtStop {
         /// The damping tried last.
         damping: f64,
     },
-    /// All the steps were used up.
+    /// The limit of steps was reached.
     IterationLimit {
         /// [`NdtConfig::max_iterations`].
         max_iterations: usize,
     },
 }
 
+impl core::fmt::Display for NdtStop {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::SmallGradient {
+                gradient,
+                tolerance,
+            } => write!(f, "gradient {gradient:.2e} below {tolerance:.2e}"),
+            Self::NoBetterStep { damping } => {
+                write!(f, "no better step up to a damping of {damping:.2e}")
+            }
+            Self::IterationLimit { max_iterations } => {
+                write!(f, "limit of {max_iterations} iterations")
+            }
+        }
+    }
+}
+
 /// The state after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NdtStep {
     /// `map_from_cloud`.
     pub pose: SE2,
@@ -72,12 +90,13 @@ pub struct NdtStep {
 
 /// The outcome of an NDT registration.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NdtResult {
     /// `map_from_cloud`.
     pub pose: SE2,
     /// Sum of the points' scores.
     pub score: f64,
-    /// Iterations begun; the last one may have found no better step.
+    /// Iterations started; the last one may have found no better step.
     pub iterations: usize,
     /// The poses from the initial guess on.
     pub trace: Vec<SE2>,
@@ -111,7 +130,7 @@ pub fn ndt_align(cloud: &PointCloud, map: &NdtMap, init: SE2, config: &NdtConfig
     }
 }
 
-/// An NDT registration under way.
+/// A running NDT registration.
 #[derive(Clone, Debug)]
 pub struct NdtAlign<'a> {
     cloud: &'a PointCloud,
@@ -119,7 +138,7 @@ pub struct NdtAlign<'a> {
     config: NdtConfig,
     pose: SE2,
     score: f64,
-    /// At the pose, where the score was worked out together with it.
+    /// Derivatives at the pose, if they were computed together with the score.
     slope: Option<Slope>,
     damping: f64,
     iterations: usize,
@@ -151,7 +170,7 @@ impl<'a> NdtAlign<'a> {
         }
     }
 
-    /// Iterations begun so far.
+    /// Iterations started so far.
     #[must_use]
     pub fn iterations(&self) -> usize {
         self.iterations
@@ -202,7 +221,7 @@ impl<'a> NdtAlign<'a> {
                     self.pose.y() + step.y,
                     self.pose.theta() + step.z,
                 );
-                // The first try is nearly always taken, and the next step begins with its slope.
+                // The first try is nearly always accepted, and the next step starts with its derivatives.
                 let (score, slope) = if tried == 0 {
                     let (score, slope) = score_with_slope(self.cloud, self.map, &pose);
                     (score, Some(slope))
@@ -226,7 +245,7 @@ impl<'a> NdtAlign<'a> {
     }
 }
 
-/// The score as [`NdtMap::score`] adds it up, and its slope, in one pass over the cloud.
+/// The score of [`NdtMap::score`] and its derivatives, in one pass over the cloud.
 fn score_with_slope(cloud: &PointCloud, map: &NdtMap, pose: &SE2) -> (f64, Slope) {
     let Rotation { cos, sin } = pose.rotation();
     let mut score = 0.0;
@@ -243,7 +262,7 @@ fn score_with_slope(cloud: &PointCloud, map: &NdtMap, pose: &SE2) -> (f64, Slope
             let (dx, dy) = (x - gaussian.mean.x, y - gaussian.mean.y);
             let m = &gaussian.information;
             let (qx, qy) = (m.m11 * dx + m.m12 * dy, m.m12 * dx + m.m22 * dy);
-            // The derivative of R p by θ is R p turned by a quarter: (−ry, rx).
+            // The derivative of R p by θ is R p rotated by a quarter turn: (−ry, rx).
             let (ux, uy) = (m.m12 * rx - m.m11 * ry, m.m22 * rx - m.m12 * ry);
             gx += e * qx;
             gy += e * qy;

@@ -6,13 +6,13 @@ use rustc_hash::FxHashMap;
 
 use crate::cloud::{PointCloud, cell_index};
 
-/// The larger variance of a cell is at least this, m².
+/// Floor of the larger variance of a cell, m².
 const MIN_VARIANCE_M2: f64 = 1e-4;
-/// The smaller variance is at least this share of the larger one.
+/// Floor of the smaller variance, as a share of the larger one.
 const MIN_VARIANCE_RATIO: f64 = 0.01;
 /// Half a squared Mahalanobis distance beyond which a cell adds less than 1e-17 to a score.
 const NEGLIGIBLE_EXPONENT: f64 = 40.0;
-/// Cells a dense table may have for every Gaussian; beyond that the lookup hashes.
+/// Largest number of cells of a dense table for every Gaussian; beyond that the lookup hashes.
 const TABLE_CELLS_PER_GAUSSIAN: i64 = 1024;
 
 /// One Gaussian of the map.
@@ -20,7 +20,7 @@ const TABLE_CELLS_PER_GAUSSIAN: i64 = 1024;
 pub struct NdtCell {
     /// Index of the cell along x and y; cell `(0, 0)` starts at the origin.
     pub cell: (i32, i32),
-    /// Points that fell into it.
+    /// Number of its points.
     pub count: usize,
     /// Their mean, m.
     pub mean: Point2<f64>,
@@ -56,8 +56,8 @@ impl NdtMap {
     /// The Gaussians of `cloud` on cells `cell_m` wide that hold at least `min_points` points.
     ///
     /// The covariance divides by n − 1. Its larger eigenvalue is raised to 1e-4 m² and the smaller
-    /// one to 0.01 of the larger, so that a cell of points in one line still has an inverse. A cell
-    /// whose covariance is out of the range of numbers, as of points 1e200 m apart, is left out.
+    /// one to 0.01 of the larger, so that collinear points have an invertible covariance too. A cell
+    /// whose covariance overflows, as for points 1e200 m apart, is left out.
     ///
     /// # Panics
     /// If the cell size is not positive and finite, or `min_points` is below 2.
@@ -107,7 +107,7 @@ impl NdtMap {
         self.cell_m
     }
 
-    /// The Gaussians, in the order in which the first point fell into each.
+    /// The Gaussians, in the order of the first point in each.
     #[must_use]
     pub fn cells(&self) -> &[NdtCell] {
         &self.gaussians
@@ -121,7 +121,7 @@ impl NdtMap {
             .map(|&index| &self.gaussians[index as usize])
     }
 
-    /// Those of them that add to the score of a point, each with what it adds, `exp(−½ dᵀ Σ⁻¹ d)`.
+    /// The Gaussians that contribute to the score of a point, each with its contribution, `exp(−½ dᵀ Σ⁻¹ d)`.
     #[inline]
     pub fn scores_around(&self, x: f64, y: f64) -> impl Iterator<Item = (&NdtCell, f64)> {
         self.around(x, y).filter_map(move |gaussian| {
@@ -306,7 +306,7 @@ impl Lookup {
         (lookup, near)
     }
 
-    /// Where the run of a cell is written, of a cell around a Gaussian.
+    /// The run of a cell around a Gaussian, for writing.
     fn run_mut(&mut self, cell: (i32, i32)) -> Option<&mut (u32, u32)> {
         match self {
             Self::Dense {
@@ -336,13 +336,13 @@ impl Lookup {
     }
 }
 
-/// The 3×3 cells around a cell; the last cells of all have no neighbours beyond.
+/// The 3×3 cells around a cell, without those beyond the range of indices.
 fn cells_around((i, j): (i32, i32)) -> impl Iterator<Item = (i32, i32)> {
     (-1..=1)
         .flat_map(move |di| (-1..=1).map(move |dj| (i.saturating_add(di), j.saturating_add(dj))))
 }
 
-/// Where a cell stands in a table of columns, if it does.
+/// Index of a cell in a table of columns, if it is inside.
 #[inline]
 fn slot((i, j): (i32, i32), origin: (i32, i32), columns: i32, rows: i32) -> Option<usize> {
     let (column, row) = (i.wrapping_sub(origin.0), j.wrapping_sub(origin.1));

@@ -1,4 +1,4 @@
-//! Detectors that propose what looks alike.
+//! Loop detectors by appearance.
 
 use pr_geom::{SE2, math, sort_ranked};
 
@@ -6,7 +6,7 @@ use super::{ContextConfig, HistogramConfig, RangeHistogram, ScanContext};
 use crate::cloud::PointCloud;
 use crate::loops::{LoopCandidate, LoopDetector, LoopQuery};
 
-/// What a place is recognized by.
+/// The descriptor for place recognition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlaceDescriptor {
     /// The histogram of ranges, by χ² distance.
@@ -16,7 +16,7 @@ pub enum PlaceDescriptor {
 }
 
 impl PlaceDescriptor {
-    /// The same descriptor for a sensor that sees so far, m.
+    /// The same descriptor for a sensor with this range, m.
     #[must_use]
     pub fn with_max_range_m(self, max_range_m: f64) -> Self {
         match self {
@@ -32,21 +32,21 @@ impl PlaceDescriptor {
     }
 }
 
-/// When a [`PlaceDetector`] proposes an old keyframe.
+/// Settings of a [`PlaceDetector`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaceDetectorConfig {
-    /// What is compared.
+    /// The descriptor.
     pub descriptor: PlaceDescriptor,
-    /// Keyframes farther apart in appearance than this are no candidates, 0 to 1.
+    /// Largest dissimilarity of a candidate, 0 to 1.
     pub max_distance: f64,
-    /// Contexts are compared with so many keyframes at most, those whose ring keys are nearest.
+    /// Largest number of keyframes whose contexts are compared, those with the nearest ring keys.
     pub keys_compared: usize,
-    /// Candidates are at least so many nodes older.
+    /// Candidates are at least this many nodes older.
     pub min_gap_nodes: usize,
 }
 
 impl PlaceDetectorConfig {
-    /// By the histogram.
+    /// Uses the histogram.
     #[must_use]
     pub fn histogram(min_gap_nodes: usize) -> Self {
         Self {
@@ -57,7 +57,7 @@ impl PlaceDetectorConfig {
         }
     }
 
-    /// By Scan Context.
+    /// Uses Scan Context.
     #[must_use]
     pub fn context(min_gap_nodes: usize) -> Self {
         Self {
@@ -71,12 +71,12 @@ impl PlaceDetectorConfig {
 
 /// The descriptor of one scan.
 #[derive(Clone, Debug)]
-enum Look {
+enum Appearance {
     Histogram(RangeHistogram),
     Context(ScanContext),
 }
 
-impl Look {
+impl Appearance {
     fn new(scan: &PointCloud, descriptor: &PlaceDescriptor) -> Self {
         match descriptor {
             PlaceDescriptor::Histogram(config) => {
@@ -86,7 +86,7 @@ impl Look {
         }
     }
 
-    /// Distance and, where the descriptor knows it, how the other scan is turned against this one.
+    /// Dissimilarity and, if the descriptor has it, the rotation of the other scan relative to this one.
     fn compare(&self, other: &Self) -> (f64, Option<f64>) {
         match (self, other) {
             (Self::Histogram(a), Self::Histogram(b)) => (a.distance(b), None),
@@ -98,7 +98,7 @@ impl Look {
         }
     }
 
-    /// A cheap distance that orders the candidates beforehand.
+    /// A cheap distance for presorting the candidates.
     fn key_distance(&self, other: &Self) -> f64 {
         match (self, other) {
             (Self::Context(a), Self::Context(b)) => a.key_distance(b),
@@ -107,18 +107,18 @@ impl Look {
     }
 }
 
-/// Proposes old keyframes by their looks, wherever the graph has them.
+/// Proposes old keyframes of similar appearance, wherever they are in the graph.
 ///
-/// The best ones in appearance come first. Where the descriptor knows the heading, the proposal is
-/// the old keyframe's own place at that heading; elsewhere registration starts at the graph's belief.
+/// The most similar ones come first. If the descriptor gives the heading, the proposal is the old keyframe's
+/// position with that heading; otherwise registration starts at the graph's relative pose.
 #[derive(Clone, Debug)]
 pub struct PlaceDetector {
     config: PlaceDetectorConfig,
-    looks: Vec<Look>,
+    looks: Vec<Appearance>,
 }
 
 impl PlaceDetector {
-    /// A detector that has seen nothing.
+    /// A detector without keyframes.
     #[must_use]
     pub fn new(config: PlaceDetectorConfig) -> Self {
         Self {
@@ -127,11 +127,11 @@ impl PlaceDetector {
         }
     }
 
-    /// How different two scans look, 0 to 1.
+    /// Dissimilarity of two scans, 0 to 1.
     #[must_use]
     pub fn distance(descriptor: &PlaceDescriptor, a: &PointCloud, b: &PointCloud) -> f64 {
-        Look::new(a, descriptor)
-            .compare(&Look::new(b, descriptor))
+        Appearance::new(a, descriptor)
+            .compare(&Appearance::new(b, descriptor))
             .0
     }
 }
@@ -140,7 +140,7 @@ impl LoopDetector for PlaceDetector {
     fn detect(&mut self, query: &mut LoopQuery<'_>) -> Vec<LoopCandidate> {
         let node = query.node();
         for known in self.looks.len()..query.keyframes().len() {
-            let look = Look::new(query.scan(known), &self.config.descriptor);
+            let look = Appearance::new(query.scan(known), &self.config.descriptor);
             self.looks.push(look);
         }
         let Some(here) = self.looks.get(node) else {
@@ -177,7 +177,7 @@ impl LoopDetector for PlaceDetector {
         alike.into_iter().map(candidate).collect()
     }
 
-    fn forget(&mut self, node: usize) {
+    fn remove_keyframe(&mut self, node: usize) {
         if node < self.looks.len() {
             self.looks.remove(node);
         }
@@ -194,7 +194,7 @@ mod tests {
     use crate::graph::PoseGraph;
     use crate::slam::Keyframe;
 
-    /// What is seen in place `k`, from a robot turned by `turn_rad`.
+    /// A scan at location `k`, from a robot rotated by `turn_rad`.
     fn seen(k: usize, turn_rad: f64) -> PointCloud {
         let side = 1.0 + 0.35 * k as f64;
         let wall = (0..30).map(|i| 0.1 * f64::from(i));
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn the_place_that_was_seen_before_comes_first_however_wrong_the_pose_and_the_heading() {
+    fn a_revisited_place_ranks_first_whatever_the_pose_error() {
         for config in [
             PlaceDetectorConfig::histogram(3),
             PlaceDetectorConfig::context(3),

@@ -1,4 +1,4 @@
-//! How many returns came from how far.
+//! Histogram of the ranges of a scan.
 
 use pr_geom::math;
 
@@ -9,7 +9,7 @@ use crate::cloud::PointCloud;
 pub struct HistogramConfig {
     /// Number of bins of equal width.
     pub bins: usize,
-    /// Where the last bin ends, m; what lies beyond counts in it.
+    /// End of the last bin, m; farther returns count in it.
     pub max_range_m: f64,
 }
 
@@ -53,7 +53,7 @@ impl RangeHistogram {
         &self.shares
     }
 
-    /// The χ² distance `½ Σ (a − b)²/(a + b)`: 0 for equals, 1 where no bin is shared.
+    /// The χ² distance `½ Σ (a − b)²/(a + b)`: 0 for equals, 1 if no bin is shared.
     #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
         let bins = self.shares.iter().zip(&other.shares);
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_changes_nothing_and_nothing_is_lost_beyond_the_last_bin() {
+    fn the_histogram_is_rotation_invariant_and_keeps_far_returns() {
         let cloud: PointCloud = (1..40)
             .map(|k| Point2::new(0.2 * f64::from(k) + 0.01, 0.05))
             .collect();

@@ -1,4 +1,4 @@
-//! Which directions are occupied at which distance, and by how much to turn one scan onto another.
+//! Which directions are occupied at which distance, and the rotation between two scans.
 
 use core::f64::consts::TAU;
 
@@ -11,9 +11,9 @@ use crate::cloud::PointCloud;
 pub struct ContextConfig {
     /// Number of rings of equal width.
     pub rings: usize,
-    /// Number of sectors of equal angle: the heading is found to one of them.
+    /// Number of sectors of equal angle, which is the resolution of the heading.
     pub sectors: usize,
-    /// Where the last ring ends, m; what lies beyond is left out.
+    /// End of the last ring, m; farther points are left out.
     pub max_range_m: f64,
 }
 
@@ -27,26 +27,27 @@ impl Default for ContextConfig {
     }
 }
 
-/// How two contexts compare.
+/// Result of comparing two contexts.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ContextMatch {
-    /// Mean cosine distance of the sectors at the best turn, 0 to 1.
+    /// Mean cosine distance of the sectors at the best rotation, 0 to 1.
     pub distance: f64,
-    /// By how much the second scan is turned against the first, `first_from_second`, rad.
+    /// Rotation of the second scan relative to the first, `first_from_second`, rad.
     pub turn_rad: f64,
 }
 
-/// A scan as rings × sectors around its sensor, 1 where there is a point.
+/// A scan as rings × sectors around its sensor, 1 if a bin contains a point.
 ///
 /// Kim & Kim, "Scan Context: egocentric spatial descriptor for place recognition within 3D point
-/// cloud map", IROS 2018, keep the greatest height of each bin; in the plane a bin is occupied or
-/// not. The key of a ring is the share of its bins that are: it does not change with the heading.
+/// cloud map", IROS 2018, store the maximum height of each bin; in the plane a bin is occupied or
+/// not. The key of a ring is the share of its occupied bins, which is invariant to rotation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScanContext {
     rings: usize,
     /// Sector by sector, each from the inner ring to the outer one.
     bins: Vec<f64>,
-    /// Length of each sector as a vector.
+    /// Euclidean norm of each sector.
     norms: Vec<f64>,
     ring_key: Vec<f64>,
 }
@@ -82,23 +83,23 @@ impl ScanContext {
         &self.ring_key
     }
 
-    /// Sector by sector, each from the inner ring to the outer one: 1 where there is a point.
+    /// Sector by sector, each from the inner ring to the outer one: 1 if occupied.
     #[must_use]
     pub fn bins(&self) -> &[f64] {
         &self.bins
     }
 
-    /// Difference of the ring keys, `Σ |a − b|`: cheap, and blind to the heading.
+    /// Difference of the ring keys, `Σ |a − b|`: cheap, and invariant to rotation.
     #[must_use]
     pub fn key_distance(&self, other: &Self) -> f64 {
         let rings = self.ring_key.iter().zip(&other.ring_key);
         rings.map(|(a, b)| (a - b).abs()).sum()
     }
 
-    /// The turn at which the sectors agree best, and how well; of equal turns the first.
+    /// The rotation at which the sectors agree best, and the distance there; of equals the first.
     ///
     /// Kim & Kim 2018, eqs. (6) and (7): `1 − a·b/(|a||b|)` averaged over the sectors that hold a
-    /// point in either scan; one that holds none in the other scan counts 1.
+    /// point in either scan; one that is empty in one of them counts 1.
     #[must_use]
     pub fn compare(&self, other: &Self) -> ContextMatch {
         let sectors = self.norms.len();
@@ -118,7 +119,7 @@ impl ScanContext {
         best
     }
 
-    /// Distance with the other scan turned by `shift` sectors.
+    /// Distance with the other scan rotated by `shift` sectors.
     fn distance_at(&self, other: &Self, shift: usize) -> f64 {
         let sectors = self.norms.len();
         let (mut agreement, mut seen) = (0.0, 0.0);
@@ -156,7 +157,7 @@ mod tests {
 
     use super::*;
 
-    /// A room that looks the same at no other heading, from a spot within it.
+    /// A room without rotational symmetry, from a position within it.
     fn room() -> PointCloud {
         let long = (0..50).map(|k| Point2::new(-2.0 + 0.1 * f64::from(k), 1.3));
         let short = (0..25).map(|k| Point2::new(3.0, -1.2 + 0.1 * f64::from(k)));
@@ -189,12 +190,12 @@ mod tests {
         assert_eq!(a.ring_key(), b.ring_key());
         let found = b.compare(&a);
         assert!((found.turn_rad - 7.0 * TAU / 60.0).abs() < 1e-12);
-        // 1e-15: sums of sixty quotients that are 1 but for rounding.
+        // 1e-15: sums of sixty quotients that are 1 up to rounding.
         assert!(found.distance.abs() < 1e-15);
     }
 
     #[test]
-    fn what_sees_nothing_is_like_nothing() {
+    fn an_empty_scan_is_unlike_any_other() {
         let config = ContextConfig::default();
         let nothing = ScanContext::new(&PointCloud::default(), &config);
         assert_eq!(nothing.compare(&nothing).distance, 1.0);

@@ -1,4 +1,4 @@
-//! One moment of a drive, as measured.
+//! One frame of measurements.
 
 use std::sync::Arc;
 
@@ -7,30 +7,30 @@ use pr_geom::SE2;
 use super::{FrameError, LaserScan};
 use crate::cloud::PointCloud;
 
-/// A scan and the motion that led to it.
+/// A scan and the odometry since the last one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// Time of the scan's first beam, s.
     pub stamp_s: f64,
-    /// Motion of the body since the last frame, as the wheels measured it: the body's frame now in
-    /// its frame then. Without it the estimator expects the velocity to stay.
+    /// Motion of the body since the last frame by odometry: the present body frame in the previous one.
+    /// Without it the estimator predicts constant velocity.
     pub odometry: Option<SE2>,
     /// The scan.
     pub scan: LaserScan,
 }
 
 impl Frame {
-    /// Whether all numbers are usable.
+    /// Validates all numbers.
     ///
     /// # Errors
-    /// The first number that is not, and what it should be.
+    /// The first invalid number, and what is expected.
     pub fn validate(&self) -> Result<(), FrameError> {
         check_motion(self.stamp_s, self.odometry.as_ref())?;
         self.scan.validate()
     }
 }
 
-/// A frame whose scan is already a cloud, so that it can be run more than once.
+/// A frame whose scan is already a cloud, so it can be reused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PreparedFrame {
     /// Time of the scan's first beam, s.
@@ -42,7 +42,7 @@ pub struct PreparedFrame {
 }
 
 impl PreparedFrame {
-    /// Whether stamp and odometry are usable.
+    /// Validates stamp and odometry.
     ///
     /// # Errors
     /// [`FrameError::Stamp`] or [`FrameError::Odometry`].
@@ -50,11 +50,11 @@ impl PreparedFrame {
         check_motion(self.stamp_s, self.odometry.as_ref())
     }
 
-    /// Whether the frame can follow one at `last_stamp_s`, s, whose estimate is `world_from_body`; returns
+    /// Validates the frame as successor of one at `last_stamp_s`, s, whose estimate is `world_from_body`; returns
     /// the time since then, s.
     ///
     /// # Errors
-    /// [`FrameError::Stamp`] where it is not later, [`FrameError::Odometry`] where its motion leads nowhere.
+    /// [`FrameError::Stamp`] if it is not later, [`FrameError::Odometry`] if the pose after its motion is not finite.
     pub fn seconds_after(
         &self,
         last_stamp_s: f64,
@@ -77,7 +77,7 @@ impl PreparedFrame {
     }
 }
 
-/// Whether all numbers of a pose are.
+/// Whether all components of a pose are finite.
 #[must_use]
 pub fn is_finite(pose: &SE2) -> bool {
     pose.to_array().iter().all(|value| value.is_finite())

@@ -4,24 +4,24 @@ use pr_geom::SE2;
 
 use super::FrameError;
 
-/// Ranges of one sweep, and where their beams point.
+/// Ranges of one sweep and the geometry of its beams.
 ///
-/// Beam k leaves the sensor at the bearing `first_angle_rad + k · angle_step_rad`. A range is a point
-/// where it is above 0, at least `range_min_m` and below `range_max_m`; 0, NaN and infinite ranges
-/// and those at the maximum saw nothing.
+/// Beam k leaves the sensor at the bearing `first_angle_rad + k · angle_step_rad`. A range is a return
+/// if it is above 0, at least `range_min_m` and below `range_max_m`; 0, NaN and infinite ranges
+/// and those at the maximum are no return.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserScan {
     /// Bearing of the first beam in the sensor's frame, rad.
     pub first_angle_rad: f64,
-    /// Bearing from one beam to the next, rad; negative where the sensor turns clockwise.
+    /// Bearing from one beam to the next, rad; negative if the sensor turns clockwise.
     pub angle_step_rad: f64,
-    /// Shorter ranges are no points, m.
+    /// Shorter ranges are no return, m.
     pub range_min_m: f64,
-    /// Ranges at or beyond this are no points, m.
+    /// Ranges at or beyond this are no return, m.
     pub range_max_m: f64,
-    /// Where the sensor sits on the body.
+    /// Pose of the sensor on the body.
     pub body_from_sensor: SE2,
-    /// Time from one beam to the next, s; 0 where the whole sweep is one moment.
+    /// Time from one beam to the next, s; 0 if all beams are simultaneous.
     pub beam_interval_s: f64,
     /// One range for each beam, m.
     pub ranges_m: Vec<f64>,
@@ -50,7 +50,7 @@ impl LaserScan {
         self.first_angle_rad + beam as f64 * self.angle_step_rad
     }
 
-    /// Whether `range_m` is a point of this scan.
+    /// Whether `range_m` is a return of this scan.
     #[inline]
     #[must_use]
     pub fn is_return(&self, range_m: f64) -> bool {
@@ -60,7 +60,7 @@ impl LaserScan {
             && range_m.is_finite()
     }
 
-    /// Whether both scans have their beams at the same places.
+    /// Whether both scans have the same beam directions.
     #[must_use]
     pub fn same_beams(&self, other: &Self) -> bool {
         self.first_angle_rad == other.first_angle_rad
@@ -68,10 +68,10 @@ impl LaserScan {
             && self.ranges_m.len() == other.ranges_m.len()
     }
 
-    /// Whether the geometry is usable; single ranges may be anything.
+    /// Validates the geometry; single ranges may have any value.
     ///
     /// # Errors
-    /// The first number that is not, and what it should be.
+    /// The first invalid number, and what is expected.
     pub fn validate(&self) -> Result<(), FrameError> {
         let [x, y, theta] = self.body_from_sensor.to_array();
         let rules = [
@@ -91,19 +91,19 @@ impl LaserScan {
                 "shortest range",
                 self.range_min_m,
                 self.range_min_m >= 0.0 && self.range_min_m.is_finite(),
-                "metres from 0 on",
+                "metres, at least 0",
             ),
             (
                 "longest range",
                 self.range_max_m,
                 self.range_max_m > self.range_min_m,
-                "metres beyond the shortest range",
+                "metres above the shortest range",
             ),
             (
                 "beam interval",
                 self.beam_interval_s,
                 self.beam_interval_s >= 0.0 && self.beam_interval_s.is_finite(),
-                "seconds from 0 on",
+                "seconds, at least 0",
             ),
             ("mounting in x", x, x.is_finite(), "metres"),
             ("mounting in y", y, y.is_finite(), "metres"),

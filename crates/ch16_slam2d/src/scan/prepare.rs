@@ -8,12 +8,12 @@ use pr_geom::{Rotation, SE2};
 use super::{Frame, FrameError, LaserScan, PreparedFrame};
 use crate::cloud::{Downsampler, NormalEstimator, PointCloud};
 
-/// How a scan becomes a cloud; the defaults are the chapter's.
+/// Settings for making a cloud from a scan; the defaults are the chapter's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScanConfig {
     /// A sweep is thinned to one point in each cell of this side, m.
     pub cell_m: f64,
-    /// Radius within which a sweep's points give each other normals, m.
+    /// Radius of the neighbours for normals within a sweep, m.
     pub normal_radius_m: f64,
 }
 
@@ -26,10 +26,10 @@ impl Default for ScanConfig {
     }
 }
 
-/// Makes clouds of scans, with its buffers and the beams' directions kept.
+/// Makes clouds from scans; keeps its buffers and the beams' directions.
 #[derive(Clone, Debug, Default)]
 pub struct ScanPreparer {
-    /// The scan whose directions are kept; its ranges are not.
+    /// The scan whose directions are cached; its ranges are not.
     beams: Option<(f64, f64)>,
     directions: Vec<Rotation>,
     points: PointCloud,
@@ -38,17 +38,17 @@ pub struct ScanPreparer {
 }
 
 impl ScanPreparer {
-    /// A preparer that has seen nothing.
+    /// A preparer without cached directions.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A frame with its scan as a cloud, after one at `last_stamp_s`, s. During the sweep the body moves as
-    /// its odometry says, and without odometry by `velocity` (m/s, m/s, rad/s).
+    /// A frame with its scan as a cloud, after one at `last_stamp_s`, s. The motion during the sweep is that of
+    /// the odometry or, without it, of `velocity` (m/s, m/s, rad/s).
     ///
     /// # Errors
-    /// Where the frame cannot be used.
+    /// If the frame cannot be used.
     pub fn prepare_frame(
         &mut self,
         frame: &Frame,
@@ -70,11 +70,11 @@ impl ScanPreparer {
         })
     }
 
-    /// The returns of `scan` in the body's frame at the first beam, thinned, with the normals that
-    /// this sweep alone gives them: a map of several sweeps turns the normals with the points.
+    /// The returns of `scan` in the body's frame at the first beam, thinned, with normals from
+    /// this sweep alone; a map of several sweeps rotates the normals with the points.
     ///
-    /// `velocity` is the body's twist during the sweep (m/s, m/s, rad/s). The point p of a beam that
-    /// left t seconds after the first one was seen from `exp(velocity · t)`, and is moved there.
+    /// `velocity` is the body's twist during the sweep (m/s, m/s, rad/s). The point p of a beam t seconds
+    /// after the first one was seen from `exp(velocity · t)`, and is transformed accordingly.
     #[must_use]
     pub fn prepare(
         &mut self,
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn what_saw_nothing_is_no_point() {
+    fn beams_without_a_return_give_no_point() {
         let mut preparer = ScanPreparer::new();
         let nothing = [0.0, f64::NAN, f64::INFINITY, 6.0];
         let still = Vector3::zeros();
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sensor_that_looks_back_puts_its_points_behind_the_body() {
+    fn a_backward_sensor_puts_its_points_behind_the_body() {
         let mut scan = cross([0.0, 0.0, 2.0, 0.0]);
         scan.body_from_sensor = SE2::new(-0.3, 0.1, PI);
         let mut preparer = ScanPreparer::new();
@@ -173,8 +173,8 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_seen_in_motion_is_put_where_it_stood() {
-        // The body drives and turns; a beam at a time measures the wall x = 3.
+    fn deskewing_straightens_a_wall_seen_in_motion() {
+        // The body moves and turns; one beam after the other measures the wall x = 3.
         let velocity = Vector3::new(0.8, 0.0, 0.6);
         let (beams, interval_s) = (60_usize, 0.01);
         let (first, step) = (-0.5, 1.0 / 60.0);

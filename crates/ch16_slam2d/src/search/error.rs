@@ -6,36 +6,37 @@ use super::MAX_GRID_CELLS;
 
 /// Why a search cannot start.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SearchError {
     /// The map has no finite point.
-    #[error("the map has no points; search on a map that has some")]
+    #[error("the map has no finite points; use a map with points")]
     EmptyMap,
     /// The scan has no finite point.
-    #[error("the scan has no points; search with a scan that has some")]
+    #[error("the scan has no finite points; use a scan with returns")]
     EmptyScan,
-    /// The map is too wide for its cells.
+    /// The map is too large for its cell size.
     #[error(
-        "the map needs {columns} × {rows} cells of {cell_m} m, more than {MAX_GRID_CELLS} or than 16000 along a side; take larger cells"
+        "the map needs {columns} × {rows} cells of {cell_m} m, more than {MAX_GRID_CELLS} or than 16000 along a side; use larger cells"
     )]
     MapTooLarge {
-        /// Columns that it would have.
+        /// Number of columns needed.
         columns: u64,
-        /// Rows that it would have.
+        /// Number of rows needed.
         rows: u64,
         /// Side of a cell, m.
         cell_m: f64,
     },
-    /// A length of the map's cells is no length.
-    #[error("cells of {cell_m} m with a blur of {sigma_m} m are no map; both must be above 0")]
+    /// Cell size or blur is not positive.
+    #[error("cell size {cell_m} m and blur {sigma_m} m must both be above 0")]
     NoCells {
         /// Side of a cell, m.
         cell_m: f64,
         /// Standard deviation of the blur, m.
         sigma_m: f64,
     },
-    /// The window is not finite, or has more poses than can be numbered.
+    /// The window is not finite, or has too many poses.
     #[error(
-        "the window of ±{half_x_m} m × ±{half_y_m} m × ±{half_turn_rad} rad cannot be searched; take finite half-widths, and smaller ones or larger cells"
+        "the window of ±{half_x_m} m × ±{half_y_m} m × ±{half_turn_rad} rad cannot be searched; use finite half-widths, and smaller ones or larger cells"
     )]
     Window {
         /// Half its width along x, m.

@@ -1,4 +1,4 @@
-//! The poses of a window, numbered.
+//! The poses of a window on a lattice.
 
 use core::f64::consts::{PI, TAU};
 
@@ -7,7 +7,7 @@ use pr_geom::{SE2, math, sort_numbers};
 use super::{LikelihoodGrid, SearchError, SearchNeighborhood, SearchWindow};
 use crate::cloud::PointCloud;
 
-/// One point in so many may lie beyond the reach that sets the angular step.
+/// One point in this many may lie beyond the reach that determines the angular step.
 const POINTS_FOR_AN_OUTLIER: usize = 50;
 
 /// Most cells from the window's centre to its edge.
@@ -53,8 +53,8 @@ impl Lattice {
     /// The poses of `window` for `scan`: a step of the heading moves its farthest point by a cell.
     ///
     /// `cos Δθ = 1 − r²/(2 d²)` for cells of r and a reach of d (Hess et al. 2016, eq. (7)), which is
-    /// `sin Δθ/2 = r/(2 d)`. One point in fifty may lie beyond d, and one at least: a single stray
-    /// return shall not double the work. A whole turn has steps that divide it evenly.
+    /// `sin Δθ/2 = r/(2 d)`. One point in fifty, and at least one, may lie beyond d, because a single stray
+    /// return must not double the work. The steps divide a full turn evenly.
     pub fn new(
         window: &SearchWindow,
         scan: &PointCloud,
@@ -159,7 +159,7 @@ impl Lattice {
 
     /// The neighbourhood in steps.
     pub fn nearness(&self, neighborhood: &SearchNeighborhood) -> Nearness {
-        // Saturates: a neighbourhood without end holds everything.
+        // Saturates: an infinite neighbourhood contains everything.
         let steps = |width: f64, step: f64| (width / step + 1e-9) as i32;
         Nearness {
             cells: steps(neighborhood.reach_m, self.cell_m),
@@ -167,7 +167,7 @@ impl Lattice {
         }
     }
 
-    /// Whether all poses from `first` to `last`, both included, are the same place as `home`.
+    /// Whether all poses from `first` to `last`, inclusive, are in the neighbourhood of `home`.
     pub fn is_near(
         &self,
         home: LatticePose,
@@ -189,7 +189,7 @@ impl Lattice {
     }
 }
 
-/// The reach of a scan without its farthest points, one in fifty and one at least, m.
+/// The reach of a scan without its farthest points, one in fifty and at least one, m.
 fn robust_reach_m(scan: &PointCloud) -> Result<f64, SearchError> {
     let mut reaches_m: Vec<f64> = scan
         .iter()
@@ -206,7 +206,7 @@ fn robust_reach_m(scan: &PointCloud) -> Result<f64, SearchError> {
 }
 
 fn angular_step_rad(reach_m: f64, cell_m: f64) -> f64 {
-    // A scan within its cell has nothing to turn: half a turn is as good as any step.
+    // Rotation does not matter for a scan within one cell: half a turn is as good as any step.
     let half_sine = (cell_m / (2.0 * math::max(reach_m, cell_m))).min(1.0);
     2.0 * math::atan2(half_sine, math::sqrt(1.0 - half_sine * half_sine))
 }
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_of_the_heading_moves_the_farthest_point_by_a_cell_and_strays_do_not_count() {
+    fn a_heading_step_moves_the_farthest_point_by_a_cell_ignoring_strays() {
         let window = SearchWindow::around(SE2::identity(), 0.2, 0.5);
         let lattice = lattice(&window).unwrap();
         // arccos(1 − 0.05²/(2·2²)) = 0.025 000 65: 41 steps hold ±0.5 rad.
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn a_whole_turn_has_every_heading_once() {
+    fn a_full_turn_has_every_heading_once() {
         let window = SearchWindow::around(SE2::new(1.0, 2.0, 0.3), 0.0, 9.0);
         let lattice = lattice(&window).unwrap();
         let last = lattice.heading_rad(lattice.headings - 1) + lattice.step_rad;
@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn a_window_without_end_is_refused() {
+    fn an_infinite_window_is_rejected() {
         for (half_m, half_rad) in [(f64::NAN, 1.0), (1e9, 1.0), (1.0, -1.0), (1.0, f64::NAN)] {
             let window = SearchWindow::around(SE2::identity(), half_m, half_rad);
             assert!(matches!(lattice(&window), Err(SearchError::Window { .. })));

@@ -1,4 +1,4 @@
-//! The map as a grid of scores: near a point is good, far from all is nothing.
+//! The likelihood grid: scores of cells by their distance to the map's points.
 
 use pr_geom::{Point2, math};
 
@@ -6,16 +6,16 @@ use super::SearchError;
 use super::score_scale::{FARTHEST_SIGMAS, ScoreScale};
 use crate::cloud::{PointCloud, cell_index};
 
-/// Most cells of a grid: 105 m × 105 m at 0.05 m. The levels above it take ten times the memory.
+/// Largest number of cells of a grid: 105 m × 105 m at 0.05 m. The levels above it take ten times the memory.
 pub const MAX_GRID_CELLS: u64 = 1 << 22;
 
-/// Most columns and most rows: a cell's number fits into 16 bits, a window's width added.
+/// Largest number of columns and of rows: a cell's index fits into 16 bits, including a window's width.
 const MAX_SIDE_CELLS: u64 = 16_000;
 
 /// Cells and blur of a [`LikelihoodGrid`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LikelihoodConfig {
-    /// Side of a cell, m; the search is as fine.
+    /// Side of a cell, m, which is also the resolution of the search.
     pub cell_m: f64,
     /// Standard deviation of the blur around a point, m: noise of the ranges and half a cell.
     pub sigma_m: f64,
@@ -33,8 +33,8 @@ impl Default for LikelihoodConfig {
 /// Scores of all cells around a map's points, 0 to 255.
 ///
 /// A cell whose centre is d metres from the nearest point has the score `255 exp(−d²/(2σ²))`,
-/// rounded; beyond 3 σ it has none. The cells tile the map's frame from its origin, so another point
-/// far away changes no score here.
+/// rounded; beyond 3 σ it is 0. The cells tile the map's frame from its origin, so a distant
+/// point does not change nearby scores.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LikelihoodGrid {
     config: LikelihoodConfig,
@@ -49,7 +49,7 @@ impl LikelihoodGrid {
     /// The grid of the finite points of `map`.
     ///
     /// # Errors
-    /// Where the map has no such points or needs more than [`MAX_GRID_CELLS`].
+    /// If the map has no such points or needs more than [`MAX_GRID_CELLS`].
     pub fn build(map: &PointCloud, config: LikelihoodConfig) -> Result<Self, SearchError> {
         let LikelihoodConfig { cell_m, sigma_m } = config;
         let is_length = |length: f64| length > 0.0 && length.is_finite();
@@ -96,7 +96,7 @@ impl LikelihoodGrid {
         Ok(grid)
     }
 
-    /// Squared distances first, one look at the scale for each cell then.
+    /// Computes squared distances first, then one lookup in the scale for each cell.
     fn scored(&self, points: impl Iterator<Item = Point2<f64>>, reach: usize) -> Vec<u8> {
         let cell_m = self.config.cell_m;
         let mut nearest_m2 = vec![f64::INFINITY; self.columns * self.rows];
@@ -170,7 +170,7 @@ impl LikelihoodGrid {
         &self.scores
     }
 
-    /// The cell of the grid that holds a point, counted from its lower left corner; may lie outside.
+    /// The cell that contains a point, counted from the lower left corner; may be outside of the grid.
     pub(super) fn cell(&self, x_m: f64, y_m: f64) -> (i64, i64) {
         let cell_m = self.config.cell_m;
         (
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_far_away_changes_no_score_here() {
+    fn a_distant_point_changes_no_local_score() {
         let (one, two) = (grid(&[(-0.31, 0.07)]), grid(&[(-0.31, 0.07), (4.0, -3.0)]));
         for k in -6..6 {
             let (x, y) = (-0.31 + 0.1 * f64::from(k), 0.07 - 0.05 * f64::from(k));
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_map_without_points_or_without_end_is_refused() {
+    fn empty_and_too_large_maps_are_rejected() {
         let build = |cloud: &PointCloud, config| LikelihoodGrid::build(cloud, config).unwrap_err();
         let nothing = [Point2::new(f64::NAN, 0.0)].into_iter().collect();
         assert_eq!(build(&nothing, CONFIG), SearchError::EmptyMap);
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn a_map_at_the_end_of_all_cells_has_its_scores() {
+    fn a_map_at_the_limit_of_cell_indices_has_its_scores() {
         let far = [Point2::new(-1e300, 1e300)].into_iter().collect();
         let grid = LikelihoodGrid::build(&far, CONFIG).unwrap();
         assert!(grid.columns() * grid.rows() < 400);

@@ -1,4 +1,4 @@
-//! The grid with the largest scores of ever larger squares beside it.
+//! The grid and the largest scores of squares of increasing size.
 
 use super::score_scale::FULL_SCORE;
 use super::{LikelihoodConfig, LikelihoodGrid, SearchError};
@@ -7,32 +7,32 @@ use crate::cloud::PointCloud;
 /// Levels of a map: the squares of the last one have `2^(LEVELS−1)` cells a side.
 pub(super) const LEVELS: usize = 7;
 
-/// Points that are looked up together: their indices come out of the processor's wide registers.
+/// Number of points that are looked up together, for vectorized index computation.
 pub(super) const BATCH: usize = 64;
 
-/// A map made ready for searches: the grid and its sliding maxima.
+/// A map for searches: the grid and its sliding maxima.
 ///
 /// Level h holds for every cell (i, j) the largest score of the cells `[i, i + 2^h) × [j, j + 2^h)`
-/// (Hess et al. 2016, §IV-D). What lies outside of the grid scores 0.
+/// (Hess et al. 2016, §IV-D). The score outside of the grid is 0.
 #[derive(Clone, Debug)]
 pub struct SearchMap {
     grid: LikelihoodGrid,
     levels: Vec<Level>,
 }
 
-/// The maxima of one size of squares, for all squares that touch the grid and a border of zeros.
+/// The maxima for one size of squares, for all squares that touch the grid, with a border of zeros.
 #[derive(Clone, Debug)]
 pub(super) struct Level {
     /// Side of a square in cells, and the index of the grid's own first cell.
     side: i16,
     columns: i16,
     rows: i16,
-    /// A row starts every `2^row_shift` places: a shift is cheaper than a product.
+    /// A row starts every `2^row_shift` entries, because a shift is cheaper than a product.
     row_shift: u32,
     maxima: Vec<u8>,
 }
 
-/// Cells of a [`BATCH`] of points at most, an array for each axis.
+/// Cells of at most one [`BATCH`] of points, one array for each axis.
 #[derive(Clone, Copy)]
 pub(super) struct CellSlice<'a> {
     pub columns: &'a [i16],
@@ -43,7 +43,7 @@ impl SearchMap {
     /// The map of the finite points of `map`.
     ///
     /// # Errors
-    /// Where [`LikelihoodGrid::build`] refuses them.
+    /// If [`LikelihoodGrid::build`] fails.
     pub fn build(map: &PointCloud, config: LikelihoodConfig) -> Result<Self, SearchError> {
         Ok(Self::new(LikelihoodGrid::build(map, config)?))
     }
@@ -51,7 +51,7 @@ impl SearchMap {
     /// The map of a grid.
     #[must_use]
     pub fn new(grid: LikelihoodGrid) -> Self {
-        let mut levels = vec![Level::ground(&grid)];
+        let mut levels = vec![Level::base(&grid)];
         for _ in 1..LEVELS {
             let finer = levels.last().expect("the first level is there");
             levels.push(finer.doubled());
@@ -80,8 +80,8 @@ impl SearchMap {
 }
 
 impl Level {
-    /// The grid itself, with a border of one cell without a score.
-    fn ground(grid: &LikelihoodGrid) -> Self {
+    /// The grid itself, with a border of one cell of score 0.
+    fn base(grid: &LikelihoodGrid) -> Self {
         let mut level = Self::without_squares(1, grid.columns(), grid.rows());
         level.maxima.resize(level.size(), 0);
         let stride = level.stride();
@@ -91,7 +91,7 @@ impl Level {
         level
     }
 
-    /// Squares of `side` cells a side that touch a grid of `columns` × `rows`, none of them there yet.
+    /// Allocates squares of `side` cells a side that touch a grid of `columns` × `rows`, without maxima.
     fn without_squares(side: usize, columns: usize, rows: usize) -> Self {
         let stride = (columns + side + 1).next_power_of_two();
         Self {
@@ -103,7 +103,7 @@ impl Level {
         }
     }
 
-    /// Number of squares, those that pad the rows among them.
+    /// Number of squares, including the padding of the rows.
     fn size(&self) -> usize {
         self.stride() * (self.rows + self.side + 1) as usize
     }
@@ -112,7 +112,7 @@ impl Level {
         1 << self.row_shift
     }
 
-    /// The maxima of squares of twice the side: each is that of four squares of this one.
+    /// The maxima of squares of twice the side: each is the maximum of four squares of this level.
     fn doubled(&self) -> Self {
         let step = self.side as usize;
         let (columns, rows) = (self.columns as usize, self.rows as usize);
@@ -126,7 +126,7 @@ impl Level {
             raise(&mut wider.maxima[start + step..], &from[..used]);
         }
         wider.maxima.resize(wider.size(), 0);
-        // From the top down, so that no row is raised by one that was raised itself.
+        // From the top down, so that no row is raised by one that was already raised.
         let height = rows + 2 * step + 1;
         for row in (step..height).rev() {
             let (below, above) = wider.maxima.split_at_mut(row * stride);
@@ -138,7 +138,7 @@ impl Level {
         wider
     }
 
-    /// The sum of the maxima at all cells, moved by an offset in columns and rows.
+    /// The sum of the maxima at all cells, shifted by an offset in columns and rows.
     pub(super) fn sum(&self, cells: CellSlice<'_>, offset: [i16; 2]) -> u32 {
         let (mut in_row, mut rows) = ([0; BATCH], [0; BATCH]);
         self.locate_columns(cells.columns, offset[0], &mut in_row);
@@ -149,7 +149,7 @@ impl Level {
             .sum()
     }
 
-    /// The sum of the maxima over areas whose corner squares start at these cells, moved alike.
+    /// The sum of the maxima over areas whose corner squares start at these cells, with the same shift.
     pub(super) fn sum_of_areas(
         &self,
         low: CellSlice<'_>,
@@ -175,7 +175,7 @@ impl Level {
             .sum()
     }
 
-    /// Places of columns in a row. One square beyond the grid on either side there are only zeros.
+    /// Indices of columns in a row. All squares beyond the border are zero.
     #[inline]
     fn locate_columns(&self, columns: &[i16], offset: i16, places: &mut [u32; BATCH]) {
         for (place, column) in places.iter_mut().zip(columns) {
@@ -184,7 +184,7 @@ impl Level {
         }
     }
 
-    /// Places where rows start.
+    /// Indices of the first square of rows.
     #[inline]
     fn locate_rows(&self, rows: &[i16], offset: i16, places: &mut [u32; BATCH]) {
         for (place, row) in places.iter_mut().zip(rows) {

@@ -1,9 +1,10 @@
-//! What a search says: of a step, and at its end.
+//! Reports of a search: for a step, and for its end.
 
 use pr_geom::SE2;
 
-/// A pose and how well the scan fits there.
+/// A pose and its score.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ScoredPose {
     /// `map_from_scan`.
     pub pose: SE2,
@@ -11,89 +12,93 @@ pub struct ScoredPose {
     pub score: f64,
 }
 
-/// Poses of a window that are judged together.
+/// A box of poses of a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PoseBox {
-    /// Its poses lie between these in x, m.
+    /// Range of its poses in x, m.
     pub x_m: [f64; 2],
-    /// In y, m.
+    /// Range in y, m.
     pub y_m: [f64; 2],
-    /// In the heading, not wrapped, rad.
+    /// Range of the heading, not wrapped, rad.
     pub heading_rad: [f64; 2],
-    /// No pose in it scores more than this, 0 to 1; the score itself where it is a single pose.
+    /// Upper bound of the score of its poses, 0 to 1; the score itself for a single pose.
     pub bound: f64,
     /// Whether it is a single pose.
     pub is_pose: bool,
 }
 
-/// What became of a box.
+/// Result of expanding a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoxFate {
     /// It was split into boxes that were bounded.
     Split {
-        /// How many.
+        /// Number of parts.
         parts: usize,
     },
-    /// Nothing in it beats the best pose so far.
+    /// It contains no pose better than the best so far.
     Pruned,
     /// It is a pose, and the best so far.
     Best,
-    /// All of it is the same place as the best pose, while the runner-up is looked for.
+    /// All of it is in the neighbourhood of the best pose, while the runner-up is searched.
     SamePlace,
 }
 
-/// What is looked for.
+/// Goal of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SearchGoal {
     /// The best pose of the window.
     Best,
-    /// The best pose that is another place.
+    /// The best distinct pose.
     RunnerUp,
 }
 
 /// One step of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SearchReport {
-    /// What was looked for.
+    /// The current goal.
     pub goal: SearchGoal,
-    /// The box that was taken up.
+    /// The expanded box.
     pub taken: PoseBox,
-    /// What became of it.
+    /// Its result.
     pub fate: BoxFate,
 }
 
-/// How much work a search was.
+/// Work of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SearchCounts {
-    /// Boxes of more than one pose that were bounded: a sum over the points each.
+    /// Boxes of more than one pose that were bounded, by one sum over the points each.
     pub bounds: u64,
     /// Single poses that were scored.
     pub poses: u64,
-    /// Poses of the window: what an exhaustive search scores.
+    /// Poses of the window, which an exhaustive search would score.
     pub window: u64,
 }
 
 impl SearchCounts {
-    /// Sums over the points that were made.
+    /// Number of sums over the points.
     #[must_use]
     pub fn scored(&self) -> u64 {
         self.bounds + self.poses
     }
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SearchResult {
     /// The best pose; of equals the first in heading, then y, then x.
     pub best: ScoredPose,
-    /// The best pose that is another place; none where the window has no other.
+    /// The best distinct pose; `None` if the window has no other.
     pub runner_up: Option<ScoredPose>,
     /// The work.
     pub counts: SearchCounts,
 }
 
 impl SearchResult {
-    /// By how much the runner-up is behind, 0 to 1.
+    /// Margin of the score to the runner-up, 0 to 1.
     #[must_use]
     pub fn margin(&self) -> Option<f64> {
         Some(self.best.score - self.runner_up?.score)

@@ -1,4 +1,4 @@
-//! Branch and bound over the poses of a window, a box at a time.
+//! Branch and bound over the poses of a window, one box at a time.
 
 mod exhaustive;
 
@@ -15,9 +15,8 @@ use crate::cloud::PointCloud;
 
 /// A search for the pose of a scan on a map.
 ///
-/// [`ScanSearch::step`] takes up one box and says what became of it; [`ScanSearch::run`] does all.
-/// First the best pose is looked for, then the best one that is another place. Both are exact: what
-/// is dropped could not have won.
+/// [`ScanSearch::step`] expands one box and reports the result; [`ScanSearch::run`] runs to the end.
+/// It first finds the best pose, then the best distinct one. Both are exact: a dropped box could not have won.
 #[derive(Clone, Debug)]
 pub struct ScanSearch {
     map: Arc<SearchMap>,
@@ -26,15 +25,15 @@ pub struct ScanSearch {
     scan: TurnedScan,
     nearness: Nearness,
     goal: SearchGoal,
-    /// Boxes to be taken up, the most promising one last.
+    /// Boxes to be expanded, the most promising one last.
     open: Vec<OpenBox>,
-    /// Boxes that hold no best pose, but may hold the runner-up.
+    /// Boxes that do not contain the best pose, but may contain the runner-up.
     set_aside: Vec<OpenBox>,
     /// Boxes of the last split.
     parts: Vec<OpenBox>,
-    /// What the best pose has to score at least.
+    /// Smallest score of an accepted best pose.
     floor: u32,
-    /// The runner-up is of interest only if it is behind by no more than this.
+    /// Largest margin of a runner-up of interest.
     margin: u32,
     best: Option<OpenBox>,
     runner_up: Option<OpenBox>,
@@ -45,30 +44,30 @@ pub struct ScanSearch {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct OpenBox {
     bound: u32,
-    /// Number of its shape in the schedule.
+    /// Index of its shape in the schedule.
     shape: usize,
     /// Its first pose.
     first: LatticePose,
 }
 
 impl OpenBox {
-    /// The better one is the greater one: by its bound, then the one that starts earlier.
+    /// Orders boxes by bound, then by earlier start; the better one is greater.
     fn promise(&self, other: &Self) -> Ordering {
         let by_bound = self.bound.cmp(&other.bound);
         by_bound.then_with(|| other.first.cmp(&self.first))
     }
 
-    /// Whether a pose in it could win against `champion`.
+    /// Whether a pose in it could be better than `champion`.
     fn challenges(&self, champion: Option<&Self>) -> bool {
         champion.is_none_or(|champion| self.promise(champion) == Ordering::Greater)
     }
 }
 
 impl ScanSearch {
-    /// A search of `window` that has not begun.
+    /// A new search of `window`.
     ///
     /// # Errors
-    /// Where the scan has no finite point or the window cannot be numbered.
+    /// If the scan has no finite point or the window has too many poses.
     pub fn new(
         map: Arc<SearchMap>,
         scan: &PointCloud,
@@ -103,34 +102,34 @@ impl ScanSearch {
         Ok(search)
     }
 
-    /// The same search for a pose that scores at least `min_score`, 0 to 1; the runner-up may score
+    /// The same search for a pose with a score of at least `min_score`, 0 to 1; the runner-up may score
     /// less.
     ///
-    /// Where the scan fits nowhere, all poses are about as bad, and a search that has to name the best
-    /// of them looks at most of them. This one gives up early.
+    /// If the scan fits nowhere, all poses have similar scores, and finding the best of them takes almost an
+    /// exhaustive search. With a minimum the search ends early.
     #[must_use]
     pub fn with_min_score(mut self, min_score: f64) -> Self {
         self.floor = (min_score * f64::from(self.scan.full_score())).ceil() as u32;
         self
     }
 
-    /// The same search without a runner-up that is behind by more than `margin`, 0 to 1: whoever asks
-    /// only whether another place is that close need not know which one is farther behind.
+    /// The same search without a runner-up whose margin exceeds `margin`, 0 to 1, for callers that only need to
+    /// know whether a competing pose is that close.
     #[must_use]
     pub fn with_margin(mut self, margin: f64) -> Self {
         self.margin = (margin * f64::from(self.scan.full_score())).ceil() as u32;
         self
     }
 
-    /// Takes up one box; none once the search is finished.
+    /// Expands one box; `None` once the search is finished.
     pub fn step(&mut self) -> Option<SearchReport> {
         if self.open.is_empty() && self.goal == SearchGoal::Best {
-            self.look_for_the_runner_up();
+            self.start_runner_up_search();
         }
         let taken = self.open.pop()?;
         let fate = match self.goal {
-            SearchGoal::Best => self.judge_for_best(taken),
-            SearchGoal::RunnerUp => self.judge_for_runner_up(taken),
+            SearchGoal::Best => self.evaluate_for_best(taken),
+            SearchGoal::RunnerUp => self.evaluate_for_runner_up(taken),
         };
         Some(SearchReport {
             goal: self.goal,
@@ -139,26 +138,26 @@ impl ScanSearch {
         })
     }
 
-    /// Searches to the end; none where no pose scores as much as it has to.
+    /// Runs to the end; `None` if no pose reaches the minimum score.
     #[must_use]
     pub fn run(mut self) -> Option<SearchResult> {
         loop {
             if self.open.is_empty() && self.goal == SearchGoal::Best {
-                self.look_for_the_runner_up();
+                self.start_runner_up_search();
             }
             let Some(taken) = self.open.pop() else {
                 return self.result();
             };
             match self.goal {
-                SearchGoal::Best => self.judge_for_best(taken),
-                SearchGoal::RunnerUp => self.judge_for_runner_up(taken),
+                SearchGoal::Best => self.evaluate_for_best(taken),
+                SearchGoal::RunnerUp => self.evaluate_for_runner_up(taken),
             };
         }
     }
 
-    /// The answer so far; none before a pose was found.
+    /// The result so far; `None` before a pose was found.
     ///
-    /// It is final once [`ScanSearch::step`] has nothing left to do.
+    /// It is final once [`ScanSearch::step`] returns `None`.
     #[must_use]
     pub fn result(&self) -> Option<SearchResult> {
         Some(SearchResult {
@@ -168,7 +167,7 @@ impl ScanSearch {
         })
     }
 
-    /// The boxes that wait to be taken up, the most promising one last.
+    /// The boxes to be expanded, the most promising one last.
     pub fn open_boxes(&self) -> impl ExactSizeIterator<Item = PoseBox> + '_ {
         self.open.iter().map(|open| self.pose_box(open))
     }
@@ -191,22 +190,22 @@ impl ScanSearch {
         self.lattice.heading_rad(heading as i32)
     }
 
-    /// The scores of all places at one heading, 0 to 1, row by row from the lowest y.
+    /// The scores of all positions at one heading, 0 to 1, row by row from the lowest y.
     ///
-    /// This is a slice through the surface that is searched; it counts as no work of the search.
+    /// A slice through the score surface, for display; it is not counted as work of the search.
     pub fn scores_at(&self, heading: usize, scores: &mut Vec<f64>) {
         scores.clear();
         let poses = self.poses_at(heading as i32);
         scores.extend(poses.map(|pose| self.share(pose.bound)));
     }
 
-    /// Rows and columns of places at every heading.
+    /// Number of rows and columns of positions at every heading.
     #[must_use]
     pub fn places(&self) -> [usize; 2] {
         [self.lattice.rows as usize, self.lattice.columns as usize]
     }
 
-    /// What the places cover, half a cell all round included: lowest x and y, highest x and y, m.
+    /// Extent of the positions, including half a cell all around: lowest x and y, highest x and y, m.
     #[must_use]
     pub fn extent_m(&self) -> [[f64; 2]; 2] {
         let corner = |column: f64, row: f64| [self.lattice.x_m(column), self.lattice.y_m(row)];
@@ -231,20 +230,20 @@ impl ScanSearch {
         })
     }
 
-    fn judge_for_best(&mut self, taken: OpenBox) -> BoxFate {
+    fn evaluate_for_best(&mut self, taken: OpenBox) -> BoxFate {
         if taken.bound < self.floor || !taken.challenges(self.best.as_ref()) {
             self.set_aside.push(taken);
             return BoxFate::Pruned;
         }
         if self.shapes[taken.shape].is_pose() {
-            // The runner-up may be the one that was best until now.
+            // The previous best may become the runner-up.
             self.set_aside.extend(self.best.replace(taken));
             return BoxFate::Best;
         }
         self.split(&taken)
     }
 
-    fn judge_for_runner_up(&mut self, taken: OpenBox) -> BoxFate {
+    fn evaluate_for_runner_up(&mut self, taken: OpenBox) -> BoxFate {
         if !taken.challenges(self.runner_up.as_ref()) || taken.bound < self.runner_up_floor() {
             return BoxFate::Pruned;
         }
@@ -261,8 +260,8 @@ impl ScanSearch {
         self.split(&taken)
     }
 
-    /// Goes on with what was set aside: the first search has bounded it already.
-    fn look_for_the_runner_up(&mut self) {
+    /// Continues with the boxes that were set aside, which are already bounded.
+    fn start_runner_up_search(&mut self) {
         self.goal = SearchGoal::RunnerUp;
         let Some(best) = self.best else { return };
         for aside in &self.set_aside {
@@ -283,13 +282,13 @@ impl ScanSearch {
         self.open.sort_by(OpenBox::promise);
     }
 
-    /// What the runner-up has to score at least.
+    /// Smallest score of a runner-up of interest.
     fn runner_up_floor(&self) -> u32 {
         let best = self.best.map_or(0, |best| best.bound);
         best.saturating_sub(self.margin)
     }
 
-    /// Puts the parts of a box among the open ones, the most promising one on top.
+    /// Adds the parts of a box to the open ones, the most promising one on top.
     fn split(&mut self, taken: &OpenBox) -> BoxFate {
         self.bound_parts(taken.first, self.last_of(taken), taken.shape + 1);
         self.parts.sort_by(OpenBox::promise);
@@ -298,7 +297,7 @@ impl ScanSearch {
         BoxFate::Split { parts }
     }
 
-    /// What a box has to reach for a pose of it to be the best or the runner-up.
+    /// Smallest bound of a box that may contain the best pose or the runner-up.
     fn of_interest(&self) -> u32 {
         match self.goal {
             SearchGoal::Best => {
@@ -312,7 +311,7 @@ impl ScanSearch {
         }
     }
 
-    /// Bounds all boxes of a shape from `first` to `last`, both included.
+    /// Bounds all boxes of a shape from `first` to `last`, inclusive.
     fn bound_parts(&mut self, first: LatticePose, last: LatticePose, shape: usize) {
         let BoxShape { side, turn } = self.shapes[shape];
         let of_interest = self.of_interest();
@@ -338,7 +337,7 @@ impl ScanSearch {
         }
     }
 
-    /// A box of a shape with its bound, exact where that is `of_interest` at least.
+    /// A box of a shape with its bound, which is exact if it is at least `of_interest`.
     fn bounded(&self, first: LatticePose, shape: usize, of_interest: u32) -> OpenBox {
         let offset = self.lattice.cells_from_center(first.column, first.row);
         let group = first.heading >> self.shapes[shape].turn;
@@ -349,7 +348,7 @@ impl ScanSearch {
         }
     }
 
-    /// The last pose of a box that the window still holds.
+    /// The last pose of a box that is inside the window.
     fn last_of(&self, open: &OpenBox) -> LatticePose {
         let shape = self.shapes[open.shape];
         let last = self.lattice.last();

@@ -1,20 +1,20 @@
-//! Squared distances to scores without an exponential each.
+//! Scores from squared distances by a table, without an exponential each.
 
 use pr_geom::math;
 
-/// The score of a cell that a point lies in the middle of.
+/// The score of a cell with a point at its centre.
 pub(super) const FULL_SCORE: u8 = u8::MAX;
 
-/// Scores end at so many σ.
+/// Scores are 0 beyond this many σ.
 pub(super) const FARTHEST_SIGMAS: f64 = 3.0;
 
-/// Equal parts of the range of squared distances: few enough to be filled in a moment, and so many
-/// that hardly any holds more than one threshold.
+/// Number of equal parts of the range of squared distances: few enough to fill quickly, and enough
+/// that hardly any contains more than one threshold.
 const PARTS: usize = 1024;
 
-/// `255 exp(−d²/(2σ²))`, rounded, as the squared distances where the score falls by one.
+/// `255 exp(−d²/(2σ²))`, rounded, as a table of the squared distances at which the score decreases by one.
 ///
-/// A part of the range knows the score at its near end; from there it is a step or none.
+/// Each part of the range stores the score at its near end; from there at most a few steps remain.
 #[derive(Clone, Debug)]
 pub(super) struct ScoreScale {
     /// The largest d² with a score of at least k, m², by k.
@@ -54,7 +54,7 @@ impl ScoreScale {
         self.fallen(self.near_end[part.min(PARTS - 1)], d2_m2)
     }
 
-    /// The score at `d2_m2` where it is no more than `at_most`.
+    /// The score at `d2_m2`, searched from `at_most` downwards.
     #[inline]
     fn fallen(&self, at_most: u8, d2_m2: f64) -> u8 {
         let mut score = at_most;

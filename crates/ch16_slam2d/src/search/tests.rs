@@ -1,4 +1,4 @@
-//! The search against the one that scores every pose.
+//! Branch and bound against exhaustive search.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use pr_geom::{Point2, SE2};
 use super::*;
 use crate::cloud::PointCloud;
 
-/// Numbers that look random: Knuth's multiplier and increment for 64 bits, the upper half.
+/// Pseudo-random numbers: Knuth's multiplier and increment for 64 bits, the upper half.
 struct Numbers(u64);
 
 impl Numbers {
@@ -27,8 +27,8 @@ impl Numbers {
     }
 }
 
-/// A cloud of one to twelve points: strewn, on a lattice so that many poses score alike, or alike
-/// after a quarter turn.
+/// A cloud of one to twelve points: random, on a lattice so that many poses have equal scores, or symmetric
+/// under a quarter turn.
 fn cloud(numbers: &mut Numbers) -> PointCloud {
     let count = 1 + numbers.below(12);
     let kind = numbers.below(3);
@@ -82,7 +82,7 @@ fn case(numbers: &mut Numbers) -> ScanSearch {
     ScanSearch::new(map, &scan, &window, &neighborhood).unwrap()
 }
 
-/// Whether another pose of the window scores exactly as the best one.
+/// Whether another pose of the window has exactly the best score.
 fn is_tied(search: &ScanSearch, best: &ScoredPose) -> bool {
     let mut scores = Vec::new();
     let mut equals = 0;
@@ -132,7 +132,7 @@ fn the_best_pose_and_the_runner_up_are_those_of_the_exhaustive_search_in_1000_ca
 
 #[test]
 fn of_equal_poses_the_first_heading_then_the_lowest_y_then_the_lowest_x_wins() {
-    // A single point at the sensor fits every heading alike, and every cell of its own size.
+    // A single point at the sensor fits every heading equally, and every cell of its own size.
     let point: PointCloud = [Point2::new(0.025, 0.025)].into_iter().collect();
     let config = LikelihoodConfig {
         cell_m: 0.05,
@@ -148,7 +148,7 @@ fn of_equal_poses_the_first_heading_then_the_lowest_y_then_the_lowest_x_wins() {
     assert_eq!(found.best.score, 1.0);
     assert_eq!(found.best.pose, SE2::new(0.025, 0.025, first_heading));
 
-    // Two points a cell apart hold a scan of one in two places.
+    // Two points a cell apart match a scan of one point at two poses.
     let pair: PointCloud = [0.025, 0.225]
         .map(|x| Point2::new(x, 0.025))
         .into_iter()
@@ -169,7 +169,7 @@ fn of_equal_poses_the_first_heading_then_the_lowest_y_then_the_lowest_x_wins() {
 }
 
 #[test]
-fn steps_tell_of_every_box_and_end_at_the_same_answer() {
+fn steps_report_every_box_and_end_at_the_same_result() {
     let mut numbers = Numbers(7);
     for _ in 0..20 {
         let search = case(&mut numbers);
@@ -200,7 +200,7 @@ fn steps_tell_of_every_box_and_end_at_the_same_answer() {
 }
 
 #[test]
-fn a_square_room_looks_the_same_after_a_quarter_turn_and_the_margin_says_so() {
+fn a_square_room_is_ambiguous_and_has_a_small_margin() {
     let wall = || (0..40).map(|k| 0.1 * f64::from(k) - 1.95);
     let walls = |x: f64| [(x, 1.95), (-1.95, x), (-x, -1.95), (1.95, -x)];
     let room: PointCloud = wall()
@@ -227,7 +227,7 @@ fn a_square_room_looks_the_same_after_a_quarter_turn_and_the_margin_says_so() {
         .between(&alike.runner_up.unwrap().pose)
         .theta()
         / FRAC_PI_2;
-    // 0.03 of a quarter turn is not yet three steps of the heading.
+    // 0.03 of a quarter turn is less than three steps of the heading.
     assert!(
         (turns - turns.round()).abs() < 0.03 && turns.round() != 0.0,
         "{turns}"
@@ -241,12 +241,12 @@ fn a_square_room_looks_the_same_after_a_quarter_turn_and_the_margin_says_so() {
         .unwrap()
         .run()
         .unwrap();
-    // The 20 points of the wardrobe are a ninth of the scan, and fit nowhere else.
+    // The 20 points of the wardrobe are a ninth of the scan, and fit only at the true pose.
     assert!(found.margin().unwrap() > 0.08, "{:?}", found.margin());
 }
 
 #[test]
-fn a_scan_that_fits_nowhere_is_given_up_at_a_fraction_of_the_cost() {
+fn a_search_for_an_unmatched_scan_ends_early() {
     let mut numbers = Numbers(3);
     let strewn = |numbers: &mut Numbers| -> PointCloud {
         let mut coordinate = || numbers.between(-1.5, 1.5);
@@ -259,7 +259,7 @@ fn a_scan_that_fits_nowhere_is_given_up_at_a_fraction_of_the_cost() {
     let window = SearchWindow::around(SE2::identity(), 1.0, 1.0);
     let search = ScanSearch::new(map, &scan, &window, &SearchNeighborhood::default()).unwrap();
     let best = search.exhaustive().best.score;
-    // With a floor at the best score the answer is the same; above it there is none.
+    // With a minimum at the best score the result is the same; above it there is none.
     let at_best = search.clone().with_min_score(best).run();
     assert_eq!(at_best.unwrap().best.score, best);
     let mut above = search.clone().with_min_score(best + 0.2);
@@ -270,7 +270,7 @@ fn a_scan_that_fits_nowhere_is_given_up_at_a_fraction_of_the_cost() {
 }
 
 #[test]
-fn a_runner_up_that_is_too_far_behind_is_left_out_and_any_other_is_the_same() {
+fn a_runner_up_beyond_the_margin_is_left_out_and_others_are_unchanged() {
     let mut numbers = Numbers(40);
     let (mut kept, mut left_out) = (0, 0);
     for number in 0..300 {
@@ -279,7 +279,7 @@ fn a_runner_up_that_is_too_far_behind_is_left_out_and_any_other_is_the_same() {
         let near = search.with_margin(0.1).run().unwrap();
         assert_eq!(near.best, all.best, "case {number}");
         assert!(near.counts.scored() <= all.counts.scored(), "case {number}");
-        // 0.005: scores are whole numbers, 255 for each of a few points.
+        // 0.005: scores are integers, 255 for each of a few points.
         match all.margin() {
             Some(margin) if margin < 0.095 => {
                 kept += 1;

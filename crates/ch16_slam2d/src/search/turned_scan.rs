@@ -11,10 +11,10 @@ use super::score_scale::FULL_SCORE;
 use super::{LikelihoodGrid, SearchMap};
 use crate::cloud::PointCloud;
 
-/// Cells farther from the map's corner than this count as this far: they are outside either way.
+/// Largest distance of a cell from the map's corner; farther ones are clamped, as both are outside.
 const FARTHEST_CELL: i64 = 16_383;
 
-/// Boxes of fewer cells a side than `2` to this hold one heading each.
+/// Boxes with sides of fewer than `2` to this power cells contain one heading each.
 const FINEST_GROUP: u32 = 2;
 
 /// The size of a box of poses: `2^side` columns and rows, `2^turn` headings.
@@ -30,8 +30,8 @@ impl BoxShape {
 
     /// The shapes of a search from coarse to fine, for windows of `columns` × `rows` × `headings`.
     ///
-    /// A step of the heading moves a far point by a cell, so a box of as many headings as columns
-    /// is as large one way as the other. Small boxes look up fewer squares with one heading each.
+    /// A step of the heading moves a far point by a cell, so a box with as many headings as columns
+    /// is balanced. Small boxes need fewer lookups with one heading each.
     pub fn schedule(columns: i32, rows: i32, headings: i32) -> Vec<Self> {
         let widest = columns.max(rows).ilog2().min(LEVELS as u32 - 2);
         let is_grouped = headings > 1 << widest;
@@ -70,28 +70,27 @@ pub(super) struct TurnedScan {
     plans: Vec<Plan>,
 }
 
-/// What a shape of boxes looks up.
+/// The lookups for one shape of boxes.
 ///
-/// Over a box, a point visits the cells from the lowest to the highest that its headings put it in,
-/// and as many more as the box has. Squares of one level, laid over the ends of that area, cover it:
-/// one for a single heading, four otherwise.
+/// Over a box, a point visits the cells from the lowest to the highest of its headings, extended by the size of
+/// the box. Squares of one level at the ends of that area cover it: one for a single heading, four otherwise.
 #[derive(Clone, Debug)]
 struct Plan {
     runs: Vec<Run>,
     /// Lowest column and row of every point, group by group.
     low: Arc<Cells>,
-    /// Last column and row of a square that ends with the area; empty where there is one square.
+    /// Last column and row of a square that ends with the area; empty if there is one square.
     high: Cells,
 }
 
-/// Columns and rows, an array each.
+/// Columns and rows, one array each.
 #[derive(Clone, Debug, Default)]
 struct Cells {
     columns: Vec<i16>,
     rows: Vec<i16>,
 }
 
-/// Points in a row that look up the same level; none where no level is large enough.
+/// Consecutive points that look up the same level; `None` if no level is large enough.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     first: usize,
@@ -100,7 +99,7 @@ struct Run {
 }
 
 impl TurnedScan {
-    /// The finite points of `scan`, turned by every heading of the lattice and put at its centre.
+    /// The finite points of `scan`, rotated by every heading of the lattice, at its centre.
     pub fn new(
         scan: &PointCloud,
         lattice: &Lattice,
@@ -116,17 +115,17 @@ impl TurnedScan {
         }
     }
 
-    /// The largest sum of scores that there is.
+    /// The largest possible sum of scores.
     pub fn full_score(&self) -> u32 {
         self.points as u32 * u32::from(FULL_SCORE)
     }
 
-    /// A sum over the points that no pose of a box exceeds, of the largest scores around each.
+    /// Upper bound of the score of all poses of a box, as the sum of the largest scores around each point.
     ///
-    /// The box has the shape of that number in the schedule and holds the headings of the group;
-    /// its lowest pose is `column` and `row` cells away from the window's centre. For a single pose
-    /// it is the score itself. Where it turns out to stay below `of_interest`, what is left of the
-    /// points counts in full: a looser bound, still below.
+    /// The box has the shape of this index in the schedule and the headings of the group; its lowest pose is
+    /// `column` and `row` cells away from the window's centre. For a single pose it is the score itself. Once the
+    /// bound is certain to stay below `of_interest`, the remaining points count fully: a looser bound, still
+    /// below.
     pub fn sum(
         &self,
         map: &SearchMap,
@@ -138,7 +137,7 @@ impl TurnedScan {
         let plan = &self.plans[shape];
         let start = group as usize * self.points;
         let offset = [column as i16, row as i16];
-        // The bound so far: every point counts in full until it has been looked up.
+        // The bound so far: every point counts fully until it has been looked up.
         let mut sum = self.full_score();
         for run in &plan.runs {
             let Some(level) = run.level else { continue };
@@ -162,7 +161,7 @@ impl TurnedScan {
     }
 }
 
-/// Far points move most with the heading; neighbours in this order need the same level.
+/// Sorts far points first, because they move most with the heading; neighbours in this order need the same level.
 fn far_points_first(scan: &PointCloud) -> Vec<Point2<f64>> {
     let reach = |point: &Point2<f64>| math::norm2(point.x, point.y);
     let mut points: Vec<_> = scan
@@ -174,7 +173,7 @@ fn far_points_first(scan: &PointCloud) -> Vec<Point2<f64>> {
 }
 
 impl Cells {
-    /// Where the points are at every heading, with the sensor at the window's centre.
+    /// The points at every heading, with the sensor at the window's centre.
     fn turned(points: &[Point2<f64>], lattice: &Lattice, grid: &LikelihoodGrid) -> Self {
         let (x_m, y_m) = lattice.center_m();
         let places = points.len() * lattice.headings as usize;
@@ -241,7 +240,7 @@ impl Plan {
 struct Spans {
     low: Vec<i16>,
     high: Vec<i16>,
-    /// How many cells a point moves at most over the headings of any group.
+    /// Largest movement of a point over the headings of any group, in cells.
     widest: Vec<i32>,
 }
 
@@ -271,7 +270,7 @@ impl Spans {
         spans
     }
 
-    /// Where the square starts that ends with the area: no earlier than the first one.
+    /// Start of the square that ends with the area, not before the first one.
     fn last_squares(&self, runs: &[Run], points: usize, shape: BoxShape) -> Vec<i16> {
         let mut last = self.high.clone();
         for (last, low) in last
@@ -289,7 +288,7 @@ impl Spans {
     }
 }
 
-/// The largest levels whose squares fit into areas of these widths, for points in a row.
+/// The largest levels whose squares fit into areas of these widths, for consecutive points.
 fn runs(widths: impl Iterator<Item = i32>) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (point, width) in widths.enumerate() {

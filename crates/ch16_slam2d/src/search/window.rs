@@ -1,4 +1,4 @@
-//! Which poses are searched, and which of them are the same place.
+//! The window of a search, and the neighbourhood of a pose.
 
 use core::f64::consts::PI;
 
@@ -6,16 +6,16 @@ use pr_geom::{Point2, SE2};
 
 use super::LikelihoodGrid;
 
-/// The poses that are searched: `map_from_scan` within these half-widths of a centre.
+/// The searched poses: `map_from_scan` within these half-widths of a centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SearchWindow {
-    /// The middle, `map_from_scan`.
+    /// The centre, `map_from_scan`.
     pub center: SE2,
     /// Half its width along the map's x, m.
     pub half_x_m: f64,
     /// Half its width along the map's y, m.
     pub half_y_m: f64,
-    /// Half its range of headings, rad; π and more is the whole turn.
+    /// Half its range of headings, rad; π or more is the full turn.
     pub half_turn_rad: f64,
 }
 
@@ -31,7 +31,7 @@ impl SearchWindow {
         }
     }
 
-    /// The whole of a map at every heading: for a robot that is lost.
+    /// The whole map at every heading, to relocalize a lost robot.
     #[must_use]
     pub fn whole(grid: &LikelihoodGrid) -> Self {
         let (low, high) = (grid.min_m(), grid.max_m());
@@ -45,7 +45,7 @@ impl SearchWindow {
     }
 }
 
-/// How near a pose has to be to count as the same place.
+/// The neighbourhood of a pose, outside of which another pose is distinct.
 ///
 /// The runner-up is the best pose that is farther from the best one than this in x, in y or in its
 /// heading.

@@ -1,4 +1,4 @@
-//! Whether two loops say the same of the path.
+//! Mutual consistency of two loops.
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
@@ -7,9 +7,9 @@ use super::bundle_loops::GATE_CHI2;
 use super::mapper::Mapper;
 use crate::loops::LoopVerification;
 
-/// Whether two loops correct the path alike: `e = log((Tᵢ Z)⁻¹ Tₖ Zₖ Tⱼ⁻¹ T)` within the gate of the
+/// Whether two loops imply the same correction of the path: `e = log((Tᵢ Z)⁻¹ Tₖ Zₖ Tⱼ⁻¹ T)` within the gate of the
 /// covariances of both loops and of the paths between their ends.
-pub(super) fn do_agree(
+pub(super) fn are_consistent(
     mapper: &mut Mapper,
     first: &LoopVerification,
     second: &LoopVerification,

@@ -1,10 +1,9 @@
-//! Loops for robots: the newest keyframes together, on submaps of older ones.
+//! Loop closure for robots: registers the newest keyframes together on submaps of older ones.
 //!
-//! A submap is found by where the graph has the newest keyframe, as far off as the covariance of the
-//! relative pose allows. Where that is less than a metre, registration starts at the belief; else the
-//! whole window is searched by branch and bound, the best place has to be ahead of every other one, and
-//! the loop waits for another one along the path that agrees with it. Loops that contradict the graph need
-//! two others, and then all loops are judged together.
+//! Candidates are submaps within the covariance of the relative pose in the graph. If the window is smaller than a
+//! metre, registration starts at the graph's relative pose; otherwise the whole window is searched by branch and
+//! bound, the best pose needs a margin to every distinct one, and the loop waits for confirmation by another one
+//! along the path. Loops that contradict the graph need two others, and then the outlier test runs over all loops.
 //!
 //! Sources: Hess et al., "Real-time loop closure in 2D LIDAR SLAM", 2016, for keyframes on submaps; Olson,
 //! "Recognizing places using spectrally clustered local matches", 2009, for loops that agree.
@@ -15,12 +14,12 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 use pr_geom::{SE2, math};
 
-use super::agreement::do_agree;
-use super::mapper::{Mapper, Trust};
+use super::agreement::are_consistent;
+use super::mapper::{Consistency, Mapper};
 use super::robots::{RobotConfig, SubmapLoopConfig};
 use crate::cloud::PointCloud;
 use crate::local_map::{
-    LEAST_SEARCH_SCORE, LocalMap, MapRegistration, MapRegistrationConfig, RangeProfile,
+    LocalMap, MIN_SEARCH_SCORE, MapRegistration, MapRegistrationConfig, RangeProfile,
 };
 use crate::loops::{
     Detection, LoopCandidate, LoopConfig, LoopRejection, LoopVerification, PendingLoop,
@@ -29,28 +28,28 @@ use crate::loops::{
 use crate::metrics::position_error_m;
 use crate::search::SearchWindow;
 
-/// Submaps that are tried at a keyframe, the nearest first.
+/// Number of submaps tested at a keyframe, the nearest first.
 const SUBMAPS: usize = 2;
-/// Loops that agree lie so far apart on the path, m: their keyframes are not the same.
-const APART_M: f64 = 5.0;
-/// Keyframes on either side of the nearest one in a submap, at least.
+/// Smallest path length between loops that confirm each other, m: their keyframes are not the same.
+const MIN_SEPARATION_M: f64 = 5.0;
+/// Smallest number of keyframes on either side of the nearest one in a submap.
 const HALF_SUBMAP: usize = 8;
-/// Submaps hold keyframes so far beyond the window, m: about as far as a room is seen.
+/// Submaps hold keyframes up to this far beyond the window, m: about the size of a room.
 const SUBMAP_MARGIN_M: f64 = 4.0;
-/// The bundle is thinned to a point in each cell of this side, m.
+/// Cell of the bundle's thinning, m.
 const BUNDLE_CELL_M: f64 = 0.15;
-/// The window is so much wider than the covariance says, m and rad.
+/// Added to the half width of the window by covariance, m and rad.
 const WINDOW_FLOOR: (f64, f64) = (0.3, 0.06);
-/// The largest squared innovation that is expected: 99 of 100 lie below, of three degrees of freedom.
+/// The largest expected squared innovation: the 99 % quantile with three degrees of freedom.
 pub(super) const GATE_CHI2: f64 = 11.345;
-/// Loops that agree where they are expected, and where they contradict the graph.
+/// Number of agreeing loops needed within the gate, and for loops that contradict the graph.
 const AGREEING: (usize, usize) = (2, 3);
 /// Smallest information of a loop in any direction, 1/m² and 1/rad²: a metre, a radian.
 const LOOP_FLOOR: f64 = 1.0;
-/// Profiles of scans that are kept between attempts.
+/// Number of range profiles cached between attempts.
 const PROFILES_KEPT: usize = 512;
 
-/// Finds loops, and keeps those that wait for others.
+/// Finds loops, and keeps the pending ones.
 #[derive(Clone)]
 pub(super) struct BundleLoops {
     config: SubmapLoopConfig,
@@ -60,7 +59,7 @@ pub(super) struct BundleLoops {
     profiles: VecDeque<(usize, Arc<RangeProfile>)>,
 }
 
-/// A place that may show the same as the newest keyframes, and how far off it may be.
+/// A submap that may show the surroundings of the newest keyframes, and the uncertainty of the relative pose.
 struct Window {
     candidate: LoopCandidate,
     belief: SE2,
@@ -80,15 +79,15 @@ impl BundleLoops {
         }
     }
 
-    /// Looks for loops at the newest keyframe: what was tried, accepted or not, and whether the accepted
+    /// Searches for loops at the newest keyframe; returns all attempts, and whether the accepted
     /// ones contradict the graph.
-    pub fn find(&mut self, mapper: &mut Mapper) -> (Vec<LoopVerification>, Trust) {
-        let mut trust = Trust::Expected;
+    pub fn find(&mut self, mapper: &mut Mapper) -> (Vec<LoopVerification>, Consistency) {
+        let mut consistency = Consistency::Expected;
         let mut tried = Vec::new();
         let lengths_m = mapper.path_lengths_m();
         let windows = self.windows(mapper, &lengths_m);
         if windows.is_empty() {
-            return (tried, trust);
+            return (tried, consistency);
         }
         let bundle = self.bundle(mapper);
         for window in windows {
@@ -124,19 +123,19 @@ impl BundleLoops {
             for index in agreeing.into_iter().rev() {
                 let waited = self.pending.remove(index);
                 if !waited.is_expected {
-                    trust = Trust::Disputed;
+                    consistency = Consistency::Contradicting;
                 }
                 tried.push(waited.verification);
             }
             if !is_expected {
-                trust = Trust::Disputed;
+                consistency = Consistency::Contradicting;
             }
             tried.push(found);
         }
-        (tried, trust)
+        (tried, consistency)
     }
 
-    /// Where older keyframes may show what the newest one does, the nearest first.
+    /// Windows around older keyframes near the newest one, the nearest first.
     fn windows(&self, mapper: &mut Mapper, lengths_m: &[f64]) -> Vec<Window> {
         let config = &self.config;
         let node = lengths_m.len() - 1;
@@ -189,8 +188,8 @@ impl BundleLoops {
         points.downsample(BUNDLE_CELL_M)
     }
 
-    /// Builds the submap around a candidate in its frame: of the keyframes of one visit that the window
-    /// reaches.
+    /// Builds the submap around a candidate in its frame, of the keyframes of one visit within the
+    /// window.
     fn build_submap(&mut self, mapper: &Mapper, window: &Window, lengths_m: &[f64]) {
         let node = lengths_m.len() - 1;
         let poses = mapper.graph.poses();
@@ -261,17 +260,17 @@ impl BundleLoops {
         let rejection = match start {
             None => Some(LoopRejection::NoPlace {
                 half_width_m: window.half_m,
-                min_score: LEAST_SEARCH_SCORE,
+                min_score: MIN_SEARCH_SCORE,
             }),
             Some(_) => rejection(&found, margin, &config),
         };
         self.verification(window, lengths_m.len() - 1, from, &found, margin, rejection)
     }
 
-    /// The best place of the window, and by how much it is ahead of the best other one.
+    /// The best pose of the window, and its margin to the best distinct one.
     fn search(&self, window: &Window, bundle: &PointCloud) -> (Option<SE2>, Option<f64>) {
         let around = SearchWindow::around(window.belief, window.half_m, window.half_rad);
-        // Other places are looked for twice as far behind as they have to be.
+        // Distinct poses are searched up to twice the required margin.
         let farthest = 2.0 * self.config.min_margin;
         match self.map.search(bundle, &around, farthest) {
             Some(found) => (
@@ -306,7 +305,7 @@ impl BundleLoops {
             rmse_m: found.fit.rmse_m,
             inliers: found.fit.inliers,
             iterations: found.registered.iterations,
-            // Where no place was found, none has a score.
+            // Without a pose there is no score.
             score: (!is_nowhere).then_some(found.fit.score),
             margin,
             innovation,
@@ -317,8 +316,8 @@ impl BundleLoops {
         }
     }
 
-    /// A keyframe is no longer there; later ones have the number before theirs.
-    pub fn forget(&mut self, node: usize, path_m: &[f64]) {
+    /// Handles the removal of a keyframe; the index of later ones decreases.
+    pub fn remove_keyframe(&mut self, node: usize, path_m: &[f64]) {
         let moved_up = |known: usize| known - usize::from(known > node);
         self.profiles.clear();
         self.pending.retain(|pending| {
@@ -333,7 +332,7 @@ impl BundleLoops {
         }
     }
 
-    /// The pending loops that agree with this one, by their index.
+    /// Indices of the pending loops that agree with this one.
     fn agreeing(
         &self,
         mapper: &mut Mapper,
@@ -344,11 +343,11 @@ impl BundleLoops {
         let mut agreeing = Vec::new();
         for (index, other) in self.pending.iter().enumerate() {
             let apart_m = path_m - other.path_m;
-            let is_beside = apart_m < APART_M;
+            let is_beside = apart_m < MIN_SEPARATION_M;
             if is_beside || apart_m > self.config.pending_distance_m {
                 continue;
             }
-            if do_agree(mapper, &other.verification, found) {
+            if are_consistent(mapper, &other.verification, found) {
                 agreeing.push(index);
             }
         }
@@ -356,7 +355,7 @@ impl BundleLoops {
     }
 }
 
-/// How many keyframes are at least so much of the path ago, m.
+/// Number of keyframes that are at least this far back along the path, m.
 fn old_enough(lengths_m: &[f64], min_path_m: f64) -> usize {
     let here_m = lengths_m.last().copied().unwrap_or_default();
     lengths_m.partition_point(|length_m| *length_m < here_m - min_path_m)

@@ -1,4 +1,4 @@
-//! The parameters that both ways of estimating share, and those of either.
+//! The parameters of the estimator: those shared by both systems, and those of either.
 
 use pr_geom::SE2;
 
@@ -7,7 +7,7 @@ use crate::chapter::ChapterConfig;
 use crate::graph::JacobianModel;
 use crate::scan::ScanConfig;
 
-/// Whether the back end looks for loops.
+/// Whether the back end closes loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LoopClosure {
     /// Loops are detected, verified and closed.
@@ -19,16 +19,16 @@ pub enum LoopClosure {
 
 /// The estimator's parameters.
 ///
-/// [`SlamConfig::chapter`] has the chapter's, for its figures; the default mends what they get
-/// wrong, for rooms of the chapter's size; [`SlamConfig::for_scan`] takes the lengths from a sensor.
+/// [`SlamConfig::chapter`] has the chapter's, for its figures; the default corrects their faults, for rooms of the
+/// chapter's size; [`SlamConfig::for_scan`] derives the lengths from a sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlamConfig {
-    /// The numbers of the estimator for robots: they register scans with a prior and look for loops on
-    /// submaps. None drives as the chapter does.
+    /// The parameters of the estimator for robots, which registers scans with a prior and closes loops on
+    /// submaps. `None` selects the chapter's system.
     pub robot: Option<RobotConfig>,
-    /// The chapter's rules; robots drive without them.
+    /// The parameters of the chapter's system; unused by the estimator for robots.
     pub chapter: ChapterConfig,
-    /// Pose of the first frame: it lays down the map's frame.
+    /// Pose of the first frame, which defines the map's frame.
     pub start: SE2,
     /// How a scan becomes a cloud.
     pub scan: ScanConfig,
@@ -36,29 +36,28 @@ pub struct SlamConfig {
     pub loop_closure: LoopClosure,
     /// Number of last sweeps in the local map.
     pub window_sweeps: usize,
-    /// A sweep joins a full window only so far from the newest one in it, m: a robot that stands
-    /// still keeps the map of the way there.
+    /// A sweep joins a full window only at this distance from the newest one in it, m: a standing robot
+    /// keeps the map of its path.
     pub window_distance_m: f64,
-    /// Or where it is turned so far from the newest one, rad.
+    /// Or at this turn from the newest one, rad.
     pub window_turn_rad: f64,
-    /// Registrations with fewer pairs are not believed: the prediction stands.
+    /// Registrations with fewer pairs are rejected, and the prediction is used.
     pub min_inliers: usize,
-    /// Without odometry the last velocity is expected to stay for so many times the last interval at
-    /// most: stamps that all but coincide make it huge.
+    /// Without odometry, constant velocity is assumed for at most this many times the last interval, because
+    /// nearly equal stamps make it huge.
     pub extrapolation: f64,
     /// Distance in metres after which a keyframe is taken.
     pub keyframe_distance_m: f64,
     /// Turn in radians after which a keyframe is taken.
     pub keyframe_turn_rad: f64,
-    /// Jacobians of the optimizer: with the chapter's the last steps shrink by a constant factor, with
-    /// exact ones by their square.
+    /// Jacobians of the optimizer: with the chapter's it converges linearly, with the exact ones quadratically.
     pub jacobians: JacobianModel,
-    /// A loop that would move no node farther than this (m + rad) is an edge of the graph, and the next one that
-    /// does corrects the graph with it; 0: each does.
+    /// A loop that would move no node farther than this (m + rad) only adds an edge; the next larger
+    /// correction includes it. 0: optimize after every loop.
     pub least_correction: f64,
-    /// Most Gauss–Newton iterations after a loop.
+    /// Largest number of Gauss–Newton iterations after a loop.
     pub optimizer_iterations: usize,
-    /// The optimizer stops where no node moves farther than this (m + rad).
+    /// The optimizer stops if no node moves farther than this (m + rad).
     pub optimizer_tolerance: f64,
     /// Huber width on the Mahalanobis norm of an edge.
     pub huber: f64,

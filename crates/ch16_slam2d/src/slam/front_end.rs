@@ -14,32 +14,33 @@ use crate::matching::{MatchSummary, Matcher};
 use crate::metrics::position_error_m;
 use crate::scan::{PreparedFrame, is_finite};
 
-/// Stamps that are closer all but coincide, s: a motion between them tells no velocity.
-const SHORTEST_S: f64 = 1e-6;
-/// A velocity that leads farther leads nowhere, m: no map is so large.
-const FARTHEST_M: f64 = 1e9;
+/// Smallest time between two stamps that determines a velocity, s.
+const MIN_INTERVAL_S: f64 = 1e-6;
+/// Largest predicted motion by a velocity, m; beyond any map.
+const MAX_MOTION_M: f64 = 1e9;
 
 /// A sweep of the local map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowSweep {
     /// The frame in which it was taken.
     pub frame: usize,
-    /// Where it was taken, by the estimate: `world_from_body`.
+    /// Its estimated pose: `world_from_body`.
     pub pose: SE2,
 }
 
-/// What a registration made of one scan.
+/// Result of registering one scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Registration {
     /// Estimate before it, moved by the odometry or by the last velocity: `world_from_body`.
     pub prediction: SE2,
-    /// The result, or the prediction where too few pairs were found.
+    /// The result, or the prediction if too few pairs were found.
     pub estimate: SE2,
     /// Correspondence threshold τ that was used, m.
     pub tau_m: f64,
-    /// τ for the next registration, m: it has seen this one's correction.
+    /// τ for the next registration, m, adapted to this one's correction.
     pub next_tau_m: f64,
-    /// Whether the result was believed.
+    /// Whether the result was accepted.
     pub accepted: bool,
     /// Whether the scan joined the window of the next local map.
     pub joined_window: bool,
@@ -47,10 +48,10 @@ pub struct Registration {
     pub matched: MatchSummary,
 }
 
-/// What registers scans on the window.
+/// Registers scans on the window.
 #[derive(Clone)]
 enum Registrar {
-    /// The chapter's matchers: the prediction is where they start.
+    /// The chapter's matchers, which start at the prediction.
     Window(Box<WindowMatching>),
     /// For robots: the prediction is part of the cost.
     Map(Box<MapMatching>),
@@ -58,12 +59,12 @@ enum Registrar {
 
 /// Local map, threshold and estimate, with the memory of a registration.
 ///
-/// Its memory is bounded: it holds the scans of its window and nothing older.
+/// Its memory is bounded: it holds only the scans of its window.
 #[derive(Clone)]
 pub struct FrontEnd {
     estimate: SE2,
     velocity: Vector3<f64>,
-    /// How long the last motion took, s.
+    /// Duration of the last motion, s.
     last_dt_s: f64,
     window: Vec<WindowSweep>,
     scans: Vec<Arc<PointCloud>>,
@@ -71,7 +72,7 @@ pub struct FrontEnd {
 }
 
 impl FrontEnd {
-    /// A front end that has seen nothing and registers with `matcher`; that for robots needs none.
+    /// A front end without scans that registers with `matcher`; the one for robots ignores it.
     #[must_use]
     pub fn new(config: &SlamConfig, matcher: Box<dyn Matcher>) -> Self {
         Self {
@@ -99,7 +100,7 @@ impl FrontEnd {
         self.velocity
     }
 
-    /// Correspondence threshold τ for the next registration, m; 0 for robots, whose reach is fixed.
+    /// Correspondence threshold τ for the next registration, m; 0 for robots, whose threshold is fixed.
     #[must_use]
     pub fn tau_m(&self) -> f64 {
         self.window_matching()
@@ -128,7 +129,7 @@ impl FrontEnd {
         }
     }
 
-    /// What it is between two frames.
+    /// Its state between two frames.
     pub(crate) fn snapshot(&self) -> FrontEndSnapshot {
         let (deviations_m2, deviations) = self
             .window_matching()
@@ -141,9 +142,9 @@ impl FrontEnd {
             scans: self.scans.clone(),
             deviations_m2,
             deviations,
-            driven: match &self.registrar {
+            motion_covariance: match &self.registrar {
                 Registrar::Window(_) => Matrix3::zeros(),
-                Registrar::Map(matching) => matching.driven(),
+                Registrar::Map(matching) => matching.motion_covariance(),
             },
             unregistered: self
                 .window_matching()
@@ -151,7 +152,7 @@ impl FrontEnd {
         }
     }
 
-    /// Goes on from a snapshot; the local map is built again before it is used.
+    /// Continues from a snapshot; the local map is rebuilt before it is used.
     pub(crate) fn restore(&mut self, snapshot: &FrontEndSnapshot) {
         self.estimate = snapshot.estimate;
         self.velocity = snapshot.velocity;
@@ -165,14 +166,14 @@ impl FrontEnd {
                     .having_seen(snapshot.deviations_m2, snapshot.deviations);
                 matching.unregistered = snapshot.unregistered;
             }
-            Registrar::Map(matching) => matching.restore(&self.scans, snapshot.driven),
+            Registrar::Map(matching) => matching.restore(&self.scans, snapshot.motion_covariance),
         }
     }
 
     /// Takes the first scan into the window.
     pub(crate) fn start(&mut self, scan: Arc<PointCloud>) {
         if let Registrar::Map(matching) = &mut self.registrar {
-            matching.join(&scan, false);
+            matching.add_scan(&scan, false);
         }
         self.window.push(WindowSweep {
             frame: 0,
@@ -181,7 +182,7 @@ impl FrontEnd {
         self.scans.push(scan);
     }
 
-    /// Registers the scan of a frame that is `dt_s` seconds after the last one, and moves on.
+    /// Registers the scan of a frame `dt_s` seconds after the last one, and updates the window.
     pub(crate) fn register(
         &mut self,
         frame: &PreparedFrame,
@@ -190,8 +191,8 @@ impl FrontEnd {
         config: &SlamConfig,
     ) -> Registration {
         let before = self.estimate;
-        let goes_on = self.constant_velocity(dt_s, config);
-        let motion = frame.odometry.unwrap_or(goes_on);
+        let extrapolated = self.constant_velocity(dt_s, config);
+        let motion = frame.odometry.unwrap_or(extrapolated);
         let motion = if is_finite(&(before * motion)) {
             motion
         } else {
@@ -209,14 +210,21 @@ impl FrontEnd {
                 matching.register(&frame.cloud, &prediction, &config.chapter)
             }
             Registrar::Map(matching) => {
-                let goes_on = before * goes_on;
-                matching.register(frame, &before, &motion, &goes_on, &self.window, &self.scans)
+                let extrapolated = before * extrapolated;
+                matching.register(
+                    frame,
+                    &before,
+                    &motion,
+                    &extrapolated,
+                    &self.window,
+                    &self.scans,
+                )
             }
         };
         let accepted = matched.inliers >= config.min_inliers && is_finite(&matched.pose);
         self.estimate = if accepted { matched.pose } else { prediction };
         self.last_dt_s = dt_s;
-        self.velocity = before.between(&self.estimate).log() / dt_s.max(SHORTEST_S);
+        self.velocity = before.between(&self.estimate).log() / dt_s.max(MIN_INTERVAL_S);
         if let Registrar::Window(matching) = &mut self.registrar {
             let is_measured = frame.odometry.is_some();
             matching.remember(accepted, &motion, is_measured, &config.chapter);
@@ -233,7 +241,7 @@ impl FrontEnd {
         }
     }
 
-    /// Information of the estimate about the last keyframe's edge, whose heading is `source_theta`.
+    /// Information of the estimate for the edge from the last keyframe, whose heading is `source_theta`.
     pub(super) fn information(&mut self, source_theta: f64, config: &SlamConfig) -> Matrix3<f64> {
         match &mut self.registrar {
             Registrar::Map(matching) => matching.take_information(),
@@ -243,23 +251,23 @@ impl FrontEnd {
         }
     }
 
-    /// Moves the estimate and the window by `correction`, applied on the left: a loop was closed.
+    /// Moves the estimate and the window by `correction`, applied on the left, after a loop closure.
     pub(super) fn correct(&mut self, correction: &SE2) {
         self.estimate = *correction * self.estimate;
         for sweep in &mut self.window {
             sweep.pose = *correction * sweep.pose;
         }
         if let Registrar::Map(matching) = &mut self.registrar {
-            matching.moved();
+            matching.mark_moved();
         }
     }
 
-    /// The motion with the last velocity, for as long as it is expected to stay.
+    /// The motion with the last velocity, for the limited time of extrapolation.
     fn constant_velocity(&self, dt_s: f64, config: &SlamConfig) -> SE2 {
         let stays_s = dt_s.min(config.extrapolation * self.last_dt_s);
         let motion = SE2::exp(&(self.velocity * stays_s));
-        // The velocity of a jump may lead anywhere: then it is none.
-        if position_error_m(&SE2::identity(), &motion) <= FARTHEST_M {
+        // The velocity of a jump may be arbitrary: then it is ignored.
+        if position_error_m(&SE2::identity(), &motion) <= MAX_MOTION_M {
             motion
         } else {
             SE2::identity()
@@ -281,7 +289,7 @@ impl FrontEnd {
             self.scans.remove(0);
         }
         if let Registrar::Map(matching) = &mut self.registrar {
-            matching.join(&frame.cloud, is_full);
+            matching.add_scan(&frame.cloud, is_full);
         }
         self.window.push(WindowSweep {
             frame: number,

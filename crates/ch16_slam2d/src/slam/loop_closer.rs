@@ -1,37 +1,37 @@
-//! The loop closer: proposes loops, verifies them, and hands those that it believes to the map.
+//! The loop closer: proposes loops, verifies them, and passes accepted ones to the map.
 
 use super::bundle_loops::BundleLoops;
 use super::config::{LoopClosure, SlamConfig};
-use super::mapper::{Mapper, Trust};
+use super::mapper::{Consistency, Mapper};
 use crate::chapter::{NearbyLoops, SlamParts};
 use crate::loops::{LoopVerification, LoopWorkspace, PendingLoop};
 
-/// Robots look for loops at every so many keyframes: more often costs time and closes no more.
+/// Robots search for loops at every this many keyframes: more often costs time and closes no more.
 const EVERY_KEYFRAMES: usize = 3;
 
-/// How loops are found.
+/// The kind of loop search.
 #[derive(Clone)]
 enum Finder {
-    /// The chapter's way: what is near in the graph, one keyframe at a time.
+    /// The chapter's: keyframes near in the graph, one at a time.
     Nearby(Box<NearbyLoops>),
-    /// For robots: keyframes together, on submaps.
+    /// For robots: several keyframes together, on submaps.
     Bundle(Box<BundleLoops>),
 }
 
-/// Loops that were tried at a keyframe.
+/// Attempts to close loops at a keyframe.
 #[derive(Clone, Debug)]
 pub(super) struct TriedLoops {
     /// In order, accepted or not.
     pub found: Vec<LoopVerification>,
-    /// How the graph takes the accepted ones.
-    pub trust: Trust,
+    /// Whether the accepted ones contradict the graph.
+    pub consistency: Consistency,
 }
 
-/// Finds loops at keyframes and keeps those that wait for others.
+/// Finds loops at keyframes and keeps the pending ones.
 #[derive(Clone)]
 pub struct LoopCloser {
     finder: Finder,
-    /// The newest node at which loops were looked for.
+    /// The newest node at which loops were searched.
     pub(super) last_attempt_node: Option<usize>,
 }
 
@@ -46,14 +46,14 @@ impl LoopCloser {
         }
     }
 
-    /// Looks for loops at the newest keyframe, where it is time for that.
+    /// Searches for loops at the newest keyframe, if a search is due.
     pub(super) fn find(&mut self, mapper: &mut Mapper, config: &SlamConfig) -> TriedLoops {
         let mut tried = TriedLoops {
             found: Vec::new(),
-            trust: Trust::Expected,
+            consistency: Consistency::Expected,
         };
         let node = mapper.keyframes.len() - 1;
-        // The first keyframe has none before it, and does not count as an attempt.
+        // The first keyframe has no predecessors, and does not count as an attempt.
         if config.loop_closure == LoopClosure::Off || node == 0 {
             return tried;
         }
@@ -75,16 +75,16 @@ impl LoopCloser {
         self.last_attempt_node = Some(mapper.keyframes.len() - 1);
         match &mut self.finder {
             Finder::Nearby(finder) => tried.found = finder.find(mapper, config),
-            Finder::Bundle(finder) => (tried.found, tried.trust) = finder.find(mapper),
+            Finder::Bundle(finder) => (tried.found, tried.consistency) = finder.find(mapper),
         }
     }
 
-    /// Once no frame follows: looks for loops at the newest keyframe if that was not done, and accepts the
+    /// Ends the run: searches for loops at the newest keyframe if that was not done, and accepts the
     /// newest pending loop if no pending loop contradicts the graph.
     pub(super) fn conclude(&mut self, mapper: &mut Mapper, config: &SlamConfig) -> TriedLoops {
         let mut tried = TriedLoops {
             found: Vec::new(),
-            trust: Trust::Expected,
+            consistency: Consistency::Expected,
         };
         let newest = mapper.keyframes.len().checked_sub(1);
         if config.loop_closure == LoopClosure::Off || newest.is_none_or(|newest| newest == 0) {
@@ -111,7 +111,7 @@ impl LoopCloser {
         tried
     }
 
-    /// The loops that wait for others, in order.
+    /// The pending loops, in order.
     #[must_use]
     pub fn pending(&self) -> &[PendingLoop] {
         match &self.finder {
@@ -120,7 +120,7 @@ impl LoopCloser {
         }
     }
 
-    /// Goes on with loops that waited before.
+    /// Restores the pending loops of a snapshot.
     pub(super) fn restore(&mut self, last_attempt_node: Option<usize>, pending: &[PendingLoop]) {
         self.last_attempt_node = last_attempt_node;
         if let Finder::Bundle(finder) = &mut self.finder {
@@ -128,7 +128,7 @@ impl LoopCloser {
         }
     }
 
-    /// Submap and pairs of the chapter's last attempt; none for robots.
+    /// Submap and pairs of the chapter's last attempt; `None` for robots.
     #[must_use]
     pub fn workspace(&self) -> Option<&LoopWorkspace> {
         match &self.finder {
@@ -137,14 +137,14 @@ impl LoopCloser {
         }
     }
 
-    /// A keyframe is no longer there, and later ones have the number before theirs; `path_m` is the path
-    /// length up to each that is left.
-    pub(super) fn forget(&mut self, node: usize, path_m: &[f64]) {
+    /// Handles the removal of a keyframe, which decreases the index of later ones; `path_m` is the path
+    /// length up to each remaining one.
+    pub(super) fn remove_keyframe(&mut self, node: usize, path_m: &[f64]) {
         let moved_up = |known: usize| known - usize::from(known > node);
         self.last_attempt_node = self.last_attempt_node.map(moved_up);
         match &mut self.finder {
-            Finder::Nearby(finder) => finder.detector.forget(node),
-            Finder::Bundle(finder) => finder.forget(node, path_m),
+            Finder::Nearby(finder) => finder.detector.remove_keyframe(node),
+            Finder::Bundle(finder) => finder.remove_keyframe(node, path_m),
         }
     }
 }

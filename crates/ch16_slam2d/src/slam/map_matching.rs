@@ -12,7 +12,7 @@ use crate::local_map::{LocalMap, MapRegistrationConfig, MotionPrior, PriorTail, 
 use crate::matching::{MatchStop, MatchSummary};
 use crate::scan::PreparedFrame;
 
-/// What registers scans on the last few with the odometry as a prior.
+/// Registers scans on the last few with the odometry as a prior.
 #[derive(Clone)]
 pub(super) struct MapMatching {
     config: RobotConfig,
@@ -22,9 +22,9 @@ pub(super) struct MapMatching {
     /// Whether the window has changed since the map was built.
     is_outdated: bool,
     /// Information of the last scan, body frame.
-    known: Matrix3<f64>,
-    /// Covariance of the motions since the last keyframe, as the odometry has them.
-    driven: Matrix3<f64>,
+    scan_information: Matrix3<f64>,
+    /// Covariance of the motions since the last keyframe, by odometry.
+    motion_covariance: Matrix3<f64>,
 }
 
 impl MapMatching {
@@ -35,8 +35,8 @@ impl MapMatching {
             map: LocalMap::default(),
             profiles: Vec::new(),
             is_outdated: true,
-            known: Matrix3::zeros(),
-            driven: Matrix3::zeros(),
+            scan_information: Matrix3::zeros(),
+            motion_covariance: Matrix3::zeros(),
         }
     }
 
@@ -46,20 +46,20 @@ impl MapMatching {
     }
 
     /// Covariance of the motions since the last keyframe.
-    pub fn driven(&self) -> Matrix3<f64> {
-        self.driven
+    pub fn motion_covariance(&self) -> Matrix3<f64> {
+        self.motion_covariance
     }
 
-    /// Goes on with scans that were taken before.
-    pub fn restore(&mut self, scans: &[Arc<PointCloud>], driven: Matrix3<f64>) {
+    /// Continues with the scans of a snapshot.
+    pub fn restore(&mut self, scans: &[Arc<PointCloud>], motion_covariance: Matrix3<f64>) {
         let profiles = scans.iter().map(|scan| Arc::new(RangeProfile::new(scan)));
         self.profiles = profiles.collect();
-        self.driven = driven;
+        self.motion_covariance = motion_covariance;
         self.is_outdated = true;
     }
 
-    /// A scan joins the window as the newest; the oldest leaves it where it is full.
-    pub fn join(&mut self, scan: &PointCloud, is_full: bool) {
+    /// Adds a scan to the window as the newest; drops the oldest if the window is full.
+    pub fn add_scan(&mut self, scan: &PointCloud, is_full: bool) {
         if is_full {
             self.profiles.remove(0);
         }
@@ -67,25 +67,25 @@ impl MapMatching {
         self.is_outdated = true;
     }
 
-    /// The window was moved: the map is built again before the next scan.
-    pub fn moved(&mut self) {
+    /// Marks the window as moved: the map is rebuilt before the next scan.
+    pub fn mark_moved(&mut self) {
         self.is_outdated = true;
     }
 
-    /// Information of the edge to a new keyframe: that of the scan and that of the odometry on the way.
+    /// Information of the edge to a new keyframe: that of the scan plus that of the odometry since the last one.
     pub fn take_information(&mut self) -> Matrix3<f64> {
-        let driven = std::mem::take(&mut self.driven);
-        self.known + driven.try_inverse().unwrap_or_default()
+        let motion_covariance = std::mem::take(&mut self.motion_covariance);
+        self.scan_information + motion_covariance.try_inverse().unwrap_or_default()
     }
 
-    /// Registers the scan of a frame; `before` is the estimate before the motion, and `goes_on` where the
-    /// robot would be at its last velocity.
+    /// Registers the scan of a frame; `before` is the estimate before the motion, and `constant_velocity` the
+    /// pose predicted by constant velocity.
     pub fn register(
         &mut self,
         frame: &PreparedFrame,
         before: &SE2,
         motion: &SE2,
-        goes_on: &SE2,
+        constant_velocity: &SE2,
         window: &[WindowSweep],
         scans: &[Arc<PointCloud>],
     ) -> MatchSummary {
@@ -96,14 +96,15 @@ impl MapMatching {
             self.is_outdated = false;
         }
         let prior = self.prior(before, motion, frame.odometry.is_some());
-        let starts = [*goes_on];
+        let starts = [*constant_velocity];
         let found = self
             .map
             .locate(&frame.cloud, &prior, &starts, &self.registration);
         let pose = found.registered.pose;
-        self.known = found.information();
+        self.scan_information = found.information();
         let adjoint = motion.inverse().adjoint();
-        self.driven = adjoint * self.driven * adjoint.transpose() + prior.covariance(&pose);
+        self.motion_covariance =
+            adjoint * self.motion_covariance * adjoint.transpose() + prior.covariance(&pose);
         MatchSummary {
             pose,
             rmse_m: found.fit.rmse_m,
@@ -139,8 +140,8 @@ mod tests {
     use crate::slam::{Slam, SlamConfig, test_room};
 
     #[test]
-    fn wheels_that_jump_by_five_metres_leave_the_robot_where_it_is() {
-        // 5 m and 60°: beyond what the search looks at. Not at the first frames, which have no velocity.
+    fn an_odometry_jump_of_five_metres_is_rejected() {
+        // 5 m and 60°: beyond the search window. Not at the first frames, which have no velocity.
         for jump in [
             SE2::new(5.0, 0.0, 0.0),
             SE2::new(-3.0, 4.0, 1.0),
@@ -157,7 +158,7 @@ mod tests {
                 let report = slam.step(&frame).unwrap();
                 let truth = start.between(&test_room::truth(step));
                 let off = truth.between(&report.estimate);
-                // 5 cm: the noise of the wheels, in a room whose four walls are seen.
+                // 5 cm: the noise of the odometry, in a room whose four walls are seen.
                 let is_there = math::norm2(off.x(), off.y()) < 0.05 && off.theta().abs() < 0.02;
                 assert!(is_there, "{jump:?}, step {step}: {off:?}");
             }

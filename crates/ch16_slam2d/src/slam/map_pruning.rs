@@ -1,10 +1,10 @@
-//! A map that is driven again and again stays as large as the place, and forgets what is gone.
+//! Map pruning for lifelong mapping: map size is bounded by the mapped area, and removed objects disappear.
 //!
-//! At every keyframe, once it is tied to the map: points of older scans around it that newer ones have
-//! looked through are dropped, and keyframes that have enough newer ones around them that see what
-//! they saw are taken out of the graph ([`PoseGraph::marginalize`](crate::graph::PoseGraph::marginalize)).
-//! The oldest keyframes of a place stay: new ones are tied to them, so the map does not wander from
-//! lap to lap. What is gone disappears from their scans as well.
+//! At every keyframe, once it is linked to the map, two things are pruned. Points of older scans that newer ones
+//! observed as free space are dropped. Keyframes whose view is covered by enough newer ones
+//! nearby are marginalized ([`PoseGraph::marginalize`](crate::graph::PoseGraph::marginalize)).
+//! The oldest keyframes of a location stay as anchors: new ones are linked to them, so the map does not drift from
+//! lap to lap.
 
 use core::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -16,29 +16,28 @@ use super::mapper::Mapper;
 use crate::cloud::PointCloud;
 use crate::metrics::position_error_m;
 
-/// When a keyframe has been replaced, and when a point is gone.
+/// Criteria for a replaced keyframe and for a point that is gone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapPruningConfig {
-    /// Keyframes within this distance stand at the same place, m.
+    /// Keyframes within this distance are at the same location, m.
     pub place_m: f64,
-    /// The newest so many of a place stay.
+    /// Number of newest keyframes of a location that stay.
     pub kept: usize,
-    /// The oldest so many of a place stay.
+    /// Number of oldest keyframes of a location that stay.
     pub anchors: usize,
-    /// One between them goes if so much of its scan is in theirs, 0 to 1.
+    /// Others are removed if this share of their scan is in the newer ones, 0 to 1.
     pub covered: f64,
-    /// Keyframes within this distance are looked at with each new one, m.
+    /// Keyframes within this distance of a new one are checked, m.
     pub reach_m: f64,
-    /// Points of two scans nearer to each other are the same, m.
+    /// Points of two scans closer than this are the same, m.
     pub same_m: f64,
-    /// A scan has looked through a point where it sees farther by this, m.
+    /// A scan has observed a point as free if its range there is larger by this, m.
     pub through_m: f64,
-    /// So many newer scans have to have looked through a point, and none to have seen it.
+    /// Number of newer scans that must have observed a point as free, while none has seen it.
     pub looks_through: usize,
-    /// Beams are at most so far from one another, rad: between two that are farther apart nothing is
-    /// said.
+    /// Largest angle between adjacent beams, rad; in wider gaps the visibility is unknown.
     pub beam_gap_rad: f64,
-    /// Nothing is taken out while the last loop is more keyframes ago than this.
+    /// No keyframe is removed if the last loop is more keyframes ago than this.
     pub loop_ago_nodes: usize,
 }
 
@@ -59,18 +58,19 @@ impl Default for MapPruningConfig {
     }
 }
 
-/// What was done at one keyframe.
+/// Result of pruning at one keyframe.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct MapPruning {
-    /// The keyframes that were taken out, by the numbers that they had, the oldest first.
+    /// The removed keyframes, by their previous indices, the oldest first.
     pub removed: Vec<usize>,
-    /// What the graph lost by it, nats: the sum of the Kullback–Leibler divergences.
+    /// Information lost by the graph, nats: the sum of the Kullback–Leibler divergences.
     pub divergence: f64,
-    /// Points that were dropped.
+    /// Number of dropped points.
     pub points_gone: usize,
 }
 
-/// A scan by bearing, to be asked what it saw in a direction.
+/// A scan sorted by bearing, for visibility queries.
 struct ScanView {
     world_from_body: SE2,
     /// Bearing (rad) and range (m), by bearing.
@@ -78,7 +78,7 @@ struct ScanView {
     points: PointCloud,
 }
 
-/// What a scan says of a point.
+/// Visibility of a point in a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Visibility {
     Seen,
@@ -128,9 +128,9 @@ impl ScanView {
     }
 }
 
-/// Drops what is gone and takes out what was replaced around the newest keyframe.
+/// Drops points that are gone and marginalizes replaced keyframes around the newest keyframe.
 ///
-/// `normal_radius_m` is that of the scans: a scan that loses points gets its normals again.
+/// `normal_radius_m` is that of the scans: the normals of a scan that loses points are estimated again.
 pub(super) fn prune_map(
     mapper: &mut Mapper,
     loop_closer: &mut LoopCloser,
@@ -154,7 +154,7 @@ pub(super) fn prune_map(
         .collect();
     for (k, &node) in near.iter().enumerate() {
         let newer = &views[k + 1..];
-        pruned.points_gone += mapper.drop_what_is_gone(node, newer, config, normal_radius_m);
+        pruned.points_gone += mapper.drop_removed_points(node, newer, config, normal_radius_m);
     }
     let replaced: Vec<usize> = near
         .iter()
@@ -169,8 +169,8 @@ pub(super) fn prune_map(
         if let Ok(done) = mapper.graph.marginalize(node) {
             pruned.divergence += done.divergence;
             pruned.removed.push(node);
-            mapper.forget(node);
-            loop_closer.forget(node, &mapper.path_lengths_m());
+            mapper.remove_keyframe(node);
+            loop_closer.remove_keyframe(node, &mapper.path_lengths_m());
         }
     }
     if !pruned.removed.is_empty() {
@@ -181,8 +181,8 @@ pub(super) fn prune_map(
 }
 
 impl Mapper {
-    /// Drops the points of a keyframe that newer scans have looked through; returns how many.
-    fn drop_what_is_gone(
+    /// Drops the points of a keyframe that newer scans observed as free; returns their number.
+    fn drop_removed_points(
         &mut self,
         node: usize,
         newer: &[ScanView],
@@ -215,8 +215,8 @@ impl Mapper {
         gone
     }
 
-    /// Whether enough older and newer keyframes stand at the place of this one, and the newer ones see
-    /// what it saw.
+    /// Whether there are enough older and newer keyframes at the location of this one, and the newer ones cover
+    /// its view.
     fn is_replaced(
         &self,
         node: usize,
@@ -241,8 +241,8 @@ impl Mapper {
         seen as f64 >= config.covered * scan.len() as f64
     }
 
-    /// Renumbers what follows a node that is no longer there.
-    fn forget(&mut self, node: usize) {
+    /// Renumbers state after the removal of a node.
+    fn remove_keyframe(&mut self, node: usize) {
         self.keyframes.remove(node);
         for keyframe in &mut self.keyframes[node..] {
             keyframe.node -= 1;
@@ -257,8 +257,8 @@ mod tests {
     use crate::slam::test_room::{frame, truth};
     use crate::slam::{RobotConfig, Slam, SlamConfig};
 
-    /// Laps of a circle in a room; in the first two something stands in it.
-    fn laps(laps: usize, is_kept_up: bool) -> (Slam, Vec<usize>) {
+    /// Laps of a circle in a room; in the first two there is an obstacle in it.
+    fn laps(laps: usize, is_pruned: bool) -> (Slam, Vec<usize>) {
         let mut config = SlamConfig::for_robot(&frame(0).scan);
         config.start = truth(0);
         let mut slam = Slam::new(config);
@@ -266,10 +266,10 @@ mod tests {
         for step in 0..105 * laps {
             let mut frame = frame(step);
             if step < 210 {
-                stand_in_the_way(&mut frame.scan, &truth(step));
+                add_obstacle(&mut frame.scan, &truth(step));
             }
             let report = slam.step(&frame).unwrap();
-            if is_kept_up && report.new_keyframe.is_some() {
+            if is_pruned && report.new_keyframe.is_some() {
                 slam.prune_map(&MapPruningConfig::default());
             }
             if step % 105 == 104 {
@@ -280,7 +280,7 @@ mod tests {
     }
 
     /// A round post of 0.3 m in the middle of the circle.
-    fn stand_in_the_way(scan: &mut crate::scan::LaserScan, pose: &SE2) {
+    fn add_obstacle(scan: &mut crate::scan::LaserScan, pose: &SE2) {
         let post = pose.inverse().transform(POST);
         let (at, away_m) = (math::atan2(post.y, post.x), math::norm2(post.x, post.y));
         let bearings: Vec<f64> = (0..scan.ranges_m.len())
@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn laps_without_end_leave_the_map_as_large_as_the_place_and_as_right() {
+    fn repeated_laps_keep_map_size_and_accuracy() {
         let (slam, nodes) = laps(8, true);
         assert!(nodes[7] as f64 <= 1.5 * nodes[2] as f64, "{nodes:?}");
         let (_, growing) = laps(3, false);
@@ -317,15 +317,15 @@ mod tests {
         let keyframes = slam.keyframes().iter().zip(slam.graph().poses());
         for (keyframe, pose) in keyframes {
             let error_m = position_error_m(pose, &truth(keyframe.frame));
-            // 0.1: eight laps at a bearing that the wheels claim too much of.
+            // 0.1: eight laps with odometry that overestimates each turn.
             assert!(error_m < 0.1, "{}: {error_m}", keyframe.frame);
         }
         assert!(slam.graph().edge_count() < 4 * slam.graph().node_count());
     }
 
     #[test]
-    fn loops_that_wait_follow_their_keyframes() {
-        // Never sure: every loop waits for others.
+    fn pending_loops_follow_their_keyframes() {
+        // Every loop needs confirmation.
         let mut robot = RobotConfig::for_scan(&frame(0).scan);
         robot.loops.unconfirmed_gate_radius_m = 0.0;
         robot.loops.min_margin = 0.0;
@@ -344,25 +344,25 @@ mod tests {
         };
         let mut expected = ends(&slam);
         assert!(!expected.is_empty());
-        // The first node is fixed: it cannot be taken out.
+        // The first node is fixed: it cannot be marginalized.
         let pending = slam.loop_closer().pending().iter();
         let olds = pending.map(|waiting| waiting.verification.candidate.node);
         let old = olds.max().unwrap();
         assert!(old > 0);
-        // A keyframe that others follow, and then the end of a loop.
+        // A keyframe with successors, and then the end of a loop.
         for node in [old + 2, old] {
             let gone = slam.keyframes()[node].frame;
             slam.mapper.graph.marginalize(node).unwrap();
-            slam.mapper.forget(node);
+            slam.mapper.remove_keyframe(node);
             let lengths_m = slam.mapper.path_lengths_m();
-            slam.loop_closer.forget(node, &lengths_m);
+            slam.loop_closer.remove_keyframe(node, &lengths_m);
             expected.retain(|&(new, old)| new != gone && old != gone);
             assert_eq!(ends(&slam), expected);
         }
     }
 
     #[test]
-    fn what_was_taken_away_disappears_from_the_map() {
+    fn removed_objects_disappear_from_the_map() {
         let (before, _) = laps(2, true);
         assert!(points_of_the_post(&before) > 100);
         let (after, _) = laps(4, true);

@@ -1,4 +1,4 @@
-//! The map: keyframes, and the pose graph that holds them together.
+//! The map: keyframes and the pose graph.
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
@@ -10,18 +10,18 @@ use crate::graph::{EdgeKind, InlierEdges, PoseGraph};
 use crate::loops::{LoopRejection, LoopVerification};
 use crate::metrics::position_error_m;
 
-/// Which edges of a graph are inliers where each loop may be false, such as [`PoseGraph::inlier_edges`].
+/// Selects the inlier edges of a graph in which any loop may be false, such as [`PoseGraph::inlier_edges`].
 ///
-/// A function that whoever maps a log hands over: a program that never does so does not carry it.
+/// A function pointer, so a program that does not use it does not link it.
 pub type LoopOutlierTest = fn(&PoseGraph) -> InlierEdges;
 
-/// How the graph takes new loops.
+/// Consistency of new loops with the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Trust {
-    /// They fit what the graph knows.
+pub(super) enum Consistency {
+    /// They are consistent with it.
     Expected,
-    /// They contradict it: all loops are judged together.
-    Disputed,
+    /// They contradict it: the outlier test runs over all loops.
+    Contradicting,
 }
 
 /// Keyframes and pose graph; node k is keyframe k.
@@ -70,14 +70,14 @@ impl Mapper {
         lengths_m
     }
 
-    /// Adds the edges of loops and spreads the correction: what it did, with `last ∘ last before⁻¹`.
+    /// Adds the edges of loops and optimizes; returns the effect, with the correction `last ∘ last before⁻¹`.
     ///
     /// # Errors
-    /// Where the graph does not bear them: the edges are gone then, and the nodes are where they were.
+    /// If the graph cannot be optimized with them; edges and nodes are then reverted.
     pub(super) fn close(
         &mut self,
         loops: &[LoopVerification],
-        trust: Trust,
+        consistency: Consistency,
         config: &SlamConfig,
     ) -> Result<LoopEffect, LoopRejection> {
         let poses_before = self.graph.poses().to_vec();
@@ -92,9 +92,9 @@ impl Mapper {
             self.last_loop_node = self.last_loop_node.max(found.from_node);
         }
         let chi2_before = self.graph.chi2();
-        let iterations = match trust {
-            Trust::Disputed if self.judge() => 1,
-            Trust::Expected if self.can_wait(config) => 0,
+        let iterations = match consistency {
+            Consistency::Contradicting if self.reject_outliers() => 1,
+            Consistency::Expected if self.is_correction_small(config) => 0,
             _ => self.optimize(loops.len(), &poses_before, config)?,
         };
         self.chi2 = self.graph.chi2();
@@ -119,14 +119,14 @@ impl Mapper {
         })
     }
 
-    /// Whether the graph is nearly where its loops would have it, so that the next one may correct it.
-    fn can_wait(&mut self, config: &SlamConfig) -> bool {
+    /// Whether the pending correction is so small that it can wait for the next loop.
+    fn is_correction_small(&mut self, config: &SlamConfig) -> bool {
         let least = config.least_correction;
         let mut largest_move = || self.graph.largest_move_since();
         least > 0.0 && largest_move().is_ok_and(|largest| largest < least)
     }
 
-    /// Optimizes the graph with its newest edges; the iterations.
+    /// Optimizes the graph with its newest edges; returns the iterations.
     fn optimize(
         &mut self,
         added: usize,
@@ -166,8 +166,8 @@ impl Mapper {
         Err(rejection)
     }
 
-    /// Keeps the loops that agree with each other best, by the truncated cost; whether that could be told.
-    fn judge(&mut self) -> bool {
+    /// Keeps only the inlier loops, by the truncated cost; returns whether the selection succeeded.
+    fn reject_outliers(&mut self) -> bool {
         let Some(Ok(selection)) = self.outlier_test.map(|test| test(&self.graph)) else {
             return false;
         };
@@ -182,26 +182,26 @@ impl Mapper {
         true
     }
 
-    /// Corrects the graph by the loops that wait for a correction; the motion of the newest node.
+    /// Optimizes pending loops; returns the motion of the newest node.
     pub(super) fn optimize_pending(&mut self, config: &SlamConfig) -> SE2 {
         let Some(newest) = self.keyframes.len().checked_sub(1) else {
             return SE2::identity();
         };
         let before = self.graph.poses().to_vec();
         if self.graph.optimized_edges() < self.graph.edge_count() {
-            // A graph that cannot be solved stays as it is.
+            // A graph that cannot be solved is unchanged.
             let _ = self.optimize(0, &before, config);
             self.chi2 = self.graph.chi2();
         }
         self.graph.pose(newest) * before[newest].inverse()
     }
 
-    /// Covariance of every keyframe against the first one, in the body's frame: x and y in m, θ in rad.
+    /// Covariance of every keyframe relative to the first one, in the body's frame: x and y in m, θ in rad.
     ///
-    /// That of the graph, times what its contradictions say of it: see `slam::uncertainty`.
+    /// The covariance of the graph, scaled by its variance factor: see `slam::uncertainty`.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn keyframe_covariances(&mut self) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
         let factor = super::uncertainty::keyframe_factor(&self.graph);
         let stated = self.graph.pose_covariances()?;

@@ -1,13 +1,13 @@
-//! How far odometry is trusted where no registration is to be had.
+//! Noise of odometry, for motion without an accepted registration.
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::{SE2, math};
 use serde::{Deserialize, Serialize};
 
-/// Smallest variance of a motion, m² or rad²: the covariance always has an inverse.
+/// Smallest variance of a motion, m² or rad², which keeps the covariance invertible.
 const MIN_VARIANCE: f64 = 1e-12;
 
-/// Standard deviations of a measured motion, for edges whose registration was refused.
+/// Standard deviations of a measured motion, for edges whose registration was rejected.
 ///
 /// `σ_xy = floor_m + per_metre · d + metre_per_rad · |θ|` along both axes and
 /// `σ_θ = floor_rad + per_rad · |θ| + rad_per_metre · d`, for a motion of distance d (m) and turn θ
@@ -15,22 +15,22 @@ const MIN_VARIANCE: f64 = 1e-12;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionNoise {
-    /// Of the position of any motion, m.
+    /// Of the position, constant part, m.
     pub floor_m: f64,
-    /// Of the position for each metre.
+    /// Of the position, per metre.
     pub per_metre: f64,
-    /// Of the position for each radian, m.
+    /// Of the position, per radian, m.
     pub metre_per_rad: f64,
-    /// Of the heading of any motion, rad.
+    /// Of the heading, constant part, rad.
     pub floor_rad: f64,
-    /// Of the heading for each radian.
+    /// Of the heading, per radian.
     pub per_rad: f64,
-    /// Of the heading for each metre, rad.
+    /// Of the heading, per metre, rad.
     pub rad_per_metre: f64,
 }
 
 impl Default for MotionNoise {
-    /// Wheels of a common indoor robot: a tenth of the way, a tenth of the turn.
+    /// Odometry of a common indoor robot: a tenth of the distance, a tenth of the turn.
     fn default() -> Self {
         Self {
             floor_m: 0.01,
@@ -44,7 +44,7 @@ impl Default for MotionNoise {
 }
 
 impl MotionNoise {
-    /// A guess of constant velocity in place of wheels: the motion may as well not have happened.
+    /// A constant-velocity prediction instead of odometry: its error may be as large as the motion.
     #[must_use]
     pub fn without_odometry() -> Self {
         Self {
@@ -75,8 +75,8 @@ impl MotionNoise {
         Matrix3::from_diagonal(&Vector3::new(square(xy), square(xy), square(theta)))
     }
 
-    /// Covariance of two motions after one another, in the frame at the end of the second:
-    /// `Ad⁻¹ Σ Ad⁻ᵀ + Σ₂` with the adjoint of the second.
+    /// Covariance of two consecutive motions, in the frame at the end of the second: `Ad⁻¹ Σ Ad⁻ᵀ + Σ₂` with the
+    /// adjoint of the second.
     #[must_use]
     pub fn then(&self, before: &Matrix3<f64>, motion: &SE2) -> Matrix3<f64> {
         let adjoint = motion.inverse().adjoint();
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_turn_after_a_drive_turns_the_uncertainty_with_it() {
+    fn a_rotation_rotates_the_covariance_of_earlier_motion() {
         let noise = MotionNoise {
             floor_m: 0.0,
             floor_rad: 0.0,
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_heading_that_is_unsure_makes_the_way_after_it_unsure_sideways() {
+    fn heading_uncertainty_adds_lateral_uncertainty_to_later_motion() {
         let noise = MotionNoise {
             floor_m: 0.0,
             per_metre: 0.0,

@@ -3,18 +3,18 @@
 use pr_geom::SE2;
 
 use super::loop_closer::TriedLoops;
-use super::mapper::Trust;
+use super::mapper::Consistency;
 use super::{LoopAttempt, LoopEffect, Registration};
 use crate::loops::{LoopRejection, LoopVerification};
 
-/// A frame under way: registered, its loops not yet decided.
+/// A registered frame whose loops are not yet decided.
 #[derive(Clone, Debug)]
 pub struct PendingFrame {
     pub(super) stamp_s: f64,
     pub(super) registration: Option<Registration>,
     pub(super) new_keyframe: Option<usize>,
     pub(super) loop_attempts: Vec<LoopAttempt>,
-    trust: Trust,
+    consistency: Consistency,
 }
 
 impl PendingFrame {
@@ -28,7 +28,7 @@ impl PendingFrame {
             registration,
             new_keyframe,
             loop_attempts: Vec::new(),
-            trust: Trust::Expected,
+            consistency: Consistency::Expected,
         }
     }
 
@@ -45,7 +45,7 @@ impl PendingFrame {
         attempts.any(|attempt| attempt.verification.accepted())
     }
 
-    /// The same frame with its loops forgotten, as if none had been looked for.
+    /// The same frame without its loops.
     #[must_use]
     pub fn without_loops(mut self) -> Self {
         self.loop_attempts.clear();
@@ -60,9 +60,9 @@ impl PendingFrame {
         Some(&effect.poses_before)
     }
 
-    /// Adds the loops that were tried in frame number `frame`.
+    /// Adds the attempts at loops in frame number `frame`.
     pub(super) fn add(&mut self, frame: usize, tried: TriedLoops) {
-        self.trust = tried.trust;
+        self.consistency = tried.consistency;
         let attempts = tried.found.into_iter().map(|verification| LoopAttempt {
             frame,
             verification,
@@ -80,12 +80,12 @@ impl PendingFrame {
         found.filter(LoopVerification::accepted).collect()
     }
 
-    /// How the graph takes them.
-    pub(super) fn trust(&self) -> Trust {
-        self.trust
+    /// Whether they contradict the graph.
+    pub(super) fn consistency(&self) -> Consistency {
+        self.consistency
     }
 
-    /// Notes what closing the accepted loops did.
+    /// Records the effect of closing the accepted loops.
     pub(super) fn closed(&mut self, outcome: Result<LoopEffect, LoopRejection>) {
         let attempts = self.loop_attempts.iter_mut();
         for attempt in attempts.filter(|attempt| attempt.verification.accepted()) {

@@ -1,8 +1,8 @@
-//! After the last frame: every keyframe is registered once more on the visits to its surroundings.
+//! Final refinement: registers every keyframe again on the earlier visits to its surroundings.
 //!
-//! While frames come in, a loop is looked for at every few keyframes. At the end each keyframe is linked with
-//! every earlier visit around it, from poses that are nearly right. The links of a pass take the place of
-//! the loops before it: a loop that the final map does not confirm is gone.
+//! While frames come in, loops are searched at every few keyframes only. At the end each keyframe is linked with
+//! every earlier visit around it, from poses that are nearly correct. The links of a pass replace
+//! the earlier loops: a loop that the final map does not confirm is removed.
 
 use std::sync::Arc;
 
@@ -26,36 +26,36 @@ use crate::search::SearchWindow;
 const PASSES: usize = 2;
 /// Keyframes within this distance are linked, m.
 const RADIUS_M: f64 = 4.0;
-/// Keyframes are linked that are at least so many nodes apart.
+/// Keyframes are linked if they are at least this many nodes apart.
 const MIN_GAP_NODES: usize = 10;
-/// At most so many visits are linked with a keyframe, the nearest first.
+/// Largest number of visits linked with a keyframe, the nearest first.
 const VISITS: usize = 3;
-/// A visit is the nearest keyframe with so many on either side.
+/// A visit is the nearest keyframe with this many on either side.
 const HALF_SUBMAP: usize = 3;
-/// A registration may move a keyframe by so much, standard deviations of a gate: m and rad.
+/// Expected shift of a keyframe by a registration, standard deviations for the gate: m and rad.
 const SHIFT: (f64, f64) = (0.15, 0.05);
-/// The largest squared shift: 95 of 100 lie below, of three degrees of freedom.
+/// The largest squared shift: the 95 % quantile with three degrees of freedom.
 const GATE_CHI2: f64 = 7.815;
 /// Score below which a keyframe does not fit, 0 to 1.
 const MIN_SCORE: f64 = 0.7;
-/// A loop that is asked for is searched in a window of so many standard deviations, m and rad at most.
-const ASKED_WINDOW: (f64, f64, f64) = (3.0, 6.0, 0.5);
+/// Search window of a requested loop: number of standard deviations, and limits in m and rad.
+const REQUESTED_WINDOW: (f64, f64, f64) = (3.0, 6.0, 0.5);
 /// Width of the robust cost of a pass, in standard deviations of an edge.
 const HUBER: f64 = 3.0;
 
-/// How far a link may lie from where the graph has it.
+/// Gate of a link against the graph.
 #[derive(Clone, Copy)]
 struct LinkGate {
     /// S⁻¹ of the innovation.
     information: Matrix3<f64>,
     chi2: f64,
-    /// Half the width of what is searched if the keyframe does not fit, m, and its range of headings, rad.
+    /// Half the width of the search window if the keyframe does not fit, m, and its range of headings, rad.
     window: Option<(f64, f64)>,
 }
 
 impl Mapper {
-    /// Links all keyframes with the visits around them, and optimizes: the links of the last pass, accepted
-    /// or not. A graph that cannot be solved stays as it was.
+    /// Links all keyframes with the visits around them, and optimizes. Returns the links of the last pass, accepted
+    /// or not. A graph that cannot be solved is unchanged.
     pub(super) fn refine(
         &mut self,
         robot: &RobotConfig,
@@ -123,24 +123,24 @@ impl Mapper {
             .collect()
     }
 
-    /// Registers keyframe `new` on what was seen around keyframe `old`, which somebody asks for.
+    /// Registers keyframe `new` on the surroundings of keyframe `old`, on request of the caller.
     ///
     /// # Errors
-    /// Where the graph has no covariance to test it against.
+    /// If the graph has no covariance for the test.
     pub(super) fn link_on_request(
         &mut self,
         old: usize,
         new: usize,
         robot: &RobotConfig,
     ) -> Result<LoopVerification, OptimizeError> {
-        // What the graph holds of the relative pose, and a floor.
+        // The graph's covariance of the relative pose, and a floor.
         let floor = Vector3::new(SHIFT.0, SHIFT.0, SHIFT.1).map(|sigma| sigma * sigma);
         let covariance = self.graph.relative_covariance(old, new)? + Matrix3::from_diagonal(&floor);
         let information = covariance
             .try_inverse()
             .ok_or(OptimizeError::NotPositiveDefinite { node: new })?;
         let sigma = |variance: f64| math::sqrt(math::max(variance, 0.0));
-        let (sigmas, most_m, most_rad) = ASKED_WINDOW;
+        let (sigmas, most_m, most_rad) = REQUESTED_WINDOW;
         let half_m = sigmas * sigma(math::max(covariance.m11, covariance.m22));
         let half_rad = sigmas * sigma(covariance.m33);
         let poses = self.graph.poses();
@@ -159,7 +159,7 @@ impl Mapper {
         Ok(self.link(new, candidate, gate, profile, &mut map, robot))
     }
 
-    /// Registers keyframe `node` on the visit around an older one, from where the graph has it.
+    /// Registers keyframe `node` on the visit around an older one, from its pose in the graph.
     fn link(
         &self,
         node: usize,

@@ -1,4 +1,4 @@
-//! What the estimator reports of a frame.
+//! Reports of the estimator.
 
 use std::sync::Arc;
 
@@ -8,12 +8,12 @@ use super::front_end::Registration;
 use crate::cloud::PointCloud;
 use crate::loops::LoopVerification;
 
-/// A keyframe: a node of the graph with the scan that was taken there.
+/// A keyframe: a node of the graph with its scan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keyframe {
-    /// Number of its node.
+    /// Index of its node.
     pub node: usize,
-    /// Number of its frame, counted from 0.
+    /// Index of its frame.
     pub frame: usize,
     /// Time of its frame, s.
     pub stamp_s: f64,
@@ -21,15 +21,15 @@ pub struct Keyframe {
     pub scan: Arc<PointCloud>,
 }
 
-/// What closing a loop did.
+/// Effect of closing a loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopEffect {
-    /// Newest node's pose after the optimization ∘ its pose before it, inverted: what moved the
+    /// Newest node's pose after the optimization ∘ the inverse of its pose before: the correction of the
     /// estimate and the window.
     pub correction: SE2,
-    /// Farthest that a node moved, m.
+    /// Largest movement of a node, m.
     pub max_shift_m: f64,
-    /// Iterations of the optimizer; 0 where the loop waits for one that moves the graph farther.
+    /// Iterations of the optimizer; 0 if the optimization is postponed to the next larger correction.
     pub iterations: usize,
     /// χ² of the graph with the new edge, before and after the optimization.
     pub chi2: Change,
@@ -49,11 +49,11 @@ pub struct Change {
 /// An attempt to close a loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopAttempt {
-    /// The frame in which it was made.
+    /// The frame of the attempt.
     pub frame: usize,
     /// Candidate, registration and tests.
     pub verification: LoopVerification,
-    /// What it did to the graph; none where it was turned away.
+    /// Its effect on the graph; `None` if it was rejected.
     pub effect: Option<LoopEffect>,
 }
 
@@ -65,25 +65,27 @@ impl LoopAttempt {
     }
 }
 
-/// What was done once no frame followed.
+/// Result of ending a run.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Conclusion {
     /// The last attempts to close a loop.
     pub tried: Vec<LoopAttempt>,
-    /// The keyframes on earlier visits: those that were accepted are the loops of the graph now.
+    /// The links of keyframes with earlier visits; the accepted ones are now the loops of the graph.
     pub links: Vec<LoopVerification>,
 }
 
-/// Everything that one frame did.
+/// Report of one frame.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SlamReport {
-    /// Number of the frame, counted from 0.
+    /// Index of the frame.
     pub frame: usize,
     /// Its time, s.
     pub stamp_s: f64,
-    /// Prediction and registration of the scan; none for the first one, which starts the map.
+    /// Prediction and registration of the scan; `None` for the first one, which starts the map.
     pub registration: Option<Registration>,
-    /// Estimate at the end of the frame, a loop's correction included: `world_from_body`.
+    /// Estimate at the end of the frame, including a loop's correction: `world_from_body`.
     pub estimate: SE2,
     /// Node of the keyframe that was taken.
     pub new_keyframe: Option<usize>,

@@ -1,4 +1,4 @@
-//! The estimator for recorded logs of robots: its numbers, and the system that they make.
+//! The estimator for recorded logs of robots: its parameters, and the resulting configuration.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,14 +8,14 @@ use crate::graph::JacobianModel;
 use crate::local_map::MapRegistrationConfig;
 use crate::scan::{LaserScan, ScanConfig};
 
-/// Radius within which points of one scan give each other normals, m, for each degree from beam to beam.
+/// Radius of the neighbours for normals within one scan, m, per degree between beams.
 const SCAN_NORMAL_RADIUS_M: f64 = 0.5;
 
-/// A scan joins the local map where it is turned so far from the newest one, rad: a tenth or a half, the
-/// errors are the same.
+/// A scan joins the local map at this turn from the newest one, rad. The error is the same for a tenth and for a
+/// half.
 const WINDOW_TURN_RAD: f64 = 0.1;
-/// Wheels of a common indoor robot; what slips is left to the tails of the prior.
-const WHEELS: MotionNoise = MotionNoise {
+/// Odometry of a common indoor robot; slip is covered by the tails of the prior.
+const ODOMETRY: MotionNoise = MotionNoise {
     floor_m: 0.01,
     per_metre: 0.05,
     metre_per_rad: 0.03,
@@ -24,7 +24,7 @@ const WHEELS: MotionNoise = MotionNoise {
     rad_per_metre: 0.025,
 };
 
-/// A robot that goes on as before: where scans are a metre or half a radian apart, it may as well not.
+/// Constant-velocity prediction: if scans are a metre or half a radian apart, it is hardly informative.
 const CONSTANT_VELOCITY: MotionNoise = MotionNoise {
     floor_m: 0.1,
     per_metre: 0.3,
@@ -34,73 +34,73 @@ const CONSTANT_VELOCITY: MotionNoise = MotionNoise {
     rad_per_metre: 0.1,
 };
 
-/// Every number of the estimator for robots.
+/// The parameters of the estimator for robots.
 ///
-/// One set of values for planar lasers on wheels, in rooms, corridors and out of doors. Lengths are in
-/// metres. `docs/robots.md` says what it does on recorded logs, `docs/robots-parameters.md` what each
-/// number does.
+/// One set of values for planar lasers on wheeled robots, in rooms, corridors and outdoors. Lengths are in
+/// metres. `docs/robots.md` has results on recorded logs, `docs/robots-parameters.md` the effect of each
+/// parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct RobotConfig {
     /// A scan is thinned to a point in each cell of this side, m.
     pub scan_cell_m: f64,
-    /// Radius within which points of one scan give each other normals, m.
+    /// Radius of the neighbours for normals within one scan, m.
     pub scan_normal_radius_m: f64,
-    /// Last scans in the local map.
+    /// Number of last scans in the local map.
     pub window_sweeps: usize,
-    /// A scan joins the local map only so far from the newest one in it, m.
+    /// A scan joins the local map only at this distance from the newest one in it, m.
     pub window_distance_m: f64,
-    /// Radius within which points of the local map give each other normals, m.
+    /// Radius of the neighbours for normals of the local map, m.
     pub normal_radius_m: f64,
     /// Largest distance of a pair in the first stage of a registration, m.
     pub max_correspondence_m: f64,
-    /// Largest distance of a pair in the last stage, and of a point that fits, m.
+    /// Largest distance of a pair in the last stage, and of an inlier, m.
     pub inlier_distance_m: f64,
     /// Standard deviation of a point across its wall, m.
     pub point_sigma_m: f64,
-    /// A scan counts as so many independent points.
+    /// Number of independent points of a scan.
     pub independent_points: f64,
-    /// What a point in space that was never seen costs, as a share of a miss.
+    /// Cost of a point in unseen space, as a share of a miss.
     pub unseen_cost: f64,
-    /// With a lower score the window around the prediction is searched, 0 to 1.
+    /// If the score is lower, the window around the prediction is searched, 0 to 1.
     pub good_score: f64,
     /// Half the width of that window, m.
     pub search_m: f64,
     /// Half its range of headings, rad.
     pub search_rad: f64,
-    /// How far the wheels are trusted.
+    /// Noise of the odometry.
     pub odometry: MotionNoise,
     /// Distance after which a keyframe is taken, m.
     pub keyframe_distance_m: f64,
     /// Turn after which a keyframe is taken, rad.
     pub keyframe_turn_rad: f64,
-    /// How loops are found.
+    /// Parameters of loop closure.
     pub loops: SubmapLoopConfig,
 }
 
-/// How loops are found: the newest keyframes on a submap of older ones.
+/// Parameters of loop closure: registration of the newest keyframes on a submap of older ones.
 ///
-/// What a session's file has beyond these numbers was one once and is a constant now.
+/// Further numbers in a session file are former parameters that are constants now.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SubmapLoopConfig {
-    /// The newest so many keyframes are looked for together.
+    /// Number of newest keyframes registered together.
     pub bundle: usize,
-    /// On submaps of older keyframes, at least so much of the path ago, m.
+    /// Smallest path length back to the keyframes of a submap, m.
     pub min_path_m: f64,
-    /// The window is so many standard deviations of the relative pose wide.
+    /// Half width of the window in standard deviations of the relative pose.
     pub window_sigmas: f64,
-    /// Half the window's width at most, m.
+    /// Largest half width of the window, m.
     pub max_window_m: f64,
-    /// Half its range of headings at most, rad.
+    /// Largest half range of its headings, rad.
     pub max_turn_rad: f64,
     /// Score below which the keyframes do not fit, 0 to 1.
     pub min_score: f64,
-    /// The best place has to be ahead of the best other one by so much, 0 to 1.
+    /// Smallest margin of the best pose to the best distinct one, 0 to 1.
     pub min_margin: f64,
-    /// A loop within a window of this half width needs no other one that agrees, m.
+    /// A loop within a window of this half width needs no confirmation, m.
     pub unconfirmed_gate_radius_m: f64,
-    /// Else it waits for one on so much of the path, m.
+    /// Otherwise it waits for confirmation over this path length, m.
     pub pending_distance_m: f64,
 }
 
@@ -136,7 +136,7 @@ impl Default for RobotConfig {
             good_score: 0.8,
             search_m: 1.1,
             search_rad: 1.6,
-            odometry: WHEELS,
+            odometry: ODOMETRY,
             keyframe_distance_m: 0.65,
             keyframe_turn_rad: 0.35,
             loops: SubmapLoopConfig::default(),
@@ -145,7 +145,7 @@ impl Default for RobotConfig {
 }
 
 impl RobotConfig {
-    /// The values for a scanner, of which only the angle from beam to beam is asked: normals need
+    /// The values for a scanner; they depend only on its angle between beams, because normals need
     /// neighbours.
     #[must_use]
     pub fn for_scan(scan: &LaserScan) -> Self {
@@ -156,7 +156,7 @@ impl RobotConfig {
         }
     }
 
-    /// How far a motion is trusted that the odometry measured, or that none did.
+    /// Noise of a motion that was measured by odometry, or predicted.
     pub(crate) fn motion_noise(&self, is_measured: bool) -> &MotionNoise {
         if is_measured {
             &self.odometry
@@ -165,7 +165,7 @@ impl RobotConfig {
         }
     }
 
-    /// How scans are registered and scored.
+    /// Settings for registering and scoring scans.
     #[must_use]
     pub fn registration(&self) -> MapRegistrationConfig {
         MapRegistrationConfig {
@@ -217,7 +217,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_estimator_for_robots_has_the_numbers_that_it_was_given() {
+    fn the_estimator_for_robots_has_the_given_parameters() {
         let robot = RobotConfig {
             keyframe_distance_m: 1.25,
             window_sweeps: 9,

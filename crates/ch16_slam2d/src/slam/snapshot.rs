@@ -1,7 +1,7 @@
-//! All that an estimator is between two frames, as plain data: to be kept, and gone on with.
+//! State of an estimator between two frames, as plain data for session files.
 //!
-//! [`Slam::snapshot`] takes it, [`Slam::restore`] goes on from it. What follows is the same to the
-//! bit as if nothing had been in between: what is left out are buffers that every frame fills anew.
+//! [`Slam::snapshot`] takes it, [`Slam::restore`] continues from it. The results are the same to the
+//! bit as without an interruption: only buffers that every frame refills are left out.
 
 use std::sync::Arc;
 
@@ -15,15 +15,15 @@ use crate::graph::{EdgeView, PoseGraph, PoseNode};
 use crate::loops::PendingLoop;
 use crate::scan::is_finite;
 
-/// No robot takes so many frames.
-const MOST_FRAMES: usize = 1 << 30;
+/// Upper limit of the number of frames.
+const MAX_FRAMES: usize = 1 << 30;
 
 /// An estimator between two frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlamSnapshot {
     /// The parameters.
     pub config: SlamConfig,
-    /// Frames taken.
+    /// Number of frames.
     pub frames: usize,
     /// Time of the newest frame, s; minus infinity before the first.
     pub last_stamp_s: f64,
@@ -31,15 +31,15 @@ pub struct SlamSnapshot {
     pub nodes: Vec<PoseNode>,
     /// The graph's edges, in the order in which they were added.
     pub edges: Vec<EdgeView>,
-    /// How many edges there were when a node was last moved; later loops are yet to correct the graph.
+    /// Number of edges when a node was last moved; later loops are not optimized yet.
     pub optimized_edges: usize,
     /// The keyframes in order.
     pub keyframes: Vec<Keyframe>,
-    /// The newest node at which loops were looked for.
+    /// The newest node at which loops were searched.
     pub last_attempt_node: Option<usize>,
     /// The newest node at which a loop was closed.
     pub last_loop_node: usize,
-    /// The loops that wait for others, in order.
+    /// The pending loops, in order.
     pub pending: Vec<PendingLoop>,
     /// Estimate, window and threshold.
     pub front_end: FrontEndSnapshot,
@@ -52,40 +52,41 @@ pub struct FrontEndSnapshot {
     pub estimate: SE2,
     /// Twist of the last motion, in m/s, m/s, rad/s.
     pub velocity: Vector3<f64>,
-    /// How long the last motion took, s; infinite before the first.
+    /// Duration of the last motion, s; infinite before the first.
     pub last_dt_s: f64,
     /// The sweeps of the next local map, oldest first.
     pub window: Vec<WindowSweep>,
     /// Their scans, body frame.
     pub scans: Vec<Arc<PointCloud>>,
-    /// Sum of the squared deviations that the threshold has seen, m².
+    /// Sum of the squared deviations in the threshold, m².
     pub deviations_m2: f64,
     /// Number of them.
     pub deviations: usize,
     /// Covariance of the predicted motions since the last keyframe.
-    pub driven: Matrix3<f64>,
-    /// Covariance of the motions since the last registration that was believed, none after one.
+    pub motion_covariance: Matrix3<f64>,
+    /// Covariance of the motions since the last accepted registration, `None` directly after one.
     pub unregistered: Option<Matrix3<f64>>,
 }
 
-/// Why nothing can go on from a snapshot.
+/// Why a snapshot cannot be restored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum SnapshotError {
-    /// A node without a keyframe, or the other way round.
-    #[error("{nodes} nodes have {keyframes} keyframes; each node needs its own")]
+    /// The numbers of nodes and keyframes differ.
+    #[error("the snapshot has {nodes} nodes but {keyframes} keyframes; each node needs one")]
     Keyframes {
         /// Nodes of the graph.
         nodes: usize,
         /// Keyframes.
         keyframes: usize,
     },
-    /// Nothing holds the graph where it is.
-    #[error("no node is fixed; one has to hold the map where it is")]
+    /// No node is fixed.
+    #[error("no node is fixed; fix one to define the map's frame")]
     NothingFixed,
-    /// An edge of a node that is not there, or from a node to itself.
-    #[error("edge {edge} ties node {from} to {to}, and nodes are numbered from 0 to {last}")]
+    /// An edge has an end that does not exist, or equal ends.
+    #[error("edge {edge} connects node {from} to {to}, but nodes are numbered from 0 to {last}")]
     Ends {
-        /// Number of the edge, counted from 0.
+        /// Index of the edge.
         edge: usize,
         /// Its ends.
         from: usize,
@@ -94,24 +95,24 @@ pub enum SnapshotError {
         /// The last node.
         last: usize,
     },
-    /// A number that is none.
-    #[error("{what} {number} holds a number that is not finite")]
+    /// A number is not finite.
+    #[error("{what} {number} has a value that is not finite")]
     NotFinite {
-        /// What.
+        /// Kind of the part.
         what: &'static str,
-        /// Which of them, counted from 0.
+        /// Its index.
         number: usize,
     },
-    /// A counter that does not fit to the rest.
-    #[error("the {0} does not fit to the rest")]
+    /// A counter is inconsistent with the rest.
+    #[error("the {0} is inconsistent with the rest of the snapshot")]
     Counter(&'static str),
 }
 
 impl SlamSnapshot {
-    /// Whether all numbers are finite and all that is pointed at is there.
+    /// Checks that all numbers are finite and all indices exist.
     ///
     /// # Errors
-    /// The first thing that is not.
+    /// The first inconsistency.
     pub fn check(&self) -> Result<(), SnapshotError> {
         let nodes = self.nodes.len();
         if nodes != self.keyframes.len() {
@@ -157,12 +158,12 @@ impl SlamSnapshot {
             return Err(SnapshotError::Counter("newest node with a loop"));
         }
         if self.optimized_edges > self.edges.len() {
-            return Err(SnapshotError::Counter("number of settled edges"));
+            return Err(SnapshotError::Counter("number of optimized edges"));
         }
         for (number, waiting) in self.pending.iter().enumerate() {
             let found = &waiting.verification;
             if found.from_node >= nodes || found.candidate.node >= found.from_node {
-                return Err(SnapshotError::Counter("node of a loop that waits"));
+                return Err(SnapshotError::Counter("node of a pending loop"));
             }
             let poses = [&found.belief, &found.initial, &found.registered];
             let matrices = [&found.information, &found.gate_information];
@@ -172,10 +173,10 @@ impl SlamSnapshot {
                 && found.innovation.iter().all(|v| v.is_finite())
                 && waiting.path_m.is_finite();
             if !known {
-                return Err(not_finite("waiting loop", number));
+                return Err(not_finite("pending loop", number));
             }
         }
-        let is_counted = (self.frames == 0) == (nodes == 0) && self.frames < MOST_FRAMES;
+        let is_counted = (self.frames == 0) == (nodes == 0) && self.frames < MAX_FRAMES;
         if !is_counted || self.last_stamp_s.is_nan() {
             return Err(SnapshotError::Counter("number of frames"));
         }
@@ -197,7 +198,7 @@ impl FrontEndSnapshot {
                 });
             }
         }
-        let matrices = [Some(self.driven), self.unregistered];
+        let matrices = [Some(self.motion_covariance), self.unregistered];
         let known = matrices
             .iter()
             .flatten()
@@ -224,7 +225,7 @@ fn is_cloud(cloud: &PointCloud) -> bool {
 }
 
 impl Slam {
-    /// All that the estimator is, between two frames.
+    /// The state of the estimator between two frames.
     #[must_use]
     pub fn snapshot(&self) -> SlamSnapshot {
         SlamSnapshot {
@@ -242,19 +243,19 @@ impl Slam {
         }
     }
 
-    /// An estimator that goes on from a snapshot, with the parts that its parameters name.
+    /// An estimator that continues from a snapshot, with the parts of its parameters.
     ///
     /// # Errors
-    /// Where the snapshot contradicts itself.
+    /// If the snapshot is inconsistent.
     pub fn restore(snapshot: &SlamSnapshot) -> Result<Self, SnapshotError> {
         let parts = SlamParts::from_config(&snapshot.config);
         Self::restore_with_parts(snapshot, parts)
     }
 
-    /// [`Slam::restore`] with matchers and a loop detector of one's own.
+    /// [`Slam::restore`] with custom matchers and a custom loop detector.
     ///
     /// # Errors
-    /// Where the snapshot contradicts itself.
+    /// If the snapshot is inconsistent.
     pub fn restore_with_parts(
         snapshot: &SlamSnapshot,
         parts: SlamParts,
@@ -284,7 +285,7 @@ mod tests {
     use crate::slam::RobotConfig;
     use crate::slam::test_room::frame;
 
-    fn driven(slam: &mut Slam, steps: core::ops::Range<usize>) {
+    fn run(slam: &mut Slam, steps: core::ops::Range<usize>) {
         for step in steps {
             slam.step(&frame(step)).unwrap();
         }
@@ -292,7 +293,7 @@ mod tests {
 
     fn configs() -> [SlamConfig; 4] {
         let scan = frame(0).scan;
-        // Never sure: every loop waits for others.
+        // Every loop needs confirmation.
         let mut doubting = RobotConfig::for_scan(&scan);
         doubting.loops.unconfirmed_gate_radius_m = 0.0;
         doubting.loops.min_margin = 0.0;
@@ -308,15 +309,15 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_is_interrupted_ends_in_the_same_bits() {
+    fn an_interrupted_run_ends_in_the_same_bits() {
         let (mut waited, mut unspread) = (0, 0);
         for config in configs() {
             let mut whole = Slam::new(config.clone());
-            driven(&mut whole, 0..200);
+            run(&mut whole, 0..200);
             // Before the first loop, between loops, after the first frame, before it.
             for stop in [0, 1, 60, 121, 150, 160, 170, 180] {
                 let mut first = Slam::new(config.clone());
-                driven(&mut first, 0..stop);
+                run(&mut first, 0..stop);
                 waited += first.snapshot().pending.len();
                 let graph = first.graph();
                 let newer = graph.edges().skip(graph.optimized_edges());
@@ -324,35 +325,44 @@ mod tests {
                     .filter(|view| view.edge.kind == EdgeKind::Loop)
                     .count();
                 let mut second = Slam::restore(&first.snapshot()).unwrap();
-                driven(&mut second, stop..200);
+                run(&mut second, stop..200);
                 assert_eq!(second.snapshot(), whole.snapshot(), "stopped after {stop}");
                 assert_eq!(second.chi2().to_bits(), whole.chi2().to_bits());
             }
         }
-        assert!(waited > 0, "no run was interrupted while a loop waited");
-        assert!(unspread > 0, "none while one was yet to correct the map");
+        assert!(
+            waited > 0,
+            "no run was interrupted while a loop was pending"
+        );
+        assert!(unspread > 0, "none while a correction was postponed");
     }
 
     #[test]
-    fn a_snapshot_that_contradicts_itself_is_refused_in_a_sentence() {
+    fn an_inconsistent_snapshot_is_rejected_with_a_message() {
         let mut slam = Slam::new(SlamConfig::default());
-        driven(&mut slam, 0..30);
+        run(&mut slam, 0..30);
         let good = slam.snapshot();
         assert_eq!(good.check(), Ok(()));
         type Spoil = fn(&mut SlamSnapshot);
         let spoils: [(Spoil, &str); 8] = [
-            (|s| drop(s.keyframes.pop()), "nodes have"),
+            (
+                |s| drop(s.keyframes.pop()),
+                "keyframes; each node needs one",
+            ),
             (|s| s.nodes[0].fixed = false, "no node is fixed"),
-            (|s| s.edges[0].to = 999.into(), "edge 0 ties node 0 to 999"),
+            (
+                |s| s.edges[0].to = 999.into(),
+                "edge 0 connects node 0 to 999",
+            ),
             (
                 |s| s.nodes[1].pose = SE2::translation(f64::NAN, 0.0),
-                "node 1 holds",
+                "node 1 has",
             ),
             (|s| s.last_loop_node = 999, "newest node with a loop"),
-            (|s| s.optimized_edges = 999, "number of settled edges"),
+            (|s| s.optimized_edges = 999, "number of optimized edges"),
             (|s| drop(s.front_end.scans.pop()), "window of sweeps"),
             (
-                |s| s.front_end.driven[(0, 0)] = f64::INFINITY,
+                |s| s.front_end.motion_covariance[(0, 0)] = f64::INFINITY,
                 "front end 0",
             ),
         ];

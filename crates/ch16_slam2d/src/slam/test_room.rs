@@ -1,4 +1,4 @@
-//! A walk through a room, for tests of the back end.
+//! A path through a room, for tests of the back end.
 
 use nalgebra::Vector3;
 use pr_geom::SE2;
@@ -11,7 +11,7 @@ pub fn truth(step: usize) -> SE2 {
     SE2::new(4.0, 1.5, 0.0) * SE2::exp(&(twist * step as f64))
 }
 
-/// What is measured after so many steps; the wheels claim a little too much of each turn.
+/// The measurements after this many steps; the odometry overestimates each turn a little.
 pub fn frame(step: usize) -> Frame {
     let (pose, last) = (truth(step), truth(step.saturating_sub(1)));
     let mut scan = LaserScan {

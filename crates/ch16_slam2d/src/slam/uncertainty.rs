@@ -1,9 +1,9 @@
-//! How well the keyframes are known, by how far the measurements of the graph contradict each other.
+//! Covariance scale of the keyframes, from the contradictions between the measurements of the graph.
 //!
-//! The information of an edge says how points scatter about walls. It says nothing of what a sparse
-//! sensor or a wall that is not straight do to a registration. The closed loops do: they measure more
-//! than is needed, and what the optimum leaves over should be one standard deviation on the mean.
-//! The ratio of both multiplies every covariance. It is the variance of unit weight of an adjustment.
+//! The information of an edge models the scatter of points about walls. It does not model the effect of a sparse
+//! sensor or of curved walls on a registration. Closed loops reveal it: they are redundant measurements, and the
+//! residual at the optimum should be one standard deviation on average. The ratio of both scales every covariance.
+//! It is the variance of unit weight of an adjustment.
 //!
 //! Source: Förstner & Wrobel, "Photogrammetric computer vision", 2016, §4.2.3.
 
@@ -11,23 +11,23 @@ use pr_geom::math;
 
 use crate::graph::PoseGraph;
 
-/// The edges are taken at their word as if so many measurements said so: without a loop nothing else does.
-const STATED: f64 = 1.0;
-/// A chain strays farther than its links: errors of scans that follow each other go the same way, and loops
-/// show less of it than the way between them. So the variances are twice the geometric mean of what is
-/// stated and what is left over. Found on simulated laps and buildings; `docs/robots.md` has both.
-const CHAINED: f64 = 2.0;
+/// Weight of the stated variance, as a number of measurements: without a loop there is no other evidence.
+const STATED_WEIGHT: f64 = 1.0;
+/// Factor for correlated errors along a chain: consecutive scans have similar errors, and loops
+/// reveal only part of them. The variances are twice the geometric mean of the stated and the
+/// observed ones. Calibrated on simulated laps and buildings; see `docs/robots.md`.
+const CHAIN_FACTOR: f64 = 2.0;
 
-/// What every covariance of the graph is multiplied by.
+/// The factor on every covariance of the graph.
 pub(super) fn keyframe_factor(graph: &PoseGraph) -> f64 {
-    CHAINED * math::sqrt(variance_factor(graph))
+    CHAIN_FACTOR * math::sqrt(variance_factor(graph))
 }
 
-/// `χ² / (3E − 3N)` of E edges and N nodes that are not fixed, drawn to 1 where little is measured twice.
+/// `χ² / (3E − 3N)` for E edges and N free nodes, shrunk towards 1 if there is little redundancy.
 pub(super) fn variance_factor(graph: &PoseGraph) -> f64 {
     let free = graph.nodes().filter(|(_, node)| !node.fixed).count();
     let redundant = 3.0 * graph.edge_count().saturating_sub(free) as f64;
-    (graph.chi2() + STATED) / (redundant + STATED)
+    (graph.chi2() + STATED_WEIGHT) / (redundant + STATED_WEIGHT)
 }
 
 #[cfg(test)]
@@ -38,9 +38,9 @@ mod tests {
     use super::*;
     use crate::graph::EdgeKind;
 
-    /// A chain whose nodes are tied to the next ones; the errors of the measurements are normal, with
-    /// so many times the deviation that they state.
-    fn tied(nodes: usize, reach: usize, times: f64) -> PoseGraph {
+    /// A chain whose nodes are linked to the next ones; the errors of the measurements are normal, with
+    /// `times` the stated deviation.
+    fn linked(nodes: usize, reach: usize, times: f64) -> PoseGraph {
         let mut rng = Rng::new(1);
         let mut graph = PoseGraph::new();
         graph.add_fixed_node(SE2::identity());
@@ -61,16 +61,16 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_without_loops_is_taken_at_its_word() {
-        let factor = variance_factor(&tied(30, 1, 5.0));
+    fn a_chain_without_loops_keeps_its_stated_variance() {
+        let factor = variance_factor(&linked(30, 1, 5.0));
         assert!((factor - 1.0).abs() < 1e-9, "{factor}");
     }
 
     #[test]
-    fn measurements_that_are_off_by_more_than_they_say_show_in_what_contradicts() {
+    fn understated_noise_is_detected_from_loop_residuals() {
         for (times, expected) in [(0.2, 0.04), (1.0, 1.0), (3.0, 9.0)] {
-            let factor = variance_factor(&tied(120, 3, times));
-            // 235 measurements of three numbers each more than needed: the deviation of their mean square is 5 %.
+            let factor = variance_factor(&linked(120, 3, times));
+            // 235 measurements of three numbers each are redundant: the deviation of their mean square is 5 %.
             assert!(
                 (factor / expected - 1.0).abs() < 0.15,
                 "{factor}, {expected}"

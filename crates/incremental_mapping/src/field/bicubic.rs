@@ -1,17 +1,17 @@
-//! Between the centres of cells: cubic convolution, which is smooth to the first derivative.
+//! Bicubic interpolation between the centres of cells, continuously differentiable.
 
 use pr_geom::Vector2;
 
-/// A field at one point.
+/// Value and gradient of a field at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldSample {
     /// Its value.
     pub value: f64,
-    /// Its gradient by x and y, for each cell's side.
+    /// Its gradient by x and y, per cell side.
     pub slope: Vector2<f64>,
 }
 
-/// The weights of four neighbours at a share `t` of the way from the second to the third, and their
+/// The weights of four neighbours at a fraction `t` from the second to the third, and their
 /// derivatives by t.
 fn weights(t: f64) -> ([f64; 4], [f64; 4]) {
     let (t2, t3) = (t * t, t * t * t);
@@ -31,7 +31,7 @@ fn weights(t: f64) -> ([f64; 4], [f64; 4]) {
     )
 }
 
-/// The field at the shares `(tx, ty)` of a cell's side from the second to the third of four values in
+/// The field at the fractions `(tx, ty)` of a cell's side from the second to the third of four values in
 /// each of four rows.
 ///
 /// Value and gradient are continuous from cell to cell; at a cell's centre the value is the cell's.
@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_parabola_is_met_exactly_between_the_cells() {
+    fn a_parabola_is_interpolated_exactly() {
         // Cubic convolution reproduces polynomials of the second degree (Keys 1981).
         let at = |x: f64, y: f64| 1.0 + 2.0 * x - 3.0 * y + 0.5 * x * x + x * y - y * y;
         let rows = core::array::from_fn(|row| {

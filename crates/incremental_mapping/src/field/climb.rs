@@ -1,4 +1,4 @@
-//! A scan that moves uphill on a field.
+//! Hill climbing of a scan on a field.
 
 use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
 use pr_geom::{SE2, math, twist_size, wrap_angle};
@@ -8,51 +8,51 @@ use ch16_slam2d::scan::is_finite;
 
 /// Damping of the first step, as a share of the curvature.
 const FIRST_DAMPING: f64 = 1e-3;
-/// A step that led downhill is tried again with so much more damping.
-const HARDER: f64 = 10.0;
-/// A step that led uphill makes the next one so much bolder.
-const BOLDER: f64 = 0.2;
-/// Steps damped more than this lead nowhere.
-const MOST_DAMPING: f64 = 1e8;
-/// Smallest curvature in any direction: where nothing bends, the step is long and gets damped.
-const FLOOR: f64 = 1e-6;
+/// Factor on the damping after a step that led downhill.
+const DAMPING_GROWTH: f64 = 10.0;
+/// Factor on the damping after a step that led uphill.
+const DAMPING_DECAY: f64 = 0.2;
+/// Largest damping; if it is exceeded, the climb ends.
+const MAX_DAMPING: f64 = 1e8;
+/// Smallest curvature in any direction: in flat regions the step is long and gets damped.
+const MIN_CURVATURE: f64 = 1e-6;
 
-/// How well one point lies on a field.
+/// Score of one point on a field, with derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointScore {
     /// Its score: larger is better.
     pub score: f64,
     /// Gradient of the score by the point's x and y, 1/m.
     pub slope: Vector2<f64>,
-    /// How the score bends down, 2×2, positive semidefinite, 1/m²: an approximation will do.
+    /// Negative curvature of the score, 2×2, positive semidefinite, 1/m²; may be approximate.
     pub bend: Matrix2<f64>,
 }
 
-/// A field on which points lie well or badly.
+/// A field with a score for every point.
 pub trait PointScores {
     /// The score at a point, m, in the field's frame.
     fn at(&self, point: Point2<f64>) -> PointScore;
 }
 
-/// What is believed of a pose before the scan is looked at.
+/// Prior of the pose.
 ///
 /// It adds `−½ eᵀ Ω e` to the sum over the points, with `e = (R̂ᵀ(t − t̂), θ − θ̂)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PosePrior {
-    /// The believed pose (t̂, θ̂), `field_from_scan`.
+    /// The mean (t̂, θ̂), `field_from_scan`.
     pub pose: SE2,
     /// Ω, 3×3, translation first.
     pub information: Matrix3<f64>,
 }
 
-/// When a climb ends, and how much a point counts beside the prior.
+/// Stop rules of a climb, and the weight of points relative to the prior.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClimbConfig {
-    /// Factor of every point's score: points of one scan are not independent.
+    /// Factor on every point's score, because points of one scan are correlated.
     pub weight: f64,
-    /// At most so many steps.
+    /// Largest number of steps.
     pub max_steps: usize,
-    /// A step shorter than this (m + rad) is the last one.
+    /// A step shorter than this (m + rad) ends the climb.
     pub tolerance: f64,
 }
 
@@ -64,36 +64,47 @@ pub enum ClimbStop {
         /// Its length, m + rad.
         step: f64,
     },
-    /// No step leads uphill.
+    /// No step raises the objective.
     Summit,
-    /// The limit was reached.
+    /// The limit of steps was reached.
     MaxSteps,
-    /// The field is no number here.
-    NoNumber,
+    /// The objective is not finite at the pose.
+    NotFinite,
 }
 
-/// What one step did.
+impl core::fmt::Display for ClimbStop {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::SmallStep { step } => write!(f, "step {step:.2e} below the tolerance"),
+            Self::Summit => write!(f, "no step raises the objective"),
+            Self::MaxSteps => write!(f, "limit of steps"),
+            Self::NotFinite => write!(f, "the objective is not finite"),
+        }
+    }
+}
+
+/// Result of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClimbStep {
     /// The pose after it, `field_from_scan`.
     pub pose: SE2,
     /// The objective there.
     pub objective: f64,
-    /// Whether it led uphill; if not, the pose is that of before.
+    /// Whether it raised the objective; if not, the pose is unchanged.
     pub is_uphill: bool,
 }
 
-/// What a climb found.
+/// Result of a climb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Climb {
     /// The pose at its end, `field_from_scan`.
     pub pose: SE2,
     /// The objective there: weighted scores and prior.
     pub objective: f64,
-    /// How the objective bends down there, 3×3, translation first, in the tangent space of the pose:
-    /// the information of what was found.
+    /// Negative curvature of the objective at the pose, 3×3, translation first, in the tangent space of the pose:
+    /// the information of the registration.
     pub bend: Matrix3<f64>,
-    /// Steps that were tried.
+    /// Number of tried steps.
     pub steps: usize,
     /// Why it ended.
     pub stop: ClimbStop,
@@ -101,7 +112,7 @@ pub struct Climb {
 
 /// The objective at a pose with its derivatives by δ in `T exp(δ)` at δ = 0.
 #[derive(Clone, Copy, Debug)]
-struct Ascent {
+struct Derivatives {
     value: f64,
     slope: Vector3<f64>,
     bend: Matrix3<f64>,
@@ -109,16 +120,16 @@ struct Ascent {
 
 /// Hill climbing of `F(T) = w Σ_k s(T p_k) − ½ eᵀ Ω e` over the pose T of a scan.
 ///
-/// The direction is that of the gradient, `Σ Jᵀ ∇s` with `J = R (I | −p_y, p_x)ᵀ`, stretched by the
-/// curvature; a step that leads downhill is taken back and shortened (Levenberg 1944). It ends on the
-/// nearest hill: what is higher elsewhere is not found.
+/// The direction is the gradient, `Σ Jᵀ ∇s` with `J = R (I | −p_y, p_x)ᵀ`, scaled by the inverse
+/// curvature; a step that leads downhill is reverted and shortened (Levenberg 1944). It finds the local maximum
+/// in whose basin it starts.
 pub struct ScanClimb<'a, F: PointScores> {
     field: &'a F,
     scan: &'a PointCloud,
     prior: Option<PosePrior>,
     config: ClimbConfig,
     pose: SE2,
-    here: Ascent,
+    here: Derivatives,
     damping: f64,
     steps: usize,
     stop: Option<ClimbStop>,
@@ -140,7 +151,7 @@ impl<'a, F: PointScores> ScanClimb<'a, F> {
             prior,
             config,
             pose: start,
-            here: Ascent {
+            here: Derivatives {
                 value: 0.0,
                 slope: Vector3::zeros(),
                 bend: Matrix3::zeros(),
@@ -149,14 +160,14 @@ impl<'a, F: PointScores> ScanClimb<'a, F> {
             steps: 0,
             stop: None,
         };
-        climb.here = climb.ascent(&start);
+        climb.here = climb.derivatives(&start);
         if !climb.here.value.is_finite() {
-            climb.stop = Some(ClimbStop::NoNumber);
+            climb.stop = Some(ClimbStop::NotFinite);
         }
         climb
     }
 
-    /// Tries one step; none once the climb has ended.
+    /// Tries one step; `None` once the climb has ended.
     pub fn step(&mut self) -> Option<ClimbStep> {
         if self.stop.is_none() && self.steps >= self.config.max_steps {
             self.stop = Some(ClimbStop::MaxSteps);
@@ -189,14 +200,15 @@ impl<'a, F: PointScores> ScanClimb<'a, F> {
     /// The objective at a pose and its gradient by δ in `T exp(δ)`, translation first.
     #[must_use]
     pub fn objective(&self, pose: &SE2) -> (f64, Vector3<f64>) {
-        let ascent = self.ascent(pose);
+        let ascent = self.derivatives(pose);
         (ascent.value, ascent.slope)
     }
 
     fn try_step(&mut self) -> bool {
         let mut damped = self.here.bend;
         for k in 0..3 {
-            damped[(k, k)] = damped[(k, k)] * (1.0 + self.damping) + FLOOR * (1.0 + self.damping);
+            damped[(k, k)] =
+                damped[(k, k)] * (1.0 + self.damping) + MIN_CURVATURE * (1.0 + self.damping);
         }
         let Some(inverse) = damped.try_inverse() else {
             self.stop = Some(ClimbStop::Summit);
@@ -204,26 +216,26 @@ impl<'a, F: PointScores> ScanClimb<'a, F> {
         };
         let delta = inverse * self.here.slope;
         let pose = self.pose.boxplus(&delta);
-        let there = self.ascent(&pose);
+        let there = self.derivatives(&pose);
         let is_uphill = there.value > self.here.value && is_finite(&pose);
         if is_uphill {
             let length = twist_size(&delta);
             (self.pose, self.here) = (pose, there);
-            self.damping = math::max(self.damping * BOLDER, 1e-9);
+            self.damping = math::max(self.damping * DAMPING_DECAY, 1e-9);
             if length < self.config.tolerance {
                 self.stop = Some(ClimbStop::SmallStep { step: length });
             }
         } else {
-            self.damping *= HARDER;
+            self.damping *= DAMPING_GROWTH;
             let length = twist_size(&delta);
-            if self.damping > MOST_DAMPING || length < self.config.tolerance {
+            if self.damping > MAX_DAMPING || length < self.config.tolerance {
                 self.stop = Some(ClimbStop::Summit);
             }
         }
         is_uphill
     }
 
-    fn ascent(&self, pose: &SE2) -> Ascent {
+    fn derivatives(&self, pose: &SE2) -> Derivatives {
         let rotation = pose.rotation();
         let (mut value, mut slope, mut bend) = (0.0, Vector3::zeros(), Matrix3::zeros());
         for point in self.scan.iter() {
@@ -251,7 +263,7 @@ impl<'a, F: PointScores> ScanClimb<'a, F> {
             let (x, y) = (pose.x() - prior.pose.x(), pose.y() - prior.pose.y());
             let (x, y) = prior.pose.rotation().unrotate(x, y);
             let gap = Vector3::new(x, y, wrap_angle(pose.theta() - prior.pose.theta()));
-            // de/dδ: the translation is turned from the one body's frame into the other's.
+            // de/dδ: the translation is rotated from one body frame to the other.
             let (sin, cos) = math::sin_cos(gap.z);
             let jacobian = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
             let pull = prior.information * gap;
@@ -259,7 +271,7 @@ impl<'a, F: PointScores> ScanClimb<'a, F> {
             slope -= jacobian.transpose() * pull;
             bend += jacobian.transpose() * prior.information * jacobian;
         }
-        Ascent { value, slope, bend }
+        Derivatives { value, slope, bend }
     }
 }
 
@@ -304,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gradient_is_that_of_differences_with_and_without_a_prior() {
+    fn the_gradient_agrees_with_finite_differences_with_and_without_a_prior() {
         let scan = scan();
         for prior in [None, Some(prior())] {
             let climb = ScanClimb::new(&Hill, &scan, SE2::identity(), prior, CONFIG);
@@ -326,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn a_climb_ends_where_the_gradient_is_nothing_and_every_step_leads_uphill() {
+    fn a_climb_ends_at_zero_gradient_and_every_step_raises_the_objective() {
         let scan = scan();
         let start = SE2::new(-2.0, 3.0, 1.0);
         let mut climb = ScanClimb::new(&Hill, &scan, start, Some(prior()), CONFIG);

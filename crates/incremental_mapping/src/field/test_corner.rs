@@ -1,4 +1,4 @@
-//! What the tests of all fields register on.
+//! A scan for the tests of all fields.
 
 use nalgebra::{Point2, Vector2};
 

@@ -1,4 +1,4 @@
-//! A grid without borders that has memory only where something is known.
+//! An unbounded grid that allocates memory only for known cells.
 
 use pr_geom::Point2;
 use rustc_hash::FxHashMap;
@@ -9,10 +9,10 @@ use super::{FieldSample, bicubic};
 const SIDE: i32 = 16;
 const CELLS: usize = (SIDE * SIDE) as usize;
 
-/// Cells in square tiles; what lies in no tile is unknown.
+/// Cells in square tiles; cells without a tile are unknown.
 ///
-/// Cell (i, j) covers `[i, i+1) × [j, j+1)` times its side, from the frame's origin. A tile comes into
-/// being with its first known cell, up to a limit, so memory is bounded.
+/// Cell (i, j) covers `[i, i+1) × [j, j+1)` times its side, from the frame's origin. A tile is allocated
+/// with its first known cell, up to a limit, so memory is bounded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TiledGrid<T> {
     cell_m: f64,
@@ -30,7 +30,7 @@ struct Tile<T> {
 }
 
 impl<T: Copy> TiledGrid<T> {
-    /// A grid of cells of `cell_m` metres that are all `unknown`; it takes at most `max_cells`.
+    /// A grid of cells of `cell_m` metres that are all `unknown`; allocates at most `max_cells`.
     #[must_use]
     pub fn new(cell_m: f64, unknown: T, max_cells: usize) -> Self {
         Self {
@@ -42,7 +42,7 @@ impl<T: Copy> TiledGrid<T> {
         }
     }
 
-    /// Forgets everything.
+    /// Removes all cells.
     pub fn clear(&mut self) {
         self.tiles.clear();
         self.places.clear();
@@ -54,19 +54,19 @@ impl<T: Copy> TiledGrid<T> {
         self.cell_m
     }
 
-    /// Cells that take memory.
+    /// Number of allocated cells.
     #[must_use]
     pub fn len(&self) -> usize {
         self.tiles.len() * CELLS
     }
 
-    /// Whether nothing is known.
+    /// Whether no cell is allocated.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.tiles.is_empty()
     }
 
-    /// Column and row of a point; those of points beyond all numbers are at the end of the numbers.
+    /// Column and row of a point; indices saturate for points beyond their range.
     #[must_use]
     pub fn cell_of(&self, point: Point2<f64>) -> (i32, i32) {
         let index = |value: f64| (value / self.cell_m).floor() as i32;
@@ -80,7 +80,7 @@ impl<T: Copy> TiledGrid<T> {
         Point2::new(at(column), at(row))
     }
 
-    /// What is known of a cell.
+    /// The value of a cell.
     #[must_use]
     pub fn get(&self, (column, row): (i32, i32)) -> T {
         let tile = (column.div_euclid(SIDE), row.div_euclid(SIDE));
@@ -90,7 +90,7 @@ impl<T: Copy> TiledGrid<T> {
         }
     }
 
-    /// A cell to be written; none where the memory is used up.
+    /// A cell for writing; `None` if the limit of cells is reached.
     pub fn get_mut(&mut self, (column, row): (i32, i32)) -> Option<&mut T> {
         let tile = (column.div_euclid(SIDE), row.div_euclid(SIDE));
         let place = match self.places.get(&tile) {
@@ -109,7 +109,7 @@ impl<T: Copy> TiledGrid<T> {
         Some(&mut self.tiles[place].cells[within(column, row)])
     }
 
-    /// All cells that take memory with column and row, tile by tile in the order in which they came.
+    /// All allocated cells with column and row, tile by tile in order of allocation.
     pub fn cells(&self) -> impl Iterator<Item = ((i32, i32), T)> + '_ {
         self.tiles.iter().flat_map(|tile| {
             let (column, row) = (tile.column * SIDE, tile.row * SIDE);
@@ -118,8 +118,7 @@ impl<T: Copy> TiledGrid<T> {
         })
     }
 
-    /// The values that `value` makes of the cells, smooth in between, at a point; the slope is for
-    /// each metre.
+    /// Bicubic interpolation of `value` over the cells at a point; the gradient is per metre.
     #[must_use]
     pub fn sample(&self, point: Point2<f64>, value: impl Fn(T) -> f64) -> FieldSample {
         let (x, y) = (point.x / self.cell_m - 0.5, point.y / self.cell_m - 0.5);
@@ -134,7 +133,7 @@ impl<T: Copy> TiledGrid<T> {
 
     /// Four by four values around the corner above a cell.
     fn neighbors(&self, column: i32, row: i32, value: impl Fn(T) -> f64) -> [[f64; 4]; 4] {
-        // Points beyond all numbers lie at the end of the numbers: their neighbours are themselves.
+        // Points beyond the range of indices lie at its end: their neighbours are themselves.
         let (left, low) = (column.saturating_sub(1), row.saturating_sub(1));
         let (x, y) = (left.rem_euclid(SIDE), low.rem_euclid(SIDE));
         if x + 3 < SIDE && y + 3 < SIDE {
@@ -166,7 +165,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_written_is_read_on_both_sides_of_the_origin_and_elsewhere_is_unknown() {
+    fn written_cells_are_read_back_and_others_are_unknown() {
         let mut grid = TiledGrid::new(0.1, -1.0, 1 << 20);
         let cells = [(0, 0), (-1, -1), (15, 16), (-17, 300), (i32::MIN, i32::MAX)];
         for (k, &cell) in cells.iter().enumerate() {
@@ -182,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn memory_ends_at_the_limit_and_what_is_known_stays() {
+    fn cells_beyond_the_limit_are_refused_and_known_ones_stay() {
         let mut grid = TiledGrid::new(0.1, 0.0, 3 * CELLS);
         for k in 0..3 {
             *grid.get_mut((100 * k, 0)).unwrap() = 1.0;
@@ -202,7 +201,7 @@ mod tests {
                 *grid.get_mut((column, row)).unwrap() = plane((column, row));
             }
         }
-        // A plane: its value at a point is that of the point, whatever tiles its neighbours lie in.
+        // A plane: the interpolation is exact, whatever tiles the neighbours lie in.
         for (x, y) in [(0.0, 0.0), (7.9, 8.1), (-0.1, 15.6), (3.3, -7.9)] {
             let found = grid.sample(Point2::new(x, y), |value| value);
             let expected = 3.0 * (x / 0.5 - 0.5) - 2.0 * (y / 0.5 - 0.5);
@@ -211,7 +210,7 @@ mod tests {
             assert!((found.slope.y + 4.0).abs() < 1e-11);
         }
         for far in [1e300, f64::NAN, f64::INFINITY] {
-            // No panic: what is there is no number, and nobody climbs on it.
+            // No panic: the value is not finite, and climbs reject it.
             let _ = grid.sample(Point2::new(far, -far), |value| value);
         }
     }

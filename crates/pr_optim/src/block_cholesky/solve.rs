@@ -5,7 +5,7 @@
 use super::BlockCholesky;
 use crate::supernodes::{Supernode, Supernodes};
 
-/// Right-hand sides that are solved side by side: the columns of two nodes.
+/// Number of right-hand sides solved together: the columns of two nodes.
 pub(super) const LANES: usize = 6;
 
 impl BlockCholesky {
@@ -19,7 +19,7 @@ impl BlockCholesky {
             .for_each(|number| self.solve_upper_front(number, lanes));
     }
 
-    /// Overwrites right-hand sides that stand side by side, in elimination order, with `H⁻¹` times them.
+    /// Overwrites interleaved right-hand sides, in elimination order, with `H⁻¹` times them.
     pub(crate) fn solve_sides<const N: usize>(&mut self, sides: &mut [[f64; N]]) {
         const { assert!(N <= LANES, "one front has room for so many") };
         let fronts = self.supernodes.list.len();
@@ -34,10 +34,10 @@ impl BlockCholesky {
             .for_each(|number| self.solve_upper_sides(number, sides));
     }
 
-    /// `XᵀX` of `X = L⁻¹E`, where side k of E has a one in row `ones[k]`, in elimination order, or nothing.
+    /// `XᵀX` of `X = L⁻¹E`. Column k of E has a one in row `ones[k]`, in elimination order, or is zero.
     ///
-    /// `fronts` ascend. They hold every front where a side has its one, and all ancestors of each:
-    /// elsewhere the solution is zero.
+    /// `fronts` ascend and contain every front with a one, and all ancestors of each. Elsewhere the solution
+    /// is zero.
     pub(crate) fn gram_along(
         &mut self,
         fronts: &[usize],
@@ -142,7 +142,7 @@ impl BlockCholesky {
 }
 
 impl Supernodes {
-    /// The rows of `x` that a front has: its own, then those below.
+    /// Collects the rows of `x` that a front has: its own, then those below.
     #[inline]
     fn gather<const N: usize>(
         &self,
@@ -159,7 +159,7 @@ impl Supernodes {
     }
 }
 
-/// Solves for the three unknowns of a block column from those below it.
+/// Solves for the three unknowns of a block column, given those below it.
 ///
 /// `x` and the columns start at the block's diagonal.
 #[inline]
@@ -183,7 +183,7 @@ fn substitute<const N: usize>(x: &mut [[f64; N]], columns: [&[f64]; 3], reciproc
     }
 }
 
-/// Solves for the three unknowns of a block column, and takes what they contribute off the rows below.
+/// Solves for the three unknowns of a block column, and subtracts their contribution from the rows below.
 ///
 /// `x` and the columns start at the block's diagonal.
 #[inline]
@@ -209,7 +209,7 @@ fn eliminate<const N: usize>(x: &mut [[f64; N]], columns: [&[f64]; 3], reciproca
     }
 }
 
-/// Inner product in four interleaved sums, which the machine adds side by side.
+/// Inner product in four interleaved sums, which vector units add in parallel.
 #[inline]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let ((a_chunks, a_rest), (b_chunks, b_rest)) = (a.as_chunks::<4>(), b.as_chunks::<4>());

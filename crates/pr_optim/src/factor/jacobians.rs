@@ -1,6 +1,6 @@
-//! Residual and Jacobians of a factor as matrices, for whoever wants to look at them or change them.
+//! Residual and Jacobians of a factor as matrices, to inspect or to modify.
 //!
-//! The solver never writes them out: it multiplies them into blocks at once, see
+//! The solver does not form them: it multiplies them into blocks at once, see
 //! [`Linearization`](super::Linearization).
 
 use nalgebra::{Matrix3, Vector3};
@@ -8,14 +8,14 @@ use pr_geom::SE2;
 
 use super::{PreparedFactor, PreparedPose, Residual};
 
-/// A residual with its derivatives by the two poses, under perturbations on the right.
+/// A residual and its derivatives with respect to the two poses, for perturbations on the right.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jacobians {
     /// e, tangent order x, y, θ.
     pub residual: Vector3<f64>,
-    /// ∂e/∂δ of the pose that measured, 3×3.
+    /// ∂e/∂δ of the pose from which the other was measured, 3×3.
     pub from: Matrix3<f64>,
-    /// ∂e/∂δ of the pose that was measured, 3×3.
+    /// ∂e/∂δ of the measured pose, 3×3.
     pub to: Matrix3<f64>,
 }
 

@@ -28,7 +28,7 @@ fn residual_is_the_log_of_the_error_motion() {
 }
 
 #[test]
-fn log_curvature_meets_the_closed_form_where_the_series_ends() {
+fn log_curvature_is_continuous_at_the_end_of_the_series() {
     let below = log_curvature(0.5 - 1e-14);
     let above = log_curvature(0.5 + 1e-14);
     // 2e-15: the closed form loses a few bits in 1 − x.
@@ -36,7 +36,7 @@ fn log_curvature_meets_the_closed_form_where_the_series_ends() {
     assert_eq!(log_curvature(0.0), 1.0 / 12.0);
 }
 
-/// The derivatives of the residual by both poses, as central differences.
+/// Derivatives of the residual with respect to both poses, by central differences.
 fn numeric_jacobians(factor: &Between, from: &SE2, to: &SE2) -> (Matrix3<f64>, Matrix3<f64>) {
     let prepared = PreparedFactor::new(factor);
     let residual =
@@ -52,8 +52,8 @@ fn numeric_jacobians(factor: &Between, from: &SE2, to: &SE2) -> (Matrix3<f64>, M
     )
 }
 
-/// The largest difference between blocks and gradients and those made of differences, as a share
-/// of the largest entry.
+/// Largest difference between the blocks and gradients and those by finite differences, as a share of the
+/// largest entry.
 fn mismatch(factor: &Between, from: &SE2, to: &SE2, model: JacobianModel) -> f64 {
     let (jacobian_from, jacobian_to) = numeric_jacobians(factor, from, to);
     let prepared = PreparedFactor::new(factor);
@@ -95,7 +95,7 @@ fn pose() -> impl Strategy<Value = SE2> {
     (-3.0..3.0, -3.0..3.0, -3.2..3.2).prop_map(|(x, y, theta)| SE2::new(x, y, theta))
 }
 
-/// `A Aᵀ + I` of a random A: any coupling of the three entries.
+/// `A Aᵀ + I` of a random A: any correlation of the three entries.
 fn information() -> impl Strategy<Value = Matrix3<f64>> {
     prop::array::uniform9(-6.0..6.0).prop_map(|entries| {
         let root = Matrix3::from_row_slice(&entries);
@@ -103,7 +103,7 @@ fn information() -> impl Strategy<Value = Matrix3<f64>> {
     })
 }
 
-/// A residual whose turn stays away from π, where the log jumps.
+/// A residual whose rotation stays away from π, where the log is discontinuous.
 fn residual() -> impl Strategy<Value = Vector3<f64>> {
     (-2.0..2.0, -2.0..2.0, -2.6..2.6).prop_map(|(x, y, turn)| Vector3::new(x, y, turn))
 }
@@ -120,7 +120,7 @@ proptest! {
     }
 
     #[test]
-    fn chapter_blocks_agree_with_finite_differences_where_the_residual_vanishes(
+    fn chapter_blocks_agree_with_finite_differences_for_a_zero_residual(
         from in pose(), to in pose(), information in information(),
     ) {
         let factor = Between { from: 0, to: 1, measurement: from.between(&to), information };
@@ -130,8 +130,8 @@ proptest! {
 }
 
 #[test]
-fn chapter_blocks_are_no_derivative_where_the_residual_is_large() {
-    // The measure of the properties above tells one Jacobian from another.
+fn chapter_blocks_differ_from_finite_differences_for_a_large_residual() {
+    // Shows that the measure of the properties above distinguishes the two Jacobians.
     let (from, to, factor) = example();
     assert!(mismatch(&factor, &from, &to, JacobianModel::Exact) < DIFFERENCES);
     assert!(mismatch(&factor, &from, &to, JacobianModel::Chapter) > 0.1);
@@ -156,7 +156,7 @@ fn chapter_blocks_use_the_adjoint_of_the_measurement() {
 }
 
 #[test]
-fn both_models_agree_where_the_residual_vanishes() {
+fn both_models_agree_for_a_zero_residual() {
     let (from, to, mut factor) = example();
     factor.measurement = from.between(&to);
     let prepared = PreparedFactor::new(&factor);

@@ -1,4 +1,4 @@
-//! One line of a g2o file: what it says, or what is wrong with it.
+//! Parser of one line of a g2o file.
 
 use nalgebra::Matrix3;
 use pr_geom::SE2;
@@ -6,10 +6,10 @@ use pr_geom::SE2;
 use super::G2oProblem;
 use crate::factor::Between;
 
-/// Most characters of a field that a message repeats.
+/// Largest number of characters of a field that an error message repeats.
 const MAX_PRINTED: usize = 40;
 
-/// One record, as far as it is understood.
+/// One parsed record.
 pub enum Record {
     /// A vertex with its pose.
     Vertex {
@@ -20,26 +20,26 @@ pub enum Record {
     },
     /// An edge by the ids of its ends.
     Edge {
-        /// Id of the vertex that measured.
+        /// Id of the vertex from which the other was measured.
         from: i64,
-        /// Id of the vertex that was measured.
+        /// Id of the measured vertex.
         to: i64,
-        /// What was measured; its indices are not known yet.
+        /// The measurement; its indices are not known yet.
         between: Between,
     },
-    /// Vertices that hold the gauge.
+    /// Fixed vertices.
     Fix {
         /// Their ids, at least one.
         ids: Vec<i64>,
     },
-    /// A comment, an empty line, or what is kept as it is.
+    /// A comment, an empty line, or a record that is preserved without being parsed.
     Other,
 }
 
-/// Reads one line.
+/// Parses one line. A comment may hold any bytes.
 ///
 /// # Errors
-/// What is wrong with it. A comment may hold any bytes.
+/// The first problem of the line.
 pub fn parse_record(line: &[u8]) -> Result<Record, G2oProblem> {
     if line.trim_ascii_start().starts_with(b"#") {
         return Ok(Record::Other);
@@ -91,12 +91,12 @@ pub fn content(line: &[u8]) -> &[u8] {
     line.strip_suffix(b"\r").unwrap_or(line)
 }
 
-/// Whether a record of this name is kept without being understood, and is no comment.
+/// Whether a record of this name is preserved without being parsed, and is no comment.
 pub fn is_kept(name: &str) -> bool {
     !name.starts_with('#') && !matches!(name, "VERTEX_SE2" | "EDGE_SE2" | "FIX")
 }
 
-/// A field as it may stand in one line of a terminal: no control characters, and not for ever.
+/// Escapes control characters of a field and limits its length for a one-line message.
 pub fn printable(field: &str) -> String {
     let mut shown: String = field.chars().take(MAX_PRINTED).collect();
     let is_whole = shown.len() == field.len();
@@ -141,11 +141,11 @@ fn numbers<const N: usize>(fields: &[&str]) -> Result<[f64; N], G2oProblem> {
 
 /// Whether no principal minor is negative beyond rounding.
 ///
-/// A matrix of rank 1 or 2 is allowed: an edge may say nothing about a direction.
+/// Rank 1 or 2 is allowed: an edge may leave a direction unconstrained.
 fn is_positive_semidefinite(matrix: &Matrix3<f64>) -> bool {
     let m = |row: usize, column: usize| matrix[(row, column)];
     let pairs = [(0, 1), (0, 2), (1, 2)];
-    // 1e-9: files print as few as ten digits, and a singular matrix so rounded is off by as much.
+    // 1e-9: files print as few as ten digits, and a rounded singular matrix deviates by as much.
     let slack = 1e-9;
     let minors = pairs
         .iter()
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_message_repeats_has_no_control_characters_and_ends() {
+    fn printed_fields_are_escaped_and_shortened() {
         assert_eq!(printable("VERTEX_XY"), "VERTEX_XY");
         assert_eq!(printable("a\u{1b}[2Jb"), "a\\u{1b}[2Jb");
         assert_eq!(printable(&"é".repeat(41)), format!("{}…", "é".repeat(40)));

@@ -34,7 +34,7 @@ fn vertices_and_edges_are_read_by_id() {
 }
 
 #[test]
-fn unknown_records_are_named_and_written_back() {
+fn unknown_records_are_counted_and_written_back() {
     let file = G2oFile::parse(SMALL).unwrap();
     let kept: Vec<_> = file.kept_records().into_iter().collect();
     let named = |name: &str| (name.to_owned(), 1);
@@ -93,7 +93,7 @@ fn errors_name_the_line() {
 }
 
 #[test]
-fn nodes_and_factors_know_their_lines() {
+fn nodes_and_factors_have_their_lines() {
     let file = G2oFile::parse(SMALL).unwrap();
     assert_eq!([0, 1, 2].map(|node| file.line_of(node)), [2, 3, 5]);
     assert_eq!([0, 1].map(|factor| file.line_of_factor(factor)), [7, 8]);
@@ -110,7 +110,7 @@ fn every_line_keeps_its_end() {
 }
 
 #[test]
-fn a_byte_order_mark_is_read_over() {
+fn a_byte_order_mark_is_skipped() {
     for marks in ["\u{feff}", "\u{feff}\u{feff}"] {
         let file = G2oFile::parse(format!("{marks}{}", &SMALL["# three poses\n".len()..])).unwrap();
         assert_eq!(file.line_of(0), 1);

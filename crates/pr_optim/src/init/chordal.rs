@@ -1,14 +1,14 @@
 //! Chordal relaxation: headings by one linear least-squares problem, positions by another.
 //!
-//! A heading is a unit vector `c = (cos θ, sin θ)`. Without the constraint that it has length
-//! one, the headings that agree best with the measured rotations `R` solve
+//! A heading is a unit vector `c = (cos θ, sin θ)`. Without the constraint of unit length, the headings that
+//! agree best with the measured rotations `R` solve
 //!
 //! ```text
 //! min Σ κ ‖cⱼ − R cᵢ‖²,   κ = Ω_θθ
 //! ```
 //!
-//! which is linear. The vectors are then normalized, and the positions solve the problem that is
-//! left, linear too. Where the rotations are good, Gauss–Newton needs one or two steps from here.
+//! which is linear. The vectors are then normalized, and the positions solve the remaining problem, also linear.
+//! If the rotations are accurate, Gauss–Newton needs one or two steps from here.
 //!
 //! Sources: Martinec & Pajdla, "Robust rotation and translation estimation in multiview
 //! reconstruction", 2007; Carlone, Tron, Daniilidis, Dellaert, "Initialization techniques for 3D
@@ -24,8 +24,8 @@ use crate::system::{Block, NormalEquations};
 /// Poses from the chordal relaxation; fixed poses stay. `linear` is an analysis of the same graph.
 ///
 /// # Errors
-/// [`OptimizeError::NotPositiveDefinite`] where no measurement ties a node to a fixed one, or where
-/// information matrices leave a heading or a position open.
+/// [`OptimizeError::NotPositiveDefinite`] if a node is not connected to a fixed one, or if the information
+/// matrices leave a heading or a position unconstrained.
 pub fn chordal(problem: &Problem, linear: &mut LinearSolver) -> Result<Vec<SE2>, OptimizeError> {
     let headings = relax_headings(problem, linear)?;
     positions_for(problem, linear, &headings)
@@ -58,7 +58,7 @@ fn relax_headings(
         .into_iter()
         .map(|[cos, sin]| {
             let length = math::norm2(cos, sin);
-            // A vector of length zero says nothing about its heading.
+            // A vector of length zero has no heading.
             if length > 0.0 {
                 Rotation {
                     cos: cos / length,
@@ -71,7 +71,7 @@ fn relax_headings(
         .collect())
 }
 
-/// The positions that agree best with the measurements once the headings are known.
+/// The positions that agree best with the measurements, given the headings.
 fn positions_for(
     problem: &Problem,
     linear: &mut LinearSolver,
@@ -131,7 +131,7 @@ struct Link {
 
 /// Solves `min Σ (vⱼ − R vᵢ − d)ᵀ W (vⱼ − R vᵢ − d)`; fixed nodes keep their start.
 ///
-/// The third row of every 3×3 block is an identity: the analysis of the graph is used as it is.
+/// The third row of every 3×3 block is an identity, so the analysis of the graph can be reused.
 fn solve_pairs(
     problem: &Problem,
     linear: &mut LinearSolver,

@@ -1,4 +1,4 @@
-//! Poses by walking outwards from the fixed ones, along as few measurements as possible.
+//! Poses by breadth-first propagation from the fixed ones.
 
 use std::collections::VecDeque;
 
@@ -7,9 +7,9 @@ use pr_geom::SE2;
 use crate::factor::Between;
 use crate::problem::Problem;
 
-/// The pose of every node along a breadth-first tree of measurements from the fixed nodes.
+/// Poses along a breadth-first tree of measurements from the fixed nodes.
 ///
-/// Fixed poses stay. A node that no chain of measurements ties to a fixed one keeps its pose.
+/// Fixed poses stay. A node that is not connected to a fixed one keeps its pose.
 #[must_use]
 pub fn spanning_tree(problem: &Problem) -> Vec<SE2> {
     let mut poses = problem.poses().to_vec();
@@ -49,7 +49,7 @@ struct Neighbours {
 
 impl Neighbours {
     fn new(problem: &Problem) -> Self {
-        // Counted one place further on: filling the lists moves every start to its place.
+        // Counts are stored one position later: filling the lists moves every start to its final value.
         let mut start = vec![0_u32; problem.node_count() + 2];
         let ends = || {
             problem
@@ -101,7 +101,7 @@ mod tests {
         let (a, b) = (SE2::new(1.0, 0.2, 0.3), SE2::new(0.4, 0.5, -0.6));
         measure(0, 1, a);
         measure(1, 2, SE2::new(9.0, 9.0, 1.0));
-        // Node 2 hangs on node 0 by one measurement, taken from node 2.
+        // Node 2 is connected to node 0 by one measurement, taken from node 2.
         measure(2, 0, b);
         let poses = spanning_tree(&problem);
         let start = SE2::new(1.0, 0.0, 0.5);

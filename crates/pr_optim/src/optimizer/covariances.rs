@@ -1,11 +1,11 @@
-//! What the factor of the normal equations says of the poses' covariances.
+//! Covariances of poses from the factor of the normal equations.
 
 use nalgebra::Matrix3;
 
 use super::Optimizer;
 use crate::error::OptimizeError;
 use crate::factor::JacobianModel;
-use crate::growth::{Growth, GrowthStart};
+use crate::incremental::{IncrementalCovariances, Prefix};
 use crate::kernel::RobustKernel;
 use crate::linear::{Factorization, LinearSolver};
 use crate::marginals::JointCovariance;
@@ -14,59 +14,59 @@ use crate::problem::Problem;
 impl Optimizer {
     /// Covariance blocks of two nodes at the present poses, exact to first order.
     ///
-    /// The measurements count unweighted by any kernel, with their exact Jacobians. The factor is
-    /// this crate's own, whatever the settings name. It is kept while the poses stay and the graph grows at
-    /// its end, by nodes with one measurement each and a few that close loops.
+    /// Measurements are not weighted by a kernel and have their exact Jacobians. Uses this crate's factorization
+    /// whatever the settings. The factor is kept while the poses are unchanged and the graph grows only at its
+    /// end, by nodes with one measurement each and a few loop closures.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     ///
     /// # Panics
-    /// Where a node does not exist.
+    /// If a node does not exist.
     pub fn joint_covariance(
         &mut self,
         problem: &Problem,
         first: usize,
         second: usize,
     ) -> Result<JointCovariance, OptimizeError> {
-        self.held.lose();
-        self.follow(problem, GrowthStart::from_problem(problem))?;
-        let growth = self.growth.as_ref().expect("it follows the problem");
+        self.factor_reuse.invalidate();
+        self.update_covariances(problem, Prefix::from_problem(problem))?;
+        let covariances = self.covariances.as_ref().expect("just updated");
         let linear = self.linear.as_mut().expect("it was factorized");
-        Ok(growth.joint_covariance(linear, first, second))
+        Ok(covariances.joint_covariance(linear, first, second))
     }
 
-    /// How far the farthest node would move, m and rad added, if the measurements since the poses were last moved
-    /// corrected them.
+    /// Largest correction of any node, m and rad added, by the measurements added since the poses were last
+    /// moved.
     ///
-    /// That is to first order, without a kernel, and from poses that were the best ones then. Infinite where more
-    /// were added than are kept beside the factor.
+    /// To first order, without a kernel, and assuming that the poses were optimal then. Infinite if more
+    /// measurements were added than the kept factor can be updated for.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn largest_move_since(&mut self, problem: &Problem) -> Result<f64, OptimizeError> {
-        let is_later = |start: GrowthStart| start.factors > problem.optimized_factors();
-        let start = GrowthStart::from_problem(problem);
-        if is_later(start) {
+        let is_later = |prefix: Prefix| prefix.factors > problem.optimized_factors();
+        let prefix = Prefix::from_problem(problem);
+        if is_later(prefix) {
             return Ok(f64::INFINITY);
         }
-        self.held.lose();
-        self.follow(problem, start)?;
-        let growth = self.growth.as_ref().expect("it follows the problem");
-        // Where a loop cannot be added, all of the graph is the beginning.
-        Ok(if is_later(growth.start()) {
+        self.factor_reuse.invalidate();
+        self.update_covariances(problem, prefix)?;
+        let covariances = self.covariances.as_ref().expect("just updated");
+        // If a loop cannot be added, the prefix is the whole graph.
+        Ok(if is_later(covariances.prefix()) {
             f64::INFINITY
         } else {
-            growth.largest_move()
+            covariances.largest_move()
         })
     }
 
     /// Covariance block of every node at the present poses, exact to first order; zero for fixed ones.
     ///
-    /// By the rules of [`joint_covariance`](Self::joint_covariance).
+    /// Same conventions as [`joint_covariance`](Self::joint_covariance).
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn marginals(&mut self, problem: &Problem) -> Result<Vec<Matrix3<f64>>, OptimizeError> {
         let marginals = self.factorize_plain(problem)?.marginals(problem);
         Ok(marginals.expect("the block factorization shows its factor"))
@@ -74,10 +74,10 @@ impl Optimizer {
 
     /// Covariance blocks of the two ends of every measurement, in the order of [`Problem::factors`].
     ///
-    /// By the rules of [`joint_covariance`](Self::joint_covariance), but all at once.
+    /// Computes [`joint_covariance`](Self::joint_covariance) for all at once.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn measured_covariances(
         &mut self,
         problem: &Problem,
@@ -86,12 +86,12 @@ impl Optimizer {
         Ok(measured.expect("the block factorization shows its factor"))
     }
 
-    /// Factorizes H at the present poses without kernel or damping, by blocks.
+    /// Factorizes H at the present poses by blocks, without kernel or damping.
     pub(crate) fn factorize_plain(
         &mut self,
         problem: &Problem,
     ) -> Result<&mut LinearSolver, OptimizeError> {
-        self.held.lose();
+        self.factor_reuse.invalidate();
         self.analyse(problem, Factorization::Block);
         let linear = self.linear.as_mut().expect("it was analysed");
         self.equations.assemble(
@@ -105,32 +105,40 @@ impl Optimizer {
         Ok(linear)
     }
 
-    /// Makes the growth stand for that graph, at its present poses, from that beginning on.
-    fn follow(&mut self, problem: &Problem, start: GrowthStart) -> Result<(), OptimizeError> {
+    /// Updates the covariances to this graph at its present poses, with this prefix.
+    fn update_covariances(
+        &mut self,
+        problem: &Problem,
+        prefix: Prefix,
+    ) -> Result<(), OptimizeError> {
         let ridge = self.settings.ridge;
-        if let (Some(growth), Some(linear)) = (&mut self.growth, &mut self.linear)
-            && growth.goes_on_to(problem, start, ridge)
-            && growth.extend(problem, linear).is_ok()
+        if let (Some(covariances), Some(linear)) = (&mut self.covariances, &mut self.linear)
+            && covariances.is_prefix_of(problem, prefix, ridge)
+            && covariances.extend(problem, linear).is_ok()
         {
             return Ok(());
         }
-        let whole = GrowthStart::whole(problem);
-        self.begin(problem, start).or_else(|error| {
-            // What is too ill conditioned to be added is a part of the beginning.
-            if start == whole {
+        let whole = Prefix::whole(problem);
+        self.restart_covariances(problem, prefix).or_else(|error| {
+            // A measurement that is too ill conditioned to be added becomes part of the prefix.
+            if prefix == whole {
                 return Err(error);
             }
-            self.begin(problem, whole)
+            self.restart_covariances(problem, whole)
         })
     }
 
-    fn begin(&mut self, problem: &Problem, start: GrowthStart) -> Result<(), OptimizeError> {
-        let of = problem.beginning(start.nodes, start.factors);
+    fn restart_covariances(
+        &mut self,
+        problem: &Problem,
+        prefix: Prefix,
+    ) -> Result<(), OptimizeError> {
+        let start = problem.prefix(prefix.nodes, prefix.factors);
         let ridge = self.settings.ridge;
-        let linear = self.factorize_plain(&of)?;
-        let mut growth = Growth::new(of, start, ridge, linear);
-        growth.extend(problem, linear)?;
-        self.growth = Some(growth);
+        let linear = self.factorize_plain(&start)?;
+        let mut covariances = IncrementalCovariances::new(start, prefix, ridge, linear);
+        covariances.extend(problem, linear)?;
+        self.covariances = Some(covariances);
         Ok(())
     }
 }

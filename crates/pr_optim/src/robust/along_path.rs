@@ -1,9 +1,9 @@
-//! A way and its loops, inliers one stretch after the other, as a robot meets them.
+//! Selection of inlier loops along a path, one stretch after the other, as a robot meets them.
 
 use pr_geom::SE2;
 
+use super::marginal_gate::{MarginalGate, Standing};
 use super::path::{Path, variance_share};
-use super::refutation::{MarginalGate, Standing};
 use super::with_factors;
 use crate::error::OptimizeError;
 use crate::factor::Between;
@@ -12,22 +12,22 @@ use crate::problem::Problem;
 use crate::report::StopReason;
 use crate::settings::Settings;
 
-/// The way is taken in so many stretches.
+/// Number of stretches of the path.
 const STRETCHES: usize = 100;
 
-/// Steps of the solver after the loops of a stretch were taken.
+/// Solver steps after the loops of a stretch were added.
 const STEPS: usize = 3;
 
-/// Where the loops lead that are inliers in the order of the way.
+/// Result of a selection in the order of the path.
 #[derive(Clone, Debug)]
 pub struct PathInliers {
     /// The poses, in the frame of the first.
     pub poses: Vec<SE2>,
-    /// Which measurements were inliers, the trusted ones among them.
+    /// Which measurements are inliers, including the trusted ones.
     pub inliers: Vec<bool>,
 }
 
-/// Which end of the way comes first.
+/// From which end the path is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// From the first pose on.
@@ -36,18 +36,18 @@ pub enum Direction {
     Backwards,
 }
 
-/// Goes along the way and believes the loops that fit what is known by then.
+/// Follows the path and accepts loops that are consistent with everything accepted before.
 ///
-/// A loop fits where its residual passes the gate `eᵀ(Σ + Ω⁻¹)⁻¹e ≤ v max_chi2`: Σ is the exact
-/// covariance of the relative pose by the way so far and the loops inliers on it, v the share of
-/// its stated variance that the noise of loops over short ways has, at most 1. Measurements often
-/// state too much noise. Then the gate of what is stated lets false loops in.
-/// After the solve a loop has to fit by its own information as well. Only loops marked in `candidates` join.
+/// A loop is accepted if its residual passes the gate `eᵀ(Σ + Ω⁻¹)⁻¹e ≤ v max_chi2`. Σ is the exact covariance of
+/// the relative pose by the path so far and the inlier loops on it. v, at most 1, is the ratio of actual to stated
+/// variance, estimated from loops over short paths: many measurements overstate their noise, and the gate of the
+/// stated noise would then accept false loops. After the solve a loop has to fit by its own information as well.
+/// Only loops marked in `candidates` are tested.
 ///
-/// `None` where the trusted measurements do not tie every pose to the next.
+/// `None` if the trusted measurements do not connect every pose to the next.
 ///
 /// # Errors
-/// Where the normal equations of a stretch cannot be solved.
+/// If the normal equations of a stretch cannot be solved.
 pub fn select_along_path(
     problem: &Problem,
     trusted: &[bool],
@@ -58,7 +58,7 @@ pub fn select_along_path(
 ) -> Result<Option<PathInliers>, OptimizeError> {
     if direction == Direction::Backwards {
         let grown = select_along_path(
-            &turned(problem),
+            &reversed(problem),
             trusted,
             candidates,
             Direction::Forwards,
@@ -77,7 +77,7 @@ pub fn select_along_path(
         .filter(|&k| candidates[k] && !trusted[k])
         .collect();
     doubted.sort_by_key(|&k| (later_end(&problem.factors()[k]), k));
-    let mut growth = PathSelection {
+    let mut selection = PathSelection {
         problem,
         path: &path,
         inliers: trusted.to_vec(),
@@ -94,13 +94,13 @@ pub fn select_along_path(
         let end = (later_end(&problem.factors()[*first]) / stretch + 1) * stretch;
         let in_stretch = |&k: &usize| later_end(&problem.factors()[k]) < end;
         let (now, later) = rest.split_at(rest.partition_point(in_stretch));
-        growth.take(now, end.min(problem.node_count()))?;
+        selection.take(now, end.min(problem.node_count()))?;
         rest = later;
     }
-    growth.extend(problem.node_count());
+    selection.extend(problem.node_count());
     Ok(Some(PathInliers {
-        poses: growth.poses,
-        inliers: growth.inliers,
+        poses: selection.poses,
+        inliers: selection.inliers,
     }))
 }
 
@@ -108,35 +108,35 @@ fn later_end(factor: &Between) -> usize {
     factor.from.max(factor.to)
 }
 
-/// The same graph with its poses in the opposite order, none of them fixed.
-fn turned(problem: &Problem) -> Problem {
-    let mut turned = Problem::new();
+/// The same graph with its poses in reverse order, none of them fixed.
+fn reversed(problem: &Problem) -> Problem {
+    let mut reversed = Problem::new();
     for pose in problem.poses().iter().rev() {
-        turned.add_pose(*pose);
+        reversed.add_pose(*pose);
     }
     let last = problem.node_count().saturating_sub(1);
     for factor in problem.factors() {
-        turned.add_factor(Between {
+        reversed.add_factor(Between {
             from: last - factor.from,
             to: last - factor.to,
             ..*factor
         });
     }
-    turned
+    reversed
 }
 
 struct PathSelection<'a> {
     problem: &'a Problem,
     path: &'a Path,
     inliers: Vec<bool>,
-    /// Of the way so far.
+    /// Poses of the path so far.
     poses: Vec<SE2>,
     optimizer: Optimizer,
     max_chi2: f64,
 }
 
 impl PathSelection<'_> {
-    /// Believes those of `loops`, which end before pose `end`, that fit.
+    /// Accepts those of `loops`, which end before pose `end`, that are consistent.
     fn take(&mut self, loops: &[usize], end: usize) -> Result<(), OptimizeError> {
         self.extend(end);
         let graph = self.so_far(end);
@@ -144,7 +144,7 @@ impl PathSelection<'_> {
         let mut fitting = Vec::new();
         for &k in loops {
             let chi2 = gate.chi2(&self.problem.factors()[k], Standing::Dropped);
-            // Also where it is no number.
+            // False for NaN.
             if chi2 <= self.max_chi2 {
                 fitting.push(k);
             }
@@ -168,7 +168,7 @@ impl PathSelection<'_> {
         Ok(())
     }
 
-    /// The poses that follow, up to `end`, by the path.
+    /// Adds the following poses, up to `end`, by dead reckoning along the path.
     fn extend(&mut self, end: usize) {
         let path = self.path.poses();
         for k in self.poses.len()..end {
@@ -177,7 +177,7 @@ impl PathSelection<'_> {
         }
     }
 
-    /// The poses so far with what is inliers between them; the first is fixed.
+    /// The poses so far with the inliers between them; the first is fixed.
     fn so_far(&self, end: usize) -> Problem {
         let mut graph = Problem::new();
         for pose in &self.poses[..end] {

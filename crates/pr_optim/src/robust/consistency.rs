@@ -1,20 +1,20 @@
-//! Pairwise consistency: the largest set of loops that agree with each other.
+//! Pairwise consistency: the largest set of mutually consistent loops.
 
 use super::path::{Loop, Path, variance_share};
 use super::{LOOP_CHI2, is_sequential};
 use crate::problem::Problem;
 
-/// Pairs may contradict by twice the deviations that the path has to first order: over long ways those are
-/// too small.
+/// Factor on the gate of a pair: twice the first-order deviations of the path, which are too small for long
+/// paths.
 const FIRST_ORDER: f64 = 4.0;
 
-/// What [`consistent_set`] calls consistent.
+/// Settings of [`consistent_set`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConsistencySettings {
-    /// Two loops agree where the cycle through both closes within this squared Mahalanobis norm, of noise
-    /// as large as that of loops over short ways.
+    /// Two loops are consistent if the cycle through both closes within this squared Mahalanobis norm, with the
+    /// noise level of loops over short paths.
     pub max_chi2: f64,
-    /// The search for a large set begins at so many loops, those that agree with most others.
+    /// The greedy search starts from this many loops, those that are consistent with most others.
     pub beginnings: usize,
 }
 
@@ -27,18 +27,18 @@ impl Default for ConsistencySettings {
     }
 }
 
-/// Which measurements belong to a large set of loops that agree in pairs; the sequential ones do.
+/// A large set of measurements whose loops are pairwise consistent; contains the sequential ones.
 ///
-/// Two loops `a: i → j` and `b: k → l` agree where the cycle `Z_a⁻¹ X_ik Z_b X_lj` through the path
-/// between them closes: `eᵀ C⁻¹ e ≤ 4 v max_chi2` for its logarithm e, with C the sum of the
-/// covariances of both loops and of both ways along the path, to first order, and v the share of its
-/// stated variance that the noise of loops over short ways has, at most 1 (Mangelson, Dominic,
-/// Eustice, Vasudevan, "Pairwise consistent measurement set maximization for robust multi-robot map
-/// merging", ICRA 2018). The largest set in which all agree is a largest clique. It is looked for
-/// greedily, from many beginnings (Pattabiraman et al. 2015), so a larger one may exist.
+/// Two loops `a: i → j` and `b: k → l` are consistent if the cycle `Z_a⁻¹ X_ik Z_b X_lj` through the path between
+/// them closes: `eᵀ C⁻¹ e ≤ 4 v max_chi2` for its logarithm e. C is the sum of the covariances of both loops and
+/// of both path segments, to first order. v, at most 1, is the ratio of actual to stated variance, estimated from
+/// loops over short paths (Mangelson, Dominic, Eustice, Vasudevan, "Pairwise consistent measurement set
+/// maximization for robust multi-robot map merging", ICRA 2018). The largest set in which all are pairwise
+/// consistent is a maximum clique. The search is greedy, from many starts (Pattabiraman et al. 2015), so a larger
+/// one may exist.
 ///
-/// Over a long way the path's covariance hides everything: then even false loops agree. All
-/// measurements count as members where the sequential ones do not tie every pose to the next.
+/// The covariance of a long path is so large that even false loops are consistent. All measurements are members if
+/// the sequential ones do not connect every pose to the next.
 #[must_use]
 pub fn consistent_set(problem: &Problem, settings: &ConsistencySettings) -> Vec<bool> {
     let mut member = vec![true; problem.factors().len()];
@@ -66,7 +66,7 @@ pub fn consistent_set(problem: &Problem, settings: &ConsistencySettings) -> Vec<
     for (k, (index, _)) in loops.iter().enumerate() {
         member[*index] = set[k];
     }
-    // A loop without a covariance can be compared with none.
+    // A loop without a covariance cannot be compared.
     for (index, factor) in problem.factors().iter().enumerate() {
         if !is_sequential(factor) && !loops.iter().any(|(known, _)| *known == index) {
             member[index] = false;
@@ -75,7 +75,7 @@ pub fn consistent_set(problem: &Problem, settings: &ConsistencySettings) -> Vec<
     member
 }
 
-/// Which loops agree: one row of bits each.
+/// The consistency graph: one row of bits for each loop.
 struct Agreement {
     count: usize,
     words: usize,
@@ -105,7 +105,7 @@ impl Agreement {
         self.row(a).iter().map(|word| word.count_ones()).sum()
     }
 
-    /// The largest of the cliques that grow from the loops with most agreement; of equals the first.
+    /// The largest of the cliques grown from the loops of highest degree; the first of equals.
     fn large_clique(&self, beginnings: usize) -> Vec<bool> {
         let mut by_degree: Vec<(u32, usize)> =
             (0..self.count).map(|a| (self.degree(a), a)).collect();
@@ -123,7 +123,7 @@ impl Agreement {
         member
     }
 
-    /// Adds what agrees with all so far, in that order.
+    /// Grows a clique: adds every loop that is consistent with all members, in this order.
     fn select_along_path(&self, first: usize, order: &[usize]) -> Vec<usize> {
         let mut clique = vec![first];
         let mut common = self.row(first).to_vec();

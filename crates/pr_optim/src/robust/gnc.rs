@@ -1,4 +1,4 @@
-//! Graduated non-convexity: the cost turns robust little by little.
+//! Graduated non-convexity: the cost becomes robust step by step.
 
 use pr_geom::{SE2, math};
 
@@ -11,37 +11,37 @@ use crate::problem::Problem;
 use crate::report::{Report, StopReason};
 use crate::settings::Settings;
 
-/// A measurement with at least this weight was inliers.
+/// A measurement with at least this weight is an inlier.
 const INLIER_WEIGHT: f64 = 0.5;
 
-/// Weights that changed by no more in a round of the final shape have settled.
+/// The weights have converged if none changed by more in a round of the final shape.
 const SETTLED: f64 = 0.01;
 
-/// In the final shape of Geman–McClure a measurement of less weight is left out.
+/// In the final shape of Geman–McClure a measurement of smaller weight is left out.
 const WORTH_A_BLOCK: f64 = 1e-4;
 
 /// The robust cost that [`Gnc`] ends with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum GncLoss {
-    /// `min(s, c²)`: a measurement counts whole or not at all.
+    /// `min(s, c²)`: a measurement counts fully or not at all.
     #[default]
     TruncatedLeastSquares,
-    /// `c² s/(c² + s)`: one far out counts little.
+    /// `c² s/(c² + s)`: the weight of a large residual is small.
     GemanMcClure,
 }
 
-/// How [`Gnc`] goes about it.
+/// Settings of [`Gnc`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GncSettings {
-    /// Which cost is reached.
+    /// The final cost.
     pub loss: GncLoss,
-    /// c²: the largest `eᵀΩe` of a measurement that is inliers.
+    /// c²: the largest `eᵀΩe` of an inlier.
     pub max_chi2: f64,
     /// Factor by which the control parameter μ changes from round to round, above 1.
     pub growth: f64,
-    /// At most so many rounds.
+    /// Largest number of rounds.
     pub max_rounds: usize,
-    /// Steps of the solver in a round; the next round starts where they end.
+    /// Solver steps in a round; the next round starts from their result.
     pub steps_in_round: usize,
 }
 
@@ -62,7 +62,7 @@ impl Default for GncSettings {
 pub struct GncRound {
     /// The control parameter.
     pub mu: f64,
-    /// Measurements that are inliers, the trusted ones among them.
+    /// Number of inliers, including the trusted ones.
     pub inliers: usize,
     /// Measurements whose weight is neither 0 nor 1 yet.
     pub undecided: usize,
@@ -71,55 +71,65 @@ pub struct GncRound {
 /// Why the rounds ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GncStop {
-    /// Every measurement is inliers or not.
+    /// Every measurement is either an inlier or an outlier.
     Decided,
-    /// The cost has its final shape, and the weights have settled.
+    /// The cost has its final shape, and the weights have converged.
     FullShape,
-    /// The limit of rounds.
+    /// The limit of rounds was reached.
     RoundLimit,
 }
 
-/// What [`Gnc`] found.
+impl core::fmt::Display for GncStop {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Decided => "every measurement is an inlier or an outlier",
+            Self::FullShape => "the weights converged at the final shape of the cost",
+            Self::RoundLimit => "limit of rounds",
+        })
+    }
+}
+
+/// Result of [`Gnc`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct GncOutcome {
     /// Weight of every measurement, 0 to 1.
     pub weights: Vec<f64>,
-    /// Rounds made.
+    /// Number of rounds.
     pub rounds: usize,
     /// Why they ended.
     pub stop: GncStop,
-    /// The last solve, with the measurements that are inliers.
+    /// The last solve, with the inliers.
     pub report: Report,
 }
 
 impl GncOutcome {
-    /// Whether the measurement of that index is inliers.
+    /// Whether the measurement of that index is an inlier.
     #[must_use]
     pub fn is_inlier(&self, factor: usize) -> bool {
         self.weights[factor] >= INLIER_WEIGHT
     }
 }
 
-/// A robust solve, a round at a time.
+/// A robust solve, one round at a time.
 ///
 /// A round gives every measurement that is not trusted a weight by its `s = eᵀΩe` and the control
-/// parameter μ, and takes a few steps of weighted least squares. With truncated least squares
+/// parameter μ, and takes a few steps of weighted least squares. For truncated least squares
 /// (Yang, Antonante, Tzoumas, Carlone, "Graduated non-convexity for robust spatial perception",
-/// RA-L 2020, eq. (14)) and `c²` the largest believable s,
+/// RA-L 2020, eq. (14)) with `c²` the largest s of an inlier,
 ///
 /// ```text
-/// w = 0 where s ≥ (μ + 1)/μ c²,   1 where s ≤ μ/(μ + 1) c²,   else c/√s √(μ(μ + 1)) − μ
+/// w = 0 if s ≥ (μ + 1)/μ c²,   1 if s ≤ μ/(μ + 1) c²,   else c/√s √(μ(μ + 1)) − μ
 /// ```
 ///
-/// with μ from `c²/(2 s_max − c²)` upwards; with Geman–McClure (eq. (12)) `w = (μc²/(s + μc²))²` and
-/// μ from `2 s_max/c²` down to 1. It starts at the poses to which the trusted measurements lead.
+/// with μ from `c²/(2 s_max − c²)` upwards; for Geman–McClure (eq. (12)) `w = (μc²/(s + μc²))²` and
+/// μ from `2 s_max/c²` down to 1. It starts from the solution of the trusted measurements alone.
 #[derive(Debug)]
 pub struct Gnc {
     settings: GncSettings,
     optimizer: Optimizer,
     trusted: Vec<bool>,
     weights: Vec<f64>,
-    /// The same graph with its informations weighted.
+    /// The same graph with weighted information matrices.
     weighted: Problem,
     mu: Option<f64>,
     /// Largest change of a weight in the last round.
@@ -128,10 +138,10 @@ pub struct Gnc {
 }
 
 impl Gnc {
-    /// A solve of `problem` in which the measurements marked in `trusted` are never doubted.
+    /// A solve of `problem` in which the measurements marked in `trusted` are always inliers.
     ///
     /// # Panics
-    /// Where `trusted` has not as many entries as there are measurements.
+    /// If `trusted` does not have one entry for each measurement.
     #[must_use]
     pub fn new(
         problem: &Problem,
@@ -156,10 +166,10 @@ impl Gnc {
         }
     }
 
-    /// Begins at these poses, and with the final shape of the cost.
+    /// Starts at these poses, and with the final shape of the cost.
     ///
     /// # Panics
-    /// Where there are not as many poses as in the graph.
+    /// If the number of poses is not that of the graph.
     #[must_use]
     pub fn refining(mut self, poses: &[SE2]) -> Self {
         self.weighted.poses_mut().copy_from_slice(poses);
@@ -170,10 +180,10 @@ impl Gnc {
         self
     }
 
-    /// One round; the reason to stop once there is nothing left to do.
+    /// Runs one round; returns the reason to stop once finished.
     ///
     /// # Errors
-    /// Where the weighted normal equations cannot be solved.
+    /// If the weighted normal equations cannot be solved.
     pub fn step(
         &mut self,
         problem: &Problem,
@@ -194,7 +204,7 @@ impl Gnc {
             }
         }
         self.solve(problem, self.settings.steps_in_round)?;
-        // Exactly: far from the optimum every weight is small at first, and grows with μ.
+        // Compared exactly: far from the optimum every weight is small at first, and grows with μ.
         let is_undecided = |w: &&f64| **w > 0.0 && **w < 1.0;
         let round = GncRound {
             mu,
@@ -204,10 +214,10 @@ impl Gnc {
         Ok((round, self.stop_after(&round)))
     }
 
-    /// All rounds, and then a solve with what is inliers; `problem` gets its poses.
+    /// Runs all rounds, then solves with the inliers; `problem` gets its poses.
     ///
     /// # Errors
-    /// Where the weighted normal equations cannot be solved; the poses stay.
+    /// If the weighted normal equations cannot be solved; the poses are unchanged.
     pub fn run(mut self, problem: &mut Problem) -> Result<GncOutcome, OptimizeError> {
         let stop = loop {
             if let (_, Some(stop)) = self.step(problem)? {
@@ -236,8 +246,8 @@ impl Gnc {
         &self.weights
     }
 
-    /// The graph as it is being solved: the poses of the last round, informations weighted, without
-    /// the measurements that count for nothing.
+    /// The graph of the current solve: poses of the last round, weighted information matrices, without
+    /// measurements of zero weight.
     #[must_use]
     pub fn weighted(&self) -> &Problem {
         &self.weighted
@@ -256,7 +266,7 @@ impl Gnc {
             .fold(0.0, f64::max);
         let c2 = self.settings.max_chi2;
         match self.settings.loss {
-            // Where nothing is beyond c², the shape is final at once.
+            // If no residual is beyond c², the shape is final at once.
             GncLoss::TruncatedLeastSquares if 2.0 * largest <= c2 => f64::INFINITY,
             GncLoss::TruncatedLeastSquares => c2 / (2.0 * largest - c2),
             GncLoss::GemanMcClure => math::max(2.0 * largest / c2, 1.0),
@@ -306,7 +316,7 @@ impl Gnc {
         let poses = self.weighted.poses().to_vec();
         self.weighted = without_factors(problem);
         self.weighted.poses_mut().copy_from_slice(&poses);
-        // What has no weight would only fill the factor: many false loops tie all to all.
+        // Measurements of zero weight would only cause fill-in: many false loops connect all nodes.
         let least = match (self.settings.loss, self.mu) {
             (GncLoss::GemanMcClure, Some(mu)) if mu <= 1.0 => WORTH_A_BLOCK,
             _ => 0.0,

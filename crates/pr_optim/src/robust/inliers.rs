@@ -1,11 +1,11 @@
-//! Which loops to select_inliers, from more than one start.
+//! Selection of inlier loops, from more than one start.
 
 use pr_geom::{SE2, math};
 
 use super::along_path::{Direction, select_along_path};
 use super::consistency::{ConsistencySettings, consistent_set};
 use super::gnc::{Gnc, GncLoss, GncSettings};
-use super::refutation::{MarginalGate, Standing};
+use super::marginal_gate::{MarginalGate, Standing};
 use super::with_factors;
 use crate::error::OptimizeError;
 use crate::optimizer::Optimizer;
@@ -13,63 +13,63 @@ use crate::problem::Problem;
 use crate::report::StopReason;
 use crate::settings::Settings;
 
-/// Largest number of times that loops change sides after a start.
+/// Largest number of changes of the inlier set after a start.
 const CHANGES: usize = 40;
 
-/// Loops that gain at least this share of the largest gain change sides together; the next share once
-/// that did not lower the cost, and at last one loop alone.
+/// Loops whose gain is at least this share of the largest are flipped together; the next share applies if that did
+/// not lower the cost, and finally only one loop is flipped.
 const BARS: [f64; 4] = [0.0, 0.5, 0.8, 1.0];
 
-/// A loop whose absence lowers χ² by this share of what its absence costs is nearly refuted.
+/// A loop is nearly rejected if removing it lowers χ² by this share of the cost of an outlier.
 const NEARLY: f64 = 0.25;
 
-/// Largest number of loops nearly refuted that are left out in earnest.
+/// Largest number of nearly rejected loops that are removed for a trial.
 const TRIALS: usize = 8;
 
-/// Where a selection came from.
+/// Start of a selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InlierStart {
-    /// Loops taken along the way, from its first pose on.
+    /// Loops accepted along the path, from its first pose on.
     Forwards,
-    /// Loops taken along the way, from its last pose back.
+    /// Loops accepted along the path, from its last pose back.
     Backwards,
-    /// Graduated non-convexity from where the trusted measurements lead.
+    /// Graduated non-convexity from the solution of the trusted measurements.
     GraduatedNonConvexity,
-    /// The loops that agree with each other in pairs.
+    /// The pairwise consistent loops.
     PairwiseConsistency,
 }
 
-/// Which measurements are inliers, and where they lead.
+/// The selected inliers and their solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InlierSelection {
-    /// Whether each measurement is inliers; the trusted ones are.
+    /// Whether each measurement is an inlier; the trusted ones are.
     pub inliers: Vec<bool>,
     /// The poses at the least-squares optimum of those.
     pub poses: Vec<SE2>,
-    /// χ² of what is inliers, and `max_chi2` for every loop that is not.
+    /// χ² of the inliers, plus `max_chi2` for every outlier.
     pub cost: f64,
-    /// The start that led there.
+    /// The start of this selection.
     pub start: InlierStart,
-    /// Rounds of graduated non-convexity, none where it was not needed.
+    /// Rounds of graduated non-convexity; 0 if it was not needed.
     pub rounds: usize,
 }
 
 /// Finds a set of loops of low truncated cost `Σ min(eᵀΩe, max_chi2)`.
 ///
-/// Loops are taken along the way by their marginal gate, once from each end, and each selection is
-/// settled: a loop that the inliers ones refute by the exact covariance is dropped, one that they do
-/// not refute is taken in, as long as the cost falls. Where both ways lead
-/// to the same selection, and it keeps more loops than it drops, that is the result. Else [`Gnc`] looks
-/// from where the trusted measurements lead, is settled too, and the lowest cost wins.
+/// Loops are accepted along the path by their marginal gate, once from each end. Each selection is then refined:
+/// an inlier that the others reject by the exact covariance is dropped, and an outlier that they do not reject is
+/// added, as long as the cost falls. If both directions give the same selection, and it keeps more loops than it
+/// drops, that is the result. Otherwise [`Gnc`] starts from the solution of the trusted measurements, its result
+/// is refined too, and the lowest cost wins.
 ///
-/// So every loop of the result passes the gate of all others, unless the cost could not fall further.
-/// A set of false loops that agree with each other better than the right ones stays out of its reach.
+/// Every loop of the result therefore passes the gate of all others, unless the cost could not be lowered further.
+/// It cannot reject false loops that agree with each other better than the true ones.
 ///
 /// # Errors
-/// Where no start leads to normal equations that can be solved, and to a finite cost.
+/// If no start leads to solvable normal equations and a finite cost.
 ///
 /// # Panics
-/// Where `trusted` has not as many entries as there are measurements.
+/// If `trusted` does not have one entry for each measurement.
 pub fn select_inliers(
     problem: &Problem,
     trusted: &[bool],
@@ -78,19 +78,19 @@ pub fn select_inliers(
 ) -> Result<InlierSelection, OptimizeError> {
     let search = Search::new(problem, trusted, solver, settings.max_chi2);
     let all = vec![true; trusted.len()];
-    let ways = [
+    let selections = [
         (Direction::Forwards, InlierStart::Forwards),
         (Direction::Backwards, InlierStart::Backwards),
     ]
     .map(|(direction, start)| search.along(&all, direction, start));
-    if let [Some(first), Some(second)] = &ways
+    if let [Some(first), Some(second)] = &selections
         && first.inliers == second.inliers
         && search.keeps_most(first)
     {
         return Ok(first.clone());
     }
     let third = search.graduated(settings);
-    let [first, second] = ways.map(|way| way.ok_or(OptimizeError::NotFinite));
+    let [first, second] = selections.map(|selection| selection.ok_or(OptimizeError::NotFinite));
     cheapest([first, second, third])
 }
 
@@ -112,18 +112,18 @@ fn cheapest(
     best.ok_or(failure)
 }
 
-/// The same with loops that agree with each other in pairs for candidates: see [`consistent_set`].
+/// [`select_inliers`] with the pairwise consistent loops as candidates: see [`consistent_set`].
 ///
-/// Along a long way the path's covariance lets false loops agree with right ones. So what agrees joins along
-/// the way, from either end, by the exact covariance of what is inliers by then, and is settled: right
-/// loops that a clique left out come in. The lower cost wins.
+/// The covariance of a long path lets false loops be consistent with true ones. The consistent loops are therefore
+/// accepted along the path, from either end, by the exact covariance of the inliers so far. The refinement then
+/// also adds true loops that the clique left out. The lower cost wins.
 ///
 /// # Errors
-/// Where the trusted measurements do not tie every pose to the next, or neither way leads to a finite
+/// If the trusted measurements do not connect every pose to the next, or neither direction leads to a finite
 /// cost.
 ///
 /// # Panics
-/// Where `trusted` has not as many entries as there are measurements.
+/// If `trusted` does not have one entry for each measurement.
 pub fn select_consistent(
     problem: &Problem,
     trusted: &[bool],
@@ -132,18 +132,18 @@ pub fn select_consistent(
 ) -> Result<InlierSelection, OptimizeError> {
     let search = Search::new(problem, trusted, solver, settings.max_chi2);
     let agreeing = consistent_set(problem, settings);
-    let ways = [Direction::Forwards, Direction::Backwards].map(|direction| {
-        let way = search.along(&agreeing, direction, InlierStart::PairwiseConsistency);
-        way.ok_or(OptimizeError::NotFinite)
+    let selections = [Direction::Forwards, Direction::Backwards].map(|direction| {
+        let selection = search.along(&agreeing, direction, InlierStart::PairwiseConsistency);
+        selection.ok_or(OptimizeError::NotFinite)
     });
-    cheapest(ways)
+    cheapest(selections)
 }
 
-/// By how much the cost falls where a loop changes sides, to first order.
+/// Decrease of the cost if a loop is flipped between inlier and outlier, to first order.
 #[derive(Clone, Copy, Debug)]
 struct Gain {
     value: f64,
-    /// Whether the covariance tells; else the value is the least that it may be.
+    /// Whether the covariance determines the value; otherwise the value is a lower bound.
     is_sure: bool,
 }
 
@@ -165,7 +165,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The selection along the way; none where there is no such way, or it cannot be solved.
+    /// The selection along the path; `None` if there is no such path, or if it cannot be solved.
     fn along(
         &self,
         candidates: &[bool],
@@ -181,7 +181,7 @@ impl<'a> Search<'a> {
             self.max_chi2,
         );
         let grown = grown.ok()??;
-        // The way stands where the first fixed pose holds it.
+        // The path is placed at the first fixed pose.
         let fixed = self.problem.fixed();
         let held = fixed.iter().position(|fixed| *fixed)?;
         let given = self.problem.poses();
@@ -226,8 +226,8 @@ impl<'a> Search<'a> {
         2 * dropped < doubted || doubted == 0
     }
 
-    /// Lets loops change sides as long as the cost falls: first all that should, then
-    /// fewer, and at last one at a time.
+    /// Flips loops between inlier and outlier as long as the cost falls: first all with a positive gain, then
+    /// fewer, and finally one at a time.
     fn improved(
         &self,
         poses: Vec<SE2>,
@@ -250,7 +250,7 @@ impl<'a> Search<'a> {
             }
             let mut inliers = best.inliers.clone();
             for (inliers, gain) in inliers.iter_mut().zip(&gains) {
-                // What is refuted may be so by another that is refuted more.
+                // An inlier may appear wrong only because of another that is worse.
                 let bar = if *inliers { math::max(bar, 0.5) } else { bar };
                 if gain.value > 0.0 && gain.value >= bar * largest {
                     *inliers = !*inliers;
@@ -267,10 +267,11 @@ impl<'a> Search<'a> {
         Ok(best)
     }
 
-    /// A selection of lower cost without one of the loops that are nearly refuted, or of which the covariance
-    /// tells nothing.
+    /// A selection of lower cost without one of the nearly rejected loops, or of those whose gain is
+    /// uncertain.
     ///
-    /// A false loop may bend a weak part of the graph so far that first order does not refute it.
+    /// A false loop may bend a weakly constrained part of the graph so far that first order does not reject
+    /// it.
     fn without_one(
         &self,
         optimizer: &mut Optimizer,
@@ -294,8 +295,7 @@ impl<'a> Search<'a> {
         Ok(None)
     }
 
-    /// By how much the cost falls where a loop changes sides; −∞ for trusted ones, and for a dropped one of
-    /// which that is not known.
+    /// Gain of flipping each loop; −∞ for trusted measurements, and for an outlier whose gain is unknown.
     fn gains(
         &self,
         optimizer: &mut Optimizer,
@@ -312,7 +312,7 @@ impl<'a> Search<'a> {
             };
             if selection.inliers[k] {
                 let chi2 = kept.next().unwrap_or(f64::NAN);
-                // (Ω⁻¹ − Σ′)⁻¹ is at least Ω: what is less, or no number, is a difference lost in rounding.
+                // (Ω⁻¹ − Σ′)⁻¹ is at least Ω: a smaller value, or NaN, is due to rounding.
                 let least = self.problem.factor_chi2_at(k, &selection.poses);
                 gain.is_sure = chi2 >= least;
                 let chi2 = if gain.is_sure { chi2 } else { least };
@@ -331,7 +331,7 @@ impl<'a> Search<'a> {
         Ok(gains)
     }
 
-    /// The least-squares optimum of what is inliers.
+    /// The least-squares optimum of the inliers.
     fn solved(
         &self,
         optimizer: &mut Optimizer,

@@ -10,14 +10,14 @@ use crate::problem::Problem;
 /// The median of χ² with three degrees of freedom.
 const MEDIAN_CHI2: f64 = 2.366;
 
-/// How much noise there is, the loops over the shortest ways tell: one in so many of all.
-const ONE_IN: usize = 4;
+/// The noise level is estimated from one in this many loops, those over the shortest paths.
+const SHORTEST_FRACTION: usize = 4;
 
-/// At least so many of them.
-const AT_LEAST: usize = 16;
+/// Smallest number of these loops.
+const MIN_LOOPS: usize = 16;
 
-/// The smallest share of its stated variance that noise is taken to have.
-const LEAST_VARIANCE: f64 = 0.01;
+/// Smallest ratio of actual to stated variance.
+const MIN_VARIANCE_SHARE: f64 = 0.01;
 
 /// A loop with its covariance.
 pub struct Loop {
@@ -28,7 +28,7 @@ pub struct Loop {
 }
 
 impl Loop {
-    /// None where its information has no inverse.
+    /// `None` if its information has no inverse.
     pub fn new(factor: &Between) -> Option<Self> {
         Some(Self {
             from: factor.from,
@@ -39,15 +39,15 @@ impl Loop {
     }
 }
 
-/// The path along the sequential measurements, with the covariance summed up in its first frame.
+/// The path along the sequential measurements, with its covariance accumulated in the first frame.
 pub struct Path {
     poses: Vec<SE2>,
-    /// `Σ Ad Q Adᵀ` of the steps up to each pose: that between two is a difference.
+    /// `Σ Ad Q Adᵀ` of the steps up to each pose: the covariance between two poses is a difference.
     sums: Vec<Matrix3<f64>>,
 }
 
 impl Path {
-    /// None where the sequential measurements do not tie every pose to the next.
+    /// `None` if the sequential measurements do not connect every pose to the next.
     pub fn new(problem: &Problem) -> Option<Self> {
         let mut steps: Vec<Option<&Between>> = vec![None; problem.node_count().checked_sub(1)?];
         for factor in problem.factors().iter().filter(|f| is_sequential(f)) {
@@ -61,12 +61,12 @@ impl Path {
         for step in steps {
             let step = step?;
             let covariance = step.information.try_inverse()?;
-            // The noise is at the end of the measurement; backwards that is where it starts.
+            // The noise is in the frame of the measured pose, which is the start for a backward step.
             if step.from < step.to {
                 pose = pose * step.measurement;
-                sum += carried(&pose, &covariance);
+                sum += transformed(&pose, &covariance);
             } else {
-                sum += carried(&pose, &covariance);
+                sum += transformed(&pose, &covariance);
                 pose = pose * step.measurement.inverse();
             }
             path.poses.push(pose);
@@ -80,12 +80,12 @@ impl Path {
         &self.poses
     }
 
-    /// The squared Mahalanobis norm by which the cycle of a measurement and the path fails to close.
+    /// Squared Mahalanobis norm of the closing error of the cycle of a measurement and the path.
     pub fn cycle_chi2(&self, factor: &Between) -> Option<f64> {
         let (from, to) = (&self.poses[factor.from], &self.poses[factor.to]);
         let e = (factor.measurement.inverse() * from.between(to)).log();
-        let way = carried(&to.inverse(), &self.between(factor.from, factor.to));
-        let information = (way + factor.information.try_inverse()?).try_inverse()?;
+        let path = transformed(&to.inverse(), &self.between(factor.from, factor.to));
+        let information = (path + factor.information.try_inverse()?).try_inverse()?;
         let chi2 = e.dot(&(information * e));
         chi2.is_finite().then_some(chi2)
     }
@@ -98,13 +98,13 @@ impl Path {
         let at_l = a.measurement.inverse() * to_b * b.measurement;
         let closed = at_l * back;
         let e = closed.log();
-        // Every part in the frame where the cycle ends, which is the frame of pose j.
+        // Every part in the end frame of the cycle, which is the frame of pose j.
         let end = closed.inverse();
         let first = end * a.measurement.inverse();
-        let mut covariance = carried(&end, &a.covariance);
-        covariance += carried(&(first * self.poses[i].inverse()), &self.between(i, k));
-        covariance += carried(&(end * at_l), &b.covariance);
-        covariance += carried(&(end * at_l * self.poses[l].inverse()), &self.between(l, j));
+        let mut covariance = transformed(&end, &a.covariance);
+        covariance += transformed(&(first * self.poses[i].inverse()), &self.between(i, k));
+        covariance += transformed(&(end * at_l), &b.covariance);
+        covariance += transformed(&(end * at_l * self.poses[l].inverse()), &self.between(l, j));
         let Some(information) = covariance.try_inverse() else {
             return false;
         };
@@ -117,26 +117,26 @@ impl Path {
     }
 }
 
-/// `Ad C Adᵀ`: a covariance in the frame that `to_from` leads to.
-fn carried(to_from: &SE2, covariance: &Matrix3<f64>) -> Matrix3<f64> {
+/// `Ad C Adᵀ`: transforms a covariance to another frame.
+fn transformed(to_from: &SE2, covariance: &Matrix3<f64>) -> Matrix3<f64> {
     let adjoint = to_from.adjoint();
     adjoint * covariance * adjoint.transpose()
 }
 
-/// Share of its stated variance that the noise of loops over short ways has.
+/// Ratio of actual to stated variance of loops over short paths.
 ///
-/// Most of the loops over short ways are right, since two poses anywhere are rarely close in time.
+/// Most of these loops are true, because two arbitrary poses are rarely close in time.
 pub fn variance_share(problem: &Problem, trusted: &[bool], path: &Path) -> f64 {
     let factors = problem.factors().iter().zip(trusted);
     let mut loops: Vec<&Between> = factors
         .filter_map(|(factor, trusted)| (!trusted).then_some(factor))
         .collect();
     loops.sort_by_key(|factor| factor.from.abs_diff(factor.to));
-    loops.truncate((loops.len() / ONE_IN).max(AT_LEAST));
+    loops.truncate((loops.len() / SHORTEST_FRACTION).max(MIN_LOOPS));
     let mut squares: Vec<f64> = loops.iter().filter_map(|f| path.cycle_chi2(f)).collect();
     sort_numbers(&mut squares);
     let median = squares.get(squares.len() / 2);
     median.map_or(1.0, |median| {
-        (median / MEDIAN_CHI2).clamp(LEAST_VARIANCE, 1.0)
+        (median / MEDIAN_CHI2).clamp(MIN_VARIANCE_SHARE, 1.0)
     })
 }

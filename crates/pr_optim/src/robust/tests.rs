@@ -1,4 +1,4 @@
-//! False loops in a small world.
+//! False loops in small graphs.
 
 use nalgebra::{Matrix3, Vector3};
 use pr_geom::{SE2, math};
@@ -6,7 +6,7 @@ use pr_geom::{SE2, math};
 use super::*;
 use crate::settings::Settings;
 
-/// Numbers that look random: Knuth's multiplier and increment for 64 bits, the upper half.
+/// Pseudo-random numbers: Knuth's multiplier and increment for 64 bits, the upper half.
 struct Numbers(u64);
 
 impl Numbers {
@@ -16,7 +16,7 @@ impl Numbers {
         (self.0 >> 40) as f64 / (1_u64 << 24) as f64
     }
 
-    /// Of variance 1, by the sum of twelve.
+    /// Approximately normal with variance 1, by the sum of twelve.
     fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.unit()).sum::<f64>() - 6.0
     }
@@ -25,8 +25,8 @@ impl Numbers {
 const ROUNDS: usize = 3;
 const CORNER: usize = 10;
 
-/// Three times around a square of 10 m, a loop to the round before at every second pose, and as many
-/// false loops as `share` of those that say of two poses anywhere that they are one place.
+/// Three laps of a square of 10 m, a loop to the lap before at every second pose, and false loops, `share` times
+/// as many, between arbitrary poses.
 fn graph(share: f64, seed: u64) -> (Problem, usize) {
     let mut numbers = Numbers(seed);
     let sigmas = Vector3::new(0.02, 0.02, 0.005);
@@ -90,12 +90,12 @@ fn graph(share: f64, seed: u64) -> (Problem, usize) {
 
 fn solved(problem: &Problem) -> Problem {
     let mut problem = problem.clone();
-    // With false loops it may not converge: then these are the best poses on the way.
+    // With false loops it may not converge: then these are the lowest-cost poses.
     crate::Optimizer::new(Settings::default()).run(&mut problem);
     problem
 }
 
-/// Largest distance between the same poses of two graphs, m.
+/// Largest distance between corresponding poses of two graphs, m.
 fn apart_m(a: &Problem, b: &Problem) -> f64 {
     let pairs = a.poses().iter().zip(b.poses());
     pairs
@@ -108,7 +108,7 @@ fn trusted(problem: &Problem) -> Vec<bool> {
 }
 
 #[test]
-fn gnc_drops_false_loops_and_keeps_right_ones_up_to_as_many_false_as_right() {
+fn gnc_drops_false_loops_and_keeps_true_ones_up_to_half_outliers() {
     for loss in [GncLoss::TruncatedLeastSquares, GncLoss::GemanMcClure] {
         for (share, seed) in [(0.0, 1), (0.1, 2), (0.3, 3), (0.5, 4), (1.0, 5)] {
             let settings = GncSettings {
@@ -135,9 +135,9 @@ fn gnc_drops_false_loops_and_keeps_right_ones_up_to_as_many_false_as_right() {
 }
 
 #[test]
-fn gnc_keeps_right_loops_where_the_path_ends_so_far_off_that_all_weights_begin_at_nearly_nothing() {
-    // Twice around a circle of 20 m by wheels that turn 0.01 rad too far at each step, as they may;
-    // loops to the lap before know a millimetre.
+fn gnc_keeps_true_loops_if_drift_makes_all_initial_weights_tiny() {
+    // Two laps of a circle of 20 m by odometry that turns 0.01 rad too far at each step, within its noise;
+    // loops to the lap before have a noise of a millimetre.
     let diagonal = |xy: f64, theta: f64| Matrix3::from_diagonal(&Vector3::new(xy, xy, theta));
     let (lap, step) = (20, SE2::new(1.0, 0.0, core::f64::consts::TAU / 20.0));
     let mut problem = Problem::new();
@@ -174,7 +174,7 @@ fn gnc_keeps_right_loops_where_the_path_ends_so_far_off_that_all_weights_begin_a
 }
 
 #[test]
-fn loops_that_agree_in_pairs_are_the_right_ones() {
+fn pairwise_consistent_loops_are_true() {
     for (share, seed) in [(0.1, 2), (0.5, 4), (1.0, 5)] {
         let (problem, last_true) = graph(share, seed);
         let member = consistent_set(&problem, &ConsistencySettings::default());
@@ -185,7 +185,7 @@ fn loops_that_agree_in_pairs_are_the_right_ones() {
             .count();
         assert!(member[..ROUNDS * 4 * CORNER].iter().all(|m| *m));
         assert!(10 * kept >= 8 * right, "{share}: {kept} of {right}");
-        // False loops that fit the path's covariance, after a hundred metres of it, may stay.
+        // False loops within the path's covariance, after a hundred metres of it, may remain.
         let wrong = member[last_true..].iter().filter(|m| **m).count();
         assert!(
             20 * wrong <= problem.factors().len() - last_true,
@@ -214,7 +214,7 @@ fn a_cycle_without_noise_closes_and_a_metre_off_does_not() {
         pose = pose * step;
         poses.push(pose);
         problem.add_pose(pose);
-        // Every third one was measured backwards.
+        // Every third one is measured backwards.
         if k % 3 == 0 {
             add(&mut problem, k + 1, k, step.inverse());
         } else {
@@ -230,9 +230,9 @@ fn a_cycle_without_noise_closes_and_a_metre_off_does_not() {
     assert_eq!(member[12..], [true, true, false, true]);
 }
 
-/// A walk through a grid of streets 4 m apart, with a loop to the first visit wherever a pose stands
-/// where one stood before, and false loops between poses anywhere. The measurements state seven times
-/// the noise that they have, as those of many recorded graphs do.
+/// A path through a grid of streets 4 m apart, with a loop to the first visit at every revisited pose, and false
+/// loops between arbitrary poses. The measurements state seven times their actual noise, as those of many recorded
+/// graphs do.
 fn streets(count: usize, share: f64, seed: u64) -> (Problem, usize) {
     let mut numbers = Numbers(seed);
     let stated = Matrix3::identity() * 44.7;
@@ -262,7 +262,7 @@ fn streets(count: usize, share: f64, seed: u64) -> (Problem, usize) {
         };
         let step = SE2::new(0.0, 0.0, turn) * SE2::new(1.0, 0.0, 0.0);
         let next = last * step;
-        // The town ends: the robot turns on the spot first.
+        // At the edge of the grid the robot turns on the spot first.
         let step = if next.x().abs() > 12.5 || next.y().abs() > 12.5 {
             SE2::new(0.0, 0.0, core::f64::consts::PI) * SE2::new(1.0, 0.0, 0.0)
         } else {
@@ -317,8 +317,8 @@ fn at(problem: &Problem, poses: &[SE2]) -> Problem {
 }
 
 #[test]
-fn loops_taken_along_the_way_hold_where_graduated_non_convexity_alone_is_led_astray() {
-    let mut led_astray = 0;
+fn selection_along_the_path_is_right_where_gnc_alone_fails() {
+    let mut failed = 0;
     for (share, seed) in [(0.0, 1), (0.1, 2), (0.3, 3), (0.5, 4)] {
         let clean = at(
             &streets(600, 0.0, seed).0,
@@ -329,7 +329,7 @@ fn loops_taken_along_the_way_hold_where_graduated_non_convexity_alone_is_led_ast
         assert!(inliers.inliers[..last_true].iter().all(|b| *b), "{share}");
         assert!(inliers.inliers[last_true..].iter().all(|b| !*b), "{share}");
         let off_m = apart_m(&at(&spoilt, &inliers.poses), &clean);
-        // 1e-4: both solves end where a step is below 1e-6.
+        // 1e-4: both solves end if a step is below 1e-6.
         assert!(off_m < 1e-4, "{share}: {off_m}");
         let mut alone = spoilt.clone();
         Gnc::new(
@@ -340,20 +340,20 @@ fn loops_taken_along_the_way_hold_where_graduated_non_convexity_alone_is_led_ast
         )
         .run(&mut alone)
         .unwrap();
-        led_astray += usize::from(apart_m(&alone, &clean) > 0.1);
+        failed += usize::from(apart_m(&alone, &clean) > 0.1);
     }
-    assert!(led_astray > 0, "the test is too easy");
+    assert!(failed > 0, "the test is too easy");
 }
 
 #[test]
-fn what_agrees_in_pairs_is_settled_by_what_all_of_it_says() {
+fn pairwise_consistent_loops_are_refined_by_all_others() {
     let settings = ConsistencySettings::default();
-    let mut misjudged = 0;
+    let mut wrong_cliques = 0;
     for (share, seed) in [(0.1, 2), (0.3, 3), (0.5, 4)] {
         let (problem, last_true) = streets(600, share, seed);
         let is_right = |k: usize| k < last_true;
         let pairs = consistent_set(&problem, &settings);
-        misjudged += (0..pairs.len())
+        wrong_cliques += (0..pairs.len())
             .filter(|&k| pairs[k] != is_right(k))
             .count();
         let found = select_consistent(&problem, &trusted(&problem), exact(), &settings).unwrap();
@@ -363,11 +363,11 @@ fn what_agrees_in_pairs_is_settled_by_what_all_of_it_says() {
             .count();
         assert_eq!(wrong, 0, "{share}");
     }
-    assert!(misjudged > 0, "the test is too easy");
+    assert!(wrong_cliques > 0, "the test is too easy");
 }
 
 #[test]
-fn no_loop_can_change_sides_and_lower_the_truncated_cost() {
+fn no_flip_of_a_loop_lowers_the_truncated_cost() {
     for (share, seed) in [(0.0, 1), (0.3, 3), (1.0, 5)] {
         let (problem, _) = graph(share, seed);
         let selection = selection(&problem);
@@ -386,7 +386,7 @@ fn no_loop_can_change_sides_and_lower_the_truncated_cost() {
 }
 
 #[test]
-fn a_way_from_its_end_leads_to_the_same_belief() {
+fn a_path_followed_backwards_gives_the_same_inliers() {
     let (problem, _) = graph(0.5, 4);
     let mut turned = Problem::new();
     let last = problem.node_count() - 1;
@@ -405,7 +405,7 @@ fn a_way_from_its_end_leads_to_the_same_belief() {
 }
 
 #[test]
-fn a_graph_whose_path_is_torn_is_judged_by_graduated_non_convexity() {
+fn a_graph_with_an_interrupted_path_is_solved_by_gnc() {
     let (problem, last_true) = graph(0.3, 3);
     let torn = with_factors(&problem, |k| k != 60);
     let selection = selection(&torn);

@@ -1,4 +1,4 @@
-//! What a session tried: attempts that ended, which of them counts, and their record.
+//! Ended attempts of a session, their ranking, and their record.
 
 use pr_geom::SE2;
 
@@ -7,14 +7,14 @@ use crate::kernel::RobustKernel;
 use crate::report::{Report, StopReason};
 use crate::settings::Method;
 
-/// One start that a session looked at, as it tells afterwards.
+/// Record of one initial guess that a session considered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
-    /// Where it started.
+    /// The guess.
     pub start: Start,
-    /// With which steps.
+    /// The method of its steps.
     pub method: Method,
-    /// Which cost it lowered.
+    /// The cost that it minimized.
     pub kernel: RobustKernel,
     /// Linear systems solved.
     pub iterations: usize,
@@ -22,7 +22,7 @@ pub struct Trial {
     pub cost_initial: f64,
     /// Cost at its end.
     pub cost: f64,
-    /// Why it ended; `None` where it was not followed, because another guess costs less.
+    /// Why it ended; `None` if it was not followed, because another guess costs less.
     pub stop: Option<StopReason>,
 }
 
@@ -39,7 +39,7 @@ impl Attempt {
         self.report.stop.is_converged()
     }
 
-    /// Whether a step on the way led uphill.
+    /// Whether a step raised the cost.
     pub fn climbed(&self) -> bool {
         let steps = self.report.steps.windows(2);
         steps
@@ -47,21 +47,21 @@ impl Attempt {
             .any(|pair| pair[1].cost_before > pair[0].cost_before)
     }
 
-    /// The cost where it began.
+    /// The cost at its start.
     pub fn cost_initial(&self) -> f64 {
         let first = self.report.steps.first();
         first.map_or(self.report.cost, |step| step.cost_before)
     }
 
-    /// The cost; a cost that is out of the range of numbers comes last, whatever the sign of its NaN.
-    /// Information that is indefinite can make a cost negative.
+    /// The cost for ranking; overflow and NaN of either sign come last. Indefinite information can make a cost
+    /// negative.
     fn rank(&self) -> f64 {
         let cost = self.report.cost_or_nan();
         if cost.is_nan() { f64::INFINITY } else { cost }
     }
 }
 
-/// The lowest cost of what converged at no more than `bound`; of all where nothing did.
+/// The lowest cost among converged attempts with at most `bound`; among all if there are none.
 pub(super) fn best_of(attempts: Vec<Attempt>, bound: Option<f64>) -> Attempt {
     let is_good = |attempt: &Attempt| {
         let climbed = bound.is_some_and(|bound| attempt.report.cost > bound);

@@ -1,4 +1,4 @@
-//! Where the attempts of a session begin.
+//! Initial guesses of the attempts of a session.
 
 use pr_geom::SE2;
 
@@ -30,7 +30,7 @@ impl Session<'_> {
         self.pass_over(other, cost);
     }
 
-    /// Notes a guess that costs so much and is not followed.
+    /// Records a guess of this cost that is not followed.
     fn pass_over(&mut self, start: Start, cost: f64) {
         self.tried.push(Trial {
             start,
@@ -63,7 +63,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Moves to a guess whose cost is finite.
+    /// Moves to a guess if its cost is finite.
     fn move_to(&mut self, guess: &[SE2]) -> Result<(), OptimizeError> {
         if !self.optimizer.cost_at(self.problem, guess).is_finite() {
             return Err(OptimizeError::NotFinite);
@@ -72,11 +72,11 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Goes on where the first attempt was given up, if the chordal relaxation costs more than that.
+    /// Continues the abandoned first attempt if the chordal relaxation costs more than its result.
     pub(super) fn keep_on_where_chordal_costs_more(&mut self) {
         let cost = self.optimizer.cost_at(self.problem, self.problem.poses());
         let first = self.ended.last().expect("the first attempt has ended");
-        let was_given_up = matches!(first.report.stop, StopReason::PromiseBroken { .. });
+        let was_given_up = matches!(first.report.stop, StopReason::LowGainRatio { .. });
         if !was_given_up || cost < first.report.cost {
             return;
         }

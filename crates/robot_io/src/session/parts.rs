@@ -110,7 +110,7 @@ pub fn write(session: &Session, out: &mut Writer) {
         out.f64(front.last_dt_s);
         out.f64(front.deviations_m2);
         out.u64(front.deviations as u64);
-        out.matrix(&front.driven);
+        out.matrix(&front.motion_covariance);
         out.maybe(front.unregistered.as_ref(), Writer::matrix);
         out.count(front.window.len());
         for (sweep, scan) in front.window.iter().zip(&front.scans) {
@@ -206,7 +206,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
         let last_dt_s = from.f64()?;
         let deviations_m2 = from.number()?;
         let deviations = read_number(from)?;
-        let driven = from.matrix()?;
+        let motion_covariance = from.matrix()?;
         let unregistered = from.maybe(Cursor::matrix)?;
         let count = from.count(SWEEP_BYTES)?;
         let (mut window, mut window_scans) = (Vec::new(), Vec::new());
@@ -225,7 +225,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
             scans: window_scans,
             deviations_m2,
             deviations,
-            driven,
+            motion_covariance,
             unregistered,
         })
     })?;

@@ -7,7 +7,7 @@ fn information(x: f64, y: f64, theta: f64) -> Matrix3<f64> {
     turned.transpose() * Matrix3::from_diagonal(&Vector3::new(x, y, theta)) * turned
 }
 
-/// Five nodes: a chain 0 1 2 3 with a loop from 0 to 2, and node 4 hanging on node 2.
+/// Five nodes: a chain 0 1 2 3 with a loop from 0 to 2, and a leaf node 4 at node 2.
 fn graph() -> PoseGraph {
     let mut graph = PoseGraph::with_jacobians(pr_optim::JacobianModel::Exact);
     graph.add_fixed_node(SE2::new(1.0, -2.0, 0.3));
@@ -58,7 +58,7 @@ fn graph() -> PoseGraph {
 }
 
 #[test]
-fn a_loop_that_is_yet_to_correct_the_graph_does_so_when_a_node_is_gone() {
+fn a_pending_loop_still_corrects_the_graph_after_marginalization() {
     let mut corrected = graph();
     corrected.marginalize(1).unwrap();
     assert_eq!(corrected.optimized_edges(), corrected.edge_count());
@@ -71,7 +71,7 @@ fn a_loop_that_is_yet_to_correct_the_graph_does_so_when_a_node_is_gone() {
 }
 
 #[test]
-fn a_node_of_a_chain_leaves_the_covariance_of_its_neighbours_as_it_was() {
+fn marginalizing_a_chain_node_keeps_the_covariance_of_its_neighbours() {
     let mut whole = graph();
     let expected = whole.relative_covariance(0, 3).unwrap();
     let mut graph = graph();
@@ -79,7 +79,7 @@ fn a_node_of_a_chain_leaves_the_covariance_of_its_neighbours_as_it_was() {
     assert_eq!((done.neighbours, done.divergence), (2, 0.0));
     assert_eq!((graph.node_count(), graph.edge_count()), (4, 3));
     let found = graph.relative_covariance(0, 2).unwrap();
-    // 2 %: what the loop moved is second order in the covariances.
+    // 2 %: the correction by the loop is second order in the covariances.
     assert!(
         (found - expected).norm() < 0.02 * expected.norm(),
         "{found} {expected}"
@@ -90,7 +90,7 @@ fn a_node_of_a_chain_leaves_the_covariance_of_its_neighbours_as_it_was() {
 }
 
 #[test]
-fn a_node_that_hangs_on_one_edge_leaves_nothing_behind() {
+fn marginalizing_a_leaf_adds_no_edge() {
     let mut graph = graph();
     let poses = graph.poses()[..4].to_vec();
     let done = graph.marginalize(4).unwrap();
@@ -102,9 +102,9 @@ fn a_node_that_hangs_on_one_edge_leaves_nothing_behind() {
 }
 
 #[test]
-fn of_a_star_the_tree_keeps_each_of_its_relative_poses_and_no_other_tree_is_nearer() {
-    // Equal spokes from the middle: each relative pose has 2 Σ, the dense covariance of n of them
-    // ln det = 3 ln(n + 1) more than n Σ, so the divergence is 1.5 (n ln 2 − ln(n + 1)).
+fn the_tree_of_a_star_keeps_its_relative_poses_and_minimizes_the_divergence() {
+    // Equal spokes from the middle: each relative pose has 2 Σ. The dense covariance of n of them has an
+    // ln det that is 3 ln(n + 1) more than that of n Σ, so the divergence is 1.5 (n ln 2 − ln(n + 1)).
     for leaves in 2..6_usize {
         let spokes: Vec<Spoke> = (0..leaves)
             .map(|node| Spoke {
@@ -122,7 +122,7 @@ fn of_a_star_the_tree_keeps_each_of_its_relative_poses_and_no_other_tree_is_near
         );
         assert_eq!(tree.len(), leaves - 1);
     }
-    // A spoke that is known well is the hub of the tree, wherever it stands in the list.
+    // A well-measured spoke is the hub of the tree, whatever its position in the list.
     let spoke = |node: usize, variance: f64| Spoke {
         node,
         pose: SE2::new(node as f64, 0.5, 0.3 * node as f64),
@@ -135,24 +135,24 @@ fn of_a_star_the_tree_keeps_each_of_its_relative_poses_and_no_other_tree_is_near
 }
 
 #[test]
-fn a_node_with_loops_is_taken_out_and_the_map_stays() {
+fn marginalizing_a_node_with_loops_keeps_the_map() {
     let whole = graph();
     let mut graph = graph();
     let done = graph.marginalize(2).unwrap();
     assert_eq!(done.neighbours, 4);
     assert!(done.divergence > 0.0 && done.divergence < 3.0, "{done:?}");
-    // Of five edges four go, and three come.
+    // Four of five edges go, and three are added.
     assert_eq!(graph.edge_count(), 4);
     graph.optimize(20, 1e-12);
     for (old, new) in [(1, 1), (3, 2), (4, 3)] {
         let moved = whole.pose(old).between(&graph.pose(new)).log();
-        // 0.01: the loop was off by 2 cm, and the tree shares it out otherwise.
+        // 0.01: the loop had an error of 2 cm, and the tree distributes it differently.
         assert!(moved.norm() < 0.01, "{moved}");
     }
 }
 
 #[test]
-fn what_holds_the_graph_stays() {
+fn a_fixed_node_is_not_marginalized() {
     let mut graph = graph();
     assert_eq!(graph.marginalize(0), Err(MarginalizeError::Fixed(0)));
     assert_eq!(graph.node_count(), 5);

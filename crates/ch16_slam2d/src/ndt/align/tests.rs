@@ -8,13 +8,13 @@ use proptest::prelude::*;
 /// Half the width of a difference, m and rad.
 const H: f64 = 1e-6;
 
-/// Where the source stood in the frame of the target.
+/// Pose of the source in the frame of the target.
 fn truth() -> SE2 {
     SE2::new(0.4, -0.3, 0.35)
 }
 
-/// The walls of a room with an alcove, each point off its wall by up to a centimetre, as two clouds
-/// of different points: a target and a source seen from [`truth`].
+/// The walls of a room with an alcove, with errors of up to a centimetre, as two clouds of different points: a
+/// target, and a source seen from [`truth`].
 fn room() -> (PointCloud, PointCloud) {
     let corners = [
         (-2.3, -1.6),
@@ -57,7 +57,7 @@ fn around(pose: &SE2) -> [(SE2, SE2); 3] {
     ]
 }
 
-/// The cells of all points, as the score looks them up.
+/// The cells of all points, by the lookup of the score.
 fn cells(cloud: &PointCloud, map: &NdtMap, pose: &SE2) -> Vec<(i32, i32)> {
     let cell = |coordinate_m| cell_index(coordinate_m, map.cell_m());
     cloud
@@ -75,7 +75,7 @@ proptest! {
         let (target, cloud) = room();
         let (cloud, map) = (&cloud, NdtMap::build(&target, cell_m, 3));
         let pose = SE2::new(truth().x() + dx, truth().y() + dy, truth().theta() + turn_rad);
-        // Where a point changes its cell the score jumps, and no difference is a derivative.
+        // If a point changes its cell, the score jumps, and the difference is not a derivative.
         let here = cells(cloud, &map, &pose);
         let stays = |moved: &SE2| cells(cloud, &map, moved) == here;
         prop_assume!(around(&pose).iter().all(|(ahead, behind)| stays(ahead) && stays(behind)));
@@ -96,7 +96,7 @@ proptest! {
 }
 
 #[test]
-fn near_the_truth_every_entry_of_the_gradient_is_large_enough_to_be_seen() {
+fn gradient_entries_near_the_truth_exceed_the_test_tolerance() {
     let (target, cloud) = room();
     let map = NdtMap::build(&target, 0.8, 3);
     let pose = truth() * SE2::new(0.1, 0.1, 0.05);

@@ -1,4 +1,4 @@
-//! The search without bounds: every pose of the window, to compare branch and bound with.
+//! Exhaustive search: scores every pose of the window, as reference for branch and bound.
 
 use core::cmp::Ordering;
 
@@ -6,7 +6,7 @@ use super::{LatticePose, OpenBox, ScanSearch};
 use crate::search::{SearchCounts, SearchResult};
 
 impl ScanSearch {
-    /// The same answer by scoring every pose of the window, for whoever does not believe it.
+    /// Computes the same result by scoring every pose of the window.
     #[must_use]
     pub fn exhaustive(&self) -> SearchResult {
         let better = |champion: Option<OpenBox>, pose: OpenBox| match champion {

@@ -1,4 +1,4 @@
-//! What the rest of a graph says about a loop, by exact covariances.
+//! Test of a loop against the rest of a graph, by exact covariances.
 
 use nalgebra::Matrix3;
 
@@ -9,16 +9,16 @@ use crate::marginals::JointCovariance;
 use crate::optimizer::Optimizer;
 use crate::problem::Problem;
 
-/// Whether a measurement is part of the graph that judges it.
+/// Whether a measurement is part of the graph that tests it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// It is: its own say is taken out.
+    /// It is part of the graph: its own contribution is removed.
     Kept,
-    /// It is not.
+    /// It is not part of the graph.
     Dropped,
 }
 
-/// The factor of a graph, to ask it about loops.
+/// The factor of a graph, for tests of loops.
 pub struct MarginalGate<'a> {
     problem: &'a Problem,
     linear: &'a mut LinearSolver,
@@ -28,18 +28,18 @@ impl<'a> MarginalGate<'a> {
     /// Factorizes the graph at its present poses.
     ///
     /// # Errors
-    /// Where the normal equations are not positive definite.
+    /// If the normal equations are not positive definite.
     pub fn new(optimizer: &'a mut Optimizer, problem: &'a Problem) -> Result<Self, OptimizeError> {
         let linear = optimizer.factorize_plain(problem)?;
         Ok(Self { problem, linear })
     }
 
-    /// `eᵀ(Ω⁻¹ + Σ)⁻¹e` for the residual e of a loop: by so much χ² grows, to first order, where the
-    /// loop joins the graph.
+    /// `eᵀ(Ω⁻¹ + Σ)⁻¹e` for the residual e of a loop: the increase of χ², to first order, if the loop is
+    /// added.
     ///
-    /// Σ is the covariance of the relative pose by the rest of the graph. Of a loop that is part of
-    /// it the graph knows Σ′ instead, and `eᵀ(Ω⁻¹ − Σ′)⁻¹e` is by how much χ² shrinks where it goes.
-    /// Not a number where that matrix has no inverse.
+    /// Σ is the covariance of the relative pose by the rest of the graph. For a loop that is part of the graph,
+    /// the covariance Σ′ includes it, and `eᵀ(Ω⁻¹ − Σ′)⁻¹e` is the decrease of χ² if it is removed. NaN if that
+    /// matrix has no inverse.
     pub fn chi2(&mut self, factor: &Between, standing: Standing) -> f64 {
         let joint = self
             .linear
@@ -49,7 +49,7 @@ impl<'a> MarginalGate<'a> {
         })
     }
 
-    /// The same for every measurement of the graph, as a part of it.
+    /// [`chi2`](Self::chi2) of every measurement, as part of the graph.
     pub fn all_kept(&self) -> Vec<f64> {
         let joints = self.linear.measured_covariances(self.problem);
         let factors = self.problem.factors().iter();
@@ -72,7 +72,7 @@ fn marginal_chi2(
         Standing::Kept => -1.0,
         Standing::Dropped => 1.0,
     };
-    // (Ω⁻¹ ± Σ)⁻¹ = Ω(1 ± ΣΩ)⁻¹, where Ω need not have an inverse.
+    // (Ω⁻¹ ± Σ)⁻¹ = Ω(1 ± ΣΩ)⁻¹, because Ω may have no inverse.
     let spread = Matrix3::identity() + joint.relative(from, to) * factor.information * sign;
     spread.try_inverse().map_or(f64::NAN, |inverse| {
         e.dot(&(factor.information * (inverse * e)))

@@ -1,31 +1,31 @@
-//! Nodes that hang on one measurement each, to a node before them.
+//! Nodes with one measurement each, to an earlier node.
 //!
-//! Such a *tail* tells nothing of the nodes before it, so it leaves their covariances as they are, and has its
-//! own by propagation: with the blocks `H_tt` and `H_tp` that the measurement of node t from its parent p
-//! adds to the normal equations, and the ridge in `H_tt`,
+//! Such a *tail* adds no information about the earlier nodes, so their covariances are unchanged. Its own follow
+//! by propagation. The measurement of node t from its parent p adds the blocks `H_tt` and `H_tp` to the normal
+//! equations (`H_tt` with the ridge). Then
 //!
 //! ```text
 //! δ_t = A δ_p + w,   A = −H_tt⁻¹ H_tp,   w ~ N(0, H_tt⁻¹),
 //! ```
 //!
-//! so that `Σ_tx = A Σ_px` for every node x but t and what follows it, and `Σ_tt = A Σ_pp Aᵀ + H_tt⁻¹`.
+//! hence `Σ_tx = A Σ_px` for every earlier node x, and `Σ_tt = A Σ_pp Aᵀ + H_tt⁻¹`.
 //!
 //! Source: Kaess & Dellaert, "Covariance recovery from a square root information matrix for data
 //! association", 2009, whose recursion this is for nodes that are eliminated first.
 
 use nalgebra::Matrix3;
 
-use super::start::GrowthStart;
+use super::prefix::Prefix;
 use crate::error::OptimizeError;
 use crate::factor::{JacobianModel, PreparedPose};
 use crate::kernel::RobustKernel;
 use crate::marginals::JointCovariance;
 use crate::problem::Problem;
 
-/// How the pose of a node of the tail follows from another: `δ = A δ_parent + w`.
+/// Dependence of a node of the tail on its parent: `δ = A δ_parent + w`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Propagation {
-    /// The node that it hangs on.
+    /// The earlier node of its measurement.
     pub parent: usize,
     /// A.
     pub map: Matrix3<f64>,
@@ -34,10 +34,10 @@ pub(super) struct Propagation {
 }
 
 impl Propagation {
-    /// Linearizes the factor that a node hangs on.
+    /// Linearizes the only factor of a node.
     ///
     /// # Errors
-    /// Where it leaves the node loose.
+    /// If the factor leaves the node unconstrained.
     pub fn new(problem: &Problem, factor: usize, ridge: f64) -> Result<Self, OptimizeError> {
         let ends = &problem.factors()[factor];
         let [from, to] = [ends.from, ends.to].map(|end| PreparedPose::new(&problem.poses()[end]));
@@ -71,84 +71,87 @@ impl Propagation {
         Ok(Self { parent, map, noise })
     }
 
-    /// Eliminates the node: the columns of its parent take what it has, both given by their places.
+    /// Eliminates the node: adds its columns to those of its parent. Both are given by position.
     pub fn push_back(&self, columns: &mut [[f64; 3]], [parent, node]: [usize; 2]) {
         let own = at(columns, node);
         put(columns, parent, at(columns, parent) + self.map.tr_mul(&own));
         put(columns, node, self.noise * own);
     }
 
-    /// Adds what follows from the solution of its parent.
-    pub fn carry_on(&self, columns: &mut [[f64; 3]], [parent, node]: [usize; 2]) {
+    /// Back-substitution: adds the contribution of the parent's solution.
+    pub fn propagate(&self, columns: &mut [[f64; 3]], [parent, node]: [usize; 2]) {
         let own = at(columns, node) + self.map * at(columns, parent);
         put(columns, node, own);
     }
 }
 
-/// The three rows of a place.
-pub(super) fn at(columns: &[[f64; 3]], place: usize) -> Matrix3<f64> {
-    Matrix3::from_fn(|row, column| columns[3 * place + row][column])
+/// The three rows at a position.
+pub(super) fn at(columns: &[[f64; 3]], position: usize) -> Matrix3<f64> {
+    Matrix3::from_fn(|row, column| columns[3 * position + row][column])
 }
 
-/// Sets the three rows of a place.
-pub(super) fn put(columns: &mut [[f64; 3]], place: usize, block: Matrix3<f64>) {
-    for (row, entries) in columns[3 * place..3 * place + 3].iter_mut().enumerate() {
+/// Sets the three rows at a position.
+pub(super) fn put(columns: &mut [[f64; 3]], position: usize, block: Matrix3<f64>) {
+    for (row, entries) in columns[3 * position..3 * position + 3]
+        .iter_mut()
+        .enumerate()
+    {
         *entries = core::array::from_fn(|column| block[(row, column)]);
     }
 }
 
-/// What two nodes depend on beyond the beginning of a graph.
+/// Dependence of two nodes on the prefix.
 pub(super) struct Tail<'a> {
-    start: GrowthStart,
+    prefix: Prefix,
     /// By node, from the first of the tail.
     propagations: &'a [Propagation],
     ends: [usize; 2],
-    /// The nodes of the beginning that the two hang on; one of the beginning hangs on itself.
+    /// The ancestors of the two nodes in the prefix; a node of the prefix is its own.
     roots: [usize; 2],
 }
 
 impl<'a> Tail<'a> {
-    /// The way of two nodes back to the beginning.
-    pub fn new(start: GrowthStart, propagations: &'a [Propagation], ends: [usize; 2]) -> Self {
+    /// Follows two nodes back to the prefix.
+    pub fn new(prefix: Prefix, propagations: &'a [Propagation], ends: [usize; 2]) -> Self {
         let root = |mut node: usize| {
-            while node >= start.nodes {
-                node = propagations[node - start.nodes].parent;
+            while node >= prefix.nodes {
+                node = propagations[node - prefix.nodes].parent;
             }
             node
         };
         Self {
-            start,
+            prefix,
             roots: ends.map(root),
             propagations,
             ends,
         }
     }
 
-    /// The nodes whose blocks [`joint`](Self::joint) asks for.
+    /// The nodes whose blocks [`joint`](Self::joint) needs.
     pub fn roots(&self) -> [usize; 2] {
         self.roots
     }
 
     /// The blocks of the two nodes from those of their roots.
-    pub fn joint(&self, of_roots: &JointCovariance) -> JointCovariance {
+    pub fn joint(&self, root_blocks: &JointCovariance) -> JointCovariance {
         let [first, second] = self.ends;
         JointCovariance {
-            first: self.block(first, first, of_roots),
-            cross: self.block(first, second, of_roots),
-            second: self.block(second, second, of_roots),
+            first: self.block(first, first, root_blocks),
+            cross: self.block(first, second, root_blocks),
+            second: self.block(second, second, root_blocks),
         }
     }
 
     /// `E[δ_a δ_bᵀ]`, from the later of the two back to the roots.
-    fn block(&self, mut a: usize, mut b: usize, of_roots: &JointCovariance) -> Matrix3<f64> {
+    fn block(&self, mut a: usize, mut b: usize, root_blocks: &JointCovariance) -> Matrix3<f64> {
         let [mut left, mut right] = [Matrix3::<f64>::identity(); 2];
         let mut sum = Matrix3::zeros();
         loop {
-            let later = a.max(b).checked_sub(self.start.nodes);
+            let later = a.max(b).checked_sub(self.prefix.nodes);
             let step = later.map(|k| &self.propagations[k]);
-            // Both depend on the noise of a node that they share.
+            // A common ancestor contributes its noise to both.
             let shared = match step {
-                None => Some(self.block_of_roots([a, b], of_roots)),
+                None => Some(self.root_block([a, b], root_blocks)),
                 Some(step) => (a == b).then_some(step.noise),
             };
             if let Some(shared) = shared {
@@ -169,12 +172,12 @@ impl<'a> Tail<'a> {
         }
     }
 
-    fn block_of_roots(&self, nodes: [usize; 2], of_roots: &JointCovariance) -> Matrix3<f64> {
+    fn root_block(&self, nodes: [usize; 2], root_blocks: &JointCovariance) -> Matrix3<f64> {
         match nodes.map(|node| node == self.roots[0]) {
-            [true, true] => of_roots.first,
-            [true, false] => of_roots.cross,
-            [false, true] => of_roots.cross.transpose(),
-            [false, false] => of_roots.second,
+            [true, true] => root_blocks.first,
+            [true, false] => root_blocks.cross,
+            [false, true] => root_blocks.cross.transpose(),
+            [false, false] => root_blocks.second,
         }
     }
 }

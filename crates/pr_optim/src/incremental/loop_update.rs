@@ -1,13 +1,13 @@
-//! A measurement between two nodes that are there already.
+//! Update of a covariance by a measurement between two existing nodes.
 //!
-//! With its Jacobian J, its information Ω and the covariance C of all else, the covariance with it is
+//! With its Jacobian J, its information Ω and the prior covariance C, the posterior covariance is
 //!
 //! ```text
 //! C − U G Uᵀ,   U = C Jᵀ,   G = (Ω⁻¹ + J U)⁻¹ = Ω (1 + J U Ω)⁻¹
 //! ```
 //!
-//! It is the update of a Kalman filter, or Woodbury's identity. Where the measurement says far more than was
-//! known, the difference has no digits left.
+//! This is the update of a Kalman filter, or Woodbury's identity. If the measurement is far more informative than
+//! the prior, the difference loses all digits.
 //!
 //! Source: Golub & Van Loan, "Matrix Computations", 2013, section 2.1.4.
 
@@ -18,15 +18,15 @@ use crate::error::OptimizeError;
 use crate::factor::PreparedPose;
 use crate::problem::Problem;
 
-/// A measurement that says so many times more than was known leaves half of a number's digits.
-const MOST_KNOWN: f64 = 1e8;
+/// Largest ratio of the information of a measurement to that of the prior: leaves half of a number's digits.
+const MAX_INFORMATION_RATIO: f64 = 1e8;
 
-/// A measurement that was added to what is known of a graph.
+/// The low-rank update by one measurement.
 #[derive(Clone, Debug)]
-pub(super) struct Closing {
-    /// Its node that is named in errors.
+pub(super) struct LoopUpdate {
+    /// The node that errors name.
     node: usize,
-    /// Positions of its ends, with the Jacobian by each; zero by a fixed one.
+    /// Positions of both ends, with the Jacobian with respect to each; zero for a fixed one.
     ends: [(usize, Matrix3<f64>); 2],
     /// e, at the poses of the graph.
     residual: Vector3<f64>,
@@ -37,8 +37,8 @@ pub(super) struct Closing {
     gain: Matrix3<f64>,
 }
 
-impl Closing {
-    /// Linearizes a factor; its columns are yet to come.
+impl LoopUpdate {
+    /// Linearizes a factor; its columns are set later.
     pub fn new(problem: &Problem, factor: usize, positions: &[u32]) -> Self {
         let between = &problem.factors()[factor];
         let nodes = [between.from, between.to];
@@ -60,23 +60,23 @@ impl Closing {
     }
 
     /// Writes Jᵀ into columns of zeros.
-    pub fn put_columns(&self, columns: &mut [[f64; 3]]) {
-        for (place, jacobian) in self.ends {
-            put(columns, place, jacobian.transpose());
+    pub fn write_columns(&self, columns: &mut [[f64; 3]]) {
+        for (position, jacobian) in self.ends {
+            put(columns, position, jacobian.transpose());
         }
     }
 
-    /// Takes U, without what earlier closings take off it.
-    pub fn take_columns(&mut self, columns: &[[f64; 3]]) {
-        let places = 0..columns.len() / 3;
-        self.columns = places.map(|place| at(columns, place)).collect();
+    /// Sets U, before the updates by earlier loops.
+    pub fn set_columns(&mut self, columns: &[[f64; 3]]) {
+        let positions = 0..columns.len() / 3;
+        self.columns = positions.map(|position| at(columns, position)).collect();
     }
 
-    /// Works out G, once U is there.
+    /// Computes G from U.
     ///
     /// # Errors
-    /// Where the measurement leaves the covariance of its ends without enough digits, or not positive definite.
-    pub fn weigh(&mut self) -> Result<(), OptimizeError> {
+    /// If the posterior covariance of its ends has too few digits or is not positive definite.
+    pub fn compute_gain(&mut self) -> Result<(), OptimizeError> {
         let error = OptimizeError::NotPositiveDefinite { node: self.node };
         let known = self.across(&self.ends);
         let spread = Matrix3::identity() + known * self.information;
@@ -84,44 +84,46 @@ impl Closing {
         let gain = self.information * inverse;
         self.gain = 0.5 * (gain + gain.transpose());
         let left = known - known * self.gain * known;
-        let is_sound = spread.amax() < MOST_KNOWN && left.cholesky().is_some();
+        let is_sound = spread.amax() < MAX_INFORMATION_RATIO && left.cholesky().is_some();
         if is_sound { Ok(()) } else { Err(error) }
     }
 
-    /// What it takes off a block of C.
-    pub fn block(&self, places: [usize; 2]) -> Matrix3<f64> {
-        let [row, column] = places.map(|place| &self.columns[place]);
+    /// The part that it subtracts from a block of C.
+    pub fn block(&self, positions: [usize; 2]) -> Matrix3<f64> {
+        let [row, column] = positions.map(|position| &self.columns[position]);
         row * self.gain * column.transpose()
     }
 
-    /// Turns the U of a later measurement without this one into that with it.
-    pub fn take_off(&self, later: &mut Self) {
-        let weighed = self.gain * later.across(&self.ends);
+    /// Applies this update to the U of a later measurement.
+    pub fn subtract_from(&self, later: &mut Self) {
+        let correction = self.gain * later.across(&self.ends);
         for (sum, columns) in later.columns.iter_mut().zip(&self.columns) {
-            *sum -= columns * weighed;
+            *sum -= columns * correction;
         }
     }
 
-    /// Moves the nodes, by position, from where they would go without the measurement to where they go with it.
+    /// Corrects the moves of the nodes, by position, by this measurement.
     pub fn correct(&self, moves: &mut [Vector3<f64>]) {
         let ends = self.ends.iter();
-        let predicted: Vector3<f64> = ends.map(|(place, jacobian)| jacobian * moves[*place]).sum();
-        let weighed = self.gain * (self.residual + predicted);
+        let predicted: Vector3<f64> = ends
+            .map(|(position, jacobian)| jacobian * moves[*position])
+            .sum();
+        let correction = self.gain * (self.residual + predicted);
         for (sum, columns) in moves.iter_mut().zip(&self.columns) {
-            *sum -= columns * weighed;
+            *sum -= columns * correction;
         }
     }
 
     /// `J U` for the J of a measurement with these ends.
     fn across(&self, ends: &[(usize, Matrix3<f64>); 2]) -> Matrix3<f64> {
         let ends = ends.iter();
-        ends.map(|(place, jacobian)| jacobian * self.columns[*place])
+        ends.map(|(position, jacobian)| jacobian * self.columns[*position])
             .sum()
     }
 
-    /// Goes on to a node that hangs on the one at `parent`.
-    pub fn carry_on(&mut self, link: &Propagation, parent: usize) {
-        // The zero is what a solve begins with: −0 becomes 0.
+    /// Appends a node whose only measurement is from the node at `parent`.
+    pub fn propagate(&mut self, link: &Propagation, parent: usize) {
+        // A solve starts from +0, so −0 becomes 0.
         self.columns
             .push(Matrix3::zeros() + link.map * self.columns[parent]);
     }
