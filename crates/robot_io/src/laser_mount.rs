@@ -1,4 +1,4 @@
-//! Where a planar laser sits on the body.
+//! Mounting of a planar laser on the body.
 
 use std::str::FromStr;
 
@@ -9,17 +9,17 @@ use crate::lines::finite;
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::place::checked;
 
-/// Where a planar laser sits, and whether its axis points up or down.
+/// Pose of a planar laser on the body, and whether its axis points up or down.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LaserMount {
-    /// The sensor on the body, in the plane.
+    /// Pose of the sensor on the body, in the plane.
     pub body_from_sensor: SE2,
-    /// Whether its beams turn clockwise, seen from above: it hangs upside down, or its driver lists them so.
+    /// Whether its beams turn clockwise seen from above: it is mounted upside down, or its driver reverses them.
     pub is_flipped: bool,
 }
 
 impl LaserMount {
-    /// Puts a scan where the laser sits.
+    /// Sets the mounting of a scan, and reverses its beams if needed.
     pub fn place(&self, scan: &mut LaserScan) {
         scan.body_from_sensor = self.body_from_sensor;
         if self.is_flipped {
@@ -27,7 +27,7 @@ impl LaserMount {
         }
     }
 
-    /// The option that sets it by hand: `--laser 0.1,0,180,flipped`.
+    /// The command line option that sets it: `--laser 0.1,0,180,flipped`.
     #[must_use]
     pub fn option(&self) -> String {
         format!("--laser {}", self.value())
@@ -38,7 +38,7 @@ impl LaserMount {
     pub fn value(&self) -> String {
         let [x, y, theta] = self.body_from_sensor.to_array();
         let flipped = if self.is_flipped { ",flipped" } else { "" };
-        // Rounded, and never a negative zero.
+        // Rounds, and avoids negative zero.
         let tidy = |value: f64, scale: f64| (value * scale).round() / scale + 0.0;
         format!(
             "{},{},{}{flipped}",
@@ -49,13 +49,13 @@ impl LaserMount {
     }
 }
 
-/// The same beams listed the other way round the sensor.
+/// Reverses the order of the beams.
 pub fn flip(scan: &mut LaserScan) {
     scan.first_angle_rad = -scan.first_angle_rad;
     scan.angle_step_rad = -scan.angle_step_rad;
 }
 
-/// A log whose laser sits where an option says.
+/// A log whose laser has the mounting that an option sets.
 pub(crate) struct PlacedReader<'a> {
     inner: Box<dyn LogReader + 'a>,
     mount: LaserMount,
@@ -63,7 +63,7 @@ pub(crate) struct PlacedReader<'a> {
 }
 
 impl<'a> PlacedReader<'a> {
-    /// The frames of `inner`, with their laser at `mount`.
+    /// Yields the frames of `inner` with their laser at `mount`.
     pub(crate) fn new(inner: Box<dyn LogReader + 'a>, mount: LaserMount) -> Self {
         Self {
             inner,
@@ -94,7 +94,7 @@ impl FromStr for LaserMount {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let expected = || {
-            "the laser's place has to be x,y,degrees, and ,flipped if it hangs upside down, such as 0.1,0,180".to_owned()
+            "the laser's mounting must be x,y,degrees, with ,flipped if it is upside down, such as 0.1,0,180".to_owned()
         };
         let mut fields = text.split(',').map(str::trim);
         let mut number = |name| finite(fields.next(), name).map_err(|_| expected());

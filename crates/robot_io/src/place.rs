@@ -1,43 +1,43 @@
-//! Where and when a robot can be: numbers beyond that are garbage, and would make poses that are none.
+//! Plausibility bounds for poses and times: values beyond them are garbage and would overflow later.
 
 use pr_geom::SE2;
 
-/// Once round the Earth, m: no frame of odometry, mounting or map has its origin farther away.
+/// Earth's circumference, m: no frame of odometry, mounting or map has its origin farther away.
 const FARTHEST_M: f64 = 4.1e7;
 
-/// Thirty thousand years, s: no clock of a robot counts from so long ago.
+/// Thirty thousand years, s: no robot's clock counts from so long ago.
 const LONGEST_S: f64 = 1e12;
 
-/// A time that a robot's clock may tell, s.
+/// Returns the stamp if it is plausible, s.
 ///
 /// # Errors
-/// Where it is not finite, or lies out of all time.
+/// If it is not finite or out of bounds.
 pub fn checked_stamp_s(stamp_s: f64) -> Result<f64, String> {
     if stamp_s.abs() <= LONGEST_S {
         Ok(stamp_s)
     } else {
         Err(format!(
-            "a time has to lie within {LONGEST_S:e} s of zero, and is {stamp_s:e} s"
+            "a time must lie within {LONGEST_S:e} s of zero, and is {stamp_s:e} s"
         ))
     }
 }
 
-/// Whether a length is one that a robot may have.
+/// Whether a length is plausible.
 pub fn is_length(value_m: f64) -> bool {
     value_m.abs() <= FARTHEST_M
 }
 
-/// A pose that a robot may have.
+/// Returns the pose if it is plausible.
 ///
 /// # Errors
-/// Where it has a number that is not finite, or lies out of the world.
+/// If a number is not finite or out of bounds.
 pub fn checked(pose: SE2) -> Result<SE2, String> {
     let [x, y, theta] = pose.to_array();
     if is_length(x) && is_length(y) && theta.is_finite() {
         Ok(pose)
     } else {
         Err(format!(
-            "a pose has to lie within {:.0} km of its origin, and is {x:e} m, {y:e} m",
+            "a pose must lie within {:.0} km of its origin, and is at {x:e} m, {y:e} m",
             FARTHEST_M / 1e3
         ))
     }
@@ -49,13 +49,13 @@ mod tests {
 
     #[test]
     fn a_pose_on_earth_is_taken_and_one_beyond_is_told() {
-        // The northern end of a UTM zone, in metres from the equator.
+        // Northern end of a UTM zone, in metres from the equator.
         let far = SE2::new(834_000.0, 9_328_000.0, 3.0);
         assert_eq!(checked(far), Ok(far));
         for x in [1e300, f64::INFINITY, f64::NAN] {
             let said = checked(SE2::new(x, 0.0, 0.0)).unwrap_err();
             assert!(
-                said.starts_with("a pose has to lie within 41000 km"),
+                said.starts_with("a pose must lie within 41000 km"),
                 "{said}"
             );
         }
@@ -63,15 +63,12 @@ mod tests {
 
     #[test]
     fn a_time_of_any_clock_is_taken_and_one_beyond_is_told() {
-        // Nanoseconds since 1970 that were taken for milliseconds are none.
+        // Nanoseconds since 1970 read as milliseconds are rejected.
         assert_eq!(checked_stamp_s(1.7e9), Ok(1.7e9));
         assert_eq!(checked_stamp_s(-1.0), Ok(-1.0));
         for stamp_s in [1.7e15, f64::NAN] {
             let said = checked_stamp_s(stamp_s).unwrap_err();
-            assert!(
-                said.starts_with("a time has to lie within 1e12 s"),
-                "{said}"
-            );
+            assert!(said.starts_with("a time must lie within 1e12 s"), "{said}");
         }
     }
 }

@@ -1,7 +1,7 @@
-//! Reference relations: where the body was at one time, seen from where it was at another.
+//! Reference relations: relative poses of the body between two times.
 //!
 //! A line is `t1 t2 x y z roll pitch yaw`, in s, m and rad. Kümmerle et al., "On measuring the
-//! accuracy of SLAM algorithms", 2009, give such files for recorded logs.
+//! accuracy of SLAM algorithms", 2009, provide such files for recorded logs.
 
 use std::io::BufRead;
 
@@ -23,11 +23,10 @@ pub struct Relation {
 
 const LINE: &str = "t1 t2 x y z roll pitch yaw";
 
-/// Reads the lines of a file of relations; `#` starts a comment. Height, roll and pitch are not
-/// looked at.
+/// Reads a file of relations; `#` starts a comment. Height, roll and pitch are ignored.
 ///
 /// # Errors
-/// The first line that is no relation, or that there is none.
+/// If a line is malformed, or there is no line.
 pub fn read_relations(source: impl BufRead, name: &str) -> Result<Vec<Relation>, TextError> {
     let mut relations = Vec::new();
     let mut numbers = NumberLines::new(source, name, LINE);

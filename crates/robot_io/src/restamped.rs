@@ -1,4 +1,4 @@
-//! Logs of lines in the order of time, with stamps that were mended and odometry without jumps.
+//! Text logs in the order of time, with corrected stamps and odometry without jumps.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -12,13 +12,13 @@ use crate::remark::Remark;
 use crate::stamps::MendedStamps;
 use crate::wheel_poses::{jumps_remark, take_jumps_out};
 
-/// A frame waits for so many others at most that stand after it and were taken before it.
+/// Most frames that wait for an earlier one which comes later in the file.
 const MOST_WAITING: usize = 1024;
 
-/// A frame under its time, in an order that whole numbers have.
+/// Stamp as an ordered integer, and number of the frame.
 type Key = (u64, usize);
 
-/// Frames whose stamps and odometry were mended by a pass over all of the log.
+/// Frames whose stamps and odometry were corrected by a pass over the whole log.
 struct Restamped<R> {
     inner: R,
     stamps_s: Vec<f64>,
@@ -33,17 +33,17 @@ struct Restamped<R> {
     notes: LogNotes,
 }
 
-/// A reader of a log of lines: as it is if its stamps are in order and its odometry does not jump, else mended.
+/// Opens a text log; corrects it if its stamps are out of order or its odometry jumps.
 ///
 /// # Errors
-/// What the system says.
+/// If the system cannot read the bytes.
 pub fn restamped<'a, R: LogReader + 'a>(
     bytes: &LogBytes<'a>,
     reader: impl Fn(Box<dyn io::BufRead + 'a>) -> R,
 ) -> io::Result<Box<dyn LogReader + 'a>> {
     let mut first = reader(bytes.stream()?);
     let (mut stamps_s, mut odometry) = (Vec::new(), Vec::new());
-    // What goes wrong here goes wrong again, and is told then.
+    // Errors recur in the second pass and are reported there.
     while let Ok(Some(frame)) = first.next_frame() {
         stamps_s.push(frame.stamp_s);
         odometry.push(frame.odometry);
@@ -86,9 +86,9 @@ pub fn restamped<'a, R: LogReader + 'a>(
     }))
 }
 
-/// Stamps in an order that a clock may have had; none if they are so.
+/// Corrected stamps; `None` if they are in order.
 fn mended_stamps(stamps_s: &[f64]) -> Option<MendedStamps> {
-    // A log may count its frames from 0, which is a stamp here.
+    // A log may count its frames from 0, which would be an unset stamp.
     let least_s = stamps_s.iter().copied().fold(f64::INFINITY, f64::min);
     let moved: Vec<f64> = stamps_s
         .iter()
@@ -108,7 +108,7 @@ fn mended_stamps(stamps_s: &[f64]) -> Option<MendedStamps> {
     Some(mended)
 }
 
-/// Takes the jumps out of the odometry of frames with these stamps; returns the stamps of the jumps, s.
+/// Removes jumps from the odometry of frames with these stamps; returns the stamps of the jumps, s.
 fn without_jumps(stamps_s: &[f64], odometry: &mut [Option<SE2>]) -> Vec<f64> {
     let known = odometry.iter().enumerate();
     let mut order: Vec<(usize, SE2)> = known.filter_map(|(k, pose)| Some((k, (*pose)?))).collect();
@@ -168,7 +168,7 @@ impl<R: LogReader> LogReader for Restamped<R> {
     }
 }
 
-/// The bits of a finite number as a whole number in the same order.
+/// Maps a finite number to an integer in the same order.
 fn ordered(value: f64) -> u64 {
     let bits = value.to_bits();
     if bits >> 63 == 0 {
@@ -217,7 +217,7 @@ mod tests {
         while let Some(frame) = reader.next_frame().unwrap() {
             last = frame.odometry;
         }
-        // 29 steps before and 29 after the start in between.
+        // 29 steps before and 29 after the restart.
         assert!((last.unwrap().x() - 5.8).abs() < 1e-9, "{last:?}");
         let said = &reader.notes().warnings[0].text;
         assert!(

@@ -1,4 +1,4 @@
-//! A log whose first scans were compared with its odometry.
+//! Compares the first scans of a log with its odometry and corrects what is wrong.
 
 use std::collections::VecDeque;
 
@@ -10,23 +10,23 @@ use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::remark::Remark;
 use crate::wheel_poses::WheelPoses;
 
-/// So many scans are compared at most, with so many beams together: they are in memory.
+/// Most scans that are compared, and most beams together: they are kept in memory.
 const MOST_SCANS: usize = 2000;
 const MOST_BEAMS: usize = 1 << 21;
-/// So many scans wait for odometry that is late at most: more than any sensor takes in a second.
+/// Most scans that wait for late odometry: more than any sensor takes in a second.
 const MOST_LATE: usize = 200;
 
-/// A mounting that was mended.
+/// A corrected mounting.
 struct Mended {
-    /// Where the laser was said to sit.
+    /// The stated mounting.
     said: SE2,
-    /// Where it does.
+    /// The corrected one.
     mount: LaserMount,
-    /// Whether its beams are listed the other way round than was said.
+    /// Whether the order of the beams is reversed.
     is_turned_over: bool,
 }
 
-/// Odometry whose stamps are late by so much: each scan waits for the odometry of its time.
+/// Odometry with late stamps: each scan waits for the odometry of its time.
 struct Late {
     by_s: f64,
     wheels: WheelPoses,
@@ -44,7 +44,7 @@ impl Late {
         }
     }
 
-    /// The next frame whose odometry has come, with that.
+    /// The next frame for which odometry has arrived.
     fn next(&mut self) -> Option<LogFrame> {
         let at_s = self.waiting.front()?.stamp_s + self.by_s;
         let is_full = self.waiting.len() > MOST_LATE;
@@ -68,15 +68,15 @@ impl Late {
     }
 }
 
-/// Reads a log, compares its first scans with its odometry, and mends what is surely wrong.
+/// Reads a log, compares its first scans with its odometry, and corrects what is clearly wrong.
 pub struct ComparedReader<'a> {
     inner: Box<dyn LogReader + 'a>,
-    /// Whether the mounting was set by hand, and stays.
+    /// Whether the mounting was set by the user and must not change.
     is_told: bool,
-    /// Whether the run goes by scans alone.
+    /// Whether the run ignores odometry.
     is_alone: bool,
     waiting: VecDeque<LogFrame>,
-    /// What a comparison found before.
+    /// Result of an earlier comparison.
     known: Option<Motion>,
     motion: Option<Motion>,
     mount: Option<Mended>,
@@ -88,7 +88,7 @@ pub struct ComparedReader<'a> {
 }
 
 impl<'a> ComparedReader<'a> {
-    /// A reader of the frames of `inner`; `is_told` says that the mounting was set by hand, and stays.
+    /// Wraps `inner`; `is_told` states that the mounting was set by the user and must not change.
     #[must_use]
     pub fn new(inner: Box<dyn LogReader + 'a>, is_told: bool) -> Self {
         Self {
@@ -107,21 +107,21 @@ impl<'a> ComparedReader<'a> {
         }
     }
 
-    /// The same reader for a run by scans alone: what is wrong with odometry is not told.
+    /// Suppresses findings about odometry, for a run that ignores it.
     #[must_use]
     pub fn for_scans_alone(mut self, is_so: bool) -> Self {
         self.is_alone = is_so;
         self
     }
 
-    /// The same reader of a log that was compared before: what was found then holds.
+    /// Reuses the result of an earlier comparison of the same log.
     #[must_use]
     pub fn knowing(mut self, motion: Motion) -> Self {
         self.known = Some(motion);
         self
     }
 
-    /// What the comparison found; none before the first frame.
+    /// The result of the comparison; `None` before the first frame.
     #[must_use]
     pub fn motion(&self) -> Option<&Motion> {
         self.motion.as_ref()
@@ -137,7 +137,7 @@ impl<'a> ComparedReader<'a> {
                 Ok(Some(frame)) => frame,
                 Ok(None) => break,
                 Err(error) if self.waiting.is_empty() => return Err(error),
-                // It comes again once these frames are taken.
+                // The error recurs once these frames are consumed.
                 Err(_) => break,
             };
             beams += frame.scan.ranges_m.len().max(1);
@@ -211,7 +211,7 @@ impl<'a> ComparedReader<'a> {
         frame
     }
 
-    /// The next frame, but for its time.
+    /// The next frame, before odometry's lag is corrected.
     fn next_mended(&mut self) -> Result<Option<LogFrame>, LogError> {
         if let Some(frame) = self.waiting.pop_front() {
             return Ok(Some(self.mended(frame)));

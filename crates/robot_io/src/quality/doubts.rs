@@ -1,5 +1,5 @@
-//! What should be looked at: keyframes that are poorly known, loops and ways that the rest speaks against,
-//! scans that hardly fit.
+//! Doubts about a map: uncertain keyframes, loops and path segments that the rest contradicts, and scans with a poor
+//! fit.
 
 use ch16_slam2d::slam::Slam;
 use pr_geom::{math, sort_numbers};
@@ -7,30 +7,30 @@ use pr_geom::{math, sort_numbers};
 use super::{GATE_CHI2, KeyframeQuality, LinkQuality, Quality, RefutedWay};
 use crate::evidence::{PoorFit, TriedLoop};
 
-/// Keyframes that are known so many times worse than the median one are doubted.
+/// Keyframes are doubted if their standard deviation exceeds the median one by this factor.
 const UNSURE_TIMES: f64 = 3.0;
-/// Better known keyframes are not doubted, m.
+/// Keyframes with a smaller standard deviation are not doubted, m.
 const UNSURE_M: f64 = 0.1;
-/// The map does not hold a loop that it is so far from, m and degrees: as far as a false one is.
+/// The map violates a loop that it differs from by more, m and degrees: as much as from a false loop.
 const DISPUTED: (f64, f64) = (0.3, 5.0);
-/// Most doubts of one kind that are spelled out.
+/// Most doubts of one kind that are listed.
 const MOST_DOUBTS: usize = 10;
 
-/// A loop that was closed once and that the map does not hold.
+/// A loop that was accepted once and that the map violates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Disputed {
     /// The newer keyframe.
     from: usize,
     /// The older keyframe.
     to: usize,
-    /// Distance between the place by the loop and that by the map, m.
+    /// Distance between the relative pose by the loop and by the map, m.
     off_m: f64,
     /// Angle between both, degrees.
     off_deg: f64,
 }
 
-/// The loops that were closed while scans came in, and that the graph ended up far from: it took them back,
-/// or others outweigh them.
+/// Loops that were accepted while scans came in and that the final graph violates: they were removed, or others
+/// outweigh them.
 pub(super) fn disputed(slam: &Slam, tried: &[TriedLoop]) -> Vec<Disputed> {
     let poses = slam.graph().poses();
     let closed = tried.iter().filter(|tried| tried.accepted);
@@ -49,7 +49,7 @@ pub(super) fn disputed(slam: &Slam, tried: &[TriedLoop]) -> Vec<Disputed> {
         .collect()
 }
 
-/// A sentence each, the worst of a kind first, and at most ten of a kind.
+/// One sentence per doubt, the worst of a kind first, at most ten of a kind.
 pub(super) fn sentences(quality: &Quality, disputed: &[Disputed], poor: &[PoorFit]) -> Vec<String> {
     let mut doubts = Vec::new();
     for kind in [
@@ -80,7 +80,7 @@ fn unsure(keyframes: &[KeyframeQuality]) -> Vec<String> {
         let worst_m = run.iter().map(|k| keyframes[*k].sigma_m());
         let worst_m = worst_m.fold(0.0, f64::max);
         format!(
-            "keyframes {first} to {last} are known to {worst_m:.2} m only, the median one to {median_m:.2} m"
+            "keyframes {first} to {last} have a standard deviation of up to {worst_m:.2} m; the median is {median_m:.2} m"
         )
     });
     runs.collect()
@@ -107,7 +107,7 @@ fn refuted(ways: &[RefutedWay]) -> Vec<String> {
     ways.sort_by(|a, b| b.chi2.total_cmp(&a.chi2));
     let ways = ways.iter().map(|RefutedWay { from, to, chi2 }| {
         format!(
-            "the way from keyframe {from} to {to} contradicts the rest of the graph: chi-squared {chi2:.1} above {GATE_CHI2:.1}"
+            "the path from keyframe {from} to {to} contradicts the rest of the graph: chi-squared {chi2:.1} above {GATE_CHI2:.1}"
         )
     });
     ways.collect()
@@ -119,7 +119,7 @@ fn not_held(disputed: &[Disputed]) -> Vec<String> {
     let disputed = disputed.iter().map(|disputed| {
         let Disputed { from, to, off_m, off_deg } = disputed;
         format!(
-            "the loop from keyframe {from} to {to} was closed, and the map does not hold it: it is off by {off_m:.2} m and {off_deg:.0}°"
+            "the loop from keyframe {from} to {to} was accepted, but the map violates it by {off_m:.2} m and {off_deg:.0}°"
         )
     });
     disputed.collect()
@@ -130,7 +130,7 @@ fn hardly_fitting(poor: &[PoorFit]) -> Vec<String> {
     poor.sort_by(|a, b| a.score.total_cmp(&b.score));
     let poor = poor.iter().map(|poor| {
         let (stamp_s, share) = (poor.stamp_s, 100.0 * poor.score);
-        format!("of the scan at {stamp_s:.3} s only {share:.0} % fits the map")
+        format!("only {share:.0} % of the scan at {stamp_s:.3} s fits the map")
     });
     poor.collect()
 }
@@ -184,13 +184,13 @@ mod tests {
         assert_eq!(
             sentences(&quality, &disputed, &[poor]),
             [
-                "keyframes 3 to 4 are known to 0.50 m only, the median one to 0.02 m",
+                "keyframes 3 to 4 have a standard deviation of up to 0.50 m; the median is 0.02 m",
                 "the loop from keyframe 9 to 2 contradicts the rest of the graph: chi-squared 40.0 above 16.3",
-                "the way from keyframe 7 to 11 contradicts the rest of the graph: chi-squared 84.4 above 16.3",
-                "the way from keyframe 4 to 5 contradicts the rest of the graph: chi-squared 20.0 above 16.3",
-                "the loop from keyframe 30 to 4 was closed, and the map does not hold it: it is off by 2.35 m and 90°",
-                "the loop from keyframe 31 to 4 was closed, and the map does not hold it: it is off by 0.50 m and 90°",
-                "of the scan at 12.500 s only 31 % fits the map",
+                "the path from keyframe 7 to 11 contradicts the rest of the graph: chi-squared 84.4 above 16.3",
+                "the path from keyframe 4 to 5 contradicts the rest of the graph: chi-squared 20.0 above 16.3",
+                "the loop from keyframe 30 to 4 was accepted, but the map violates it by 2.35 m and 90°",
+                "the loop from keyframe 31 to 4 was accepted, but the map violates it by 0.50 m and 90°",
+                "only 31 % of the scan at 12.500 s fits the map",
             ]
         );
     }

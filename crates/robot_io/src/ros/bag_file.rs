@@ -1,8 +1,7 @@
-//! Bags of ROS 1, version 2.0: records of a header with named fields and data, some of which are chunks
-//! of records.
+//! ROS 1 bags, version 2.0: records with a header of named fields and data; some are chunks of records.
 //!
 //! Source: "Bag format, version 2.0", wiki.ros.org/Bags/Format/2.0. The crate `rosbag` maps files
-//! into memory and needs C, so that it cannot work in a browser; the format is small.
+//! into memory and needs C, which a browser cannot do; the format is small.
 
 mod records;
 
@@ -21,13 +20,13 @@ pub struct BagFile<R> {
     file: FileBytes<R>,
     is_started: bool,
     connections: Connections,
-    /// Records of the chunk under way, from `chunk_at` on.
+    /// Records of the current chunk, from `chunk_at` on.
     chunk: Vec<u8>,
     chunk_at: usize,
 }
 
 impl<R: BufRead> BagFile<R> {
-    /// A reader at the file's start.
+    /// Creates a reader at the file's start.
     pub fn new(source: R) -> Self {
         Self {
             file: FileBytes::new(source),
@@ -38,13 +37,13 @@ impl<R: BufRead> BagFile<R> {
         }
     }
 
-    /// The same reader, which knows topics that are announced later.
+    /// Sets topics that are declared later in the file.
     pub fn knowing(mut self, connections: Connections) -> Self {
         self.connections = connections;
         self
     }
 
-    /// A length and as many bytes, which are added to `taken`; false where they cannot be.
+    /// Appends a length and that many bytes to `taken`; returns false if they are incomplete or too long.
     fn with_length(&mut self, what: &str, taken: &mut Vec<u8>) -> Result<bool, ContainerError> {
         let length = self.file.up_to(4, "a length")?;
         taken.extend_from_slice(&length);
@@ -60,11 +59,11 @@ impl<R: BufRead> BagFile<R> {
         Ok(bytes.len() as u64 == length)
     }
 
-    /// Takes the next record of the file; answers with its message where it is one.
+    /// Reads the next record of the file; returns its message if it is one.
     fn next_record(&mut self) -> Result<Option<Recorded>, ContainerError> {
         let mut taken = Vec::new();
         if !self.with_length("a record's header", &mut taken)? {
-            return self.go_on(&taken, true, "a record's header was expected".to_owned());
+            return self.go_on(&taken, true, "expected a record's header".to_owned());
         }
         let header_end = taken.len();
         let header = taken[4..].to_vec();
@@ -75,16 +74,16 @@ impl<R: BufRead> BagFile<R> {
             };
         let (op, fields) = fields;
         if !self.with_length("a record's data", &mut taken)? {
-            return self.go_on(&taken, true, "a record's data was expected".to_owned());
+            return self.go_on(&taken, true, "expected a record's data".to_owned());
         }
         let data = &taken[header_end + 4..];
-        // An index with another length than its count reaches over what follows it.
+        // A wrong length of an index would swallow the records after it.
         if op == op::INDEX
             && fields
                 .u32("count")
                 .is_ok_and(|count| count as usize * op::INDEX_ENTRY != data.len())
         {
-            let problem = "the length of an index is not that of its entries".to_owned();
+            let problem = "the length of an index does not match its count".to_owned();
             return self.go_on(&taken, false, problem);
         }
         let read = match op {
@@ -93,7 +92,7 @@ impl<R: BufRead> BagFile<R> {
                 self.chunk_at = 0;
                 None
             }),
-            // Version 2.0 keeps messages in chunks; some writers do not.
+            // Version 2.0 stores messages in chunks; some writers do not.
             _ => self.connections.take(&fields, data),
         };
         match read {
@@ -110,7 +109,7 @@ impl<R: BufRead> BagFile<R> {
         Ok(next.is_empty() || begins(&next))
     }
 
-    /// Goes on at the next record behind the first byte of what was taken.
+    /// Resynchronizes at the next record after the first byte of `taken`.
     fn go_on(
         &mut self,
         taken: &[u8],
@@ -128,13 +127,13 @@ impl<R: BufRead> BagFile<R> {
         }
     }
 
-    /// Takes the next record of the chunk.
+    /// Reads the next record of the chunk.
     fn next_of_chunk(&mut self) -> Result<Option<Recorded>, String> {
         let mut rest = &self.chunk[self.chunk_at..];
-        // Whatever is wrong, the next call finds the end of the chunk.
+        // After an error, the next call is at the end of the chunk.
         self.chunk_at = self.chunk.len();
-        let header = piece(&mut rest, "a record's header inside of a chunk")?;
-        let data = piece(&mut rest, "a record's data inside of a chunk")?;
+        let header = piece(&mut rest, "a record's header inside a chunk")?;
+        let data = piece(&mut rest, "a record's data inside a chunk")?;
         self.chunk_at = self.chunk.len() - rest.len();
         self.connections.take(&Fields::parse(header)?, data)
     }
@@ -145,7 +144,7 @@ impl<R: BufRead> Container for BagFile<R> {
         if !self.is_started {
             if self.file.take(MAGIC.len() as u64, "‘#ROSBAG V2.0’")? != MAGIC {
                 return Err(ContainerError::Broken(
-                    "‘#ROSBAG V2.0’ was expected; convert an older bag with rosbag fix".to_owned(),
+                    "expected ‘#ROSBAG V2.0’; convert an older bag with rosbag fix".to_owned(),
                 ));
             }
             self.is_started = true;
@@ -177,7 +176,7 @@ impl<R: BufRead> Container for BagFile<R> {
     }
 }
 
-/// The records of a chunk with this header.
+/// Decompresses a chunk with this header.
 fn unpacked(fields: &Fields<'_>, data: Vec<u8>) -> Result<Vec<u8>, String> {
     let size = (fields.u32("size")? as usize).min(MOST_BYTES);
     match fields.name("compression")?.as_str() {
@@ -185,7 +184,7 @@ fn unpacked(fields: &Fields<'_>, data: Vec<u8>) -> Result<Vec<u8>, String> {
         "lz4" => Packing::Lz4.unpack(&data, size),
         "bz2" => Packing::Bzip2.unpack(&data, size),
         other => Err(format!(
-            "a chunk packed by bz2, lz4 or none was expected, and it is packed by ‘{}’",
+            "expected a chunk compressed by bz2, lz4 or none, found ‘{}’",
             crate::lines::printable(other)
         )),
     }

@@ -1,4 +1,4 @@
-//! The scans of one topic in the order of their stamps, read from the file as they are needed.
+//! Yields the scans of one topic in the order of their stamps, read from the file on demand.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -13,17 +13,17 @@ use super::point_cloud::{cloud_points, point_cloud};
 use super::survey::{SCANS, is_repeated, named, reader};
 use crate::log::{FilePosition, LogNotes};
 
-/// A scan waits for so many others at most that stand after it in the file and before it in time.
+/// Most scans that wait for an earlier one which comes later in the file.
 const MOST_WAITING: usize = 1024;
-/// Angle between the beams of a cloud that is cut to a band of heights, rad: half a degree.
+/// Beam spacing of a cloud that is cut to a height band, rad: half a degree.
 const CLOUD_STEP_RAD: f64 = 0.0087;
 
-/// A scan and its time.
+/// A scan with its stamp.
 #[derive(Clone, Debug)]
 pub struct StampedScan {
-    /// When it was measured, s.
+    /// Stamp, s.
     pub stamp_s: f64,
-    /// The scan where its laser sits.
+    /// The scan with its mounting.
     pub scan: LaserScan,
 }
 
@@ -55,19 +55,19 @@ pub struct ScanCursor<'a> {
     container: Box<dyn Container + 'a>,
     scans: PlannedScans,
     heights_m: Option<(f64, f64)>,
-    /// Earliest stamp of any message after this one, by the number of the message, s.
+    /// Earliest stamp of all later messages, by message number, s.
     earliest_after_s: Vec<f64>,
     read: usize,
     /// Checksum of the last message.
     last_sum: Option<u32>,
     waiting: BinaryHeap<Waiting>,
     is_done: bool,
-    /// What is wrong with the fields of the first scan that has a fault, a sentence each.
+    /// Problems in the fields of the first faulty scan, one sentence each.
     said: Vec<String>,
 }
 
 impl<'a> ScanCursor<'a> {
-    /// A cursor at the first scan.
+    /// Creates a cursor at the first scan.
     pub fn new(
         container: Box<dyn Container + 'a>,
         scans: PlannedScans,
@@ -98,7 +98,7 @@ impl<'a> ScanCursor<'a> {
         }
     }
 
-    /// The topic with the times of its scans.
+    /// The topic with the stamps of its scans.
     pub fn scans(&self) -> &PlannedScans {
         &self.scans
     }
@@ -108,12 +108,12 @@ impl<'a> ScanCursor<'a> {
         self.container.offset()
     }
 
-    /// What is wrong with the fields of scans so far.
+    /// Problems in the fields of scans so far.
     pub fn said(&self) -> &[String] {
         &self.said
     }
 
-    /// The next scan in the order of time; none at the end, which a survey has told of.
+    /// Returns the next scan in the order of time; `None` at the end.
     pub fn next(&mut self, notes: &mut LogNotes) -> Option<StampedScan> {
         loop {
             let bound_s = match self.read.checked_sub(1) {
@@ -133,7 +133,7 @@ impl<'a> ScanCursor<'a> {
             }
             match self.container.next_message() {
                 Ok(Some(message)) => self.take(&message, notes),
-                // What damage there is, the survey has told.
+                // The survey has reported the damage already.
                 Err(error) if error.goes_on() => {}
                 Ok(None) | Err(_) => self.is_done = true,
             }

@@ -1,4 +1,4 @@
-//! The files of a recording: opened for each pass, one after the other.
+//! The files of a recording, opened in order for each pass.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -14,19 +14,19 @@ use super::wire::Wire;
 use crate::log_bytes::LogBytes;
 use crate::log_format::LogFormat;
 
-/// The first bytes of what zstd has packed; CDR begins with a zero.
+/// First bytes of zstd data; CDR begins with a zero.
 const ZSTD: &[u8] = b"\x28\xb5\x2f\xfd";
 
-/// Files of one recording, in their order.
+/// Files of one recording, in order.
 #[derive(Clone)]
 pub struct RosFiles<'a> {
     parts: Vec<LogBytes<'a>>,
-    /// Topics of a part that are announced only behind damage.
+    /// Topics of a file that are declared only after damage.
     announced: Rc<RefCell<BTreeMap<usize, Announced>>>,
 }
 
 impl<'a> RosFiles<'a> {
-    /// The files of a recording.
+    /// Creates from the files of a recording.
     pub fn new(parts: Vec<LogBytes<'a>>) -> Self {
         Self {
             parts,
@@ -34,7 +34,7 @@ impl<'a> RosFiles<'a> {
         }
     }
 
-    /// Their messages from the first on.
+    /// Iterates over their messages from the start.
     pub fn messages(&self) -> Messages<'a> {
         Messages {
             files: self.clone(),
@@ -46,11 +46,11 @@ impl<'a> RosFiles<'a> {
     }
 }
 
-/// The messages of several files, one file after the other.
+/// The messages of several files in sequence.
 pub struct Messages<'a> {
     files: RosFiles<'a>,
     opened: usize,
-    /// Whether topics were met behind messages that were lost for want of them.
+    /// Whether topics were found after messages that were lost without them.
     learned: bool,
     current: Option<Box<dyn Container + 'a>>,
     /// Bytes of the files before.
@@ -58,12 +58,12 @@ pub struct Messages<'a> {
 }
 
 impl Messages<'_> {
-    /// Whether another pass finds messages that this one lost for want of their topic.
+    /// Whether another pass can read messages that this one lost because their topic was unknown.
     pub fn has_learned(&self) -> bool {
         self.learned
     }
 
-    /// Keeps what the file under way has announced too late.
+    /// Stores topics that the current file declared too late.
     fn learn(&mut self) {
         let announced = self
             .current
@@ -76,7 +76,7 @@ impl Messages<'_> {
         }
     }
 
-    /// Opens the next file, where there is one.
+    /// Opens the next file, if there is one.
     fn open_next(&mut self) -> Result<(), ContainerError> {
         self.learn();
         self.before = self.offset();
@@ -113,7 +113,7 @@ impl Container for Messages<'_> {
                 match current.next_message() {
                     Ok(Some(message)) => return unpacked(message).map(Some),
                     Ok(None) => {}
-                    // A file that breaks off does not end those after it.
+                    // A truncated file does not end those after it.
                     Err(ContainerError::CutOff(problem) | ContainerError::Broken(problem))
                         if self.opened < self.files.parts.len() =>
                     {
@@ -141,7 +141,7 @@ impl Container for Messages<'_> {
     }
 }
 
-/// A message that rosbag2 has packed by itself, unpacked.
+/// Decompresses a message that rosbag2 compressed individually.
 fn unpacked(mut message: Recorded) -> Result<Recorded, ContainerError> {
     if message.wire == Wire::Cdr && message.bytes.starts_with(ZSTD) {
         let unpacked = Packing::Zstd.unpack(&message.bytes, MOST_BYTES);

@@ -1,4 +1,4 @@
-//! Frames of a recording, whatever its container.
+//! Frames of a ROS recording, for all containers.
 
 use std::io::ErrorKind;
 
@@ -15,10 +15,10 @@ use crate::log::{BrokenRecord, FilePosition, LogError, LogFrame, LogNotes, LogOp
 use crate::log_bytes::LogBytes;
 use crate::remark::{Part, Remark};
 
-/// Scans of two lasers belong together if their stamps differ by less than this share of a period.
+/// Scans of two lasers are merged if their stamps differ by less than this share of a period.
 const TOGETHER: f64 = 0.6;
 
-/// Reads a recording: once to see what is in it, and once more for its scans.
+/// Reads a recording in two passes: a survey, and the scans.
 pub struct RosReader<'a> {
     files: RosFiles<'a>,
     name: String,
@@ -35,7 +35,7 @@ struct Reading<'a> {
     others: Vec<Companion<'a>>,
 }
 
-/// Another laser, and its scans nearest to that of the first.
+/// Another laser, and its scans nearest in time to those of the first.
 struct Companion<'a> {
     cursor: ScanCursor<'a>,
     last: Option<StampedScan>,
@@ -43,7 +43,7 @@ struct Companion<'a> {
 }
 
 impl<'a> RosReader<'a> {
-    /// A reader of the files of a recording; `name` is what errors call it.
+    /// Creates a reader of the files of a recording; errors contain `name`.
     #[must_use]
     pub fn new(files: Vec<LogBytes<'a>>, name: &str, options: &LogOptions) -> Self {
         Self {
@@ -56,7 +56,7 @@ impl<'a> RosReader<'a> {
         }
     }
 
-    /// Goes through all messages.
+    /// Surveys all messages.
     fn look_through(&mut self) -> Result<(Survey, Messages<'a>), LogError> {
         let mut survey = Survey::default();
         let mut messages = self.files.messages();
@@ -80,11 +80,11 @@ impl<'a> RosReader<'a> {
         Ok((survey, messages))
     }
 
-    /// The first pass: what is in the recording, and what is taken of it.
+    /// Surveys the recording and selects from it.
     fn survey(&mut self) -> Result<Reading<'a>, LogError> {
         let (mut survey, mut messages) = self.look_through()?;
         if messages.has_learned() {
-            // Damage took the names of topics; now that they are known, its neighbours can be read.
+            // Damage hid topics; now that they are known, the messages around it can be read.
             self.notes = LogNotes::default();
             (survey, messages) = self.look_through()?;
         }
@@ -120,11 +120,11 @@ impl<'a> RosReader<'a> {
         })
     }
 
-    /// Takes what is wrong with a container: an error of the system ends the reading, all else is a note.
-    /// Returns whether messages may follow.
+    /// Handles an error of a container: a system error ends the reading, others become notes. Returns whether messages
+    /// may follow.
     fn take_error(&mut self, error: ContainerError, place: FilePosition) -> Result<bool, LogError> {
         match error {
-            // Packed bytes that break off are no fault of the system.
+            // Truncated compressed data is not a system error.
             ContainerError::Io(source)
                 if matches!(
                     source.kind(),
@@ -211,7 +211,7 @@ impl LogReader for RosReader<'_> {
 }
 
 impl Reading<'_> {
-    /// The next scan of the first laser, with those of the others of its time.
+    /// The next scan of the first laser, merged with those of the others at its time.
     fn next(&mut self, notes: &mut LogNotes) -> Option<StampedScan> {
         let mut scan = self.anchor.next(notes)?;
         if self.others.is_empty() {
@@ -229,7 +229,7 @@ impl Reading<'_> {
             if (near.stamp_s - scan.stamp_s).abs() > most_apart_s {
                 continue;
             }
-            // Where the body was when the other laser looked, seen from where it is now.
+            // Pose of the body at the other laser's scan, relative to the current body.
             let of_other = wheels.and_then(|wheels| wheels.at(near.stamp_s));
             let moved = of_anchor
                 .zip(of_other)
@@ -243,7 +243,7 @@ impl Reading<'_> {
         Some(scan)
     }
 
-    /// Adds what is wrong with the fields of scans.
+    /// Adds problems in the fields of scans to the notes.
     fn tell_fields(&self, notes: &mut LogNotes) {
         let cursors =
             std::iter::once(&self.anchor).chain(self.others.iter().map(|other| &other.cursor));
@@ -256,7 +256,7 @@ impl Reading<'_> {
     }
 }
 
-/// The points of a scan on the body.
+/// The points of a scan in the body frame.
 fn points_of(scan: &LaserScan) -> Vec<Point2<f64>> {
     let beams = scan.ranges_m.iter().enumerate();
     let seen = beams.filter(|&(_, &range_m)| scan.is_return(range_m));
@@ -269,7 +269,7 @@ fn points_of(scan: &LaserScan) -> Vec<Point2<f64>> {
 }
 
 impl Companion<'_> {
-    /// The scan nearest to this time, which never goes back.
+    /// The scan nearest to this time; never goes back.
     fn nearest(&mut self, stamp_s: f64, notes: &mut LogNotes) -> Option<&StampedScan> {
         while self
             .next

@@ -1,4 +1,4 @@
-//! The sections of the file, in their order.
+//! The sections of a session file, in order.
 
 use std::sync::Arc;
 
@@ -14,18 +14,18 @@ use pr_geom::{SE2, Vector3};
 use super::bytes::{Broken, Cursor, Writer};
 use super::{MappedGraph, Session, pending, scans};
 
-/// Most bytes of a keyframe's scan, on the mean: with its node, its pose on the map, eight places
-/// of scans and five edges it stays below 3,000.
+/// Mean bytes per keyframe's scan: with its node, its pose on the map, eight scan poses
+/// and five edges a keyframe stays below 3,000.
 pub const SCAN_BYTES: usize = 2110;
-/// Two ends, the kind, the measurement, the information.
+/// Two nodes, the kind, the measurement, the information.
 const EDGE_BYTES: usize = 105;
-/// Whether it is fixed, the pose, the frame, the stamp.
+/// Fixed flag, pose, frame, stamp.
 const NODE_BYTES: usize = 41;
-/// Three numbers of 64 bits.
+/// Three 64-bit floats.
 const POSE_BYTES: usize = 24;
 /// Stamp, keyframe, pose.
 const PLACE_BYTES: usize = 36;
-/// Frame and pose of a sweep, and the least that a scan takes.
+/// Frame and pose of a sweep, and the minimum of a scan.
 const SWEEP_BYTES: usize = 46;
 
 pub fn write(session: &Session, out: &mut Writer) {
@@ -131,7 +131,7 @@ fn write_edges(edges: &[EdgeView], out: &mut Writer) {
             EdgeKind::Loop => 1,
         });
         out.pose(&edge.measurement);
-        // All nine: the two triangles may differ in a last bit.
+        // All nine entries: the two triangles may differ in the last bit.
         out.matrix(&edge.information);
     }
 }
@@ -141,7 +141,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
         let start = from.pose()?;
         let json = from.take(from.left())?;
         let robot: RobotConfig = serde_json::from_slice(json)
-            .map_err(|problem| from.broken(format!("parameters were expected: {problem}")))?;
+            .map_err(|problem| from.broken(format!("expected parameters: {problem}")))?;
         let robot = crate::settings::checked(robot).map_err(|problem| from.broken(problem))?;
         Ok(SlamConfig {
             start,
@@ -230,7 +230,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
         })
     })?;
     if from.left() > 0 {
-        return Err(from.broken("the end of the file was expected"));
+        return Err(from.broken("expected the end of the file"));
     }
     Ok(Session {
         driven: SlamSnapshot {
@@ -253,7 +253,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
     })
 }
 
-/// What the estimator counts.
+/// Counters of the estimator.
 struct Counters {
     frames: usize,
     last_stamp_s: f64,
@@ -305,7 +305,9 @@ fn read_edges(from: &mut Cursor<'_>) -> Result<Vec<EdgeView>, Broken> {
         let kind = match from.u8()? {
             0 => EdgeKind::Odometry,
             1 => EdgeKind::Loop,
-            other => return Err(from.broken(format!("an edge of kind 0 or 1, not {other}"))),
+            other => {
+                return Err(from.broken(format!("expected an edge of kind 0 or 1, found {other}")));
+            }
         };
         Ok(EdgeView {
             id: number.into(),

@@ -12,7 +12,7 @@ use crate::log::LogFrame;
 use crate::run::{LogRun, OdometryUse};
 use crate::settings::{SETTINGS, Setting};
 
-/// A room of 8 m × 6 m seen from a circle in it; the wheels claim a little too much of each turn.
+/// A room of 8 m × 6 m seen from a circle in it; odometry overestimates each turn slightly.
 fn frame(step: usize, beams: usize) -> LogFrame {
     let way = |scale: f64| SE2::exp(&(Vector3::new(1.5, 0.0, scale) * (0.06 * step as f64)));
     let pose = SE2::new(4.0, 1.5, 0.0) * way(1.0);
@@ -64,7 +64,7 @@ fn what_is_saved_loads_to_the_same_and_is_saved_to_the_same_bytes() {
             let bytes = session.to_bytes();
             let mut loaded = Session::read(Bytes::new(&bytes), "x").unwrap();
             assert!(loaded.to_bytes() == bytes, "{beams} beams");
-            // Scans of more than 131 points are kept with fewer bits; nothing else is.
+            // Scans of more than 131 points are stored with fewer bits; everything else is exact.
             if beams > 120 {
                 let pairs = loaded.driven.keyframes.iter_mut();
                 for (a, b) in pairs.zip(&session.driven.keyframes) {
@@ -84,7 +84,7 @@ fn a_run_that_goes_on_from_a_file_ends_in_the_bits_of_one_that_was_never_interru
     let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
     go_on(&mut second, 120, 80..150);
     assert_eq!(saved(&second), saved(&whole));
-    // So it is once both have ended, and from there on again.
+    // The same holds after both have ended, and when they continue.
     whole.finish();
     second.finish();
     assert_eq!(saved(&second), saved(&whole));
@@ -102,14 +102,14 @@ fn a_log_of_another_scanner_is_told() {
         go_on(&mut second, beams, 80..90);
         let sentences = second.sentences("log");
         assert_eq!(sentences.len(), told, "{sentences:?}");
-        let is_said = |said: &String| said.contains("stand 4.00° apart");
+        let is_said = |said: &String| said.contains("a step of 4.00°");
         assert!(sentences.iter().all(is_said), "{sentences:?}");
     }
 }
 
 #[test]
 fn loops_that_wait_are_saved_and_wait_on() {
-    // Never sure: every loop waits for others.
+    // A zero radius: every loop waits for confirmation.
     let settings = [
         ("loops.unconfirmed_gate_radius_m", 0.0),
         ("loops.min_margin", 0.0),
@@ -133,7 +133,7 @@ fn loops_that_wait_are_saved_and_wait_on() {
     let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
     go_on(&mut second, 120, 125..140);
     assert_eq!(saved(&second), saved(&whole));
-    // At the end the loops that wait are closed or dropped, in the same way.
+    // At the end, pending loops are accepted or dropped in the same way.
     whole.finish();
     second.finish();
     assert_eq!(saved(&second), saved(&whole));
@@ -150,7 +150,7 @@ fn a_keyframe_takes_three_kilobytes_at_most_whatever_the_sensor() {
         let scans_m = session.driven.keyframes.iter().map(|k| k.scan.len());
         let (points, keyframes) = (scans_m.max().unwrap(), session.driven.keyframes.len());
         let window = &session.driven.front_end.scans;
-        // The window is kept exactly, whatever the map's size.
+        // The window is stored exactly, whatever the map's size.
         let fixed = with_section(&session.to_bytes(), b"FRNT", |_| Vec::new());
         assert!(window.len() <= 16);
         assert!(session.places.len() <= 8 * keyframes + 40);
@@ -166,7 +166,7 @@ fn a_keyframe_takes_three_kilobytes_at_most_whatever_the_sensor() {
             if beams < 2880 {
                 assert_eq!(stored.scan.len(), seen.scan.len());
             }
-            // More points than fit are thinned, and not to nothing.
+            // More points than fit are downsampled, but not too much.
             assert!(stored.scan.len() > 2 * seen.scan.len() / 3);
             if stored.scan.len() == seen.scan.len() {
                 for (a, b) in stored.scan.iter().zip(seen.scan.iter()) {
@@ -214,7 +214,7 @@ fn scans_of_another_make_keep_their_normals_and_crowded_ones_are_thinned() {
     }
 }
 
-/// The file with other content in a section.
+/// Replaces the content of a section.
 fn with_section(bytes: &[u8], name: &[u8; 4], change: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
     let at = bytes.windows(4).position(|four| four == name).unwrap() + 4;
     let length = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
@@ -277,7 +277,7 @@ fn is_a_sentence(error: &str) -> bool {
         && (error.contains("again") || error.contains("give ") || error.contains("use the program"))
 }
 
-/// The file with a checksum that fits to what stands in it.
+/// Recomputes the checksum.
 fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
     let end = bytes.len() - TAIL_BYTES;
     let sum = checksum(&bytes[..end]);
@@ -341,11 +341,11 @@ fn what_no_run_can_have_left_is_refused() {
     let last_s = good.driven.last_stamp_s;
     refused(
         &|x| x.places.last_mut().unwrap().stamp_s = last_s + 1.0,
-        "places of scans are not in order",
+        "poses of scans are not in order",
     );
     refused(
         &|x| x.places[0].keyframe = 1,
-        "places of scans are not in order",
+        "poses of scans are not in order",
     );
 }
 
@@ -360,17 +360,17 @@ fn what_is_no_session_is_told_from_what_was_one() {
     longer.push(0);
     for (file, said) in [
         (&b""[..], "x is empty; give a session"),
-        (b"FLASER 180", "x is no session"),
+        (b"FLASER 180", "x is not a session"),
         (b"SLAM2D\r\n", "x ends at byte 8 of 20"),
         (
             &newer,
-            "x is a session of version 7, and this program reads version 3",
+            "x is a session of version 7, but this program reads version 3",
         ),
         (
             &older,
-            "x is a session of version 1, and this program reads version 3",
+            "x is a session of version 1, but this program reads version 3",
         ),
-        (&longer, "x goes on after its end at byte"),
+        (&longer, "x continues after its end at byte"),
     ] {
         let error = Session::of_bytes(file, "x").unwrap_err().to_string();
         assert!(error.starts_with(said), "{error}");
@@ -382,7 +382,7 @@ fn every_parameter_is_written_and_read() {
     for setting in SETTINGS {
         let value = setting.value(&RobotConfig::default()) + 1.0;
         let mut run = LogRun::new(OdometryUse::Log).with_setting(setting, value);
-        // Few enough points to be kept to the bit.
+        // Few enough points to be stored exactly.
         run.step(frame(0, 120)).unwrap();
         let session = Session::of_bytes(&saved(&run), "x").unwrap();
         let robot = session.driven.config.robot.unwrap();

@@ -1,4 +1,4 @@
-//! Each fault of a stream's stamps, and the stamps that come of it.
+//! Each fault of a stream's stamps, and its correction.
 
 use super::*;
 
@@ -26,7 +26,7 @@ fn good_stamps_stay_as_they_are_through_a_pause_and_with_late_recording() {
         stamps[k] += 50.0;
         recorded[k] += 50.0;
     }
-    // The recorder was held up for a while.
+    // The recorder was delayed for a while.
     for recorded_s in &mut recorded[10..16] {
         *recorded_s += 3.0;
     }
@@ -80,7 +80,7 @@ fn a_clock_that_steps_is_put_back() {
         assert_eq!(mended.steps[0].at, 33);
         assert_near(&mended, &good, 1e-6);
     }
-    // Without the recording's time, only a step back shows.
+    // Without the time of recording, only a step back shows.
     let (good, _) = stream(60);
     let mut stamps = good.clone();
     stamps[33..]
@@ -109,7 +109,7 @@ fn coarse_stamps_are_spread_in_their_order() {
     let mended = MendedStamps::new(&stamps, &[f64::NAN; 40]);
     assert_eq!(mended.equal, 38);
     assert!(mended.stamps_s.windows(2).all(|two| two[0] < two[1]));
-    // Ten a second in whole seconds.
+    // Ten per second in whole seconds.
     let stamps: Vec<f64> = (0..40).map(|k| f64::from(100 + k / 10)).collect();
     let mended = MendedStamps::new(&stamps, &[f64::NAN; 40]);
     let expected: Vec<f64> = (0..30).map(|k| 100.0 + 0.1 * f64::from(k)).collect();

@@ -1,4 +1,4 @@
-//! What options could choose in a recording, and what they ask for in vain.
+//! Choices for options in a recording, and requested names that do not exist.
 
 use std::collections::BTreeSet;
 
@@ -7,10 +7,10 @@ use super::wheels::Wheels;
 use crate::log::{LogOffer, LogOption, LogOptions};
 use crate::ros::survey::{ODOMETRY, SCANS, Survey};
 
-/// So many topics or frames are offered for an option.
+/// Most topics or frames listed for an option.
 const MOST_OFFERED: usize = 100;
 
-/// What each option could choose, and what is taken.
+/// Lists the choices for each option, and the one in use.
 pub fn list(
     survey: &Survey,
     scans: Option<&str>,
@@ -55,7 +55,7 @@ pub fn list(
         .to_vec()
 }
 
-/// An option that asks for what is not there: the odometry's topic or frame, or the body's frame.
+/// Returns the first option (odometry topic, odometry frame or body frame) whose name does not exist.
 pub fn missing(
     survey: &Survey,
     options: &LogOptions,

@@ -1,4 +1,4 @@
-//! Which odometry is taken, and how its clock and that of the scans go together.
+//! Selects the odometry, and aligns its clock with that of the scans.
 
 use super::TRANSFORMS;
 use crate::lines::listed;
@@ -10,26 +10,26 @@ use crate::wheel_poses::{WheelPoses, jumps_remark};
 
 /// Clocks that differ by less are one clock with a delay, s.
 const SAME_CLOCK_S: f64 = 1.0;
-/// A stamp that is later than its recording by more is of another clock, s.
+/// A stamp that is later than its recording by more is from another clock, s.
 const AHEAD_S: f64 = 0.1;
-/// Odometry of fewer scans than this share does not cover them.
+/// Odometry at fewer scans than this share does not cover them.
 const COVERS: f64 = 0.8;
 
-/// The odometry that is taken.
+/// The selected odometry.
 pub struct Wheels<'a> {
-    /// Its topic.
+    /// Topic.
     pub topic: String,
-    /// Its poses.
+    /// Poses.
     pub track: &'a Track,
-    /// Their stamps.
+    /// Stamps of the poses.
     pub clock: MendedStamps,
     /// Whether it is a transform.
     pub is_transform: bool,
-    /// What else might have been taken.
+    /// A remark on other candidates.
     pub others: Option<String>,
 }
 
-/// The odometry that moves, leads to the laser and covers the scans; none where there is none.
+/// Selects odometry that moves, is connected to the laser and covers the scans; `None` if there is none.
 pub fn chosen<'a>(
     survey: &'a Survey,
     options: &LogOptions,
@@ -49,7 +49,7 @@ pub fn chosen<'a>(
         .chain(transforms)
         .filter(|(topic, track, is_transform)| {
             let is_wanted = wanted.is_none_or(|wanted| wanted == topic);
-            // A transform of one message is fixed, whatever its name.
+            // A transform with one message is static, whatever its name.
             is_wanted && (!is_transform || track.moves || track.poses.len() > 2)
         });
     let scored = candidates.map(|(topic, track, is_transform)| {
@@ -78,19 +78,19 @@ pub fn chosen<'a>(
         clock,
         is_transform,
         others: (!others.is_empty()).then(|| {
-            format!("there is other odometry: {others}; choose with --odom-topic or --odom-frame")
+            format!("there are other odometry sources: {others}; choose with --odom-topic or --odom-frame")
         }),
     })
 }
 
-/// Whether the body that moves carries the laser.
+/// Whether the moving body carries the laser.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Leads {
-    /// The transforms know the body, and no way to the laser.
+    /// The transforms contain the body, but do not connect it to the laser.
     Not,
-    /// No transform names the body.
+    /// No transform contains the body.
     Perhaps,
-    /// Transforms lead to the laser.
+    /// Transforms connect the body to the laser.
     Surely,
 }
 
@@ -112,7 +112,7 @@ fn leads_to(survey: &Survey, track: &Track, sensor: &str) -> Leads {
     }
 }
 
-/// Whether the poses cover the time of most scans, each by the recording's own time where it is known.
+/// Whether the poses cover the time of most scans, by the recording's time if it is known.
 fn covers(clock: &MendedStamps, scans: &MendedStamps) -> bool {
     let offset_s = clock_offset_s(scans, clock).unwrap_or(0.0);
     let (first_s, last_s) = ends_s(&clock.stamps_s);
@@ -134,11 +134,11 @@ fn ends_s(stamps_s: &[f64]) -> (f64, f64) {
     )
 }
 
-/// How far the scans' clock is ahead of that of the odometry, if the recording's time shows it, s.
+/// Offset of the scans' clock from the odometry's clock, if the recording's time shows it, s.
 fn clock_offset_s(scans: &MendedStamps, wheels: &MendedStamps) -> Option<f64> {
     let (of_scans, of_wheels) = (scans.ahead_s?, wheels.ahead_s?);
     let offset_s = of_scans - of_wheels;
-    // What is stamped after it was recorded was stamped by another clock; before it, it may have been delayed.
+    // A stamp after its recording is from another clock; one before it may be delayed.
     let least_s = if of_scans.max(of_wheels) > AHEAD_S {
         AHEAD_S
     } else {
@@ -149,15 +149,15 @@ fn clock_offset_s(scans: &MendedStamps, wheels: &MendedStamps) -> Option<f64> {
 
 /// Scans and odometry on one clock.
 pub struct Aligned {
-    /// The poses on that clock.
+    /// Odometry poses on that clock.
     pub poses: WheelPoses,
-    /// What is added to the scans' stamps, s.
+    /// Offset added to the scans' stamps, s.
     pub scans_by_s: f64,
-    /// What was done.
+    /// Remarks on the correction.
     pub said: Vec<Remark>,
 }
 
-/// Puts both on the clock of the recording, or on that of the odometry.
+/// Aligns both to the clock of the recording, or to that of the odometry.
 pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
     let clock = &wheels.clock;
     let (mut scans_by_s, mut wheels_by_s, mut said) = (0.0, 0.0, Vec::new());
@@ -174,7 +174,7 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
         said.push(Remark::mended(
             Part::Clocks,
             format!(
-                "the clocks of scans and odometry differ by {:.1} s, as the recording's own time shows; that of the {whose} is moved. Set both computers' clocks by NTP",
+                "the clocks of scans and odometry differ by {:.1} s, by the time of recording; that of the {whose} was shifted. Synchronize both computers' clocks by NTP",
                 offset_s.abs()
             ),
         ));
@@ -186,7 +186,7 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
             said.push(Remark::wrong(
                 Part::Clocks,
                 format!(
-                    "the clocks of scans and odometry differ by {:.0} s, and the recording does not show which is right; set both computers' clocks by NTP and record again, or go by scans alone with {NO_ODOMETRY}",
+                    "the clocks of scans and odometry differ by {:.0} s, and the recording does not show which is right; synchronize both computers' clocks by NTP and record again, or use scans alone with {NO_ODOMETRY}",
                     apart_s.abs()
                 ),
             )
