@@ -1,13 +1,13 @@
-//! Links and attributes: one text for one parameter of one widget.
+//! Links and attributes: a text for a parameter of a widget.
 //!
-//! The first byte names the widget, the second the parameter, the rest is the text.
+//! The first byte selects the widget, the second the parameter, the rest is the text.
 
 use kit::param::{ParamKind, ParamSpec};
 use kit::values::Values;
 
 use widgets::registry::SPECS;
 
-/// A text is taken or refused. What is taken lies in the range and reads back to the same bits.
+/// A text is accepted or rejected. An accepted value is in its range and survives a round trip to the same bits.
 pub fn fuzz(data: &[u8]) {
     let [widget, param, text @ ..] = data else {
         return;

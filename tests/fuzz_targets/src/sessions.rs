@@ -1,6 +1,6 @@
-//! Saved sessions: loaded, written back, gone on from, mapped, and localized on.
+//! Saved sessions: loaded, written, continued, mapped, and used for localization.
 //!
-//! The first byte says how much of the file is put right, see [`crate::sealed`]; the rest is the file,
+//! The first byte selects how much of the file is repaired, see [`crate::sealed`]; the rest is the file
 //! or its sections.
 
 use std::f64::consts::TAU;
@@ -19,16 +19,16 @@ use crate::runs::{assert_finite, assert_loads, drive};
 use crate::sealed::{sealed, with_lengths};
 use crate::sentences::{NAME, assert_refusal, assert_sentence};
 
-/// Larger sessions are loaded and written, but not gone on from: the target is about the file.
+/// Larger sessions are loaded and written, but not continued: this target tests the file format.
 const MAX_KEYFRAMES: usize = 6;
-/// Nor are those with more points of a scan.
+/// Sessions with more points in a scan are not continued either.
 const MAX_POINTS: usize = 64;
-/// Nor are those with larger numbers in their parameters: iterations, say, take the time they are given.
+/// Sessions with larger parameters are not continued either: iterations, for example, would take too long.
 const MAX_SETTING: f64 = 100.0;
-/// Side of a map's cells, m.
+/// Cell size of a map, m.
 const CELL_M: f64 = 0.5;
 
-/// A file is refused in one sentence, or writes back to what loads to the same, and can be used.
+/// A file is rejected in one sentence, or it survives a round trip and can be used.
 pub fn fuzz(data: &[u8]) {
     let Some((&how, text)) = data.split_first() else {
         return;
@@ -46,7 +46,7 @@ pub fn fuzz(data: &[u8]) {
     let written = session.to_bytes();
     let again = Session::of_bytes(&written, NAME).expect("what was written can be loaded");
     assert!(again.to_bytes() == written);
-    // Debug prints every bit of a number, and of what is none.
+    // Debug prints every bit of a number, and also NaN.
     assert_eq!(format!("{again:?}"), format!("{session:?}"));
     if is_small(&session) {
         go_on(&session);
@@ -67,7 +67,7 @@ fn is_small(session: &Session) -> bool {
         && values.all(|value| value <= MAX_SETTING)
 }
 
-/// The next scans: a round room, and the wheels drive on.
+/// Further scans: a round room, with odometry that moves on.
 fn frames(session: &Session) -> impl Iterator<Item = LogFrame> + '_ {
     (1..=2).map(|step| LogFrame {
         stamp_s: session.driven.last_stamp_s + 0.25 * f64::from(step),
@@ -82,7 +82,7 @@ fn frames(session: &Session) -> impl Iterator<Item = LogFrame> + '_ {
 
 fn go_on(session: &Session) {
     match LogRun::resume(session, OdometryUse::Log) {
-        // Numbers at the end of what can be loaded may grow beyond it.
+        // Numbers at the limit of what can be loaded may grow beyond it.
         Ok(mut run) => {
             let saved = drive(&mut run, frames(session)).expect("a run goes on");
             if let Err(refusal) = Session::of_bytes(&saved, NAME) {

@@ -1,8 +1,8 @@
-//! A log on its way to a map, one piece of work at a time, and the orders of its reader.
+//! Maps a log one piece of work at a time, and executes the user's orders.
 //!
-//! [`Engine::step`] reads a scan, links a keyframe or paints a few scans, and says whether there is
-//! more; [`Engine::updates`] tells what changed. The file is read as far as a step needs it, so that its
-//! size costs no memory. Nothing here asks a clock: who calls decides how long a slice is.
+//! [`Engine::step`] reads a scan, links a keyframe or paints a few scans, and returns whether there is
+//! more work; [`Engine::updates`] returns what changed. The file is read on demand, so its
+//! size costs no memory. The engine reads no clock: the caller decides how long a time slice is.
 
 mod checking;
 mod examining;
@@ -31,12 +31,12 @@ use crate::update::{Stage, Update};
 use crate::whereabouts::Whereabouts;
 use examining::Examination;
 
-/// What is under way.
+/// Current work.
 enum Work<'a> {
-    /// The doctor looks through all of the log before it is mapped.
+    /// The doctor checks the whole log before it is mapped.
     Examining(Box<Examination<'a>>),
     Reading(Box<dyn LogReader + 'a>),
-    /// No scan follows: the last loops are closed.
+    /// No scan follows: the last loops are tested.
     Finishing,
     Solving(Box<GraphSolving>),
     Checking,
@@ -44,7 +44,7 @@ enum Work<'a> {
     Failed(String),
 }
 
-/// Which parts changed since they were told.
+/// Parts that changed since the last update.
 #[derive(Clone, Copy, Debug, Default)]
 struct News {
     file: bool,
@@ -54,23 +54,23 @@ struct News {
     grade: bool,
 }
 
-/// A log under way.
+/// A log with its map.
 pub struct Engine<'a> {
     name: String,
     size_bytes: u64,
     work: Work<'a>,
     run: LogRun,
     recorder: RunRecorder,
-    /// The graph of a file that has no scans.
+    /// The graph of a file without scans.
     graph: Option<PoseGraph>,
-    /// Share of each keyframe's scan that fits; NaN where none was registered.
+    /// Inlier share of each keyframe's scan; NaN if it was not registered.
     fits: Vec<f64>,
-    /// σ of each keyframe, m, once it was computed.
+    /// Standard deviation of each keyframe, m, once it is computed.
     sigmas_m: Vec<f64>,
-    /// Which nodes held the gauge before any pin.
+    /// Nodes that were fixed before any pin.
     fixed: Vec<bool>,
     links: Vec<Link>,
-    /// Whether they stand in the order of doubt, by which the reader names them.
+    /// Whether the loops are in their final order, in which orders refer to them.
     is_ranked: bool,
     pins: BTreeMap<usize, SE2>,
     picture: MapPicture,
@@ -78,23 +78,23 @@ pub struct Engine<'a> {
     doubts: Vec<String>,
     look_into: Vec<usize>,
     reference: Option<(String, Reference)>,
-    /// The picture of the map that was saved last, which `map.yaml` names.
+    /// The last saved picture of the map, to which `map.yaml` refers.
     image: &'static str,
     /// Another log on this map.
     whereabouts: Option<Whereabouts<'a>>,
     has_scans: bool,
-    /// Scans of a session that was opened.
+    /// Number of scans of an opened session.
     scans_before: usize,
     news: News,
-    /// Updates that wait to be taken, answers among them.
+    /// Pending updates, including answers.
     waiting: Vec<Update>,
 }
 
 impl<'a> Engine<'a> {
-    /// Opens what was given, with the options that were chosen.
+    /// Opens the given files with the chosen options.
     ///
     /// # Errors
-    /// One sentence where it is nothing that can be mapped, solved or looked at.
+    /// If they cannot be mapped, optimized or viewed; the message is one sentence.
     pub fn open(given: Given<'a>, choices: &Choices) -> Result<Self, String> {
         let name = given.name.clone();
         let (name, size_bytes) = (name.as_str(), given.size_bytes);
@@ -102,7 +102,7 @@ impl<'a> Engine<'a> {
             return Err("no file was given".to_owned());
         };
         let told = |problem: io::Error| match bytes.is_packed() {
-            Ok(true) => format!("{name} does not unpack: {problem}; copy it once more"),
+            Ok(true) => format!("{name} cannot be decompressed: {problem}; copy it again"),
             _ => format!("{name} cannot be read: {problem}; it may have moved or changed"),
         };
         let mut source = bytes.stream().map_err(told)?;
@@ -143,7 +143,7 @@ impl<'a> Engine<'a> {
         })
     }
 
-    /// A session is a map that stands already.
+    /// Opens a session, which already has a map.
     fn of_session(session: &Session, name: &str, size_bytes: u64) -> Result<Self, String> {
         let run = LogRun::reopen(session).map_err(|problem| format!("{name}: {problem}"))?;
         let keyframes = session.driven.keyframes.len();
@@ -195,7 +195,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Where it is.
+    /// The current stage.
     #[must_use]
     pub fn stage(&self) -> Stage {
         match self.work {
@@ -208,7 +208,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Does the next piece of work; false where nothing is left to do until an order comes.
+    /// Does the next piece of work; returns false if there is none until the next order.
     pub fn step(&mut self) -> bool {
         match core::mem::replace(&mut self.work, Work::Idle) {
             Work::Examining(examination) => self.examine(examination),
@@ -255,13 +255,13 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// No scan follows: what is there is linked, or the reader is told why there is nothing.
+    /// Ends the log: links what was read, or reports why there are no scans.
     fn end_of_log(&mut self, reader: &dyn LogReader, problem: Option<String>) {
         let notes = reader.notes();
         self.tell_offers(&notes.offers);
         self.remarks.clone_from(&notes.about);
         let said = notes.sentences(&self.name);
-        // A map of a part of the file must not look like one of all of it.
+        // A map of a part of the file must not look complete.
         let is_cut = notes.half_written.is_some() || notes.ended_early.is_some();
         let missing = problem.as_ref().or(said.first().filter(|_| is_cut));
         let missing = missing.map_or(String::new(), |missing| format!("{missing}."));
@@ -310,7 +310,7 @@ impl<'a> Engine<'a> {
         self.begin_editing(links);
     }
 
-    /// The graph stands, and from now on the reader may change it.
+    /// Allows the user to edit the graph from now on.
     fn begin_editing(&mut self, links: Vec<Link>) {
         self.links = links;
         self.fixed = self.graph().map_or_else(Vec::new, |graph| {
@@ -319,7 +319,7 @@ impl<'a> Engine<'a> {
         self.changed();
     }
 
-    /// The graph changed: all that follows from it is computed anew, and told.
+    /// Recomputes and reports what depends on the graph.
     fn changed(&mut self) {
         self.news.keyframes = true;
         self.news.loops = true;
@@ -333,13 +333,13 @@ impl<'a> Engine<'a> {
         self.work = Work::Checking;
     }
 
-    /// Paints the next scans; false where all are painted.
+    /// Paints the next scans; returns false if all are painted.
     fn paint(&mut self) -> bool {
         let frames = self.recorder.keyframes();
         self.picture.step(frames, poses_of(&self.run))
     }
 
-    /// Looks for the robot of another log; false where there is none, or no scan of it is left.
+    /// Localizes the next scan of another log; returns false if there is none.
     fn look_around(&mut self) -> bool {
         self.whereabouts.as_mut().is_some_and(Whereabouts::step)
     }
@@ -349,7 +349,7 @@ impl<'a> Engine<'a> {
         self.graph.as_ref().or_else(of_run)
     }
 
-    /// The keyframes with their times; nodes of a graph from a file are a second apart.
+    /// The keyframes with their stamps; nodes of a graph file are a second apart.
     fn keyframes(&self) -> Trajectory {
         let poses = self.graph().map_or(&[][..], |graph| graph.poses());
         let keyframes = self.run.slam().map_or(&[][..], |slam| slam.keyframes());
@@ -361,7 +361,7 @@ impl<'a> Engine<'a> {
         Trajectory::new(stamped.collect())
     }
 
-    /// Where every scan was taken; the nodes where there are no scans.
+    /// The pose of every scan; the nodes if there are no scans.
     fn trajectory(&self) -> Trajectory {
         if self.has_scans {
             self.run.trajectory()
@@ -375,7 +375,7 @@ fn poses_of(run: &LogRun) -> &[SE2] {
     run.slam().map_or(&[], |slam| slam.graph().poses())
 }
 
-/// The loops that were tried, or those that the reader left in the graph.
+/// The loops that were tested, or those that the user left in the graph.
 fn links_of(run: &LogRun) -> Vec<Link> {
     if run.links().is_empty() {
         let tried = run.loops().iter();

@@ -1,8 +1,8 @@
-//! “Where am I?”: the robot of another log on the map as it stands, scan by scan.
+//! “Where am I?”: localizes another log on the current map, scan by scan.
 //!
-//! The update `where` tells all of it: seven numbers on the whole ([`HEAD`]), then ten for each scan
-//! ([`PLACE`]); its text is the log's name, and below it what the owner should know, a sentence a line.
-//! Places hang on the keyframes next to them, so that they go along where the reader moves those.
+//! The update `where` contains seven numbers on the whole log ([`HEAD`]), then ten for each scan
+//! ([`PLACE`]); its text is the log's name, followed by messages, one sentence per line.
+//! Poses are stored relative to their nearest keyframes, and so move with them when the user edits the map.
 
 use ch16_slam2d::localize::{LocalizeReport, StartPose, Verdict};
 use ch16_slam2d::metrics::position_error_m;
@@ -17,31 +17,31 @@ use robot_io::trajectory::{StampedPose, Trajectory};
 use crate::given::{Choices, Given, compared};
 use crate::update::Update;
 
-/// Share done, whether it is over, and the scans of each verdict: found, tracking, doubtful, lost; then
-/// the first scan that is localized, counted from 0, NaN where none is.
+/// Share done, whether it is over, and the number of scans by verdict: found, tracking, doubtful, lost; then
+/// the first localized scan, counted from 0, or NaN.
 pub const HEAD: usize = 7;
-/// Number of the scan, stamp (s), x, y (m), θ (rad), verdict, share that fits, then the half axes of the
-/// 1σ ellipse, long and short (m), and the heading of the long one (rad); NaN where there is none.
+/// Scan number, stamp (s), x, y (m), θ (rad), verdict, score, then the half axes of the
+/// 1σ ellipse, long and short (m), and the heading of the long one (rad); NaN if unknown.
 pub const PLACE: usize = 10;
-/// Of a longer log every second scan is told, or every third.
+/// Most scans in an update: of a longer log every n-th scan is sent.
 const MOST_TOLD: usize = 20_000;
-/// It is told again once there are so many times as many scans.
+/// An update is sent once the number of scans has grown by this factor.
 const TOLD_AGAIN: f64 = 1.02;
 
-/// A place that hangs on a keyframe of the map.
+/// A pose relative to a keyframe of the map.
 #[derive(Clone, Copy, Debug)]
 struct Hung {
     keyframe: usize,
     keyframe_from_body: SE2,
 }
 
-/// Another log on its way through the map.
+/// Localization of another log on the map.
 pub struct Whereabouts<'a> {
     name: String,
     size_bytes: u64,
     reader: Box<dyn LogReader + 'a>,
     run: LocalizeRun,
-    /// Where the keyframes stood when it began.
+    /// Poses of the keyframes at the start.
     map: Vec<SE2>,
     places: Vec<Option<Hung>>,
     is_over: bool,
@@ -54,7 +54,7 @@ impl<'a> Whereabouts<'a> {
     /// Opens a log; `session` is the map.
     ///
     /// # Errors
-    /// One sentence where the file is no log, or the session no map.
+    /// If the file is not a log, or the session has no map; the message is one sentence.
     pub fn open(
         given: Given<'a>,
         choices: &Choices,
@@ -78,7 +78,7 @@ impl<'a> Whereabouts<'a> {
         })
     }
 
-    /// Looks for the robot in the next scan; false once there is none.
+    /// Localizes the next scan; returns false once there is none.
     pub fn step(&mut self) -> bool {
         if self.is_over {
             return false;
@@ -100,7 +100,7 @@ impl<'a> Whereabouts<'a> {
         true
     }
 
-    /// No scan follows, because there is none or because nobody asks for more.
+    /// Ends the log, because no scan follows or the user stopped it.
     pub fn end(&mut self) {
         self.is_over = true;
         self.is_new = true;
@@ -113,18 +113,18 @@ impl<'a> Whereabouts<'a> {
         }
     }
 
-    /// Whether no scan follows.
+    /// Whether the log has ended.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.is_over
     }
 
-    /// Says that the map has moved, and all places with it.
+    /// Marks all poses as changed, because the map has moved.
     pub fn moved(&mut self) {
         self.is_new = true;
     }
 
-    /// The poses that are localized, on the map as it is now.
+    /// The localized poses on the current map.
     #[must_use]
     pub fn trajectory(&self, map: &[SE2]) -> Trajectory {
         let placed = self.run.reports().iter().zip(&self.places);
@@ -138,7 +138,7 @@ impl<'a> Whereabouts<'a> {
         Trajectory::new(poses.collect())
     }
 
-    /// What is known, where it is news.
+    /// The update, if there is anything new.
     pub fn update(&mut self, map: &[SE2]) -> Option<Update> {
         if !core::mem::take(&mut self.is_new) {
             return None;
@@ -193,7 +193,7 @@ impl<'a> Whereabouts<'a> {
     }
 }
 
-/// A place on the keyframe next to it.
+/// The pose relative to the nearest keyframe.
 fn hung(map: &[SE2], report: &LocalizeReport) -> Option<Hung> {
     let pose = report.pose?;
     let distances = map.iter().map(|at| position_error_m(at, &pose)).enumerate();

@@ -1,4 +1,4 @@
-//! The doctor's pass over a log, which comes before its map.
+//! The doctor's pass over a log, before it is mapped.
 
 use robot_io::doctor::Checkup;
 use robot_io::log::LogReader as _;
@@ -8,20 +8,20 @@ use super::{Engine, Work};
 use crate::given::{Choices, Given, compared};
 use crate::update::Update;
 
-/// A log under the doctor's eyes.
+/// A log that the doctor is reading.
 pub(super) struct Examination<'a> {
     pub(super) reader: ComparedReader<'a>,
     checkup: Checkup,
-    /// What is opened once more to be mapped.
+    /// The files, which are opened again for mapping.
     given: Given<'a>,
     choices: Choices,
 }
 
 impl<'a> Examination<'a> {
-    /// Opens what was given.
+    /// Opens the given files.
     ///
     /// # Errors
-    /// One sentence if it is no log.
+    /// If they are not a log; the message is one sentence.
     pub(super) fn begin(given: Given<'a>, choices: Choices) -> Result<Self, String> {
         Ok(Self {
             reader: compared(&given, &choices)?,
@@ -43,7 +43,7 @@ impl<'a> Engine<'a> {
                 self.work = Work::Examining(examination);
                 return;
             }
-            // What the log ends with is told again when it is mapped.
+            // An error at the end of the log is reported again when it is mapped.
             Ok(None) => {}
             Err(_) if checkup.scans() > 0 => {}
             Err(problem) => return self.end_of_log(&examination.reader, Some(problem.to_string())),

@@ -1,4 +1,4 @@
-//! What the engine tells of its work: how far it is, the keyframes, the loops, and what could be chosen.
+//! Updates of the engine: progress, keyframes, loops, and choices for options.
 
 use robot_io::log::{LogOffer, LogReader};
 
@@ -6,12 +6,12 @@ use super::{Engine, Work, links_of, poses_of};
 use crate::links::Link;
 use crate::update::{Stage, Update};
 
-/// Share of the work that is done once the doctor has seen the log, and once it is read; the last loops are the rest.
+/// Share of the work after the doctor's pass, and after reading; the rest is the last loops.
 const EXAMINED_SHARE: f64 = 0.1;
 const READING_SHARE: f64 = 0.99;
 
 impl Engine<'_> {
-    /// What changed since the last call.
+    /// Changes since the last call.
     pub fn updates(&mut self) -> Vec<Update> {
         let mut updates = Vec::new();
         let news = core::mem::take(&mut self.news);
@@ -110,7 +110,7 @@ impl Engine<'_> {
         }
     }
 
-    /// What the options of a recording could choose.
+    /// Reports the choices for the options of a recording.
     pub(super) fn tell_offers(&mut self, offers: &[LogOffer]) {
         let lines = offers.iter().map(|offer| {
             let taken = offer.taken.as_deref().unwrap_or_default();
