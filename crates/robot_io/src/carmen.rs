@@ -96,7 +96,7 @@ impl LineFormat for Carmen {
             "RAWLASER1" => {
                 let mut frame = laser_message(&mut fields, false, frames + self.raw.waiting())?;
                 count();
-                frame.scan.body_from_sensor = self.front.told_mount().unwrap_or_default();
+                frame.scan.body_from_sensor = self.front.stated_mount().unwrap_or_default();
                 // A log often has the same scan as ROBOTLASER1 right after it.
                 if matches!(self.chosen, None | Some(Source::RawLaser)) {
                     self.raw.push(frame);

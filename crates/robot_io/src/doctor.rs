@@ -138,10 +138,10 @@ impl Checkup {
                 covered: self.covered as f64 / info.scans.max(1) as f64,
             }
         });
-        let mut remarks = vec![file(notes), of_sensor(&sensor)];
-        remarks.push(of_odometry(odometry.as_ref(), motion));
-        remarks.extend(of_mounting(notes, motion));
-        remarks.extend(of_clocks(notes, info));
+        let mut remarks = vec![file_remark(notes), sensor_remark(&sensor)];
+        remarks.push(odometry_remark(odometry.as_ref(), motion));
+        remarks.extend(mounting_remark(notes, motion));
+        remarks.extend(clocks_remark(notes, info));
         remarks.extend(notes.warnings.iter().cloned());
         remarks.sort_by_key(|remark| remark.part);
         let worst = remarks.iter().map(|remark| remark.verdict).max();
@@ -157,12 +157,12 @@ impl Checkup {
     }
 }
 
-fn file(notes: &LogNotes) -> Remark {
+fn file_remark(notes: &LogNotes) -> Remark {
     let records: usize = notes.records.values().sum();
     let plain = LogNotes {
         broken: notes.broken,
         first_broken: notes.first_broken.clone(),
-        half_written: notes.half_written.clone(),
+        truncated: notes.truncated.clone(),
         ended_early: notes.ended_early.clone(),
         ..LogNotes::default()
     };
@@ -174,7 +174,7 @@ fn file(notes: &LogNotes) -> Remark {
     }
 }
 
-fn of_sensor(sensor: &SensorSummary) -> Remark {
+fn sensor_remark(sensor: &SensorSummary) -> Remark {
     let reach = sensor
         .range_max_m
         .map_or("no limit".to_owned(), |range_m| format!("{range_m:.1} m"));
@@ -196,7 +196,7 @@ fn of_sensor(sensor: &SensorSummary) -> Remark {
     Remark::good(Part::Sensor, text)
 }
 
-fn of_odometry(odometry: Option<&OdometrySummary>, motion: &Motion) -> Remark {
+fn odometry_remark(odometry: Option<&OdometrySummary>, motion: &Motion) -> Remark {
     let Some(odometry) = odometry else {
         let text = "there is none; matching scans alone needs a high scan rate and a path without featureless corridors";
         return Remark::mended(Part::Odometry, text.to_owned());
@@ -218,7 +218,7 @@ fn of_odometry(odometry: Option<&OdometrySummary>, motion: &Motion) -> Remark {
     Remark::good(Part::Odometry, text)
 }
 
-fn of_mounting(notes: &LogNotes, motion: &Motion) -> Option<Remark> {
+fn mounting_remark(notes: &LogNotes, motion: &Motion) -> Option<Remark> {
     if notes
         .warnings
         .iter()
@@ -226,7 +226,7 @@ fn of_mounting(notes: &LogNotes, motion: &Motion) -> Option<Remark> {
     {
         return None;
     }
-    let place = notes
+    let mount = notes
         .laser
         .map_or("the laser's mounting in the log".to_owned(), |mount| {
             let [x, y, theta] = mount.body_from_sensor.to_array();
@@ -244,20 +244,20 @@ fn of_mounting(notes: &LogNotes, motion: &Motion) -> Option<Remark> {
         (Some(direction_rad), Some(correlation)) => Remark::good(
             Part::Mounting,
             format!(
-                "{place} agrees with scans and odometry to {:.1}°, and their turns correlate ({correlation:.2})",
+                "{mount} agrees with scans and odometry to {:.1}°, and their turns correlate ({correlation:.2})",
                 direction_rad.to_degrees().abs()
             ),
         ),
         _ => Remark::mended(
             Part::Mounting,
             format!(
-                "{place} cannot be checked against odometry, because the path is too short or has too few turns"
+                "{mount} cannot be checked against odometry, because the path is too short or has too few turns"
             ),
         ),
     })
 }
 
-fn of_clocks(notes: &LogNotes, info: &LogInfo) -> Option<Remark> {
+fn clocks_remark(notes: &LogNotes, info: &LogInfo) -> Option<Remark> {
     if notes
         .warnings
         .iter()

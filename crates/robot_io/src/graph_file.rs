@@ -120,7 +120,7 @@ impl GraphFile {
 
     /// Converts a pose graph; nodes are numbered from 0.
     #[must_use]
-    pub fn of_graph(graph: &ch16_slam2d::graph::PoseGraph) -> Self {
+    pub fn from_pose_graph(graph: &ch16_slam2d::graph::PoseGraph) -> Self {
         let mut problem = pr_optim::Problem::new();
         for (_, node) in graph.nodes() {
             if node.fixed {
@@ -145,7 +145,7 @@ impl GraphFile {
     /// # Errors
     /// If a line is malformed, or the file is not a planar graph.
     pub fn read(bytes: &[u8], name: &str) -> Result<Self, GraphError> {
-        let told = |source| GraphError::Text {
+        let text_error = |source| GraphError::Text {
             name: name.to_owned(),
             source,
         };
@@ -165,7 +165,7 @@ impl GraphFile {
             name: name.to_owned(),
             problem,
         })?;
-        let file = G2oFile::parse(&prepared.text).map_err(told)?;
+        let file = G2oFile::parse(&prepared.text).map_err(text_error)?;
         Ok(Self::from_problem(&file.problem, |node| file.id_of(node)))
     }
 

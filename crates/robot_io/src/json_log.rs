@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use crate::line_log::{LineFormat, LineReader};
 use crate::lines::json_words;
 use crate::log::{LogFrame, LogNotes};
-use crate::place::{checked, checked_stamp_s};
+use crate::plausible::{plausible_pose, plausible_stamp_s};
 
 /// One line: a frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -146,9 +146,9 @@ impl LineFormat for JsonLines {
         }
         let line: FrameLine = serde_json::from_slice(line).map_err(|problem| in_words(&problem))?;
         let frame = LogFrame::from(line);
-        checked_stamp_s(frame.stamp_s)?;
+        plausible_stamp_s(frame.stamp_s)?;
         for pose in [Some(frame.scan.body_from_sensor), frame.odometry] {
-            pose.map(checked).transpose()?;
+            pose.map(plausible_pose).transpose()?;
         }
         *notes.records.entry("frame".to_owned()).or_default() += 1;
         Ok(Some(frame))

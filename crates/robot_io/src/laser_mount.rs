@@ -7,7 +7,7 @@ use pr_geom::SE2;
 
 use crate::lines::finite;
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
-use crate::place::checked;
+use crate::plausible::plausible_pose;
 
 /// Pose of a planar laser on the body, and whether its axis points up or down.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -20,7 +20,7 @@ pub struct LaserMount {
 
 impl LaserMount {
     /// Sets the mounting of a scan, and reverses its beams if needed.
-    pub fn place(&self, scan: &mut LaserScan) {
+    pub fn apply(&self, scan: &mut LaserScan) {
         scan.body_from_sensor = self.body_from_sensor;
         if self.is_flipped {
             flip(scan);
@@ -56,13 +56,13 @@ pub fn flip(scan: &mut LaserScan) {
 }
 
 /// A log whose laser has the mounting that an option sets.
-pub(crate) struct PlacedReader<'a> {
+pub(crate) struct MountedReader<'a> {
     inner: Box<dyn LogReader + 'a>,
     mount: LaserMount,
     notes: LogNotes,
 }
 
-impl<'a> PlacedReader<'a> {
+impl<'a> MountedReader<'a> {
     /// Yields the frames of `inner` with their laser at `mount`.
     pub(crate) fn new(inner: Box<dyn LogReader + 'a>, mount: LaserMount) -> Self {
         Self {
@@ -73,13 +73,13 @@ impl<'a> PlacedReader<'a> {
     }
 }
 
-impl LogReader for PlacedReader<'_> {
+impl LogReader for MountedReader<'_> {
     fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
         let frame = self.inner.next_frame();
         self.notes.clone_from(self.inner.notes());
         self.notes.laser = Some(self.mount);
         Ok(frame?.map(|mut frame| {
-            self.mount.place(&mut frame.scan);
+            self.mount.apply(&mut frame.scan);
             frame
         }))
     }
@@ -108,7 +108,7 @@ impl FromStr for LaserMount {
             return Err(expected());
         }
         Ok(Self {
-            body_from_sensor: checked(SE2::new(x, y, heading.to_radians()))?,
+            body_from_sensor: plausible_pose(SE2::new(x, y, heading.to_radians()))?,
             is_flipped,
         })
     }
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_reads_back_from_the_option_that_sets_it() {
+    fn a_mounting_reads_back_from_the_option_that_sets_it() {
         for text in ["0.1,-0.05,180", "0,0,0,flipped", "0.25,0,-90.5"] {
             let mount: LaserMount = text.parse().unwrap();
             assert_eq!(mount.option(), format!("--laser {text}"));

@@ -54,7 +54,7 @@ pub mod trajectory;
 
 mod counted;
 mod lines;
-mod place;
+mod odometry_poses;
+mod plausible;
 mod restamped;
 mod stamps;
-mod wheel_poses;

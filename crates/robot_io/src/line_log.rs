@@ -68,7 +68,7 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
         }
     }
 
-    fn nothing_found(&self) -> LogError {
+    fn no_scans_error(&self) -> LogError {
         let name = self.name.clone();
         if self.notes.bytes == 0 {
             return LogError::Empty { name };
@@ -81,8 +81,8 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
             };
         }
         let broken = self.notes.first_broken.as_ref();
-        let detail = match broken.or(self.notes.half_written.as_ref()) {
-            Some(broken) => format!("{}: {}", broken.place, broken.problem),
+        let detail = match broken.or(self.notes.truncated.as_ref()) {
+            Some(broken) => format!("{}: {}", broken.position, broken.problem),
             None => F::NO_SCANS.to_owned(),
         };
         LogError::NoScans { name, detail }
@@ -98,7 +98,7 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
             }
             if self.is_done {
                 return if self.frames == 0 {
-                    Err(self.nothing_found())
+                    Err(self.no_scans_error())
                 } else {
                     Ok(None)
                 };
@@ -106,7 +106,7 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
             let read =
                 next_line(&mut self.source, &mut self.line).map_err(|source| LogError::Io {
                     name: self.name.clone(),
-                    place: FilePosition::Line(self.notes.lines + 1),
+                    position: FilePosition::Line(self.notes.lines + 1),
                     source,
                 })?;
             let Some((end, bytes)) = read else {
@@ -115,7 +115,7 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
             };
             self.notes.lines += 1;
             self.notes.bytes += bytes;
-            let place = FilePosition::Line(self.notes.lines);
+            let position = FilePosition::Line(self.notes.lines);
             let taken = if end == LineEnd::TooLong {
                 Err("a line must be shorter than 4 MB".to_owned())
             } else {
@@ -129,12 +129,12 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
                 }
                 Ok(None) => {}
                 Err(problem) if end == LineEnd::CutOff => {
-                    self.notes.half_written = Some(BrokenRecord { place, problem });
+                    self.notes.truncated = Some(BrokenRecord { position, problem });
                 }
-                Err(problem) => self.notes.leave_out(place, problem),
+                Err(problem) => self.notes.skip(position, problem),
             }
             if self.format.is_foreign(self.notes.lines) {
-                return Err(self.nothing_found());
+                return Err(self.no_scans_error());
             }
         }
     }

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn words_of_a_file_are_told_on_one_line_of_a_readable_length() {
+    fn text_of_a_file_is_printed_on_one_line_of_readable_length() {
         assert_eq!(name("/sc\nan\u{7f}"), "/scan");
         let other: Result<u8, _> = serde_json::from_str(&format!("\"{}\"", "x".repeat(10_000)));
         assert_eq!(json_words(&other.unwrap_err()).len(), 200);

@@ -111,7 +111,7 @@ pub struct LogOffer {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BrokenRecord {
     /// Position.
-    pub place: FilePosition,
+    pub position: FilePosition,
     /// What was expected and what was found.
     pub problem: String,
 }
@@ -126,7 +126,7 @@ pub struct LogNotes {
     /// The first of them.
     pub first_broken: Option<BrokenRecord>,
     /// The last line or record, if it is incomplete.
-    pub half_written: Option<BrokenRecord>,
+    pub truncated: Option<BrokenRecord>,
     /// Lines read.
     pub lines: usize,
     /// Bytes read.
@@ -149,7 +149,7 @@ impl LogNotes {
     pub fn sentences(&self, name: &str) -> Vec<String> {
         let mut said = Vec::new();
         if let Some(first) = &self.first_broken {
-            let thing = match first.place {
+            let thing = match first.position {
                 FilePosition::Line(_) => "line",
                 FilePosition::Byte(_) => "record",
             };
@@ -159,18 +159,18 @@ impl LogNotes {
             };
             let rest = self.ended_early.as_ref();
             let rest = rest.map_or(String::new(), |rest| format!("; {rest}"));
-            let at = if first.place == FilePosition::Byte(0) || thing == "line" {
+            let at = if first.position == FilePosition::Byte(0) || thing == "line" {
                 "is"
             } else {
                 "ends at"
             };
             said.push(format!(
                 "{name}: {count}; the first {at} {}: {}{rest}",
-                first.place, first.problem
+                first.position, first.problem
             ));
         }
-        if let Some(last) = &self.half_written {
-            said.push(match last.place {
+        if let Some(last) = &self.truncated {
+            said.push(match last.position {
                 FilePosition::Line(line) => format!(
                     "{name}: the last line, {line}, is incomplete and was skipped: {}",
                     last.problem
@@ -186,10 +186,10 @@ impl LogNotes {
         said
     }
 
-    pub(crate) fn leave_out(&mut self, place: FilePosition, problem: String) {
+    pub(crate) fn skip(&mut self, position: FilePosition, problem: String) {
         self.broken += 1;
         if self.first_broken.is_none() {
-            self.first_broken = Some(BrokenRecord { place, problem });
+            self.first_broken = Some(BrokenRecord { position, problem });
         }
     }
 }
@@ -198,12 +198,12 @@ impl LogNotes {
 #[derive(Debug, Error)]
 pub enum LogError {
     /// The bytes could not be read.
-    #[error("{name}: {place}: {source}")]
+    #[error("{name}: {position}: {source}")]
     Io {
         /// The log's name.
         name: String,
         /// Position.
-        place: FilePosition,
+        position: FilePosition,
         /// The system's error.
         source: io::Error,
     },

@@ -2,7 +2,7 @@
 
 use crate::carmen::CarmenReader;
 use crate::json_log::JsonLogReader;
-use crate::laser_mount::PlacedReader;
+use crate::laser_mount::MountedReader;
 use crate::log::{FilePosition, LogError, LogOptions, LogReader};
 use crate::log_bytes::{LogBytes, packs};
 use crate::restamped::restamped;
@@ -69,7 +69,7 @@ impl LogFormat {
         } else if starts(b"{")
             && [&b"\"nrays\""[..], b"\"readings\""]
                 .iter()
-                .all(|key| holds(start, key))
+                .all(|key| contains(start, key))
         {
             Self::Csm
         } else if packs(start) {
@@ -110,7 +110,7 @@ impl LogFormat {
     ) -> Result<Box<dyn LogReader + 'a>, LogError> {
         let io = |source| LogError::Io {
             name: name.to_owned(),
-            place: FilePosition::Byte(0),
+            position: FilePosition::Byte(0),
             source,
         };
         let Some(first) = parts.first().cloned() else {
@@ -155,7 +155,7 @@ impl LogFormat {
                 };
                 let reader = reader.map_err(io)?;
                 Ok(match options.laser {
-                    Some(mount) => Box::new(PlacedReader::new(reader, mount)),
+                    Some(mount) => Box::new(MountedReader::new(reader, mount)),
                     None => reader,
                 })
             }
@@ -204,7 +204,7 @@ impl LogFormat {
 }
 
 /// Whether the bytes contain `key`.
-fn holds(bytes: &[u8], key: &[u8]) -> bool {
+fn contains(bytes: &[u8], key: &[u8]) -> bool {
     bytes.windows(key.len()).any(|window| window == key)
 }
 

@@ -66,14 +66,14 @@ pub enum MapError {
 ///
 /// # Errors
 /// If no scan has a point, or there are too many cells.
-pub fn map_of(lines: &[FrameLine], cell_m: f64) -> Result<MapImage, MapError> {
+pub fn build_map(lines: &[FrameLine], cell_m: f64) -> Result<MapImage, MapError> {
     built(MapBuilder::new(cell_m), lines)
 }
 
-/// Builds the map of [`map_of`] with free space along beams without a return, up to the sensor's limit.
+/// Builds the map of [`build_map`] with free space along beams without a return, up to the sensor's limit.
 ///
 /// # Errors
-/// Those of [`map_of`].
+/// Those of [`build_map`].
 pub fn map_with_free_space(lines: &[FrameLine], cell_m: f64) -> Result<MapImage, MapError> {
     built(MapBuilder::new(cell_m).with_free_space(), lines)
 }
@@ -92,9 +92,9 @@ fn built(mut map: MapBuilder, lines: &[FrameLine]) -> Result<MapImage, MapError>
 ///
 /// # Errors
 /// If no scan has a point, or there are too many cells.
-pub fn map_of_session(session: &Session, cell_m: f64) -> Result<MapImage, MapError> {
+pub fn build_session_map(session: &Session, cell_m: f64) -> Result<MapImage, MapError> {
     let mut map = MapBuilder::new(cell_m);
-    for (pose, scan) in session.placed_scans() {
+    for (pose, scan) in session.posed_scans() {
         map.add(&pose, &scan)?;
     }
     map.finish()

@@ -29,7 +29,8 @@ pub struct Quality {
     /// The loops of the graph.
     pub links: Vec<LinkQuality>,
     /// Path segments that the rest of the graph contradicts, in order.
-    pub refuted_ways: Vec<RefutedWay>,
+    #[serde(rename = "refuted_ways")]
+    pub refuted_paths: Vec<RefutedPath>,
     /// The loops that were tested while scans came in.
     pub tried: Vec<LinkQuality>,
     /// What should be checked, one sentence each.
@@ -49,7 +50,7 @@ pub struct KeyframeQuality {
 
 /// Consecutive odometry edges, each of which the rest of the graph contradicts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct RefutedWay {
+pub struct RefutedPath {
     /// The keyframe before the first edge.
     pub from: usize,
     /// The keyframe after the last edge.
@@ -97,7 +98,7 @@ impl Quality {
         let mut quality = Self {
             keyframes: keyframes(slam),
             links: Vec::new(),
-            refuted_ways: Vec::new(),
+            refuted_paths: Vec::new(),
             tried: tried.iter().map(LinkQuality::tried).collect(),
             doubts: Vec::new(),
         };
@@ -119,8 +120,8 @@ impl Quality {
                 ..LinkQuality::new(link, true)
             });
         }
-        quality.refuted_ways = refuted_ways(&tests);
-        quality.doubts = doubts::sentences(&quality, &doubts::disputed(slam, tried), poor);
+        quality.refuted_paths = refuted_paths(&tests);
+        quality.doubts = doubts::sentences(&quality, &doubts::violated(slam, tried), poor);
         quality
     }
 
@@ -234,8 +235,8 @@ fn keyframes(slam: &mut Slam) -> Vec<KeyframeQuality> {
     let Ok(covariances) = slam.keyframe_covariances() else {
         return Vec::new();
     };
-    let places = slam.keyframes().iter().zip(slam.graph().poses());
-    places
+    let posed = slam.keyframes().iter().zip(slam.graph().poses());
+    posed
         .zip(&covariances)
         .map(|((keyframe, pose), covariance)| KeyframeQuality {
             stamp_s: keyframe.stamp_s,
@@ -268,23 +269,23 @@ pub fn edge_tests(slam: &mut Slam) -> Vec<(EdgeView, Option<f64>)> {
 }
 
 /// Odometry edges beyond the gate, with consecutive ones merged.
-fn refuted_ways(tests: &[(EdgeView, Option<f64>)]) -> Vec<RefutedWay> {
-    let mut ways: Vec<RefutedWay> = Vec::new();
+fn refuted_paths(tests: &[(EdgeView, Option<f64>)]) -> Vec<RefutedPath> {
+    let mut paths: Vec<RefutedPath> = Vec::new();
     for (view, chi2) in tests {
         let beyond = chi2.filter(|chi2| *chi2 > GATE_CHI2);
         let (EdgeKind::Odometry, Some(chi2)) = (view.edge.kind, beyond) else {
             continue;
         };
         let (from, to) = (view.from.index(), view.to.index());
-        match ways.last_mut() {
-            Some(way) if way.to == from => {
-                way.to = to;
-                way.chi2 = math::max(way.chi2, chi2);
+        match paths.last_mut() {
+            Some(path) if path.to == from => {
+                path.to = to;
+                path.chi2 = math::max(path.chi2, chi2);
             }
-            _ => ways.push(RefutedWay { from, to, chi2 }),
+            _ => paths.push(RefutedPath { from, to, chi2 }),
         }
     }
-    ways
+    paths
 }
 
 /// `eᵀ(Ω⁻¹ − P)⁻¹e`; `None` if the measurement alone connects the two nodes.

@@ -19,7 +19,7 @@ impl RunRecorder {
     #[must_use]
     pub fn resume(session: &Session) -> Self {
         let keyframes = session.driven.keyframes.iter();
-        let scans = session.placed_scans().map(|(_, scan)| scan);
+        let scans = session.posed_scans().map(|(_, scan)| scan);
         let frames = keyframes.zip(scans).map(|(keyframe, scan)| LogFrame {
             stamp_s: keyframe.stamp_s,
             odometry: None,

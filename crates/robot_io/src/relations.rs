@@ -7,7 +7,7 @@ use std::io::BufRead;
 
 use pr_geom::SE2;
 
-use crate::place::checked;
+use crate::plausible::plausible_pose;
 use crate::trajectory::{NumberLines, TextError};
 
 /// A reference relation.
@@ -31,7 +31,8 @@ pub fn read_relations(source: impl BufRead, name: &str) -> Result<Vec<Relation>,
     let mut relations = Vec::new();
     let mut numbers = NumberLines::new(source, name, LINE);
     while let Some([first_s, second_s, x, y, _, _, _, yaw]) = numbers.next_line()? {
-        let motion = checked(SE2::new(x, y, yaw)).map_err(|problem| numbers.refuse(problem))?;
+        let motion =
+            plausible_pose(SE2::new(x, y, yaw)).map_err(|problem| numbers.refuse(problem))?;
         relations.push(Relation {
             first_s,
             second_s,

@@ -60,14 +60,14 @@ impl Report<'_> {
     #[must_use]
     pub fn html(&self) -> String {
         let quality = self.quality;
-        let name = escaped(self.name);
+        let name = escape_html(self.name);
         let closed = quality.tried.iter().filter(|tried| tried.accepted);
         let mut page = format!(
             "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width\">\n<title>Map of {name}</title>\n\
              <style>{STYLE}</style>\n<h1>Map of {name}</h1>\n"
         );
-        say(
+        push_line(
             &mut page,
             format_args!(
                 "<p>{} gave {} over a path length of {:.1} m. Loops during the run: {} tested, {} accepted; \
@@ -81,31 +81,31 @@ impl Report<'_> {
             ),
         );
         for remark in self.remarks {
-            say(&mut page, format_args!("<p>{}</p>", escaped(remark)));
+            push_line(&mut page, format_args!("<p>{}</p>", escape_html(remark)));
         }
-        say(&mut page, format_args!("<h2>Doubts</h2>"));
+        push_line(&mut page, format_args!("<h2>Doubts</h2>"));
         if quality.doubts.is_empty() {
-            say(
+            push_line(
                 &mut page,
                 format_args!("<p>None: no measurement contradicts the rest of the graph.</p>"),
             );
         } else {
-            say(&mut page, format_args!("<ul>"));
+            push_line(&mut page, format_args!("<ul>"));
             for doubt in &quality.doubts {
-                say(&mut page, format_args!("<li>{}</li>", escaped(doubt)));
+                push_line(&mut page, format_args!("<li>{}</li>", escape_html(doubt)));
             }
-            say(&mut page, format_args!("</ul>"));
+            push_line(&mut page, format_args!("</ul>"));
         }
-        say(&mut page, format_args!("<h2>The map</h2>"));
+        push_line(&mut page, format_args!("<h2>The map</h2>"));
         page.push_str(&picture::map(quality, self.map));
-        say(
+        push_line(
             &mut page,
             format_args!(
                 "<p class=\"key\">The line is the path over the keyframes. A solid line between keyframes is a loop of \
                  the graph, a dashed one a rejected loop. Ellipses are the position's uncertainty (3σ).</p>"
             ),
         );
-        say(&mut page, format_args!("<h2>Over time</h2>"));
+        push_line(&mut page, format_args!("<h2>Over time</h2>"));
         let start_s = quality.keyframes.first().map_or(0.0, |k| k.stamp_s);
         let loops: Vec<f64> = closed
             .filter_map(|tried| Some(quality.keyframes.get(tried.from)?.stamp_s - start_s))
@@ -118,15 +118,15 @@ impl Report<'_> {
             .map(|keyframe| [keyframe.stamp_s - start_s, keyframe.sigma_m()])
             .collect();
         page.push_str(&chart::over_time("σ of the position, m", &sigma, &loops));
-        say(
+        push_line(
             &mut page,
             format_args!(
                 "<p class=\"key\">Seconds since the first scan. Vertical lines are accepted loops.</p>"
             ),
         );
-        say(&mut page, format_args!("<h2>Loops</h2>"));
+        push_line(&mut page, format_args!("<h2>Loops</h2>"));
         if quality.tried.is_empty() && quality.links.is_empty() {
-            say(&mut page, format_args!("<p>No location was revisited.</p>"));
+            push_line(&mut page, format_args!("<p>No location was revisited.</p>"));
         }
         loops_table(&mut page, "In the graph at the end", &quality.links);
         loops_table(&mut page, "Tested during the run", &quality.tried);
@@ -140,8 +140,8 @@ fn loops_table(page: &mut String, title: &str, loops: &[LinkQuality]) {
     if loops.is_empty() {
         return;
     }
-    say(page, format_args!("<h3>{title}</h3>"));
-    say(
+    push_line(page, format_args!("<h3>{title}</h3>"));
+    push_line(
         page,
         format_args!(
             "<div class=\"scroll\"><table><tr><th>from<th>to<th>score<th>RMSE, m<th>inliers<th>margin<th>χ²<th>gate\
@@ -154,7 +154,7 @@ fn loops_table(page: &mut String, title: &str, loops: &[LinkQuality]) {
             (Some(why), false) => format!("rejected: {why}"),
             (None, false) => "refused".to_owned(),
         };
-        say(
+        push_line(
             page,
             format_args!(
                 "<tr><td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{:.1}<td class=\"text\">{}</tr>",
@@ -166,16 +166,16 @@ fn loops_table(page: &mut String, title: &str, loops: &[LinkQuality]) {
                 number(tried.margin, 3),
                 number(tried.chi2, 1),
                 tried.gate_chi2,
-                escaped(&verdict)
+                escape_html(&verdict)
             ),
         );
     }
-    say(page, format_args!("</table></div>"));
+    push_line(page, format_args!("</table></div>"));
     more(page, loops.len());
 }
 
 fn keyframes_table(page: &mut String, quality: &Quality) {
-    say(
+    push_line(
         page,
         format_args!(
             "<details><summary>All keyframes</summary><div class=\"scroll\"><table>\
@@ -184,7 +184,7 @@ fn keyframes_table(page: &mut String, quality: &Quality) {
     );
     for (index, keyframe) in quality.keyframes.iter().take(MOST_ROWS).enumerate() {
         let [x, y, theta] = keyframe.pose;
-        say(
+        push_line(
             page,
             format_args!(
                 "<tr><td>{index}<td>{:.2}<td>{x:.3}<td>{y:.3}<td>{:.2}<td>{:.3}<td>{:.3}</tr>",
@@ -195,14 +195,14 @@ fn keyframes_table(page: &mut String, quality: &Quality) {
             ),
         );
     }
-    say(page, format_args!("</table></div>"));
+    push_line(page, format_args!("</table></div>"));
     more(page, quality.keyframes.len());
-    say(page, format_args!("</details>"));
+    push_line(page, format_args!("</details>"));
 }
 
 fn more(page: &mut String, rows: usize) {
     if rows > MOST_ROWS {
-        say(
+        push_line(
             page,
             format_args!(
                 "<p class=\"key\">{} more rows are in quality.json.</p>",
@@ -217,12 +217,12 @@ fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or("–".to_owned(), |value| format!("{value:.digits$}"))
 }
 
-fn say(page: &mut String, text: impl Display) {
+fn push_line(page: &mut String, text: impl Display) {
     writeln!(page, "{text}").expect("memory takes text");
 }
 
 /// Escapes external text for HTML.
-fn escaped(text: &str) -> String {
+fn escape_html(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")

@@ -8,9 +8,9 @@ use pr_geom::SE2;
 
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::log_bytes::LogBytes;
+use crate::odometry_poses::{jumps_remark, take_jumps_out};
 use crate::remark::Remark;
 use crate::stamps::MendedStamps;
-use crate::wheel_poses::{jumps_remark, take_jumps_out};
 
 /// Most frames that wait for an earlier one which comes later in the file.
 const MOST_WAITING: usize = 1024;
@@ -24,7 +24,7 @@ struct Restamped<R> {
     stamps_s: Vec<f64>,
     /// The odometry of each frame; empty if it does not jump.
     odometry: Vec<Option<SE2>>,
-    said: Vec<Remark>,
+    remarks: Vec<Remark>,
     /// Earliest stamp of any frame after this one, s.
     earliest_after_s: Vec<f64>,
     waiting: BTreeMap<Reverse<Key>, LogFrame>,
@@ -49,17 +49,17 @@ pub fn restamped<'a, R: LogReader + 'a>(
         odometry.push(frame.odometry);
     }
     let inner = reader(bytes.stream()?);
-    let mut said = Vec::new();
+    let mut remarks = Vec::new();
     if let Some(mended) = mended_stamps(&stamps_s) {
-        said = mended.remarks("scans");
+        remarks = mended.remarks("scans");
         stamps_s = mended.stamps_s;
     }
     let jumps = without_jumps(&stamps_s, &mut odometry);
     if jumps.is_empty() {
         odometry.clear();
     }
-    said.extend(jumps_remark(&jumps));
-    if said.is_empty() {
+    remarks.extend(jumps_remark(&jumps));
+    if remarks.is_empty() {
         return Ok(Box::new(inner));
     }
     let mut earliest_s = f64::INFINITY;
@@ -75,7 +75,7 @@ pub fn restamped<'a, R: LogReader + 'a>(
     earliest_after_s.reverse();
     Ok(Box::new(Restamped {
         inner,
-        said,
+        remarks,
         stamps_s,
         odometry,
         earliest_after_s,
@@ -145,7 +145,7 @@ impl<R: LogReader> LogReader for Restamped<R> {
             }
             let frame = self.inner.next_frame();
             self.notes.clone_from(self.inner.notes());
-            self.notes.warnings.extend(self.said.iter().cloned());
+            self.notes.warnings.extend(self.remarks.iter().cloned());
             match frame? {
                 Some(mut frame) => {
                     if let Some(&stamp_s) = self.stamps_s.get(self.read) {
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn odometry_that_starts_again_goes_on_where_it_was() {
+    fn restarted_odometry_continues_the_path() {
         let lines = |k: u32| {
             let (x, k) = (0.1 * f64::from(k % 30), 0.1 * f64::from(k));
             format!("FLASER 3 1 1 1 {x} 0 0 {x} 0 0 {k} h {k}\n")
@@ -219,10 +219,10 @@ mod tests {
         }
         // 29 steps before and 29 after the restart.
         assert!((last.unwrap().x() - 5.8).abs() < 1e-9, "{last:?}");
-        let said = &reader.notes().warnings[0].text;
+        let remarks = &reader.notes().warnings[0].text;
         assert!(
-            said.starts_with("odometry jumps 1 time, first at 3.00 s"),
-            "{said}"
+            remarks.starts_with("odometry jumps 1 time, first at 3.00 s"),
+            "{remarks}"
         );
     }
 
@@ -231,9 +231,9 @@ mod tests {
         let good: Vec<f64> = (0..40).map(f64::from).collect();
         assert_eq!(stamps(&log(good.iter().copied())).0.len(), 40);
         let swapped = good.chunks(2).flat_map(|two| [two[1] + 5.0, two[0] + 5.0]);
-        let (found, said) = stamps(&log(swapped));
+        let (found, remarks) = stamps(&log(swapped));
         assert!(found.windows(2).all(|two| two[0] < two[1]) && found.len() == 40);
-        assert!(said[0].text.contains("sorted by stamp"), "{said:?}");
+        assert!(remarks[0].text.contains("sorted by stamp"), "{remarks:?}");
         let reset = good.iter().map(|stamp_s| {
             if *stamp_s < 20.0 {
                 stamp_s + 100.0
@@ -241,8 +241,8 @@ mod tests {
                 stamp_s - 19.0
             }
         });
-        let (found, said) = stamps(&log(reset));
+        let (found, remarks) = stamps(&log(reset));
         assert!(found.windows(2).all(|two| two[0] < two[1]) && found.len() == 40);
-        assert!(said[0].text.contains("steps back"), "{said:?}");
+        assert!(remarks[0].text.contains("steps back"), "{remarks:?}");
     }
 }

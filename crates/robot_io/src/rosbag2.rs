@@ -10,7 +10,7 @@ const PACKED: [&str; 3] = [".zstd", ".zst", ".gz"];
 ///
 /// Reads only `relative_file_paths`, in which rosbag2 writes one name per line.
 #[must_use]
-pub fn files_of(metadata: &str) -> Vec<String> {
+pub fn listed_files(metadata: &str) -> Vec<String> {
     let mut lines = metadata.lines();
     let mut names = Vec::new();
     let begins = |line: &str| line.trim_start().starts_with("relative_file_paths:");
@@ -42,7 +42,7 @@ pub fn is_recording(name: &str) -> bool {
 /// # Errors
 /// The name of a listed file that is missing.
 pub fn in_order(metadata: Option<&str>, names: &[String]) -> Result<Vec<usize>, String> {
-    let listed = metadata.map(files_of).unwrap_or_default();
+    let listed = metadata.map(listed_files).unwrap_or_default();
     if listed.is_empty() {
         let all = 0..names.len();
         let mut found: Vec<usize> = all.filter(|&k| is_recording(&names[k])).collect();
@@ -87,8 +87,8 @@ mod tests {
     #[test]
     fn the_files_of_a_recording_come_in_their_order() {
         let text = "rosbag2_bagfile_information:\n  version: 5\n  relative_file_paths:\n    - a_0.db3\n    - \"a_1.db3\"\n  message_count: 3\n  files:\n    - path: x\n";
-        assert_eq!(files_of(text), ["a_0.db3", "a_1.db3"]);
-        assert_eq!(files_of("version: 5"), Vec::<String>::new());
+        assert_eq!(listed_files(text), ["a_0.db3", "a_1.db3"]);
+        assert_eq!(listed_files("version: 5"), Vec::<String>::new());
         assert!(is_recording("a.db3.zstd") && is_recording("A.MCAP") && !is_recording("a.yaml"));
     }
 }

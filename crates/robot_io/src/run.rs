@@ -10,7 +10,7 @@ use pr_geom::SE2;
 use crate::evidence::{PoorFit, TriedLoop};
 use crate::log::LogFrame;
 use crate::quality::Quality;
-use crate::session::{MappedGraph, Session, places_kept};
+use crate::session::{MappedGraph, Session, selected_scan_poses};
 use crate::settings::Setting;
 use crate::trajectory::{StampedPose, Trajectory};
 
@@ -117,10 +117,10 @@ impl LogRun {
             keyframe: number,
             keyframe_from_body: SE2::identity(),
         });
-        let scans = if session.places.is_empty() {
+        let scans = if session.scan_poses.is_empty() {
             of_keyframes.collect()
         } else {
-            session.places.clone()
+            session.scan_poses.clone()
         };
         let pipeline = Pipeline::resume(slam, scans, session.last_odometry, odometry_use);
         Self {
@@ -202,7 +202,7 @@ impl LogRun {
 
     /// Whether the graph contains a loop: an accepted loop may have been removed since.
     #[must_use]
-    pub fn holds(&self, tried: &TriedLoop) -> bool {
+    pub fn has_loop(&self, tried: &TriedLoop) -> bool {
         let measured = tried.verification.registered;
         let graph = self.slam().map(Slam::graph);
         let mut edges = graph.into_iter().flat_map(|graph| graph.edges());
@@ -259,7 +259,7 @@ impl LogRun {
         Some(Session {
             driven: self.pipeline.driven()?,
             mapped: graph.map(MappedGraph::from_graph),
-            places: places_kept(self.pipeline.scans()),
+            scan_poses: selected_scan_poses(self.pipeline.scans()),
             sensor: self.sensor.clone(),
             last_odometry: self.pipeline.last_odometry(),
         })
@@ -316,7 +316,7 @@ impl LogRun {
             .refused
             .map(|problem| format!("{name}: scans were skipped; the first because {problem}"));
         let late = late_scans(name, self.late);
-        let still = self.still_wheels(name);
+        let still = self.still_odometry(name);
         [other, late, still, refused]
             .into_iter()
             .flatten()
@@ -324,7 +324,7 @@ impl LogRun {
     }
 
     /// Message on odometry that never moved; `None` if it did.
-    fn still_wheels(&self, name: &str) -> Option<String> {
+    fn still_odometry(&self, name: &str) -> Option<String> {
         let scans = self.still.filter(|&scans| scans >= STILL_SCANS)?;
         Some(format!(
             "{name}: its odometry stands still for all {scans} scans; if the robot moved, ignore it with \

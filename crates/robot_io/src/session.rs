@@ -49,7 +49,7 @@ pub struct Session {
     /// The map after the final pass over all keyframes, if there was one.
     pub mapped: Option<MappedGraph>,
     /// Poses of the scans, at most eight for each keyframe but the last; empty if they were not kept.
-    pub places: Vec<ScanPose>,
+    pub scan_poses: Vec<ScanPose>,
     /// Beam geometry of the laser, without ranges.
     pub sensor: Option<LaserScan>,
     /// Odometry pose at the last frame.
@@ -57,19 +57,19 @@ pub struct Session {
 }
 
 /// Most scans kept of a keyframe that is not the last.
-const PLACES_KEPT: usize = 8;
+const SCANS_PER_KEYFRAME: usize = 8;
 
 /// Selects at most eight scans of each keyframe but the last, evenly: a robot that waits for an hour
 /// does not fill the file.
-pub(crate) fn places_kept(places: &[ScanPose]) -> Vec<ScanPose> {
+pub(crate) fn selected_scan_poses(poses: &[ScanPose]) -> Vec<ScanPose> {
     let mut kept = Vec::new();
-    let last = places.last().map(|place| place.keyframe);
-    for of_one in places.chunk_by(|a, b| a.keyframe == b.keyframe) {
+    let last = poses.last().map(|scan| scan.keyframe);
+    for of_one in poses.chunk_by(|a, b| a.keyframe == b.keyframe) {
         let count = of_one.len();
-        if Some(of_one[0].keyframe) == last || count <= PLACES_KEPT {
+        if Some(of_one[0].keyframe) == last || count <= SCANS_PER_KEYFRAME {
             kept.extend_from_slice(of_one);
         } else {
-            kept.extend((0..PLACES_KEPT).map(|k| of_one[k * count / PLACES_KEPT]));
+            kept.extend((0..SCANS_PER_KEYFRAME).map(|k| of_one[k * count / SCANS_PER_KEYFRAME]));
         }
     }
     kept
@@ -142,7 +142,7 @@ impl Session {
     }
 
     /// The keyframes' scans with their poses, as rays from the sensor.
-    pub fn placed_scans(&self) -> impl Iterator<Item = (SE2, LaserScan)> + '_ {
+    pub fn posed_scans(&self) -> impl Iterator<Item = (SE2, LaserScan)> + '_ {
         let sensor = self.sensor.clone().unwrap_or_default();
         let cell_m = self.driven.config.scan.cell_m;
         let keyframes = self.driven.keyframes.iter().zip(self.poses());
@@ -171,20 +171,20 @@ impl Session {
     /// If it is not a usable session; the message is one sentence.
     pub fn read(source: impl Read, name: &str) -> Result<Self, SessionError> {
         let mut file = Vec::new();
-        let told = |source| SessionError::Io {
+        let io_error = |source| SessionError::Io {
             name: name.to_owned(),
             source,
         };
         let mut source = source.take(MOST_BYTES + 1);
-        source.read_to_end(&mut file).map_err(told)?;
-        Self::of_bytes(&file, name)
+        source.read_to_end(&mut file).map_err(io_error)?;
+        Self::from_bytes(&file, name)
     }
 
     /// Reads a session from these bytes; see [`read`](Self::read).
     ///
     /// # Errors
     /// If it is not a usable session; the message is one sentence.
-    pub fn of_bytes(file: &[u8], name: &str) -> Result<Self, SessionError> {
+    pub fn from_bytes(file: &[u8], name: &str) -> Result<Self, SessionError> {
         let named = || name.to_owned();
         if file.is_empty() {
             return Err(SessionError::Empty { name: named() });
@@ -258,12 +258,12 @@ impl Session {
         {
             return Err("the stamps of keyframes are not in order".to_owned());
         }
-        let last_place = self.places.last();
+        let last_scan = self.scan_poses.last();
         if !self
-            .places
+            .scan_poses
             .is_sorted_by(|a, b| a.stamp_s < b.stamp_s && a.keyframe <= b.keyframe)
-            || !is_before_end(last_place.map(|place| place.stamp_s))
-            || last_place.is_some_and(|place| place.keyframe >= keyframes.len())
+            || !is_before_end(last_scan.map(|scan| scan.stamp_s))
+            || last_scan.is_some_and(|scan| scan.keyframe >= keyframes.len())
         {
             return Err("the poses of scans are not in order".to_owned());
         }

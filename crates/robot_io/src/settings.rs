@@ -240,8 +240,8 @@ impl Setting {
 pub(crate) fn checked(config: RobotConfig) -> Result<RobotConfig, String> {
     for setting in SETTINGS {
         let value = setting.value(&config);
-        let is_length = setting.unit == "m" && !setting.name.contains('.');
-        let is_positive = !is_length || value > 0.0;
+        let is_plausible_length = setting.unit == "m" && !setting.name.contains('.');
+        let is_positive = !is_plausible_length || value > 0.0;
         if setting.check(value).is_err() || value > MOST || !is_positive {
             return Err(format!("{} cannot be {value}", setting.name));
         }

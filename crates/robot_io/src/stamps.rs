@@ -9,7 +9,7 @@
 //!
 //! Swapped messages keep their stamps; they are sorted later.
 
-mod told;
+mod remarks;
 
 use pr_geom::sort_numbers;
 

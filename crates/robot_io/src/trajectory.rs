@@ -9,7 +9,7 @@ use pr_geom::{SE2, math};
 use thiserror::Error;
 
 use crate::lines::{LineEnd, finite, next_line};
-use crate::place::{checked, checked_stamp_s};
+use crate::plausible::{plausible_pose, plausible_stamp_s};
 
 /// Poses in the order of time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -112,8 +112,8 @@ impl Trajectory {
             let sin = 2.0 * (qw * qz + qx * qy);
             let cos = qw * qw + qx * qx - qy * qy - qz * qz;
             let pose = SE2::new(x, y, math::atan2(sin, cos));
-            let stamped = checked_stamp_s(stamp_s).and_then(|stamp_s| {
-                let pose = checked(pose)?;
+            let stamped = plausible_stamp_s(stamp_s).and_then(|stamp_s| {
+                let pose = plausible_pose(pose)?;
                 Ok(StampedPose { stamp_s, pose })
             });
             poses.push(stamped.map_err(|problem| numbers.refuse(problem))?);

@@ -57,7 +57,7 @@ fn intel_is_mapped_to_eight_centimetres_with_its_loops() {
 }
 
 #[test]
-fn intel_without_its_wheels_is_mapped_to_eight_centimetres() {
+fn intel_without_odometry_is_mapped_to_eight_centimetres() {
     let Some(run) = mapped("intel.clf", OdometryUse::None) else {
         return skip("the errors on Intel by scans alone", NO_RECORDED_LOGS);
     };
@@ -67,7 +67,7 @@ fn intel_without_its_wheels_is_mapped_to_eight_centimetres() {
 }
 
 #[test]
-fn duke_comes_back_to_where_it_began() {
+fn duke_closes_its_loop() {
     let Some(run) = mapped("duke-loop5.clf", OdometryUse::Log) else {
         return skip("the loop of Duke", NO_RECORDED_LOGS);
     };

@@ -145,7 +145,7 @@ fn extension(path: &Path) -> String {
     extension.to_ascii_lowercase()
 }
 
-fn told(path: &Path) -> impl Fn(io::Error) -> FileError {
+fn io_error(path: &Path) -> impl Fn(io::Error) -> FileError {
     let path = path.to_owned();
     move |source| FileError::Io {
         path: path.clone(),
@@ -155,7 +155,7 @@ fn told(path: &Path) -> impl Fn(io::Error) -> FileError {
 
 fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
     let (mut reader, mut progress) = open_log(&args.input, &args.topics)?;
-    let told = told(&args.output);
+    let io_error = io_error(&args.output);
     // If the log cannot be read, the output is left unchanged.
     let mut next = reader.next_frame().map_err(FileError::from)?;
     let mut file: Option<WholeFile> = None;
@@ -163,7 +163,7 @@ fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
     let mut count = 0;
     while let Some(frame) = next {
         count += 1;
-        progress.tell(count);
+        progress.report(count);
         if to == "tum" {
             let is_later = odometry
                 .last()
@@ -177,11 +177,11 @@ fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
         } else {
             let file = match &mut file {
                 Some(file) => file,
-                none => none.insert(WholeFile::create(&args.output).map_err(&told)?),
+                none => none.insert(WholeFile::create(&args.output).map_err(&io_error)?),
             };
             match to {
-                "jsonl" => FrameLine::from(&frame).write(file).map_err(&told)?,
-                _ => write_carmen(&frame, file).map_err(&told)?,
+                "jsonl" => FrameLine::from(&frame).write(file).map_err(&io_error)?,
+                _ => write_carmen(&frame, file).map_err(&io_error)?,
             }
         }
         next = reader.next_frame().map_err(FileError::from)?;
@@ -191,7 +191,7 @@ fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
         eprintln!("slam2d: {sentence}");
     }
     if let Some(file) = file {
-        file.finish().map_err(&told)?;
+        file.finish().map_err(&io_error)?;
     }
     if to == "tum" {
         if odometry.is_empty() {
@@ -201,13 +201,13 @@ fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
         let written = Trajectory::new(odometry).write_tum(&mut text);
         written
             .and_then(|()| write_whole(&args.output, &text))
-            .map_err(&told)?;
+            .map_err(&io_error)?;
     }
     Ok(())
 }
 
 fn convert_graph(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
-    let bytes = fs::read(&args.input).map_err(told(&args.input))?;
+    let bytes = fs::read(&args.input).map_err(io_error(&args.input))?;
     let graph = GraphFile::read(&bytes, &args.input.display().to_string())?;
     write_graph(args, &graph, to)
 }
@@ -218,14 +218,14 @@ fn write_graph(args: &ConvertArgs, graph: &GraphFile, to: &str) -> Result<(), Co
         "json" => json(graph),
         _ => graph.to_toro(),
     };
-    write_whole(&args.output, text.as_bytes()).map_err(told(&args.output))?;
+    write_whole(&args.output, text.as_bytes()).map_err(io_error(&args.output))?;
     Ok(())
 }
 
 fn convert_session(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
     let (session, _) = read_session(&args.input)?;
     if to != "tum" {
-        return write_graph(args, &GraphFile::of_graph(&session.graph()), to);
+        return write_graph(args, &GraphFile::from_pose_graph(&session.graph()), to);
     }
     let keyframes = session.driven.keyframes.iter().zip(session.poses());
     let poses = keyframes.map(|(keyframe, pose)| StampedPose {
@@ -235,7 +235,7 @@ fn convert_session(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
     let mut text = Vec::new();
     let written = Trajectory::new(poses.collect()).write_tum(&mut text);
     let written = written.and_then(|()| write_whole(&args.output, &text));
-    Ok(written.map_err(told(&args.output))?)
+    Ok(written.map_err(io_error(&args.output))?)
 }
 
 fn convert_trajectory(args: &ConvertArgs) -> Result<(), ConvertError> {
@@ -249,7 +249,7 @@ fn convert_trajectory(args: &ConvertArgs) -> Result<(), ConvertError> {
             pose: stamped.pose.to_array(),
         })
         .collect();
-    write_whole(&args.output, json(&poses).as_bytes()).map_err(told(&args.output))?;
+    write_whole(&args.output, json(&poses).as_bytes()).map_err(io_error(&args.output))?;
     Ok(())
 }
 

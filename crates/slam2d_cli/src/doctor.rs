@@ -30,7 +30,7 @@ pub fn run(args: &DoctorArgs) -> Result<(), FileError> {
     let mut checkup = Checkup::default();
     while let Some(frame) = reader.next_frame()? {
         checkup.take(&frame);
-        progress.tell(checkup.scans());
+        progress.report(checkup.scans());
     }
     progress.end();
     let name = args.log.file_name().unwrap_or(args.log.as_os_str());

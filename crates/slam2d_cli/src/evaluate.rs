@@ -72,7 +72,7 @@ fn odometry(path: &Path, topics: &TopicArgs) -> Result<Trajectory, EvaluateError
     let (mut reader, mut progress) = open_compared(path, topics)?;
     let mut poses: Vec<StampedPose> = Vec::new();
     while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
-        progress.tell(poses.len());
+        progress.report(poses.len());
         let Some(pose) = frame.odometry else { continue };
         let stamp_s = frame.stamp_s;
         if poses.last().is_none_or(|last| stamp_s > last.stamp_s) {

@@ -58,7 +58,7 @@ pub fn run(args: &InfoArgs) -> Result<(), InfoError> {
     let mut info = LogInfo::default();
     while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
         info.take(&frame);
-        progress.tell(info.scans);
+        progress.report(info.scans);
     }
     progress.end();
     let notes = reader.notes();

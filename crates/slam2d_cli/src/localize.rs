@@ -192,7 +192,7 @@ pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
             break;
         };
         run.step(frame);
-        progress.tell(run.reports().len());
+        progress.report(run.reports().len());
     }
     progress.end();
     if run.reports().is_empty() {

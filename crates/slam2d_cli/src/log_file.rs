@@ -103,13 +103,13 @@ pub enum FileError {
 /// # Errors
 /// If the system cannot open it; the error contains the name.
 pub fn open(path: &Path) -> Result<BufReader<File>, FileError> {
-    let told = |source| FileError::Io {
+    let io_error = |source| FileError::Io {
         path: path.to_owned(),
         source,
     };
-    let file = File::open(path).map_err(told)?;
-    if file.metadata().map_err(told)?.is_dir() {
-        return Err(told(io::ErrorKind::IsADirectory.into()));
+    let file = File::open(path).map_err(io_error)?;
+    if file.metadata().map_err(io_error)?.is_dir() {
+        return Err(io_error(io::ErrorKind::IsADirectory.into()));
     }
     Ok(BufReader::with_capacity(1 << 16, file))
 }
@@ -193,7 +193,7 @@ fn bytes_of(path: PathBuf, bar: &ProgressBar) -> Result<LogBytes<'static>, FileE
 
 /// The files of a recording: one, or those of a rosbag2 folder.
 fn log_files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
-    let told = |path: &Path| {
+    let io_error = |path: &Path| {
         let path = path.to_owned();
         move |source| FileError::Io { path, source }
     };
@@ -202,17 +202,17 @@ fn log_files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
     }
     let metadata = path.join(rosbag2::METADATA);
     let listed = if metadata.is_file() {
-        Some(fs::read_to_string(&metadata).map_err(told(&metadata))?)
+        Some(fs::read_to_string(&metadata).map_err(io_error(&metadata))?)
     } else {
         None
     };
     let mut names = Vec::new();
-    for entry in fs::read_dir(path).map_err(told(path))? {
-        let name = entry.map_err(told(path))?.file_name();
+    for entry in fs::read_dir(path).map_err(io_error(path))? {
+        let name = entry.map_err(io_error(path))?.file_name();
         names.push(name.to_string_lossy().into_owned());
     }
     let order = rosbag2::in_order(listed.as_deref(), &names)
-        .map_err(|absent| told(&path.join(absent))(io::ErrorKind::NotFound.into()))?;
+        .map_err(|absent| io_error(&path.join(absent))(io::ErrorKind::NotFound.into()))?;
     let files: Vec<PathBuf> = order.into_iter().map(|k| path.join(&names[k])).collect();
     if files.is_empty() {
         return Err(FileError::NoRecording {
@@ -226,7 +226,7 @@ fn log_files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
 pub struct Progress {
     bar: ProgressBar,
     started: Instant,
-    told: Instant,
+    reported: Instant,
 }
 
 impl Progress {
@@ -241,19 +241,19 @@ impl Progress {
         Self {
             bar,
             started: now,
-            told: now,
+            reported: now,
         }
     }
 
     /// Reports the number of scans done.
-    pub fn tell(&mut self, scans: usize) {
+    pub fn report(&mut self, scans: usize) {
         let seconds = self.started.elapsed().as_secs_f64();
         let per_second = scans as f64 / seconds.max(1e-3);
         if stderr().is_terminal() {
             self.bar
                 .set_message(format!("{scans} scans, {per_second:.0} per second"));
-        } else if self.told.elapsed() >= Self::EVERY {
-            self.told = Instant::now();
+        } else if self.reported.elapsed() >= Self::EVERY {
+            self.reported = Instant::now();
             let left = self.bar.eta().as_secs();
             eprintln!("slam2d: {scans} scans, {per_second:.0} per second, {left} s left");
         }

@@ -257,9 +257,11 @@ fn worse_odometry(frames: &[LogFrame], seed: u32) -> Vec<LogFrame> {
     let mut last: Option<(SE2, SE2)> = None;
     let mut worsened = frames.to_vec();
     for frame in &mut worsened {
-        let Some(told) = frame.odometry else { continue };
-        let worse = last.map_or(told, |(before, worse)| {
-            let motion = before.between(&told);
+        let Some(measured) = frame.odometry else {
+            continue;
+        };
+        let worse = last.map_or(measured, |(before, worse)| {
+            let motion = before.between(&measured);
             let driven_m = math::norm2(motion.x(), motion.y());
             let (across_m, turned_rad) = (NOISE.0 * driven_m, NOISE.1 * driven_m);
             worse
@@ -269,7 +271,7 @@ fn worse_odometry(frames: &[LogFrame], seed: u32) -> Vec<LogFrame> {
                     motion.theta() + rng.normal(0.0, turned_rad),
                 )
         });
-        last = Some((told, worse));
+        last = Some((measured, worse));
         frame.odometry = Some(worse);
     }
     worsened

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use robot_io::json_log::FrameLine;
 use robot_io::log::LogError;
-use robot_io::map_image::{MapError, MapMode, map_of, map_of_session, map_with_free_space};
+use robot_io::map_image::{MapError, MapMode, build_map, build_session_map, map_with_free_space};
 use thiserror::Error;
 
 use crate::log_file::{FileError, open};
@@ -113,11 +113,11 @@ pub fn run(args: &MapArgs) -> Result<(), MapFailure> {
         let draw = if args.free_space {
             map_with_free_space
         } else {
-            map_of
+            build_map
         };
         draw(&keyframes(&args.run)?, args.resolution)
     } else {
-        map_of_session(&read_session(&args.run)?.0, args.resolution)
+        build_session_map(&read_session(&args.run)?.0, args.resolution)
     };
     let map = map.map_err(|source| MapFailure::Map {
         path: args.run.clone(),

@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_that_leads_away_is_told_from_one_that_is_too_small() {
+    fn a_step_in_the_wrong_direction_differs_from_one_that_is_too_small() {
         let refused = |text| headings_deg(text).unwrap_err();
         for away in ["0:10:-1", "0:10:0", "10:10:0"] {
             assert!(refused(away).contains("does not reach"), "{away}");

@@ -134,8 +134,8 @@ fn solve_file(args: &OptimizeArgs) -> Result<(G2oFile, Summary), OptimizeFailure
         path: path.clone(),
         source,
     })?;
-    for said in &prepared.said {
-        eprintln!("slam2d: {}: {said}", path.display());
+    for remark in &prepared.remarks {
+        eprintln!("slam2d: {}: {remark}", path.display());
     }
     let chi2_initial = file.problem.chi2();
     if !chi2_initial.is_finite() {

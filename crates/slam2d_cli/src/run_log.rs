@@ -142,7 +142,7 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     let (mut run, mut recorder, laser_before) = start(args)?;
     let topics = args.topics.resuming_with(laser_before);
     let (reader, mut progress) = open_compared(&args.log, &topics)?;
-    let mut reader = reader.for_scans_alone(args.no_odometry);
+    let mut reader = reader.ignoring_odometry(args.no_odometry);
     let mut broken = None;
     let mut costs = TickCosts::default();
     while !is_interrupted.load(Ordering::Relaxed) {
@@ -153,7 +153,7 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
                 if let Some(report) = report {
                     recorder.take(&frame, &report);
                 }
-                progress.tell(run.scans());
+                progress.report(run.scans());
             }
             Ok(None) => break,
             Err(error) if run.scans() == 0 => return Err(FileError::from(error).into()),
@@ -253,11 +253,11 @@ fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder, Option<LaserMount>), Ru
         return Ok((run, RunRecorder::default(), None));
     };
     let (session, _) = read_session(path)?;
-    let told = |problem| RunError::Snapshot {
+    let snapshot_error = |problem| RunError::Snapshot {
         name: path.display().to_string(),
         problem,
     };
-    let run = LogRun::resume(&session, odometry_use).map_err(told)?;
+    let run = LogRun::resume(&session, odometry_use).map_err(snapshot_error)?;
     let mount = session.sensor.as_ref().map(|sensor| LaserMount {
         body_from_sensor: sensor.body_from_sensor,
         is_flipped: false,
@@ -267,14 +267,14 @@ fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder, Option<LaserMount>), Ru
 
 /// Writes trajectory, graph, quality and doubts to a folder, which is created if needed.
 fn write_results(folder: &Path, run: &LogRun, quality: &Quality) -> Result<(), FileError> {
-    let told = |path: &Path| {
+    let io_error = |path: &Path| {
         let path = path.to_owned();
         move |source| FileError::Io { path, source }
     };
-    fs::create_dir_all(folder).map_err(told(folder))?;
+    fs::create_dir_all(folder).map_err(io_error(folder))?;
     let write = |name: &str, bytes: &[u8]| {
         let path = folder.join(name);
-        fs::write(&path, bytes).map_err(told(&path))
+        fs::write(&path, bytes).map_err(io_error(&path))
     };
     let mut trajectory = Vec::new();
     run.trajectory()

@@ -13,7 +13,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use robot_io::graph_file::GraphFile;
-use robot_io::map_image::{MapMode, map_of, map_with_free_space};
+use robot_io::map_image::{MapMode, build_map, map_with_free_space};
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
 use robot_io::report::Report;
@@ -55,7 +55,7 @@ pub fn write_folder(
     }
     if let Some(slam) = run.slam() {
         save("graph.g2o", &|out| {
-            out.write_all(GraphFile::of_graph(slam.graph()).to_g2o().as_bytes())
+            out.write_all(GraphFile::from_pose_graph(slam.graph()).to_g2o().as_bytes())
         })?;
     }
     let lines = recorder.map_lines(run);
@@ -65,7 +65,7 @@ pub fn write_folder(
     let draw = if has_free_space {
         map_with_free_space
     } else {
-        map_of
+        build_map
     };
     // A map too large for this resolution is skipped; `slam2d map --resolution` writes a coarser one.
     if let Ok(map) = draw(&lines, MAP_CELL_M) {

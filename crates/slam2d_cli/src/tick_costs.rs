@@ -61,14 +61,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_tenth_and_the_last_are_told_apart() {
+    fn the_first_and_the_last_tenth_are_distinguished() {
         let mut costs = TickCosts::default();
         (0..9).for_each(|k| costs.push(f64::from(k)));
         assert!(costs.summary().is_none());
         (9..35).for_each(|k| costs.push(f64::from(k)));
         let TickSummary { first, last } = costs.summary().unwrap();
-        let told = |tenth: Tenth| [tenth.median_ms, tenth.mean_ms, tenth.worst_ms];
-        assert_eq!(told(first), [1.0, 1.0, 2.0]);
-        assert_eq!(told(last), [33.0, 33.0, 34.0]);
+        let figures = |tenth: Tenth| [tenth.median_ms, tenth.mean_ms, tenth.worst_ms];
+        assert_eq!(figures(first), [1.0, 1.0, 2.0]);
+        assert_eq!(figures(last), [33.0, 33.0, 34.0]);
     }
 }

@@ -375,7 +375,7 @@ fn a_full_disk_is_one_line_and_exit_code_2() {
 }
 
 #[test]
-fn a_reader_that_has_seen_enough_is_no_error() {
+fn a_closed_pipe_is_not_an_error() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_slam2d"))
         .args(["lap", "--json"])
         .stdout(Stdio::piped())

@@ -9,7 +9,7 @@ use crate::logs::{corridor, text};
 use crate::support::{assert_refused, json, slam2d};
 
 #[test]
-fn the_doctor_tells_each_part_of_a_recording_with_a_sign() {
+fn the_doctor_reports_each_part_of_a_recording_with_a_symbol() {
     let folder = TempDir::new().unwrap();
     let log = corridor(&folder, 40);
     let output = slam2d(&["doctor", text(&log)]);

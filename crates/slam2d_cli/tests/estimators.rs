@@ -60,7 +60,7 @@ fn a_sweep_has_the_columns_that_were_asked_for() {
 }
 
 #[test]
-fn what_says_nothing_to_an_estimator_is_refused() {
+fn arguments_without_effect_on_an_estimator_are_rejected() {
     assert_refused(
         &["lap", "--estimator", "ml", "--matcher", "ndt"],
         "--matcher has no effect on the estimator ml",

@@ -29,7 +29,7 @@ fn runs(arguments: &[&str]) -> String {
 }
 
 #[test]
-fn what_is_in_a_recording_of_ros_is_told() {
+fn the_content_of_a_ros_recording_is_summarized() {
     for name in ["zstd.mcap", "lz4.bag"] {
         let info = json(&["info", &recording(name), "--json"]);
         assert_eq!(info["scans"], 24, "{name}");
@@ -186,7 +186,7 @@ fn a_graph_goes_through_toro_and_json_and_solves_to_the_same() {
 }
 
 #[test]
-fn what_makes_no_sense_names_what_does() {
+fn impossible_conversions_list_the_possible_ones() {
     let folder = TempDir::new().unwrap();
     let write = |name: &str, bytes: &[u8]| -> PathBuf {
         let path = folder.path().join(name);
@@ -279,7 +279,7 @@ fn a_log_is_never_written_over_by_what_it_becomes() {
 }
 
 #[test]
-fn what_cannot_be_written_is_told_before_the_work() {
+fn unwritable_outputs_are_rejected_before_the_work() {
     let folder = TempDir::new().unwrap();
     let log = recording("plain.mcap");
     let taken = in_folder(&folder, "taken");
@@ -307,7 +307,7 @@ fn what_cannot_be_written_is_told_before_the_work() {
 }
 
 #[test]
-fn a_log_in_which_no_beam_tells_anything_is_refused() {
+fn a_log_without_returns_is_rejected() {
     let folder = TempDir::new().unwrap();
     let log = in_folder(&folder, "blind.jsonl");
     runs(&["convert", &recording("plain.mcap"), &log]);

@@ -104,7 +104,7 @@ fn a_log_is_mapped_and_graded_against_relations() {
 }
 
 #[test]
-fn windows_that_were_searched_in_vain_have_neither_a_fit_nor_a_gate() {
+fn failed_window_searches_have_neither_score_nor_chi2() {
     let folder = TempDir::new().unwrap();
     let log = folder.path().join("alike.log");
     let log = text(&log);
@@ -159,7 +159,7 @@ fn without_odometry_the_scans_alone_are_followed() {
 }
 
 #[test]
-fn wheels_that_never_move_are_told() {
+fn odometry_that_never_moves_is_reported() {
     let folder = TempDir::new().unwrap();
     let whole = fs::read_to_string(corridor(&folder, 40)).unwrap();
     let still: Vec<String> = whole
@@ -185,7 +185,7 @@ fn wheels_that_never_move_are_told() {
 }
 
 #[test]
-fn what_is_in_a_log_is_told() {
+fn the_content_of_a_log_is_summarized() {
     let folder = TempDir::new().unwrap();
     let info = json(&["info", text(&corridor(&folder, 5)), "--json"]);
     assert_eq!(
@@ -197,7 +197,7 @@ fn what_is_in_a_log_is_told() {
 }
 
 #[test]
-fn broken_lines_are_told_and_the_rest_is_mapped() {
+fn malformed_lines_are_reported_and_the_rest_is_mapped() {
     let folder = TempDir::new().unwrap();
     let whole = fs::read_to_string(corridor(&folder, 6)).unwrap();
     let mut lines: Vec<&str> = whole.lines().collect();
@@ -274,7 +274,7 @@ fn slow_corridor(folder: &TempDir, times: usize) -> PathBuf {
 }
 
 #[test]
-fn the_memory_of_a_run_grows_with_the_way_and_not_with_the_bytes() {
+fn memory_grows_with_the_path_and_not_with_the_log() {
     let folder = TempDir::new().unwrap();
     let run = |times: usize| {
         let log = slow_corridor(&folder, times);

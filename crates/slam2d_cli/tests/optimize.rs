@@ -112,7 +112,7 @@ fn json_has_the_keys_that_are_promised() {
 }
 
 #[test]
-fn what_was_tried_is_told_with_its_cost() {
+fn starts_are_listed_with_their_costs() {
     let summary = Graph::new(SQUARE).solve(&[]);
     let tried = summary["tried"].as_array().unwrap();
     let starts: Vec<&Value> = tried.iter().map(|trial| &trial["init"]).collect();
@@ -175,7 +175,7 @@ fn a_kernel_prints_the_cost_that_it_lowered() {
 }
 
 #[test]
-fn what_a_graph_lacks_is_made_up_for_and_told() {
+fn missing_parts_of_a_graph_are_added_and_reported() {
     let edges: String = SQUARE
         .lines()
         .filter(|line| line.starts_with("EDGE"))
@@ -244,7 +244,7 @@ fn graphs_that_cannot_be_solved_are_refused_in_one_line() {
 }
 
 #[test]
-fn a_note_says_what_was_kept_and_standard_output_is_whole() {
+fn kept_records_are_reported_and_standard_output_is_complete() {
     let tags = "VERTEX_XY 7 1 1\nODD\u{7}TAG 1\nODD\u{7}TAG 2\n";
     let graph = Graph::new(format!("{SQUARE}{tags}"));
     let output = graph.output();
@@ -276,7 +276,7 @@ fn an_edge_whose_cost_overflows_is_named() {
 }
 
 #[test]
-fn a_vertex_that_nothing_determines_is_named_by_id_and_line() {
+fn an_unobservable_vertex_is_named_by_id_and_line() {
     // Both edges of vertex 70 measure along one direction only, with weights beyond any regularization.
     let text = "\
 VERTEX_SE2 50 0 0 0

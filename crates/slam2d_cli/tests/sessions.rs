@@ -78,7 +78,7 @@ fn a_run_in_two_parts_is_the_run_in_one() {
 }
 
 #[test]
-fn a_session_is_told_mapped_and_converted() {
+fn a_session_is_summarized_mapped_and_converted() {
     let lap = Lap::new();
     let run = lap.run("whole.jsonl", "out", &[]);
     let session = lap.file("out/session.slam2d");
@@ -247,7 +247,7 @@ fn the_log_of_another_building_is_found_nowhere() {
 }
 
 #[test]
-fn lap_after_lap_is_told_in_lines_and_left_as_a_session() {
+fn repeated_laps_print_lines_and_write_a_session() {
     let folder = TempDir::new().unwrap();
     let session = folder.path().join("laps.slam2d").display().to_string();
     let run = json(&["lap", "--laps", "2", "--session", &session, "--json"]);

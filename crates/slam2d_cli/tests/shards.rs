@@ -41,7 +41,7 @@ fn shards_put_together_print_what_one_process_prints_to_the_last_digit() {
 }
 
 #[test]
-fn a_sweep_that_was_killed_in_the_middle_of_a_row_goes_on_where_it_was() {
+fn a_sweep_killed_within_a_row_resumes() {
     let folder = tempfile::tempdir().unwrap();
     let rows = folder.path().join("rows.jsonl");
     let kept_in = ["--rows", rows.to_str().unwrap(), "--json"];

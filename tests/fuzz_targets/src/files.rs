@@ -29,13 +29,13 @@ pub fn fuzz(data: &[u8]) {
 }
 
 /// The value that was read, or `None` after checking that the error is one sentence.
-fn taken<T, E: std::error::Error>(read: Result<T, E>) -> Option<T> {
+fn accepted<T, E: std::error::Error>(read: Result<T, E>) -> Option<T> {
     read.map_err(|refusal| assert_refusal(&refusal.to_string()))
         .ok()
 }
 
 fn trajectory(text: &[u8]) {
-    let Some(read) = taken(Trajectory::read_tum(text, NAME)) else {
+    let Some(read) = accepted(Trajectory::read_tum(text, NAME)) else {
         return;
     };
     let mut written = Vec::new();
@@ -74,7 +74,7 @@ fn assert_stamped(stamped: &StampedPose) {
 }
 
 fn relations(text: &[u8]) {
-    let Some(read) = taken(read_relations(text, NAME)) else {
+    let Some(read) = accepted(read_relations(text, NAME)) else {
         return;
     };
     let line = |relation: &Relation| {
@@ -92,7 +92,7 @@ fn relations(text: &[u8]) {
 }
 
 fn graph(text: &[u8]) {
-    let Some(read) = taken(GraphFile::read(text, NAME)) else {
+    let Some(read) = accepted(GraphFile::read(text, NAME)) else {
         return;
     };
     let json = serde_json::to_vec(&read).expect("finite numbers can be written");

@@ -22,10 +22,10 @@ pub mod sessions;
 mod solve;
 
 /// A fuzz target: takes arbitrary bytes, and panics if the code violates an invariant.
-pub type Door = fn(&[u8]);
+pub type FuzzTarget = fn(&[u8]);
 
 /// All targets by name.
-pub const TARGETS: [(&str, Door); 11] = [
+pub const TARGETS: [(&str, FuzzTarget); 11] = [
     ("links", links::fuzz),
     ("messages", messages::fuzz),
     ("g2o", g2o::fuzz),

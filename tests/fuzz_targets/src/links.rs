@@ -23,7 +23,7 @@ pub fn fuzz(data: &[u8]) {
             assert!(values.set_text(spec.id, param.id, text).is_ok());
             assert_eq!(values.to_text(param.id), text.trim());
         }
-        Ok(value) => taken(spec.id, param, value, &mut Values::defaults(spec.params)),
+        Ok(value) => accepted(spec.id, param, value, &mut Values::defaults(spec.params)),
         Err(refusal) => {
             let sentence = refusal.to_string();
             assert!(sentence.contains(param.id), "{sentence}");
@@ -33,7 +33,7 @@ pub fn fuzz(data: &[u8]) {
     }
 }
 
-fn taken(widget: &'static str, param: &ParamSpec, value: f64, values: &mut Values) {
+fn accepted(widget: &'static str, param: &ParamSpec, value: f64, values: &mut Values) {
     let (min, max) = param.range();
     assert!((min..=max).contains(&value), "{} at {value}", param.id);
     if !matches!(param.kind, ParamKind::Slider { .. }) {

@@ -62,10 +62,10 @@ fn compare(bytes: &[u8]) {
 
 /// The frames and notes of a log; `None` after checking that the error is one sentence.
 pub fn read(bytes: &[u8], options: &LogOptions) -> Option<(Vec<LogFrame>, LogNotes)> {
-    let told = |refusal: robot_io::log::LogError| assert_refusal(&refusal.to_string());
-    let mut reader = LogFormat::open(bytes, NAME, options).map_err(told).ok()?;
+    let check = |refusal: robot_io::log::LogError| assert_refusal(&refusal.to_string());
+    let mut reader = LogFormat::open(bytes, NAME, options).map_err(check).ok()?;
     let mut frames = Vec::new();
-    while let Some(frame) = reader.next_frame().map_err(told).ok()? {
+    while let Some(frame) = reader.next_frame().map_err(check).ok()? {
         assert!(frame.stamp_s.is_finite(), "{frame:?}");
         frame.odometry.iter().for_each(assert_finite);
         assert_finite(&frame.scan.body_from_sensor);

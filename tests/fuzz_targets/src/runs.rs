@@ -31,7 +31,7 @@ pub fn drive(run: &mut LogRun, frames: impl IntoIterator<Item = LogFrame>) -> Op
 
 /// A saved session survives a round trip to the same bytes.
 pub fn assert_loads(saved: &[u8]) {
-    let loaded = Session::of_bytes(saved, NAME).expect("what a run saves can be loaded");
+    let loaded = Session::from_bytes(saved, NAME).expect("what a run saves can be loaded");
     assert!(loaded.to_bytes() == saved, "{loaded:?}");
 }
 

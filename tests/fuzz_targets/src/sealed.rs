@@ -114,7 +114,7 @@ mod tests {
         run.finish();
         let session = run.session().unwrap();
         let file = sealed(&with_lengths(&taken_apart(&session.to_bytes())));
-        let again = robot_io::session::Session::of_bytes(&file, "x").unwrap();
+        let again = robot_io::session::Session::from_bytes(&file, "x").unwrap();
         assert_eq!(again, session);
     }
 }

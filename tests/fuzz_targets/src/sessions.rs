@@ -10,7 +10,7 @@ use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 use robot_io::localize::LocalizeRun;
 use robot_io::log::LogFrame;
-use robot_io::map_image::map_of_session;
+use robot_io::map_image::build_session_map;
 use robot_io::run::{LogRun, OdometryUse};
 use robot_io::session::Session;
 use robot_io::settings::SETTINGS;
@@ -39,19 +39,19 @@ pub fn fuzz(data: &[u8]) {
         1 => sealed(text),
         _ => sealed(&with_lengths(text)),
     };
-    let session = match Session::of_bytes(&file, NAME) {
+    let session = match Session::from_bytes(&file, NAME) {
         Ok(session) => session,
         Err(refusal) => return assert_refusal(&refusal.to_string()),
     };
     let written = session.to_bytes();
-    let again = Session::of_bytes(&written, NAME).expect("what was written can be loaded");
+    let again = Session::from_bytes(&written, NAME).expect("what was written can be loaded");
     assert!(again.to_bytes() == written);
     // Debug prints every bit of a number, and also NaN.
     assert_eq!(format!("{again:?}"), format!("{session:?}"));
     if is_small(&session) {
-        go_on(&session);
+        continue_run(&session);
         localize(&session);
-        look_at(&session);
+        reopen(&session);
     }
 }
 
@@ -80,12 +80,12 @@ fn frames(session: &Session) -> impl Iterator<Item = LogFrame> + '_ {
     })
 }
 
-fn go_on(session: &Session) {
+fn continue_run(session: &Session) {
     match LogRun::resume(session, OdometryUse::Log) {
         // Numbers at the limit of what can be loaded may grow beyond it.
         Ok(mut run) => {
             let saved = drive(&mut run, frames(session)).expect("a run goes on");
-            if let Err(refusal) = Session::of_bytes(&saved, NAME) {
+            if let Err(refusal) = Session::from_bytes(&saved, NAME) {
                 assert_refusal(&refusal.to_string());
             }
         }
@@ -107,12 +107,12 @@ fn localize(session: &Session) {
     }
 }
 
-fn look_at(session: &Session) {
+fn reopen(session: &Session) {
     match LogRun::reopen(session) {
         Ok(mut run) => assert_loads(&drive(&mut run, []).expect("it has keyframes")),
         Err(refusal) => assert_sentence(&refusal.to_string()),
     }
-    match map_of_session(session, CELL_M) {
+    match build_session_map(session, CELL_M) {
         Ok(map) => assert_eq!(map.counts().iter().sum::<usize>(), map.width * map.height),
         Err(refusal) => assert_sentence(&refusal.to_string()),
     }

@@ -32,7 +32,7 @@ fn inputs(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 }
 
 #[test]
-fn every_kept_input_passes_through_its_door() {
+fn every_kept_input_passes_through_its_target() {
     let only = env::var("TARGET").ok();
     for (name, target) in TARGETS {
         if only.as_deref().is_some_and(|only| only != name) {
@@ -53,7 +53,7 @@ fn every_kept_input_passes_through_its_door() {
 }
 
 #[test]
-fn the_inputs_of_the_repository_stay_small_and_each_belongs_to_a_door() {
+fn the_inputs_of_the_repository_stay_small_and_each_belongs_to_a_target() {
     let (mut files, mut bytes) = (0, 0);
     for kind in ["corpus", "found"] {
         for entry in fs::read_dir(fuzz().join(kind)).expect("the folder is there") {

@@ -7,7 +7,7 @@
 mod checking;
 mod examining;
 mod orders;
-mod telling;
+mod updates;
 
 use std::collections::BTreeMap;
 use std::io::{self, BufRead, Read};
@@ -46,7 +46,7 @@ enum Work<'a> {
 
 /// Parts that changed since the last update.
 #[derive(Clone, Copy, Debug, Default)]
-struct News {
+struct Changes {
     file: bool,
     keyframes: bool,
     loops: bool,
@@ -85,7 +85,7 @@ pub struct Engine<'a> {
     has_scans: bool,
     /// Number of scans of an opened session.
     scans_before: usize,
-    news: News,
+    changes: Changes,
     /// Pending updates, including answers.
     waiting: Vec<Update>,
 }
@@ -101,12 +101,12 @@ impl<'a> Engine<'a> {
         let Some(bytes) = given.parts.first() else {
             return Err("no file was given".to_owned());
         };
-        let told = |problem: io::Error| match bytes.is_packed() {
+        let describe = |problem: io::Error| match bytes.is_packed() {
             Ok(true) => format!("{name} cannot be decompressed: {problem}; copy it again"),
             _ => format!("{name} cannot be read: {problem}; it may have moved or changed"),
         };
-        let mut source = bytes.stream().map_err(told)?;
-        let start = source.fill_buf().map_err(told)?;
+        let mut source = bytes.stream().map_err(describe)?;
+        let start = source.fill_buf().map_err(describe)?;
         let lower = name.to_ascii_lowercase();
         if Session::begins(start) || lower.ends_with(".slam2d") {
             if size_bytes > session::MOST_BYTES {
@@ -116,7 +116,7 @@ impl<'a> Engine<'a> {
                 return Err(too_large.to_string());
             }
             let session = Session::read(source, name).map_err(|problem| problem.to_string())?;
-            return Self::of_session(&session, name, size_bytes);
+            return Self::from_session(&session, name, size_bytes);
         }
         let is_graph = [".g2o", ".graph", ".toro"]
             .iter()
@@ -139,12 +139,12 @@ impl<'a> Engine<'a> {
         let run = LogRun::new(choices.odometry);
         Ok(Self {
             run,
-            ..Self::beginning(work, name, size_bytes)
+            ..Self::with_work(work, name, size_bytes)
         })
     }
 
     /// Opens a session, which already has a map.
-    fn of_session(session: &Session, name: &str, size_bytes: u64) -> Result<Self, String> {
+    fn from_session(session: &Session, name: &str, size_bytes: u64) -> Result<Self, String> {
         let run = LogRun::reopen(session).map_err(|problem| format!("{name}: {problem}"))?;
         let keyframes = session.driven.keyframes.len();
         if keyframes == 0 {
@@ -158,13 +158,13 @@ impl<'a> Engine<'a> {
             fits: vec![f64::NAN; keyframes],
             has_scans: true,
             scans_before: session.driven.frames,
-            ..Self::beginning(Work::Idle, name, size_bytes)
+            ..Self::with_work(Work::Idle, name, size_bytes)
         };
         engine.begin_editing(loops_of(&session.graph()));
         Ok(engine)
     }
 
-    fn beginning(work: Work<'a>, name: &str, size_bytes: u64) -> Self {
+    fn with_work(work: Work<'a>, name: &str, size_bytes: u64) -> Self {
         Self {
             name: name.to_owned(),
             size_bytes,
@@ -187,9 +187,9 @@ impl<'a> Engine<'a> {
             look_into: Vec::new(),
             reference: None,
             image: files::MAP_IMAGES[0],
-            news: News {
+            changes: Changes {
                 file: true,
-                ..News::default()
+                ..Changes::default()
             },
             waiting: Vec::new(),
         }
@@ -216,7 +216,7 @@ impl<'a> Engine<'a> {
             Work::Finishing => self.close_last_loops(),
             Work::Solving(solving) => self.solve(solving),
             Work::Checking => self.check(),
-            Work::Idle => return self.paint() || self.look_around(),
+            Work::Idle => return self.paint() || self.localize_next(),
             Work::Failed(problem) => {
                 self.work = Work::Failed(problem);
                 return false;
@@ -231,17 +231,17 @@ impl<'a> Engine<'a> {
                 let is_first = self.run.scans() == 0;
                 if let Some(report) = self.run.step(frame.clone()) {
                     if is_first {
-                        self.tell_offers(&reader.notes().offers);
+                        self.send_offers(&reader.notes().offers);
                     }
                     self.recorder.take(&frame, &report);
                     if report.new_keyframe.is_some() {
                         let matched = report.registration.map(|found| found.matched);
                         let fit = matched.and_then(|matched| matched.score);
                         self.fits.push(fit.unwrap_or(f64::NAN));
-                        self.news.keyframes = true;
+                        self.changes.keyframes = true;
                     }
                     if !report.loop_attempts.is_empty() {
-                        self.news.loops = true;
+                        self.changes.loops = true;
                     }
                     if report.closed_loop().is_some() {
                         self.picture.follow(poses_of(&self.run));
@@ -258,11 +258,11 @@ impl<'a> Engine<'a> {
     /// Ends the log: links what was read, or reports why there are no scans.
     fn end_of_log(&mut self, reader: &dyn LogReader, problem: Option<String>) {
         let notes = reader.notes();
-        self.tell_offers(&notes.offers);
+        self.send_offers(&notes.offers);
         self.remarks.clone_from(&notes.about);
         let said = notes.sentences(&self.name);
         // A map of a part of the file must not look complete.
-        let is_cut = notes.half_written.is_some() || notes.ended_early.is_some();
+        let is_cut = notes.truncated.is_some() || notes.ended_early.is_some();
         let missing = problem.as_ref().or(said.first().filter(|_| is_cut));
         let missing = missing.map_or(String::new(), |missing| format!("{missing}."));
         self.remarks.extend(said);
@@ -299,7 +299,7 @@ impl<'a> Engine<'a> {
     fn solve(&mut self, mut solving: Box<GraphSolving>) {
         let goes_on = solving.step();
         let graph = solving.graph();
-        self.news.keyframes = true;
+        self.changes.keyframes = true;
         if goes_on {
             self.graph = Some(graph);
             self.work = Work::Solving(solving);
@@ -316,14 +316,14 @@ impl<'a> Engine<'a> {
         self.fixed = self.graph().map_or_else(Vec::new, |graph| {
             graph.nodes().map(|(_, node)| node.fixed).collect()
         });
-        self.changed();
+        self.graph_changed();
     }
 
     /// Recomputes and reports what depends on the graph.
-    fn changed(&mut self) {
-        self.news.keyframes = true;
-        self.news.loops = true;
-        self.news.grade = true;
+    fn graph_changed(&mut self) {
+        self.changes.keyframes = true;
+        self.changes.loops = true;
+        self.changes.grade = true;
         if self.has_scans {
             self.picture.follow(poses_of(&self.run));
         }
@@ -340,7 +340,7 @@ impl<'a> Engine<'a> {
     }
 
     /// Localizes the next scan of another log; returns false if there is none.
-    fn look_around(&mut self) -> bool {
+    fn localize_next(&mut self) -> bool {
         self.whereabouts.as_mut().is_some_and(Whereabouts::step)
     }
 
@@ -380,7 +380,7 @@ fn links_of(run: &LogRun) -> Vec<Link> {
     if run.links().is_empty() {
         let tried = run.loops().iter();
         return tried
-            .map(|tried| Link::registered(&tried.verification, run.holds(tried)))
+            .map(|tried| Link::registered(&tried.verification, run.has_loop(tried)))
             .collect();
     }
     let links = run.links().iter();

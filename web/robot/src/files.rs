@@ -62,5 +62,5 @@ pub fn trajectory_file(trajectory: &Trajectory) -> Result<Vec<u8>, String> {
 /// The graph in the g2o format.
 #[must_use]
 pub fn graph_file(graph: &PoseGraph) -> Vec<u8> {
-    GraphFile::of_graph(graph).to_g2o().into_bytes()
+    GraphFile::from_pose_graph(graph).to_g2o().into_bytes()
 }

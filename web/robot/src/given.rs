@@ -128,6 +128,9 @@ pub fn compared<'a>(given: &Given<'a>, choices: &Choices) -> Result<ComparedRead
     let parts = given.parts.clone();
     let reader = LogFormat::open_parts(parts, &given.name, &choices.log);
     let reader = reader.map_err(|problem| problem.to_string())?;
-    let is_alone = choices.odometry == OdometryUse::None;
-    Ok(ComparedReader::new(reader, choices.log.laser.is_some()).for_scans_alone(is_alone))
+    let ignores_odometry = choices.odometry == OdometryUse::None;
+    Ok(
+        ComparedReader::new(reader, choices.log.laser.is_some())
+            .ignoring_odometry(ignores_odometry),
+    )
 }

@@ -8,11 +8,11 @@ use pr_geom::SE2;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Accepted by its tests, and in the graph.
-    Closed = 0,
+    Accepted = 0,
     /// Rejected by its tests.
-    TurnedAway = 1,
+    Rejected = 1,
     /// Removed by the user.
-    Refused = 2,
+    Removed = 2,
     /// Added by the user.
     Added = 3,
 }
@@ -21,15 +21,15 @@ impl Verdict {
     /// Whether the graph contains it.
     #[must_use]
     pub fn is_in_graph(self) -> bool {
-        matches!(self, Self::Closed | Self::Added)
+        matches!(self, Self::Accepted | Self::Added)
     }
 
     /// The opposite decision, by the user.
     #[must_use]
-    pub fn turned(self) -> Self {
+    pub fn toggled(self) -> Self {
         match self {
-            Self::Closed | Self::Added => Self::Refused,
-            Self::TurnedAway | Self::Refused => Self::Added,
+            Self::Accepted | Self::Added => Self::Removed,
+            Self::Rejected | Self::Removed => Self::Added,
         }
     }
 }
@@ -77,9 +77,9 @@ impl Link {
                 .rejection
                 .map_or_else(String::new, |why| robot_io::quality::reason(&why)),
             verdict: if is_in_graph {
-                Verdict::Closed
+                Verdict::Accepted
             } else {
-                Verdict::TurnedAway
+                Verdict::Rejected
             },
         }
     }

@@ -62,14 +62,14 @@ pub fn another_day() -> Vec<u8> {
 /// CARMEN lines; odometry starts at zero where the log starts.
 fn log_of(drive: &Drive, ticks: RangeInclusive<usize>) -> Vec<u8> {
     let mut log = Vec::new();
-    let mut wheels = SE2::identity();
+    let mut odometry = SE2::identity();
     let first = *ticks.start();
     for tick in ticks {
         let frame = drive.frame(tick);
         if tick > first {
-            wheels = wheels * frame.odometry.unwrap_or(SE2::identity());
+            odometry = odometry * frame.odometry.unwrap_or(SE2::identity());
         }
-        let [x, y, theta] = wheels.to_array().map(|value| rounded(value, 5));
+        let [x, y, theta] = odometry.to_array().map(|value| rounded(value, 5));
         let mut scan = frame.scan;
         for range_m in &mut scan.ranges_m {
             *range_m = rounded(*range_m, 3);

@@ -24,13 +24,13 @@ pub const HEAD: usize = 7;
 /// 1σ ellipse, long and short (m), and the heading of the long one (rad); NaN if unknown.
 pub const PLACE: usize = 10;
 /// Most scans in an update: of a longer log every n-th scan is sent.
-const MOST_TOLD: usize = 20_000;
+const MOST_SENT: usize = 20_000;
 /// An update is sent once the number of scans has grown by this factor.
-const TOLD_AGAIN: f64 = 1.02;
+const RESEND_GROWTH: f64 = 1.02;
 
 /// A pose relative to a keyframe of the map.
 #[derive(Clone, Copy, Debug)]
-struct Hung {
+struct AnchoredPose {
     keyframe: usize,
     keyframe_from_body: SE2,
 }
@@ -43,10 +43,10 @@ pub struct Whereabouts<'a> {
     run: LocalizeRun,
     /// Poses of the keyframes at the start.
     map: Vec<SE2>,
-    places: Vec<Option<Hung>>,
+    poses: Vec<Option<AnchoredPose>>,
     is_over: bool,
     problem: Option<String>,
-    told: usize,
+    sent: usize,
     is_new: bool,
 }
 
@@ -70,10 +70,10 @@ impl<'a> Whereabouts<'a> {
             reader: Box::new(reader),
             run,
             map: session.poses(),
-            places: Vec::new(),
+            poses: Vec::new(),
             is_over: false,
             problem: None,
-            told: 0,
+            sent: 0,
             is_new: true,
         })
     }
@@ -86,10 +86,10 @@ impl<'a> Whereabouts<'a> {
         match self.reader.next_frame() {
             Ok(Some(frame)) => {
                 if let Some(report) = self.run.step(frame) {
-                    self.places.push(hung(&self.map, report));
+                    self.poses.push(anchored(&self.map, report));
                 }
-                let enough = TOLD_AGAIN * self.told as f64;
-                self.is_new |= self.places.len() as f64 > enough;
+                let enough = RESEND_GROWTH * self.sent as f64;
+                self.is_new |= self.poses.len() as f64 > enough;
             }
             Ok(None) => self.end(),
             Err(problem) => {
@@ -104,7 +104,7 @@ impl<'a> Whereabouts<'a> {
     pub fn end(&mut self) {
         self.is_over = true;
         self.is_new = true;
-        if self.places.is_empty() && self.problem.is_none() {
+        if self.poses.is_empty() && self.problem.is_none() {
             let name = &self.name;
             self.problem = Some(match self.run.refused() {
                 Some(why) => format!("{name}: no scan could be used: {why}"),
@@ -127,12 +127,12 @@ impl<'a> Whereabouts<'a> {
     /// The localized poses on the current map.
     #[must_use]
     pub fn trajectory(&self, map: &[SE2]) -> Trajectory {
-        let placed = self.run.reports().iter().zip(&self.places);
-        let localized = placed.filter(|(report, _)| report.verdict.is_localized());
-        let poses = localized.filter_map(|(report, place)| {
+        let posed = self.run.reports().iter().zip(&self.poses);
+        let localized = posed.filter(|(report, _)| report.verdict.is_localized());
+        let poses = localized.filter_map(|(report, anchored)| {
             Some(StampedPose {
                 stamp_s: report.stamp_s,
-                pose: place.and_then(|place| on(map, place))?,
+                pose: anchored.and_then(|anchored| world_pose(map, anchored))?,
             })
         });
         Trajectory::new(poses.collect())
@@ -144,7 +144,7 @@ impl<'a> Whereabouts<'a> {
             return None;
         }
         let reports = self.run.reports();
-        self.told = reports.len();
+        self.sent = reports.len();
         let count = |verdict| {
             let of_it = reports.iter().filter(|report| report.verdict == verdict);
             of_it.count() as f64
@@ -161,11 +161,11 @@ impl<'a> Whereabouts<'a> {
             count(Verdict::Lost),
             first.map_or(f64::NAN, |first| first as f64),
         ];
-        let stride = reports.len().div_ceil(MOST_TOLD).max(1);
-        let placed = reports.iter().zip(&self.places).enumerate();
-        for (number, (report, place)) in placed.step_by(stride) {
-            let pose = place.and_then(|place| on(map, place));
-            numbers.extend(place_numbers(number, report, pose));
+        let stride = reports.len().div_ceil(MOST_SENT).max(1);
+        let posed = reports.iter().zip(&self.poses).enumerate();
+        for (number, (report, anchored)) in posed.step_by(stride) {
+            let pose = anchored.and_then(|anchored| world_pose(map, anchored));
+            numbers.extend(pose_numbers(number, report, pose));
         }
         let mut lines = vec![self.name.clone()];
         lines.extend(self.problem.clone());
@@ -194,21 +194,21 @@ impl<'a> Whereabouts<'a> {
 }
 
 /// The pose relative to the nearest keyframe.
-fn hung(map: &[SE2], report: &LocalizeReport) -> Option<Hung> {
+fn anchored(map: &[SE2], report: &LocalizeReport) -> Option<AnchoredPose> {
     let pose = report.pose?;
     let distances = map.iter().map(|at| position_error_m(at, &pose)).enumerate();
     let (keyframe, _) = distances.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(Hung {
+    Some(AnchoredPose {
         keyframe,
         keyframe_from_body: map[keyframe].between(&pose),
     })
 }
 
-fn on(map: &[SE2], place: Hung) -> Option<SE2> {
-    Some(*map.get(place.keyframe)? * place.keyframe_from_body)
+fn world_pose(map: &[SE2], anchored: AnchoredPose) -> Option<SE2> {
+    Some(*map.get(anchored.keyframe)? * anchored.keyframe_from_body)
 }
 
-fn place_numbers(number: usize, report: &LocalizeReport, pose: Option<SE2>) -> [f64; PLACE] {
+fn pose_numbers(number: usize, report: &LocalizeReport, pose: Option<SE2>) -> [f64; PLACE] {
     let [x, y, theta] = pose.map_or([f64::NAN; 3], |pose| pose.to_array());
     let ellipse = report.covariance.map(|known| {
         let known = KeyframeQuality {

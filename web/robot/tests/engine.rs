@@ -70,7 +70,7 @@ fn the_sample_becomes_a_map_with_loops_and_its_grade() {
 }
 
 /// Loops of an update: newer and older keyframe, χ² and its gate, and the verdict.
-fn told_loops(updates: &[Update]) -> Vec<([usize; 2], f64, f64, f64)> {
+fn sent_loops(updates: &[Update]) -> Vec<([usize; 2], f64, f64, f64)> {
     let loops = of(updates, "loops").numbers.chunks(10);
     loops
         .map(|told| {
@@ -84,7 +84,7 @@ fn told_loops(updates: &[Update]) -> Vec<([usize; 2], f64, f64, f64)> {
 fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
     let (log, _) = files();
     let mut engine = finished(log);
-    let told = told_loops(&engine.updates());
+    let told = sent_loops(&engine.updates());
     let closed: Vec<_> = told.iter().filter(|told| told.3 == 0.0).collect();
     assert!(closed.len() > 5);
     assert!(
@@ -106,7 +106,7 @@ fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
         assert_eq!(found.map(|told| Some(told.1)), Some(link.chi2), "{link:?}");
     }
     // A loop keeps its number while it is removed, even if it is no longer the most doubtful.
-    let after = told_loops(&refuse_first(&mut engine));
+    let after = sent_loops(&refuse_first(&mut engine));
     let ends =
         |told: &[([usize; 2], f64, f64, f64)]| told.iter().map(|told| told.0).collect::<Vec<_>>();
     assert_eq!(ends(&after), ends(&told));
@@ -176,7 +176,7 @@ fn a_keyframe_that_is_dragged_stays_there_until_it_is_let_go() {
 }
 
 #[test]
-fn a_loop_is_added_where_two_scans_fit_and_told_why_not_where_they_do_not() {
+fn a_loop_is_added_if_two_scans_fit_and_otherwise_rejected_with_a_reason() {
     let (log, _) = files();
     let mut engine = finished(log);
     let updates = engine.updates();

@@ -95,7 +95,7 @@ fn the_doctor_s_screen_comes_before_the_first_keyframe_and_once() {
 }
 
 #[test]
-fn a_laser_that_was_turned_is_told_with_the_options_that_answer_it() {
+fn a_turned_laser_is_reported_with_the_options_that_correct_it() {
     let (log, _) = files();
     let choices = Choices::read("laser 0,0,180").unwrap();
     let turned = Engine::open(given(log, "ring.log"), &choices).unwrap();

@@ -111,7 +111,7 @@ fn a_session_is_edited_further_and_what_was_changed_is_saved_with_it() {
     let updates = third.updates();
     assert_eq!(of(&updates, "keyframes").numbers[121], keyframes[121] + 0.5);
     // A continued run starts from the scans, not from what was pinned.
-    let session = Session::of_bytes(&pinned, "pinned").unwrap();
+    let session = Session::from_bytes(&pinned, "pinned").unwrap();
     assert!(LogRun::resume(&session, OdometryUse::Log).is_ok());
 }
 
@@ -178,7 +178,7 @@ fn the_robot_of_another_day_is_found_on_the_map_and_followed() {
     assert_eq!(way.poses().len() as f64, head[2] + head[3]);
 
     // The same as on the command line, which reads the session from the file.
-    let session = Session::of_bytes(&session, "monday").unwrap();
+    let session = Session::from_bytes(&session, "monday").unwrap();
     let mut run =
         robot_io::localize::LocalizeRun::new(&session, OdometryUse::Log, StartPose::Anywhere)
             .unwrap();
@@ -219,7 +219,7 @@ fn a_start_that_is_given_is_where_the_robot_is_looked_for() {
 }
 
 #[test]
-fn the_places_go_along_where_the_reader_moves_the_map() {
+fn poses_move_with_the_map() {
     let day = sample::another_day();
     let session = saved();
     let mut engine = opened(&session);
@@ -244,7 +244,7 @@ fn the_places_go_along_where_the_reader_moves_the_map() {
 }
 
 #[test]
-fn what_is_no_log_is_answered_and_leaves_the_map_and_the_place_before_it() {
+fn files_that_are_not_logs_are_reported_and_change_nothing() {
     let day = sample::another_day();
     let session = saved();
     let mut engine = opened(&session);

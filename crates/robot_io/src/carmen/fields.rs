@@ -5,7 +5,7 @@ use pr_geom::SE2;
 
 use crate::lines::{finite, printable};
 use crate::log::LogFrame;
-use crate::place::{checked, checked_stamp_s};
+use crate::plausible::{plausible_pose, plausible_stamp_s};
 
 /// More beams than any planar laser has.
 const MOST_BEAMS: usize = 100_000;
@@ -36,7 +36,7 @@ impl<'a> Fields<'a> {
     /// The next three words as a pose.
     pub fn pose(&mut self, names: [&str; 3]) -> Result<SE2, String> {
         let [x, y, theta] = names;
-        checked(SE2::new(
+        plausible_pose(SE2::new(
             self.number(x)?,
             self.number(y)?,
             self.number(theta)?,
@@ -78,7 +78,7 @@ impl<'a> Fields<'a> {
         let ipc_s = self.number("ipc_time")?;
         self.word();
         let logger_s = self.number("logger_time")?;
-        checked_stamp_s(if ipc_s > 0.0 {
+        plausible_stamp_s(if ipc_s > 0.0 {
             ipc_s
         } else if logger_s > 0.0 {
             logger_s

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use pr_geom::SE2;
 
 use crate::log::LogFrame;
-use crate::wheel_poses::WheelPoses;
+use crate::odometry_poses::OdometryPoses;
 
 /// Most scans that wait; beyond it, a scan takes the last known odometry.
 const MOST_WAITING: usize = 64;
@@ -14,7 +14,7 @@ const MOST_WAITING: usize = 64;
 #[derive(Debug, Default)]
 pub struct RawScans {
     waiting: VecDeque<LogFrame>,
-    wheels: WheelPoses,
+    odometry: OdometryPoses,
 }
 
 impl RawScans {
@@ -24,7 +24,7 @@ impl RawScans {
 
     /// Takes an odometry pose.
     pub fn take_odometry(&mut self, stamp_s: f64, pose: SE2) {
-        self.wheels.push(stamp_s, pose);
+        self.odometry.push(stamp_s, pose);
     }
 
     /// Number of waiting scans.
@@ -40,12 +40,12 @@ impl RawScans {
     /// The oldest scan, once odometry covers its stamp or no more will come.
     pub fn pop(&mut self, is_done: bool) -> Option<LogFrame> {
         let stamp_s = self.waiting.front()?.stamp_s;
-        let is_covered = self.wheels.reaches(stamp_s);
+        let is_covered = self.odometry.reaches(stamp_s);
         if !is_covered && !is_done && self.waiting.len() <= MOST_WAITING {
             return None;
         }
         let mut frame = self.waiting.pop_front()?;
-        frame.odometry = self.wheels.at(frame.stamp_s);
+        frame.odometry = self.odometry.at(frame.stamp_s);
         Some(frame)
     }
 }

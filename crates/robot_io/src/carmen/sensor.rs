@@ -7,7 +7,7 @@ use pr_geom::{SE2, math};
 
 use super::fields::Fields;
 use crate::log::LogFrame;
-use crate::place::is_length;
+use crate::plausible::is_plausible_length;
 
 /// Longer readings of the lasers that wrote these logs are no returns, m.
 const FARTHEST_M: f64 = 80.0;
@@ -18,9 +18,9 @@ const FARTHEST_MOUNT_M: f64 = 1.5;
 /// Tolerances, m and rad: of a front laser from the robot's axis, and between the mountings of all lines.
 const MOUNT_OFF_AXIS: [f64; 2] = [0.02, 0.01];
 /// Path length and turn after which a map pose has visibly drifted from odometry, m and rad.
-const TELLING_WAY: [f64; 2] = [0.3, 0.3];
+const MOUNT_TEST_MOTION: [f64; 2] = [0.3, 0.3];
 /// Most scans that wait for the mounting.
-const MOST_HELD: usize = 512;
+const MOST_WAITING: usize = 512;
 
 /// Geometry of the front laser by PARAM lines and the first scans.
 #[derive(Clone, Debug, Default)]
@@ -32,12 +32,12 @@ pub struct FrontLaser {
     sideways_m: Option<f64>,
     turned_rad: Option<f64>,
     mount: Option<SE2>,
-    held: VecDeque<Held>,
+    waiting: VecDeque<WaitingScan>,
 }
 
 /// A scan that waits for the mounting, with the relative pose of its own line.
 #[derive(Clone, Debug)]
-struct Held {
+struct WaitingScan {
     frame: LogFrame,
     odometry: SE2,
     mount: SE2,
@@ -47,7 +47,10 @@ impl FrontLaser {
     /// Takes a PARAM line; ignores names that do not concern the front laser.
     pub fn take_parameter(&mut self, fields: &mut Fields<'_>) {
         let name = fields.word();
-        let value = fields.number(name).ok().filter(|value| is_length(*value));
+        let value = fields
+            .number(name)
+            .ok()
+            .filter(|value| is_plausible_length(*value));
         let Some(value) = value else {
             return;
         };
@@ -79,7 +82,7 @@ impl FrontLaser {
         }
         let laser = fields.pose(["laser_x", "laser_y", "laser_theta"])?;
         let odometry = fields.pose(["odom_x", "odom_y", "odom_theta"])?;
-        let stamp_s = fields.stamp_s(frames + self.held.len())?;
+        let stamp_s = fields.stamp_s(frames + self.waiting.len())?;
         let (first_angle_rad, angle_step_rad) = self.beams(ranges_m.len());
         let scan = LaserScan {
             first_angle_rad,
@@ -114,21 +117,21 @@ impl FrontLaser {
     }
 
     /// The mounting that PARAM lines state.
-    pub fn told_mount(&self) -> Option<SE2> {
-        let told = [self.forward_m, self.sideways_m, self.turned_rad];
-        told.iter().any(Option::is_some).then(|| {
-            let [x, y, theta] = told.map(Option::unwrap_or_default);
+    pub fn stated_mount(&self) -> Option<SE2> {
+        let stated = [self.forward_m, self.sideways_m, self.turned_rad];
+        stated.iter().any(Option::is_some).then(|| {
+            let [x, y, theta] = stated.map(Option::unwrap_or_default);
             SE2::new(x, y, theta)
         })
     }
 
     /// The oldest waiting scan, once the mounting is known or no line follows.
     pub fn pop(&mut self, is_done: bool) -> Option<LogFrame> {
-        if self.mount.is_none() && is_done && !self.held.is_empty() {
+        if self.mount.is_none() && is_done && !self.waiting.is_empty() {
             self.choose_mount();
         }
         let mount = self.mount?;
-        let mut frame = self.held.pop_front()?.frame;
+        let mut frame = self.waiting.pop_front()?.frame;
         frame.scan.body_from_sensor = mount;
         Some(frame)
     }
@@ -139,7 +142,7 @@ impl FrontLaser {
     fn hold(&mut self, frame: LogFrame, odometry: &SE2, laser: &SE2) {
         let mount = odometry.between(laser);
         let odometry = *odometry;
-        self.held.push_back(Held {
+        self.waiting.push_back(WaitingScan {
             frame,
             odometry,
             mount,
@@ -147,46 +150,49 @@ impl FrontLaser {
         if self.mount.is_some() {
             return;
         }
-        if let Some(told) = self.told_mount() {
-            self.mount = Some(told);
-        } else if self.held.len() == 1 {
+        if let Some(stated) = self.stated_mount() {
+            self.mount = Some(stated);
+        } else if self.waiting.len() == 1 {
             let [off_m, off_rad] = MOUNT_OFF_AXIS;
             let is_mount = mount.y().abs() <= off_m
                 && mount.theta().abs() <= off_rad
                 && (0.0..=FARTHEST_MOUNT_M).contains(&mount.x());
             self.mount = is_mount.then_some(mount);
-        } else if !self.is_one_mount() || self.has_told() || self.held.len() >= MOST_HELD {
+        } else if !self.is_one_mount()
+            || self.has_moved_enough()
+            || self.waiting.len() >= MOST_WAITING
+        {
             self.choose_mount();
         }
     }
 
     /// Whether the robot has driven and turned far enough to distinguish a mounting from a map pose.
-    fn has_told(&self) -> bool {
-        let (Some(first), Some(last)) = (self.held.front(), self.held.back()) else {
+    fn has_moved_enough(&self) -> bool {
+        let (Some(first), Some(last)) = (self.waiting.front(), self.waiting.back()) else {
             return false;
         };
-        let way = first.odometry.between(&last.odometry);
-        let [path_length_m, turn_rad] = TELLING_WAY;
-        math::norm2(way.x(), way.y()) >= path_length_m && way.theta().abs() >= turn_rad
+        let motion = first.odometry.between(&last.odometry);
+        let [path_length_m, turn_rad] = MOUNT_TEST_MOTION;
+        math::norm2(motion.x(), motion.y()) >= path_length_m && motion.theta().abs() >= turn_rad
     }
 
     /// Whether all waiting lines agree on one mounting.
     fn is_one_mount(&self) -> bool {
-        let Some(first) = self.held.front() else {
+        let Some(first) = self.waiting.front() else {
             return false;
         };
-        let is_same = |held: &Held| {
-            let off = first.mount.between(&held.mount);
+        let is_same = |other: &WaitingScan| {
+            let off = first.mount.between(&other.mount);
             let [off_m, off_rad] = MOUNT_OFF_AXIS;
             math::norm2(off.x(), off.y()) <= off_m && off.theta().abs() <= off_rad
         };
         math::norm2(first.mount.x(), first.mount.y()) <= FARTHEST_MOUNT_M
-            && self.held.iter().all(is_same)
+            && self.waiting.iter().all(is_same)
     }
 
     fn choose_mount(&mut self) {
         let is_mount = self.is_one_mount();
-        let first = self.held.front().map(|held| held.mount);
+        let first = self.waiting.front().map(|scan| scan.mount);
         self.mount = first.filter(|_| is_mount).or(Some(SE2::identity()));
     }
 }

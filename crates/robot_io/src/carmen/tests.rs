@@ -29,7 +29,7 @@ fn a_flaser_line_is_a_scan_with_odometry() {
     assert_eq!(frame.scan.angle_step_rad, PI / 4.0);
     assert!(!frame.scan.is_return(81.83) && frame.scan.is_return(4.0));
     assert_eq!(notes.records["FLASER"], 1);
-    assert_eq!((notes.broken, notes.half_written), (0, None));
+    assert_eq!((notes.broken, notes.truncated), (0, None));
 }
 
 #[test]
@@ -86,13 +86,13 @@ fn a_raw_scan_takes_the_odometry_of_its_time() {
 fn a_raw_scan_that_is_logged_late_takes_the_odometry_of_its_own_time() {
     let odom = |x: f64, t: f64| format!("ODOM {x} 0 0 0 0 0 {t} h {t}\n");
     let raw = "RAWLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 1.5 h 4.2\n".to_owned();
-    let wheels = [
+    let odometry = [
         odom(0.0, 1.0),
         odom(1.0, 2.0),
         odom(3.0, 3.0),
         odom(6.0, 4.0),
     ];
-    let (frames, _) = read([wheels.concat(), raw].concat()).unwrap();
+    let (frames, _) = read([odometry.concat(), raw].concat()).unwrap();
     assert_eq!(frames[0].odometry.unwrap().x(), 0.5);
 }
 
@@ -143,7 +143,7 @@ fn a_laser_that_looks_back_or_aside_sits_where_every_line_says() {
 }
 
 #[test]
-fn a_pose_on_a_map_in_place_of_the_lasers_is_no_mounting() {
+fn a_map_pose_in_place_of_the_lasers_is_not_a_mounting() {
     for map_from_odometry in [SE2::new(0.4, 0.2, 0.1), SE2::new(0.1, 0.3, 0.0)] {
         let (frames, _) = read(on_an_arc(|odometry| map_from_odometry * odometry)).unwrap();
         assert_eq!(frames.len(), 20);
@@ -184,7 +184,7 @@ fn a_log_without_times_counts_its_scans() {
 }
 
 #[test]
-fn a_broken_line_in_the_middle_is_told_and_the_rest_is_read() {
+fn a_malformed_line_is_reported_and_the_rest_is_read() {
     let broken = "FLASER 4 1 2 x 4 1 2 0.5 1 2 0.5 100 host 7\n";
     let nan = "FLASER 2 1 2 0 0 0 nan 0 0 100 host 7\n";
     let text = format!("{FLASER}{broken}{nan}FLASER 900 1 2 3\n\u{0}\u{1}\n{FLASER}");
@@ -200,7 +200,7 @@ fn a_broken_line_in_the_middle_is_told_and_the_rest_is_read() {
 }
 
 #[test]
-fn a_half_written_last_line_is_no_broken_line() {
+fn a_truncated_last_line_is_no_broken_line() {
     let text = format!("{FLASER}FLASER 4 1 2 3");
     let (frames, notes) = read(text).unwrap();
     assert_eq!((frames.len(), notes.broken), (1, 0));

@@ -38,12 +38,12 @@ pub fn write_carmen(frame: &LogFrame, mut target: impl Write) -> io::Result<()> 
     )?;
     for &range_m in &scan.ranges_m {
         // A range beyond the limit stays beyond it; CARMEN has no shortest range.
-        let told_m = match scan.is_return(range_m) {
+        let written_m = match scan.is_return(range_m) {
             true => range_m,
             false if range_m >= scan.range_max_m => range_max_m,
             false => 0.0,
         };
-        write!(target, " {told_m}")?;
+        write!(target, " {written_m}")?;
     }
     write!(target, " 0")?;
     if let Some(robot) = frame.odometry {
@@ -90,9 +90,9 @@ mod tests {
             assert_eq!((back.stamp_s, back.odometry), (stamp_s, frame.odometry));
             assert_eq!(back.scan.ranges_m, [0.0, 0.0, 3.25, 8.0]);
             assert!(back.scan.same_beams(&frame.scan));
-            let [mount, told] = [&back.scan, &frame.scan].map(|scan| scan.body_from_sensor);
+            let [mount, expected] = [&back.scan, &frame.scan].map(|scan| scan.body_from_sensor);
             // 1e-12: the mounting is composed with the robot's pose and its inverse.
-            assert!(mount.between(&told).log().norm() < 1e-12);
+            assert!(mount.between(&expected).log().norm() < 1e-12);
         }
         assert_eq!(reader.next_frame().unwrap(), None);
     }

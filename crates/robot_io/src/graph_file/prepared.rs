@@ -27,7 +27,7 @@ pub struct Prepared<'a> {
     /// Priors converted to edges.
     pub priors: usize,
     /// What was changed, one sentence each.
-    pub said: Vec<String>,
+    pub remarks: Vec<String>,
 }
 
 /// An edge of the graph.
@@ -44,7 +44,7 @@ struct Edge {
 /// If the file is not a planar graph; the message names what it is.
 pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
     let text = super::toro::as_g2o(bytes);
-    let mut said: Vec<String> = text.said.into_iter().collect();
+    let mut remarks: Vec<String> = text.remark.into_iter().collect();
     let text = text.text;
     let mut ids: Vec<i64> = Vec::new();
     let mut edges: Vec<Edge> = Vec::new();
@@ -96,7 +96,7 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
     let mut added = String::new();
     if ids.is_empty() && !edges.is_empty() {
         let tree = spanning_tree(&edges);
-        said.push(format!(
+        remarks.push(format!(
             "the file has no vertices; {} computed from a spanning tree of its edges",
             counted(tree.len(), "pose")
         ));
@@ -117,7 +117,7 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
         for (of, rest) in &priors {
             helpers.push_str(&format!("EDGE_SE2 {id} {of} {rest}\n"));
         }
-        said.push(format!(
+        remarks.push(format!(
             "{} taken as measurements",
             counted(priors.len(), "prior")
         ));
@@ -138,7 +138,7 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
     }
     if parts.len() > 1 {
         let single = parts.iter().filter(|part| part.len() == 1).count();
-        said.push(format!(
+        remarks.push(format!(
             "the graph has {}, {single} of them a single vertex; each is solved separately with its first vertex fixed",
             counted(parts.len(), "connected component")
         ));
@@ -159,7 +159,7 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
         lines,
         helpers: usize::from(helper.is_some()),
         priors: priors.len(),
-        said,
+        remarks,
     })
 }
 
@@ -246,22 +246,23 @@ mod tests {
 
     use super::*;
 
-    fn said(text: &str) -> (G2oFile, String, Vec<u8>) {
+    fn prepare(text: &str) -> (G2oFile, String, Vec<u8>) {
         let prepared = prepared(text.as_bytes()).unwrap();
         let file = G2oFile::parse(&prepared.text).unwrap();
         let own = prepared.own_lines(&file.to_bytes()).to_vec();
-        (file, prepared.said.join("; "), own)
+        (file, prepared.remarks.join("; "), own)
     }
 
     #[test]
     fn edges_alone_make_the_vertices_and_parts_stand_by_themselves() {
         let edges = "EDGE_SE2 0 1 1 0 1.5707963 100 0 0 100 0 400\nEDGE_SE2 1 2 1 0 1.5707963 100 0 0 100 0 400\n";
-        let (file, told, own) = said(&format!("{edges}EDGE_SE2 8 9 1 0 0 1 0 0 1 0 1"));
+        let (file, remarks, own) = prepare(&format!("{edges}EDGE_SE2 8 9 1 0 0 1 0 0 1 0 1"));
         assert_eq!(file.problem.node_count(), 5);
         assert!(file.problem.chi2() < 1e-12);
         assert!(
-            told.contains("5 poses computed from a spanning tree") && told.contains("2 parts"),
-            "{told}"
+            remarks.contains("5 poses computed from a spanning tree")
+                && remarks.contains("2 parts"),
+            "{remarks}"
         );
         let own = String::from_utf8(own).unwrap();
         assert!(
@@ -274,11 +275,11 @@ mod tests {
     fn a_prior_pulls_its_vertex_and_stays_a_prior_in_the_file() {
         let text = "VERTEX_SE2 4 0 0 0\nVERTEX_SE2 5 1 0 0\nEDGE_SE2 4 5 1 0 0 1 0 0 1 0 1\n\
                     EDGE_PRIOR_SE2 4 2 0 0 100 0 0 100 0 100\n";
-        let (file, told, own) = said(text);
+        let (file, remarks, own) = prepare(text);
         assert_eq!(file.problem.factors().len(), 2);
         assert!((file.problem.chi2() - 400.0).abs() < 1e-9);
         assert_eq!(
-            (told.as_str(), own.as_slice()),
+            (remarks.as_str(), own.as_slice()),
             ("1 prior taken as measurements", text.as_bytes())
         );
     }

@@ -9,7 +9,7 @@ pub struct AsG2o<'a> {
     /// The text.
     pub text: Cow<'a, [u8]>,
     /// Remark if the information was in an unexpected order.
-    pub said: Option<String>,
+    pub remark: Option<String>,
 }
 
 /// Converts every TORO record of a text to g2o, line by line; other lines are unchanged.
@@ -30,7 +30,7 @@ pub fn as_g2o(bytes: &[u8]) -> AsG2o<'_> {
     if toro().next().is_none() && !lines().any(is_toro) {
         return AsG2o {
             text: Cow::Borrowed(bytes),
-            said: None,
+            remark: None,
         };
     }
     let is_g2o_order = toro().any(|line| !is_information(line, TORO_ORDER))
@@ -47,7 +47,7 @@ pub fn as_g2o(bytes: &[u8]) -> AsG2o<'_> {
     }
     AsG2o {
         text: Cow::Owned(text),
-        said: is_g2o_order.then(|| {
+        remark: is_g2o_order.then(|| {
             "its EDGE2 records have the information in g2o's order, because it would be indefinite in TORO's order; they are read in g2o's order".to_owned()
         }),
     }
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_order_of_the_information_is_told_by_what_is_definite() {
+    fn the_order_of_the_information_is_the_definite_one() {
         let converted =
             |edge: &str| String::from_utf8(as_g2o(edge.as_bytes()).text.into_owned()).unwrap();
         let expected = "EDGE_SE2 0 1 1 0 0 10 1 2 20 3 30\n";
@@ -105,7 +105,7 @@ mod tests {
         );
         assert!(
             as_g2o(b"EDGE2 0 1 1 0 0 100 0 0 100 0 400\n")
-                .said
+                .remark
                 .is_some()
         );
     }

@@ -104,14 +104,14 @@ fn the_yaml_names_what_the_map_server_needs() {
 }
 
 #[test]
-fn a_map_of_nothing_is_refused() {
+fn an_empty_map_is_rejected() {
     let mut map = MapBuilder::new(0.05);
     map.add(&SE2::identity(), &LaserScan::default()).unwrap();
     assert_eq!(map.finish(), Err(MapError::Nothing));
 }
 
 #[test]
-fn beams_that_saw_nothing_mark_free_space_by_option() {
+fn beams_without_a_return_mark_free_space_by_option() {
     // An open hall: a wall behind the robot, nothing in front within 5 m.
     let scan = LaserScan {
         first_angle_rad: -TAU / 2.0,

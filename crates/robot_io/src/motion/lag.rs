@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lag_of_a_driver_noise_and_straight_ways_are_none() {
+    fn usual_delays_noise_and_straight_paths_give_no_lag() {
         assert_eq!(lag_s(&weaving(0.04, 1.0)), None);
         assert_eq!(lag_s(&weaving(1.4, 1.0)), None);
         assert_eq!(lag_s(&weaving(0.4, 1.0)[..30]), None);

@@ -7,8 +7,8 @@ use pr_geom::SE2;
 use super::{Comparison, Motion};
 use crate::laser_mount::{LaserMount, flip};
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
+use crate::odometry_poses::OdometryPoses;
 use crate::remark::Remark;
-use crate::wheel_poses::WheelPoses;
 
 /// Most scans that are compared, and most beams together: they are kept in memory.
 const MOST_SCANS: usize = 2000;
@@ -17,9 +17,9 @@ const MOST_BEAMS: usize = 1 << 21;
 const MOST_LATE: usize = 200;
 
 /// A corrected mounting.
-struct Mended {
+struct CorrectedMount {
     /// The stated mounting.
-    said: SE2,
+    stated: SE2,
     /// The corrected one.
     mount: LaserMount,
     /// Whether the order of the beams is reversed.
@@ -29,7 +29,7 @@ struct Mended {
 /// Odometry with late stamps: each scan waits for the odometry of its time.
 struct Late {
     by_s: f64,
-    wheels: WheelPoses,
+    odometry: OdometryPoses,
     waiting: VecDeque<LogFrame>,
     is_over: bool,
 }
@@ -38,7 +38,7 @@ impl Late {
     fn by(by_s: f64) -> Self {
         Self {
             by_s,
-            wheels: WheelPoses::default(),
+            odometry: OdometryPoses::default(),
             waiting: VecDeque::new(),
             is_over: false,
         }
@@ -48,11 +48,11 @@ impl Late {
     fn next(&mut self) -> Option<LogFrame> {
         let at_s = self.waiting.front()?.stamp_s + self.by_s;
         let is_full = self.waiting.len() > MOST_LATE;
-        if !self.is_over && !is_full && !self.wheels.reaches(at_s) {
+        if !self.is_over && !is_full && !self.odometry.reaches(at_s) {
             return None;
         }
         let mut frame = self.waiting.pop_front()?;
-        frame.odometry = self.wheels.at(at_s);
+        frame.odometry = self.odometry.at(at_s);
         Some(frame)
     }
 
@@ -62,7 +62,7 @@ impl Late {
             return;
         };
         if let Some(pose) = frame.odometry {
-            self.wheels.push(frame.stamp_s, pose);
+            self.odometry.push(frame.stamp_s, pose);
         }
         self.waiting.push_back(frame);
     }
@@ -72,29 +72,29 @@ impl Late {
 pub struct ComparedReader<'a> {
     inner: Box<dyn LogReader + 'a>,
     /// Whether the mounting was set by the user and must not change.
-    is_told: bool,
+    is_mount_fixed: bool,
     /// Whether the run ignores odometry.
-    is_alone: bool,
+    ignores_odometry: bool,
     waiting: VecDeque<LogFrame>,
     /// Result of an earlier comparison.
     known: Option<Motion>,
     motion: Option<Motion>,
-    mount: Option<Mended>,
+    mount: Option<CorrectedMount>,
     metres: f64,
     is_still: bool,
     late: Option<Late>,
     notes: LogNotes,
-    said: Vec<Remark>,
+    remarks: Vec<Remark>,
 }
 
 impl<'a> ComparedReader<'a> {
-    /// Wraps `inner`; `is_told` states that the mounting was set by the user and must not change.
+    /// Wraps `inner`; `is_mount_fixed` states that the mounting was set by the user and must not change.
     #[must_use]
-    pub fn new(inner: Box<dyn LogReader + 'a>, is_told: bool) -> Self {
+    pub fn new(inner: Box<dyn LogReader + 'a>, is_mount_fixed: bool) -> Self {
         Self {
             inner,
-            is_told,
-            is_alone: false,
+            is_mount_fixed,
+            ignores_odometry: false,
             waiting: VecDeque::new(),
             known: None,
             motion: None,
@@ -103,20 +103,20 @@ impl<'a> ComparedReader<'a> {
             is_still: false,
             late: None,
             notes: LogNotes::default(),
-            said: Vec::new(),
+            remarks: Vec::new(),
         }
     }
 
     /// Suppresses findings about odometry, for a run that ignores it.
     #[must_use]
-    pub fn for_scans_alone(mut self, is_so: bool) -> Self {
-        self.is_alone = is_so;
+    pub fn ignoring_odometry(mut self, ignores_odometry: bool) -> Self {
+        self.ignores_odometry = ignores_odometry;
         self
     }
 
     /// Reuses the result of an earlier comparison of the same log.
     #[must_use]
-    pub fn knowing(mut self, motion: Motion) -> Self {
+    pub fn with_motion(mut self, motion: Motion) -> Self {
         self.known = Some(motion);
         self
     }
@@ -154,31 +154,31 @@ impl<'a> ComparedReader<'a> {
                 break;
             }
         }
-        let said = self
+        let stated = self
             .waiting
             .front()
             .map(|first| first.scan.body_from_sensor);
         let found = self.known.take().or_else(|| {
             let compared = comparison.filter(|_| has_odometry)?;
-            let mut motion = Motion::from_stretches(&compared.stretches, said?);
+            let mut motion = Motion::from_stretches(&compared.stretches, stated?);
             motion.compare_turns(&compared.headings);
-            if self.is_alone {
+            if self.ignores_odometry {
                 motion.keep_mounting();
             }
             Some(motion)
         });
         let motion = found.unwrap_or_default();
-        if let Some(said) = said {
-            let told = self.inner.notes().laser;
-            let mount = told.unwrap_or(LaserMount {
-                body_from_sensor: said,
+        if let Some(stated) = stated {
+            let recorded = self.inner.notes().laser;
+            let mount = recorded.unwrap_or(LaserMount {
+                body_from_sensor: stated,
                 is_flipped: false,
             });
-            self.said = motion.remarks(mount, !self.is_told);
-            if !self.is_told {
+            self.remarks = motion.remarks(mount, !self.is_mount_fixed);
+            if !self.is_mount_fixed {
                 let mended = motion.mended_mount(mount);
-                self.mount = mended.map(|mended| Mended {
-                    said,
+                self.mount = mended.map(|mended| CorrectedMount {
+                    stated,
                     mount: mended,
                     is_turned_over: mended.is_flipped != mount.is_flipped,
                 });
@@ -193,7 +193,7 @@ impl<'a> ComparedReader<'a> {
 
     fn mended(&self, mut frame: LogFrame) -> LogFrame {
         if let Some(mended) = &self.mount
-            && frame.scan.body_from_sensor == mended.said
+            && frame.scan.body_from_sensor == mended.stated
         {
             if mended.is_turned_over {
                 flip(&mut frame.scan);
@@ -223,7 +223,7 @@ impl<'a> ComparedReader<'a> {
 
     fn take_notes(&mut self) {
         self.notes.clone_from(self.inner.notes());
-        self.notes.warnings.extend(self.said.iter().cloned());
+        self.notes.warnings.extend(self.remarks.iter().cloned());
         if let Some(mended) = &self.mount {
             self.notes.laser = Some(mended.mount);
         }

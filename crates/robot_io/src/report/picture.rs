@@ -22,13 +22,13 @@ pub fn map(quality: &Quality, map: Option<&MapImage>) -> String {
     if let Some(map) = map {
         let _ = writeln!(svg, "<path class=\"wall\" d=\"{}\"/>", walls(map));
     }
-    let place = |keyframe: usize| {
+    let position = |keyframe: usize| {
         let [x, y, _] = quality.keyframes.get(keyframe)?.pose;
         Some((x, y))
     };
     let refused = quality.tried.iter().filter(|tried| !tried.accepted);
     for tried in refused.chain(&quality.links) {
-        let (Some((ax, ay)), Some((bx, by))) = (place(tried.from), place(tried.to)) else {
+        let (Some((ax, ay)), Some((bx, by))) = (position(tried.from), position(tried.to)) else {
             continue;
         };
         let class = if tried.accepted { "good" } else { "bad" };

@@ -7,7 +7,7 @@ mod records;
 
 use std::io::BufRead;
 
-use super::container::{Announced, Container, ContainerError, MOST_BYTES, Recorded};
+use super::container::{Container, ContainerError, DeclaredTopics, MOST_BYTES, Recorded};
 use super::decompress::Packing;
 use super::file_bytes::FileBytes;
 pub use records::Connections;
@@ -38,7 +38,7 @@ impl<R: BufRead> BagFile<R> {
     }
 
     /// Sets topics that are declared later in the file.
-    pub fn knowing(mut self, connections: Connections) -> Self {
+    pub fn with_topics(mut self, connections: Connections) -> Self {
         self.connections = connections;
         self
     }
@@ -63,18 +63,18 @@ impl<R: BufRead> BagFile<R> {
     fn next_record(&mut self) -> Result<Option<Recorded>, ContainerError> {
         let mut taken = Vec::new();
         if !self.with_length("a record's header", &mut taken)? {
-            return self.go_on(&taken, true, "expected a record's header".to_owned());
+            return self.resync(&taken, true, "expected a record's header".to_owned());
         }
         let header_end = taken.len();
         let header = taken[4..].to_vec();
         let fields =
             match Fields::parse(&header).and_then(|fields| fields.op().map(|op| (op, fields))) {
                 Ok(fields) => fields,
-                Err(problem) => return self.go_on(&taken, false, problem),
+                Err(problem) => return self.resync(&taken, false, problem),
             };
         let (op, fields) = fields;
         if !self.with_length("a record's data", &mut taken)? {
-            return self.go_on(&taken, true, "expected a record's data".to_owned());
+            return self.resync(&taken, true, "expected a record's data".to_owned());
         }
         let data = &taken[header_end + 4..];
         // A wrong length of an index would swallow the records after it.
@@ -84,7 +84,7 @@ impl<R: BufRead> BagFile<R> {
                 .is_ok_and(|count| count as usize * op::INDEX_ENTRY != data.len())
         {
             let problem = "the length of an index does not match its count".to_owned();
-            return self.go_on(&taken, false, problem);
+            return self.resync(&taken, false, problem);
         }
         let read = match op {
             op::CHUNK => unpacked(&fields, data.to_vec()).map(|chunk| {
@@ -96,21 +96,21 @@ impl<R: BufRead> BagFile<R> {
             _ => self.connections.take(&fields, data),
         };
         match read {
-            Err(problem) if self.holds()? => Err(ContainerError::Skipped(problem)),
-            Err(problem) => self.go_on(&taken, false, problem),
+            Err(problem) if self.is_at_record()? => Err(ContainerError::Skipped(problem)),
+            Err(problem) => self.resync(&taken, false, problem),
             Ok(message) => Ok(message),
         }
     }
 
     /// Whether a record or the end of the file follows.
-    fn holds(&mut self) -> Result<bool, ContainerError> {
+    fn is_at_record(&mut self) -> Result<bool, ContainerError> {
         let next = self.file.up_to(LONGEST_START as u64, "a record")?;
         self.file.put_back(&next);
         Ok(next.is_empty() || begins(&next))
     }
 
     /// Resynchronizes at the next record after the first byte of `taken`.
-    fn go_on(
+    fn resync(
         &mut self,
         taken: &[u8],
         is_cut_off: bool,
@@ -167,12 +167,12 @@ impl<R: BufRead> Container for BagFile<R> {
         self.file.offset()
     }
 
-    fn announced(&self) -> Option<Announced> {
+    fn declared_topics(&self) -> Option<DeclaredTopics> {
         let connections = self
             .connections
             .has_orphans()
             .then(|| self.connections.clone());
-        connections.map(Announced::Bag)
+        connections.map(DeclaredTopics::Bag)
     }
 }
 

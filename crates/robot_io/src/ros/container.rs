@@ -39,14 +39,14 @@ pub enum ContainerError {
 
 impl ContainerError {
     /// Whether messages may follow.
-    pub fn goes_on(&self) -> bool {
+    pub fn is_recoverable(&self) -> bool {
         matches!(self, Self::Skipped(_))
     }
 }
 
 /// Topics of a file by id, which may be declared again at its end.
 #[derive(Clone, Debug)]
-pub enum Announced {
+pub enum DeclaredTopics {
     /// Topics of an MCAP file.
     Mcap(Records),
     /// Topics of a bag.
@@ -66,7 +66,7 @@ pub trait Container {
     fn offset(&self) -> u64;
 
     /// The topics known by now, if messages were lost because their topic was declared later.
-    fn announced(&self) -> Option<Announced> {
+    fn declared_topics(&self) -> Option<DeclaredTopics> {
         None
     }
 

@@ -63,7 +63,7 @@ pub struct ScanCursor<'a> {
     waiting: BinaryHeap<Waiting>,
     is_done: bool,
     /// Problems in the fields of the first faulty scan, one sentence each.
-    said: Vec<String>,
+    remarks: Vec<String>,
 }
 
 impl<'a> ScanCursor<'a> {
@@ -94,7 +94,7 @@ impl<'a> ScanCursor<'a> {
             last_sum: None,
             waiting: BinaryHeap::new(),
             is_done: false,
-            said: Vec::new(),
+            remarks: Vec::new(),
         }
     }
 
@@ -109,8 +109,8 @@ impl<'a> ScanCursor<'a> {
     }
 
     /// Problems in the fields of scans so far.
-    pub fn said(&self) -> &[String] {
-        &self.said
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
     }
 
     /// Returns the next scan in the order of time; `None` at the end.
@@ -134,7 +134,7 @@ impl<'a> ScanCursor<'a> {
             match self.container.next_message() {
                 Ok(Some(message)) => self.take(&message, notes),
                 // The survey has reported the damage already.
-                Err(error) if error.goes_on() => {}
+                Err(error) if error.is_recoverable() => {}
                 Ok(None) | Err(_) => self.is_done = true,
             }
         }
@@ -157,8 +157,8 @@ impl<'a> ScanCursor<'a> {
                 }
             }
             Err(problem) => {
-                let place = FilePosition::Byte(self.container.offset());
-                notes.leave_out(place, named(message, problem));
+                let position = FilePosition::Byte(self.container.offset());
+                notes.skip(position, named(message, problem));
             }
         }
     }
@@ -177,7 +177,7 @@ impl<'a> ScanCursor<'a> {
                 ));
             }
             let (_, mut scan) = point_cloud(&mut fields)?;
-            self.scans.mount.place(&mut scan);
+            self.scans.mount.apply(&mut scan);
             return Ok(scan);
         }
         let read = if message.kind == SCANS[0] {
@@ -185,17 +185,17 @@ impl<'a> ScanCursor<'a> {
         } else {
             multi_echo_scan
         };
-        let (_, told) = read(&mut fields).map_err(|problem| problem.to_string())?;
-        let (mut scan, said) = told.checked(self.scans.period_s)?;
+        let (_, parsed) = read(&mut fields).map_err(|problem| problem.to_string())?;
+        let (mut scan, remarks) = parsed.checked(self.scans.period_s)?;
         scan.validate().map_err(|problem| problem.to_string())?;
-        if self.said.is_empty() {
+        if self.remarks.is_empty() {
             let topic = &self.scans.topic;
-            self.said = said
+            self.remarks = remarks
                 .iter()
-                .map(|said| format!("scans of {topic}: {said}"))
+                .map(|problem| format!("scans of {topic}: {problem}"))
                 .collect();
         }
-        self.scans.mount.place(&mut scan);
+        self.scans.mount.apply(&mut scan);
         Ok(scan)
     }
 }

@@ -32,7 +32,7 @@ impl Packing {
     /// If it is damaged or too large.
     pub fn unpack(self, packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
         let mut content = Vec::new();
-        let told = |problem: &dyn std::fmt::Display| {
+        let describe = |problem: &dyn std::fmt::Display| {
             format!(
                 "a chunk cannot be decompressed as {}: {problem}",
                 self.name()
@@ -43,16 +43,16 @@ impl Packing {
             Self::Lz4 => FrameDecoder::new(packed)
                 .take(most_and_one)
                 .read_to_end(&mut content)
-                .map_err(|problem| told(&problem))?,
+                .map_err(|problem| describe(&problem))?,
             Self::Zstd => StreamingDecoder::new(packed)
-                .map_err(|problem| told(&problem))?
+                .map_err(|problem| describe(&problem))?
                 .take(most_and_one)
                 .read_to_end(&mut content)
-                .map_err(|problem| told(&problem))?,
+                .map_err(|problem| describe(&problem))?,
             Self::Bzip2 => bzip2_rs::DecoderReader::new(packed)
                 .take(most_and_one)
                 .read_to_end(&mut content)
-                .map_err(|problem| told(&problem))?,
+                .map_err(|problem| describe(&problem))?,
         };
         if content.len() > most {
             return Err(format!("a chunk decompresses to more than {most} bytes"));

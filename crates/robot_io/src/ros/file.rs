@@ -6,7 +6,7 @@ use std::io::BufRead;
 use std::rc::Rc;
 
 use super::bag_file::BagFile;
-use super::container::{Announced, Container, ContainerError, MOST_BYTES, Recorded};
+use super::container::{Container, ContainerError, DeclaredTopics, MOST_BYTES, Recorded};
 use super::decompress::Packing;
 use super::mcap_file::McapFile;
 use super::sqlite_file::SqliteFile;
@@ -22,7 +22,7 @@ const ZSTD: &[u8] = b"\x28\xb5\x2f\xfd";
 pub struct RosFiles<'a> {
     parts: Vec<LogBytes<'a>>,
     /// Topics of a file that are declared only after damage.
-    announced: Rc<RefCell<BTreeMap<usize, Announced>>>,
+    declared_topics: Rc<RefCell<BTreeMap<usize, DeclaredTopics>>>,
 }
 
 impl<'a> RosFiles<'a> {
@@ -30,7 +30,7 @@ impl<'a> RosFiles<'a> {
     pub fn new(parts: Vec<LogBytes<'a>>) -> Self {
         Self {
             parts,
-            announced: Rc::default(),
+            declared_topics: Rc::default(),
         }
     }
 
@@ -39,7 +39,7 @@ impl<'a> RosFiles<'a> {
         Messages {
             files: self.clone(),
             opened: 0,
-            learned: false,
+            has_late_topics: false,
             current: None,
             before: 0,
         }
@@ -51,7 +51,7 @@ pub struct Messages<'a> {
     files: RosFiles<'a>,
     opened: usize,
     /// Whether topics were found after messages that were lost without them.
-    learned: bool,
+    has_late_topics: bool,
     current: Option<Box<dyn Container + 'a>>,
     /// Bytes of the files before.
     before: u64,
@@ -59,31 +59,39 @@ pub struct Messages<'a> {
 
 impl Messages<'_> {
     /// Whether another pass can read messages that this one lost because their topic was unknown.
-    pub fn has_learned(&self) -> bool {
-        self.learned
+    pub fn has_late_topics(&self) -> bool {
+        self.has_late_topics
     }
 
     /// Stores topics that the current file declared too late.
-    fn learn(&mut self) {
-        let announced = self
+    fn keep_late_topics(&mut self) {
+        let declared_topics = self
             .current
             .as_ref()
-            .and_then(|current| current.announced());
-        if let Some(announced) = announced {
+            .and_then(|current| current.declared_topics());
+        if let Some(declared_topics) = declared_topics {
             let part = self.opened - 1;
-            self.files.announced.borrow_mut().insert(part, announced);
-            self.learned = true;
+            self.files
+                .declared_topics
+                .borrow_mut()
+                .insert(part, declared_topics);
+            self.has_late_topics = true;
         }
     }
 
     /// Opens the next file, if there is one.
     fn open_next(&mut self) -> Result<(), ContainerError> {
-        self.learn();
+        self.keep_late_topics();
         self.before = self.offset();
         let Some(part) = self.files.parts.get(self.opened) else {
             return Ok(());
         };
-        let known = self.files.announced.borrow().get(&self.opened).cloned();
+        let known = self
+            .files
+            .declared_topics
+            .borrow()
+            .get(&self.opened)
+            .cloned();
         self.opened += 1;
         let mut source = part.stream().map_err(ContainerError::Io)?;
         let start = source.fill_buf().map_err(ContainerError::Io)?;
@@ -94,11 +102,11 @@ impl Messages<'_> {
                 Box::new(SqliteFile::new(source))
             }
             LogFormat::RosBag => Box::new(match known {
-                Some(Announced::Bag(known)) => BagFile::new(source).knowing(known),
+                Some(DeclaredTopics::Bag(known)) => BagFile::new(source).with_topics(known),
                 _ => BagFile::new(source),
             }),
             _ => Box::new(match known {
-                Some(Announced::Mcap(known)) => McapFile::new(source).knowing(known),
+                Some(DeclaredTopics::Mcap(known)) => McapFile::new(source).with_topics(known),
                 _ => McapFile::new(source),
             }),
         });
@@ -124,7 +132,7 @@ impl Container for Messages<'_> {
                 }
             }
             if self.opened >= self.files.parts.len() {
-                self.learn();
+                self.keep_late_topics();
                 return Ok(None);
             }
             self.open_next()?;

@@ -8,7 +8,7 @@ mod records;
 
 use std::io::BufRead;
 
-use super::container::{Announced, Container, ContainerError, MOST_BYTES, Recorded};
+use super::container::{Container, ContainerError, DeclaredTopics, MOST_BYTES, Recorded};
 use super::file_bytes::FileBytes;
 pub use records::Records;
 use records::{HEAD_BYTES, head, op};
@@ -44,7 +44,7 @@ impl<R: BufRead> McapFile<R> {
     }
 
     /// Sets topics that are declared later in the file.
-    pub fn knowing(mut self, records: Records) -> Self {
+    pub fn with_topics(mut self, records: Records) -> Self {
         self.records = records;
         self
     }
@@ -66,14 +66,14 @@ impl<R: BufRead> McapFile<R> {
         }
         let body = match self.file.up_to(length, "a record") {
             Ok(body) => body,
-            Err(ContainerError::Broken(problem)) => return self.go_on(&head_bytes, &[], problem),
+            Err(ContainerError::Broken(problem)) => return self.resync(&head_bytes, &[], problem),
             Err(other) => return Err(other),
         };
         let is_cut_off = (body.len() as u64) < length;
         if is_cut_off {
             let problem = format!("expected a record of {length} bytes, found {}", body.len());
             // A wrong length may cover intact chunks.
-            return match self.go_on(&head_bytes, &body, problem.clone()) {
+            return match self.resync(&head_bytes, &body, problem.clone()) {
                 Err(ContainerError::Broken(_)) if op == op::CHUNK => {
                     self.chunk = chunk::records(&body, true)?;
                     self.is_cut_off = true;
@@ -103,7 +103,7 @@ impl<R: BufRead> McapFile<R> {
                 self.magic().map(|()| None)
             }
             1..=15 | 128.. => Ok(None),
-            _ => self.go_on(
+            _ => self.resync(
                 &head_bytes,
                 &body,
                 format!("a record is of the unknown kind {op}"),
@@ -120,11 +120,11 @@ impl<R: BufRead> McapFile<R> {
         if holds {
             return Err(ContainerError::Skipped(problem));
         }
-        self.go_on(&[], body, problem)
+        self.resync(&[], body, problem)
     }
 
     /// Resynchronizes at the next chunk after the first byte of what was read.
-    fn go_on(
+    fn resync(
         &mut self,
         head: &[u8],
         body: &[u8],
@@ -186,9 +186,9 @@ impl<R: BufRead> Container for McapFile<R> {
         self.file.offset()
     }
 
-    fn announced(&self) -> Option<Announced> {
+    fn declared_topics(&self) -> Option<DeclaredTopics> {
         let records = self.records.has_orphans().then(|| self.records.clone());
-        records.map(Announced::Mcap)
+        records.map(DeclaredTopics::Mcap)
     }
 
     fn instead(&self) -> Option<String> {
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn a_length_inside_of_a_chunk_is_not_believed_beyond_the_chunk() {
+    fn a_length_inside_a_chunk_never_exceeds_the_chunk() {
         let whole = record(15, &[0; 4]);
         for length in [1, 200_000_000, u64::MAX] {
             let mut records = whole.clone();
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_that_nobody_needs_may_be_longer_than_memory() {
+    fn an_unused_record_may_exceed_memory() {
         let bytes = [MAGIC, &[9], &(1_u64 << 40).to_le_bytes(), &[0; 100]].concat();
         let said = McapFile::new(&bytes[..]).next_message().unwrap_err();
         assert!(matches!(said, ContainerError::CutOff(said) if said.contains("found 100")));

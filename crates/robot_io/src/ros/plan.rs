@@ -1,8 +1,8 @@
 //! Selects scans and odometry of a recording, and determines mounting and stamps.
 
 mod mounts;
+mod odometry;
 mod offers;
-mod wheels;
 
 use nalgebra::Isometry3;
 
@@ -11,9 +11,9 @@ use crate::counted::counted;
 use crate::laser_mount::LaserMount;
 use crate::lines::listed;
 use crate::log::{LogNotes, LogOffer, LogOption, LogOptions};
+use crate::odometry_poses::OdometryPoses;
 use crate::remark::{Part, Remark};
 use crate::stamps::MendedStamps;
-use crate::wheel_poses::WheelPoses;
 
 /// A topic with fewer scans than this share of the largest one is not the robot's laser.
 const LEAST_SHARE: f64 = 0.1;
@@ -46,7 +46,7 @@ pub struct Plan {
     /// The scans; those of further lasers are merged into those of the first.
     pub scans: Vec<PlannedScans>,
     /// The body's poses by odometry.
-    pub wheels: Option<WheelPoses>,
+    pub odometry: Option<OdometryPoses>,
     /// Choices for options.
     pub offers: Vec<LogOffer>,
     /// An option that requests a name which does not exist.
@@ -73,14 +73,18 @@ impl Plan {
             return plan;
         };
         let mut clocks = vec![MendedStamps::new(&stream.stamps_s, &stream.recorded_s)];
-        let wheels = wheels::chosen(survey, options, &stream.frame, &clocks[0]);
-        let ground = wheels.as_ref().map(|wheels| wheels.track.above.as_str());
+        let odometry = odometry::chosen(survey, options, &stream.frame, &clocks[0]);
+        let ground = odometry
+            .as_ref()
+            .map(|odometry| odometry.track.above.as_str());
         let told_body = options
             .body_frame
             .as_deref()
             .map(|body| body.trim_start_matches('/'));
         let body = told_body
-            .or(wheels.as_ref().map(|wheels| wheels.track.body.as_str()))
+            .or(odometry
+                .as_ref()
+                .map(|odometry| odometry.track.body.as_str()))
             .unwrap_or("base_link");
         let found = mounts::find(survey, body, &stream.frame, ground, options);
         let frame = if stream.frame.is_empty() {
@@ -90,10 +94,10 @@ impl Plan {
         };
         plan.about
             .push(format!("scans are those of {topic}, {frame}"));
-        if let Some(wheels) = &wheels {
+        if let Some(odometry) = &odometry {
             plan.about.push(format!(
                 "odometry is that of {}, from {} to {}",
-                wheels.topic, wheels.track.above, wheels.track.body
+                odometry.topic, odometry.track.above, odometry.track.body
             ));
         }
         plan.about.push(mounts::sentence(&found));
@@ -126,27 +130,30 @@ impl Plan {
         }
         plan.name_other_scans(survey, options);
         for (scans, clock) in plan.scans.iter().zip(&clocks) {
-            let said = clock.remarks(&format!("scans of {}", scans.topic));
-            plan.warnings.extend(said);
+            let remarks = clock.remarks(&format!("scans of {}", scans.topic));
+            plan.warnings.extend(remarks);
         }
-        if let Some(wheels) = &wheels {
-            plan.warnings
-                .extend(wheels.clock.remarks(&format!("poses of {}", wheels.topic)));
-            plan.take_wheels(wheels, &clocks[0]);
-            plan.about.extend(wheels.others.clone());
+        if let Some(odometry) = &odometry {
+            plan.warnings.extend(
+                odometry
+                    .clock
+                    .remarks(&format!("poses of {}", odometry.topic)),
+            );
+            plan.align_clocks(odometry, &clocks[0]);
+            plan.about.extend(odometry.others.clone());
         }
         for (parent, child) in survey.transforms.edges().take(100) {
             plan.about
                 .push(format!("frame {child} is a child of {parent}"));
         }
-        plan.offers = offers::list(survey, Some(topic), wheels.as_ref(), Some(&found.body));
-        plan.missing = offers::missing(survey, options, &plan.offers, wheels.as_ref());
+        plan.offers = offers::list(survey, Some(topic), odometry.as_ref(), Some(&found.body));
+        plan.missing = offers::missing(survey, options, &plan.offers, odometry.as_ref());
         plan
     }
 
     /// Aligns the clocks of odometry and scans.
-    fn take_wheels(&mut self, wheels: &wheels::Wheels<'_>, clock: &MendedStamps) {
-        let aligned = wheels::aligned(wheels, clock);
+    fn align_clocks(&mut self, odometry: &odometry::SelectedOdometry<'_>, clock: &MendedStamps) {
+        let aligned = odometry::aligned(odometry, clock);
         let by_s = aligned.scans_by_s;
         for scans in &mut self.scans {
             scans
@@ -154,7 +161,7 @@ impl Plan {
                 .iter_mut()
                 .for_each(|stamp_s| *stamp_s += by_s);
         }
-        self.warnings.extend(aligned.said);
+        self.warnings.extend(aligned.remarks);
         let poses = aligned.poses;
         let anchor = &self.scans[0].stamps_s;
         let known = anchor.iter().filter(|stamp_s| stamp_s.is_finite()).count();
@@ -177,7 +184,7 @@ impl Plan {
                 bare - early - late
             )));
         }
-        self.wheels = Some(poses);
+        self.odometry = Some(poses);
     }
 
     /// Lists topics with scans that are not read.
@@ -207,8 +214,8 @@ impl Plan {
     }
 
     /// Writes counts and choices to the notes.
-    pub fn tell(&self, survey_counts: &Survey, notes: &mut LogNotes) {
-        let counts = survey_counts.counts.iter();
+    pub fn write_notes(&self, survey: &Survey, notes: &mut LogNotes) {
+        let counts = survey.counts.iter();
         notes.records = counts
             .map(|((topic, kind), &count)| (format!("{topic} {kind}"), count))
             .collect();

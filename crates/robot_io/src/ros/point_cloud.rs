@@ -99,19 +99,19 @@ struct Cloud<'a> {
 
 impl<'a> Cloud<'a> {
     fn parse(fields: &mut WireReader<'a>) -> Result<Self, String> {
-        let told = |error: WireError| error.to_string();
-        let header = header(fields).map_err(told)?;
-        let height = fields.u32("height").map_err(told)?;
-        fields.u32("width").map_err(told)?;
-        let count = fields.count("fields", 10).map_err(told)?;
+        let in_words = |error: WireError| error.to_string();
+        let header = header(fields).map_err(in_words)?;
+        let height = fields.u32("height").map_err(in_words)?;
+        fields.u32("width").map_err(in_words)?;
+        let count = fields.count("fields", 10).map_err(in_words)?;
         let (mut x, mut y, mut z, mut ring) = (None, None, None, None);
         for _ in 0..count {
-            let name = fields.name("a field's name").map_err(told)?;
+            let name = fields.name("a field's name").map_err(in_words)?;
             let field = Field {
-                offset: fields.u32("a field's offset").map_err(told)? as usize,
-                kind: fields.u8("a field's type").map_err(told)?,
+                offset: fields.u32("a field's offset").map_err(in_words)? as usize,
+                kind: fields.u8("a field's type").map_err(in_words)?,
             };
-            fields.u32("a field's count").map_err(told)?;
+            fields.u32("a field's count").map_err(in_words)?;
             match name.as_str() {
                 "x" => x = Some(field),
                 "y" => y = Some(field),
@@ -120,10 +120,10 @@ impl<'a> Cloud<'a> {
                 _ => {}
             }
         }
-        let is_big = fields.u8("is_bigendian").map_err(told)? != 0;
-        let step = fields.u32("point_step").map_err(told)? as usize;
-        fields.u32("row_step").map_err(told)?;
-        let data = fields.bytes("the points").map_err(told)?;
+        let is_big = fields.u8("is_bigendian").map_err(in_words)? != 0;
+        let step = fields.u32("point_step").map_err(in_words)? as usize;
+        fields.u32("row_step").map_err(in_words)?;
+        let data = fields.bytes("the points").map_err(in_words)?;
         let (Some(x), Some(y)) = (x, y) else {
             return Err("a cloud must have fields x and y".to_owned());
         };
@@ -258,7 +258,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn beams_that_saw_nothing_leave_gaps_and_not_a_wider_step() {
+    fn beams_without_a_return_leave_gaps_and_not_a_wider_step() {
         let bearing = |beam: usize| -2.0 + 0.01 * beam as f64;
         let seen = (0..300).filter(|beam| beam % 7 != 3 && !(100..130).contains(beam));
         // Not in the order of the beams, as clouds may be.
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn rings_are_told_apart_by_their_heights_where_no_field_names_them() {
+    fn rings_are_distinguished_by_height_without_a_ring_field() {
         for one in [0.0, 0.2, -0.3] {
             assert!(error_of_rings_m(&[one]) < 1e-3, "{one}");
         }

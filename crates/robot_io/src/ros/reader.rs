@@ -64,14 +64,14 @@ impl<'a> RosReader<'a> {
             match messages.next_message() {
                 Ok(Some(message)) => {
                     if let Err(problem) = survey.take(&message, &self.options) {
-                        let place = FilePosition::Byte(messages.offset());
-                        self.notes.leave_out(place, problem);
+                        let position = FilePosition::Byte(messages.offset());
+                        self.notes.skip(position, problem);
                     }
                 }
                 Ok(None) => break,
                 Err(error) => {
-                    let place = FilePosition::Byte(messages.offset());
-                    if !self.take_error(error, place)? {
+                    let position = FilePosition::Byte(messages.offset());
+                    if !self.take_error(error, position)? {
                         break;
                     }
                 }
@@ -83,14 +83,14 @@ impl<'a> RosReader<'a> {
     /// Surveys the recording and selects from it.
     fn survey(&mut self) -> Result<Reading<'a>, LogError> {
         let (mut survey, mut messages) = self.look_through()?;
-        if messages.has_learned() {
+        if messages.has_late_topics() {
             // Damage hid topics; now that they are known, the messages around it can be read.
             self.notes = LogNotes::default();
             (survey, messages) = self.look_through()?;
         }
         self.notes.bytes = messages.offset();
         let plan = Plan::new(&survey, &self.options);
-        plan.tell(&survey, &mut self.notes);
+        plan.write_notes(&survey, &mut self.notes);
         if let Some((option, wanted)) = plan.missing.clone().filter(|_| !plan.scans.is_empty()) {
             return Err(LogError::Missing {
                 name: self.name.clone(),
@@ -105,7 +105,7 @@ impl<'a> RosReader<'a> {
         });
         let Some(anchor) = cursors.next() else {
             let instead = messages.instead();
-            return Err(self.nothing_found(instead.as_deref().unwrap_or(plan.without_scans())));
+            return Err(self.no_scans_error(instead.as_deref().unwrap_or(plan.without_scans())));
         };
         let others = cursors.map(|cursor| Companion {
             cursor,
@@ -122,7 +122,11 @@ impl<'a> RosReader<'a> {
 
     /// Handles an error of a container: a system error ends the reading, others become notes. Returns whether messages
     /// may follow.
-    fn take_error(&mut self, error: ContainerError, place: FilePosition) -> Result<bool, LogError> {
+    fn take_error(
+        &mut self,
+        error: ContainerError,
+        position: FilePosition,
+    ) -> Result<bool, LogError> {
         match error {
             // Truncated compressed data is not a system error.
             ContainerError::Io(source)
@@ -132,38 +136,38 @@ impl<'a> RosReader<'a> {
                 ) =>
             {
                 let problem = source.to_string();
-                self.notes.half_written = Some(BrokenRecord { place, problem });
+                self.notes.truncated = Some(BrokenRecord { position, problem });
             }
             ContainerError::Io(source) => {
                 return Err(LogError::Io {
                     name: self.name.clone(),
-                    place,
+                    position,
                     source,
                 });
             }
             ContainerError::CutOff(problem) => {
-                self.notes.half_written = Some(BrokenRecord { place, problem });
+                self.notes.truncated = Some(BrokenRecord { position, problem });
             }
             ContainerError::Broken(problem) => {
-                self.notes.leave_out(place, problem);
+                self.notes.skip(position, problem);
                 let rest = "the rest of the file was not read".to_owned();
                 self.notes.ended_early = Some(rest);
             }
             ContainerError::Skipped(problem) => {
-                self.notes.leave_out(place, problem);
+                self.notes.skip(position, problem);
                 return Ok(true);
             }
         }
         Ok(false)
     }
 
-    fn nothing_found(&self, instead: &str) -> LogError {
+    fn no_scans_error(&self, instead: &str) -> LogError {
         let broken = self.notes.first_broken.as_ref();
-        let broken = broken.or(self.notes.half_written.as_ref());
+        let broken = broken.or(self.notes.truncated.as_ref());
         LogError::NoScans {
             name: self.name.clone(),
             detail: match broken {
-                Some(broken) => format!("{}: {}", broken.place, broken.problem),
+                Some(broken) => format!("{}: {}", broken.position, broken.problem),
                 None => instead.to_owned(),
             },
         }
@@ -179,15 +183,15 @@ impl LogReader for RosReader<'_> {
         let scan = reading.next(&mut self.notes);
         self.notes.bytes = reading.anchor.offset();
         if scan.is_none() || self.frames == 0 {
-            reading.tell_fields(&mut self.notes);
+            reading.write_field_remarks(&mut self.notes);
         }
         let without_scans = reading.plan.without_scans().to_owned();
         let odometry = |stamp_s| {
             reading
                 .plan
-                .wheels
+                .odometry
                 .as_ref()
-                .and_then(|wheels| wheels.at(stamp_s))
+                .and_then(|odometry| odometry.at(stamp_s))
         };
         let frame = scan.map(|scan| LogFrame {
             stamp_s: scan.stamp_s,
@@ -200,7 +204,7 @@ impl LogReader for RosReader<'_> {
                 self.frames += 1;
                 Ok(Some(frame))
             }
-            None if self.frames == 0 => Err(self.nothing_found(&without_scans)),
+            None if self.frames == 0 => Err(self.no_scans_error(&without_scans)),
             None => Ok(None),
         }
     }
@@ -218,8 +222,8 @@ impl Reading<'_> {
             return Some(scan);
         }
         let most_apart_s = TOGETHER * self.anchor.scans().period_s;
-        let wheels = self.plan.wheels.as_ref();
-        let of_anchor = wheels.and_then(|wheels| wheels.at(scan.stamp_s));
+        let odometry = self.plan.odometry.as_ref();
+        let of_anchor = odometry.and_then(|odometry| odometry.at(scan.stamp_s));
         let mut points = points_of(&scan.scan);
         let mut step_rad = scan.scan.angle_step_rad.abs();
         for other in &mut self.others {
@@ -230,7 +234,7 @@ impl Reading<'_> {
                 continue;
             }
             // Pose of the body at the other laser's scan, relative to the current body.
-            let of_other = wheels.and_then(|wheels| wheels.at(near.stamp_s));
+            let of_other = odometry.and_then(|odometry| odometry.at(near.stamp_s));
             let moved = of_anchor
                 .zip(of_other)
                 .map(|(now, then)| now.between(&then));
@@ -244,10 +248,10 @@ impl Reading<'_> {
     }
 
     /// Adds problems in the fields of scans to the notes.
-    fn tell_fields(&self, notes: &mut LogNotes) {
+    fn write_field_remarks(&self, notes: &mut LogNotes) {
         let cursors =
             std::iter::once(&self.anchor).chain(self.others.iter().map(|other| &other.cursor));
-        for sentence in cursors.flat_map(ScanCursor::said) {
+        for sentence in cursors.flat_map(ScanCursor::remarks) {
             let remark = Remark::mended(Part::Sensor, sentence.clone());
             if !notes.warnings.contains(&remark) {
                 notes.warnings.push(remark);

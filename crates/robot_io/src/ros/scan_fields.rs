@@ -142,7 +142,7 @@ impl ScanFields {
             ));
             return Ok((min.to_radians(), step));
         }
-        let told = |taken: &str| {
+        let contradiction = |taken: &str| {
             format!(
                 "angle_min {:.2}°, angle_max {:.2}° and {beams} beams give a step of {:.4}°, but angle_increment is {:.4}°; {taken}. Correct the driver",
                 min.to_degrees(),
@@ -152,16 +152,18 @@ impl ScanFields {
             )
         };
         if (max - min).abs() <= FULL_TURN {
-            said.push(told("the step from angle_min and angle_max is used"));
+            said.push(contradiction(
+                "the step from angle_min and angle_max is used",
+            ));
             return Ok((min, of_ends));
         }
         if (step * gaps).abs() <= FULL_TURN {
-            said.push(told(
+            said.push(contradiction(
                 "angle_increment is used, because angle_min and angle_max differ by more than a turn",
             ));
             return Ok((min, step));
         }
-        Err(told("neither gives a sweep of at most a turn"))
+        Err(contradiction("neither gives a sweep of at most a turn"))
     }
 
     /// Time from one beam to the next, s; 0 if the stated value is implausible.

@@ -13,7 +13,7 @@ use super::point_cloud::point_cloud;
 use super::transforms::{Transforms, is_ground, planar};
 use super::wire::WireReader;
 use crate::log::LogOptions;
-use crate::place::checked;
+use crate::plausible::plausible_pose;
 
 /// Garbage has an unbounded number of topics.
 const MOST_TOPICS: usize = 1000;
@@ -147,27 +147,27 @@ impl Survey {
                 let all = reader(message)
                     .and_then(|mut fields| transforms(&mut fields).map_err(|e| e.to_string()))
                     .map_err(named)?;
-                for told in &all {
-                    let Ok(pose) = checked(planar(&told.transform)) else {
+                for transform in &all {
+                    let Ok(pose) = plausible_pose(planar(&transform.transform)) else {
                         continue;
                     };
-                    self.transforms.take(told);
-                    let parent = &told.header.frame;
+                    self.transforms.take(transform);
+                    let parent = &transform.header.frame;
                     let may_be_odometry = match &options.odometry_frame {
                         Some(frame) => frame.trim_start_matches('/') == parent,
                         None => is_ground(parent) && parent.contains("odom"),
                     };
-                    let key = (parent.clone(), told.child.clone());
+                    let key = (parent.clone(), transform.child.clone());
                     let has_room = self.tracks.len() < MOST_TRACKS;
                     if may_be_odometry && (has_room || self.tracks.contains_key(&key)) {
                         let order = self.tracks.len();
                         let track = self.tracks.entry(key).or_insert_with(|| Track {
                             above: parent.clone(),
-                            body: told.child.clone(),
+                            body: transform.child.clone(),
                             order,
                             ..Track::default()
                         });
-                        track.take(told.header.stamp_s, message.recorded_s, pose);
+                        track.take(transform.header.stamp_s, message.recorded_s, pose);
                     }
                 }
                 Ok(())
@@ -218,8 +218,8 @@ impl Survey {
 
     fn take_odometry(&mut self, message: &Recorded) -> Result<(), String> {
         let mut fields = reader(message)?;
-        let told = odometry(&mut fields).map_err(|problem| problem.to_string())?;
-        let pose = checked(planar(&told.pose))?;
+        let parsed = odometry(&mut fields).map_err(|problem| problem.to_string())?;
+        let pose = plausible_pose(planar(&parsed.pose))?;
         let order = self.odometry.len();
         if order >= MOST_TOPICS && !self.odometry.contains_key(&message.topic) {
             return Ok(());
@@ -228,16 +228,16 @@ impl Survey {
             .odometry
             .entry(message.topic.clone())
             .or_insert_with(|| Track {
-                above: told.header.frame.clone(),
-                body: if told.child.is_empty() {
+                above: parsed.header.frame.clone(),
+                body: if parsed.child.is_empty() {
                     "base_link".to_owned()
                 } else {
-                    told.child.clone()
+                    parsed.child.clone()
                 },
                 order,
                 ..Track::default()
             });
-        track.take(told.header.stamp_s, message.recorded_s, pose);
+        track.take(parsed.header.stamp_s, message.recorded_s, pose);
         Ok(())
     }
 }
@@ -245,10 +245,10 @@ impl Survey {
 /// Decodes a scan as far as needed to check whether it is usable.
 fn scan_header(message: &Recorded, options: &LogOptions) -> Result<Header, String> {
     let mut fields = reader(message)?;
-    let told = |problem: super::wire::WireError| problem.to_string();
+    let in_words = |problem: super::wire::WireError| problem.to_string();
     match message.kind.as_str() {
         "sensor_msgs/PointCloud2" if options.heights_m.is_some() => {
-            header(&mut fields).map_err(told)
+            header(&mut fields).map_err(in_words)
         }
         "sensor_msgs/PointCloud2" => point_cloud(&mut fields).map(|(header, _)| header),
         kind => {
@@ -257,7 +257,7 @@ fn scan_header(message: &Recorded, options: &LogOptions) -> Result<Header, Strin
             } else {
                 multi_echo_scan
             };
-            let (header, scan) = read(&mut fields).map_err(told)?;
+            let (header, scan) = read(&mut fields).map_err(in_words)?;
             let (scan, _) = scan.checked(0.0)?;
             scan.validate().map_err(|problem| problem.to_string())?;
             Ok(header)

@@ -60,18 +60,18 @@ fn every_recording_holds_the_frames_of_the_simulator() {
     assert_eq!(simulated.len(), 24);
     for (name, bytes) in FIXTURES {
         let (frames, notes) = read(bytes, name).unwrap();
-        assert_eq!((notes.broken, &notes.half_written), (0, &None), "{name}");
+        assert_eq!((notes.broken, &notes.truncated), (0, &None), "{name}");
         assert!(notes.warnings.is_empty(), "{name}: {:?}", notes.warnings);
         assert_eq!(notes.bytes, bytes.len() as u64, "{name}");
         assert_eq!(frames.len(), simulated.len(), "{name}");
         for (frame, expected) in frames.iter().zip(&simulated) {
             // 1e-6 s: a time since 1970 in f64 is exact to 0.2 µs.
             assert_near(frame.stamp_s, expected.stamp_s, 1e-6, name);
-            let (odometry, wheels) = (frame.odometry.unwrap(), expected.odometry.unwrap());
+            let (odometry, expected_pose) = (frame.odometry.unwrap(), expected.odometry.unwrap());
             // 1e-4: the robot moves 0.1 m in the 40 ms around a scan, in which 0.2 µs are lost.
-            assert_near(odometry.x(), wheels.x(), 1e-4, name);
-            assert_near(odometry.y(), wheels.y(), 1e-4, name);
-            assert_near(odometry.between(&wheels).theta(), 0.0, 1e-4, name);
+            assert_near(odometry.x(), expected_pose.x(), 1e-4, name);
+            assert_near(odometry.y(), expected_pose.y(), 1e-4, name);
+            assert_near(odometry.between(&expected_pose).theta(), 0.0, 1e-4, name);
             let mount = frame.scan.body_from_sensor;
             assert_eq!(mount.to_array(), [0.1, 0.0, 0.0], "{name}");
             if name != "cloud.mcap" {
@@ -115,7 +115,7 @@ fn a_cloud_of_one_ring_has_the_points_of_its_scan() {
 }
 
 #[test]
-fn what_was_chosen_and_what_there_is_are_told() {
+fn choices_and_alternatives_are_reported() {
     let (_, notes) = read(fixture("tf.mcap"), "tf.mcap").unwrap();
     assert_eq!(notes.records["/scan sensor_msgs/LaserScan"], 24);
     let about = notes.about.join("; ");
@@ -149,11 +149,11 @@ fn topics_and_frames_can_be_chosen() {
         error.to_string(),
         "x.mcap has no body-frame chassis; it has base_link, laser"
     );
-    let wheels = LogOptions {
+    let missing_topic = LogOptions {
         odometry_topic: Some("/tf".to_owned()),
         ..LogOptions::default()
     };
-    let error = read_with(bytes, "x.mcap", &wheels).unwrap_err();
+    let error = read_with(bytes, "x.mcap", &missing_topic).unwrap_err();
     assert_eq!(
         error.to_string(),
         "x.mcap has no odom-topic /tf; it has /odom"
@@ -167,7 +167,7 @@ fn topics_and_frames_can_be_chosen() {
 }
 
 #[test]
-fn a_recording_without_transforms_puts_the_laser_at_the_body_and_says_so() {
+fn without_transforms_the_laser_is_assumed_at_the_body_with_a_warning() {
     // The same bytes with another name for the laser's frame in the transforms.
     let mut bytes = fixture("plain.bag").to_vec();
     let name = b"base_link\x05\0\0\0laser";
@@ -189,7 +189,7 @@ fn a_recording_without_transforms_puts_the_laser_at_the_body_and_says_so() {
 }
 
 #[test]
-fn a_recording_of_another_system_is_told_by_its_encoding() {
+fn recordings_of_other_systems_are_rejected_by_their_encoding() {
     let record = |op: u8, fields: &[&[u8]]| {
         let body = fields.concat();
         [&[op][..], &(body.len() as u64).to_le_bytes(), &body].concat()
@@ -218,7 +218,7 @@ fn a_recording_of_another_system_is_told_by_its_encoding() {
 }
 
 #[test]
-fn a_recording_that_is_cut_off_gives_what_is_there_and_says_where_it_ends() {
+fn a_truncated_recording_yields_its_frames_and_reports_its_end() {
     for (name, bytes) in FIXTURES {
         let mut counts = BTreeSet::new();
         for part in 1..40 {
@@ -248,7 +248,7 @@ fn a_recording_that_is_cut_off_gives_what_is_there_and_says_where_it_ends() {
 }
 
 #[test]
-fn a_byte_that_is_wrong_never_ends_in_a_panic() {
+fn a_wrong_byte_never_panics() {
     for (name, bytes) in FIXTURES {
         let mut refused = 0;
         for spot in (0..bytes.len()).step_by(bytes.len() / 150) {

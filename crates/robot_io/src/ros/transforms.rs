@@ -30,7 +30,7 @@ pub fn is_ground(frame: &str) -> bool {
 ///
 /// # Errors
 /// If the laser is tilted too far to scan the plane.
-pub fn mount_of(body_from_sensor: &Isometry3<f64>) -> Result<LaserMount, String> {
+pub fn planar_mount(body_from_sensor: &Isometry3<f64>) -> Result<LaserMount, String> {
     let turn = body_from_sensor.rotation.to_rotation_matrix();
     let upright = turn.matrix()[(2, 2)];
     if upright.abs() < LEAST_UPRIGHT {
@@ -130,14 +130,14 @@ impl Transforms {
     /// A frame and its ancestors, nearest first, each with the pose of the frame in it.
     fn chain<'a>(&'a self, frame: &'a str, ground: Option<&str>) -> Vec<(&'a str, Isometry3<f64>)> {
         let mut chain = vec![(frame, Isometry3::identity())];
-        let (mut frame, mut place) = chain[0];
+        let (mut frame, mut pose) = chain[0];
         while let Some(edge) = self.above.get(frame)
             && chain.len() < LONGEST_CHAIN
             && ground != Some(edge.parent.as_str())
         {
-            place = edge.transform * place;
+            pose = edge.transform * pose;
             frame = &edge.parent;
-            chain.push((frame, place));
+            chain.push((frame, pose));
         }
         chain
     }
@@ -190,7 +190,7 @@ mod tests {
         frames.take(&message("base", "mast", 1.0, quarter));
         frames.take(&message("mast", "laser", 0.5, [1.0, 0.0, 0.0, 0.0]));
         let chain = frames.body_from_sensor("base", "laser", None).unwrap();
-        let mount = mount_of(&chain).unwrap();
+        let mount = planar_mount(&chain).unwrap();
         let [x, y, theta] = mount.body_from_sensor.to_array();
         // 1e-12: a dozen roundings of numbers about 1.
         assert!((x - 1.0).abs() < 1e-12 && (y - 0.5).abs() < 1e-12);
@@ -200,7 +200,7 @@ mod tests {
             angle_step_rad: 0.5,
             ..LaserScan::default()
         };
-        mount.place(&mut scan);
+        mount.apply(&mut scan);
         assert_eq!((scan.first_angle_rad, scan.angle_step_rad), (1.0, -0.5));
         assert_eq!(frames.body_from_sensor("base", "camera", None), None);
     }
@@ -218,7 +218,7 @@ mod tests {
         let chain = frames
             .body_from_sensor("footprint", "laser", ground)
             .unwrap();
-        let [x, y, theta] = mount_of(&chain).unwrap().body_from_sensor.to_array();
+        let [x, y, theta] = planar_mount(&chain).unwrap().body_from_sensor.to_array();
         // 0.75 m ahead on the link, to the right of the footprint; 1e-12: a dozen roundings.
         assert!(x.abs() < 1e-12 && (y + 0.75).abs() < 1e-12, "{x} {y}");
         assert!((theta + FRAC_PI_2).abs() < 1e-12);
@@ -240,6 +240,6 @@ mod tests {
     fn a_laser_that_looks_at_the_floor_is_refused() {
         let forward = UnitQuaternion::from_euler_angles(0.0, PI / 4.0, 0.0);
         let leaning = Isometry3::from_parts(Translation3::identity(), forward);
-        assert!(mount_of(&leaning).unwrap_err().contains("leans"));
+        assert!(planar_mount(&leaning).unwrap_err().contains("leans"));
     }
 }

@@ -32,7 +32,7 @@ pub fn write(session: &Session, out: &mut Writer) {
     let Session {
         driven,
         mapped,
-        places,
+        scan_poses,
         sensor,
         last_odometry,
     } = session;
@@ -96,11 +96,11 @@ pub fn write(session: &Session, out: &mut Writer) {
         });
     });
     out.section(b"WAYS", |out| {
-        out.count(places.len());
-        for place in places {
-            out.f64(place.stamp_s);
-            out.count(place.keyframe);
-            out.pose(&place.keyframe_from_body);
+        out.count(scan_poses.len());
+        for scan in scan_poses {
+            out.f64(scan.stamp_s);
+            out.count(scan.keyframe);
+            out.pose(&scan.keyframe_from_body);
         }
     });
     let front = &driven.front_end;
@@ -153,7 +153,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
         Ok((from.maybe(read_sensor)?, from.maybe(Cursor::pose)?))
     })?;
     let counters = from.section(b"STAT", Counters::read)?;
-    let places = from.section(b"NODE", |from| {
+    let node_rows = from.section(b"NODE", |from| {
         let count = from.count(NODE_BYTES)?;
         (0..count)
             .map(|_| read_node(from))
@@ -168,7 +168,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
     })?;
     let keyframes = from.section(b"SCAN", |from| {
         let mut keyframes = Vec::new();
-        for (node, (_, frame, stamp_s)) in places.iter().enumerate() {
+        for (node, (_, frame, stamp_s)) in node_rows.iter().enumerate() {
             keyframes.push(Keyframe {
                 node,
                 frame: *frame,
@@ -188,16 +188,18 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
             })
         })
     })?;
-    let scan_places = from.section(b"WAYS", |from| {
+    let scan_poses = from.section(b"WAYS", |from| {
         let count = from.count(PLACE_BYTES)?;
-        let place = |_| {
+        let read_pose = |_| {
             Ok(ScanPose {
                 stamp_s: from.f64()?,
                 keyframe: from.u32()? as usize,
                 keyframe_from_body: from.pose()?,
             })
         };
-        (0..count).map(place).collect::<Result<Vec<_>, Broken>>()
+        (0..count)
+            .map(read_pose)
+            .collect::<Result<Vec<_>, Broken>>()
     })?;
     let front_end = from.section(b"FRNT", |from| {
         let estimate = from.pose()?;
@@ -237,7 +239,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
             config,
             frames: counters.frames,
             last_stamp_s: counters.last_stamp_s,
-            nodes: places.into_iter().map(|(node, ..)| node).collect(),
+            nodes: node_rows.into_iter().map(|(node, ..)| node).collect(),
             optimized_edges: counters.optimized_edges,
             edges,
             keyframes,
@@ -247,7 +249,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
             front_end,
         },
         mapped,
-        places: scan_places,
+        scan_poses,
         sensor,
         last_odometry,
     })

@@ -128,7 +128,7 @@ fn fit(scan: &PointCloud, radius_m: f64, most_bytes: usize) -> Fitted<'_> {
             .chain(fixed);
         let fits = |precision: &Precision| {
             bytes(fitting.len(), *precision, is_derived) <= most_bytes
-                && holds(*precision, &fitting)
+                && is_representable(*precision, &fitting)
         };
         if let Some(precision) = all.into_iter().find(fits) {
             return Fitted {
@@ -155,7 +155,7 @@ fn coordinates(scan: &PointCloud) -> impl Iterator<Item = f64> + '_ {
     scan.xs().iter().chain(scan.ys()).copied()
 }
 
-fn holds(precision: Precision, scan: &PointCloud) -> bool {
+fn is_representable(precision: Precision, scan: &PointCloud) -> bool {
     match precision {
         Precision::Exact => true,
         Precision::Single => coordinates(scan).all(|value| value.abs() < LARGEST_SINGLE_M),

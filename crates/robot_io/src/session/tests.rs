@@ -77,10 +77,10 @@ fn what_is_saved_loads_to_the_same_and_is_saved_to_the_same_bytes() {
 }
 
 #[test]
-fn a_run_that_goes_on_from_a_file_ends_in_the_bits_of_one_that_was_never_interrupted() {
+fn a_continued_run_equals_an_uninterrupted_one_bit_by_bit() {
     let mut whole = run(120, 0..150);
     let half = saved(&run(120, 0..80));
-    let session = Session::of_bytes(&half, "x").unwrap();
+    let session = Session::from_bytes(&half, "x").unwrap();
     let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
     go_on(&mut second, 120, 80..150);
     assert_eq!(saved(&second), saved(&whole));
@@ -88,14 +88,14 @@ fn a_run_that_goes_on_from_a_file_ends_in_the_bits_of_one_that_was_never_interru
     whole.finish();
     second.finish();
     assert_eq!(saved(&second), saved(&whole));
-    let session = Session::of_bytes(&saved(&whole), "x").unwrap();
+    let session = Session::from_bytes(&saved(&whole), "x").unwrap();
     let mut third = LogRun::resume(&session, OdometryUse::Log).unwrap();
     go_on(&mut third, 120, 150..170);
     assert_eq!(saved(&third), saved(&run(120, 0..170)));
 }
 
 #[test]
-fn a_log_of_another_scanner_is_told() {
+fn a_log_of_another_scanner_is_reported() {
     let session = run(120, 0..80).session().unwrap();
     for (beams, told) in [(120, 0), (90, 1)] {
         let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
@@ -108,7 +108,7 @@ fn a_log_of_another_scanner_is_told() {
 }
 
 #[test]
-fn loops_that_wait_are_saved_and_wait_on() {
+fn pending_loops_are_saved_and_stay_pending() {
     // A zero radius: every loop waits for confirmation.
     let settings = [
         ("loops.unconfirmed_gate_radius_m", 0.0),
@@ -127,7 +127,7 @@ fn loops_that_wait_are_saved_and_wait_on() {
         run
     };
     let (half, mut whole) = (doubting(0..125), doubting(0..140));
-    let session = Session::of_bytes(&saved(&half), "x").unwrap();
+    let session = Session::from_bytes(&saved(&half), "x").unwrap();
     assert!(!session.driven.pending.is_empty());
     assert_eq!(session, half.session().unwrap());
     let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
@@ -153,10 +153,10 @@ fn a_keyframe_takes_three_kilobytes_at_most_whatever_the_sensor() {
         // The window is stored exactly, whatever the map's size.
         let fixed = with_section(&session.to_bytes(), b"FRNT", |_| Vec::new());
         assert!(window.len() <= 16);
-        assert!(session.places.len() <= 8 * keyframes + 40);
+        assert!(session.scan_poses.len() <= 8 * keyframes + 40);
         let each = fixed.len() / keyframes;
         assert!(each <= 3000, "{beams} beams, {points} points: {each} bytes");
-        let loaded = Session::of_bytes(&session.to_bytes(), "x").unwrap();
+        let loaded = Session::from_bytes(&session.to_bytes(), "x").unwrap();
         for (stored, seen) in loaded
             .driven
             .keyframes
@@ -250,7 +250,7 @@ fn a_session_with_other_parameters_is_refused_by_their_name() {
             let json = core::str::from_utf8(json).unwrap().replace(from, to);
             [start, json.as_bytes()].concat()
         });
-        let error = Session::of_bytes(&other, "x").unwrap_err().to_string();
+        let error = Session::from_bytes(&other, "x").unwrap_err().to_string();
         assert!(error.contains(said), "{error}");
     }
 }
@@ -262,9 +262,9 @@ fn every_byte_counts_and_so_does_every_length() {
     for at in 0..bytes.len() {
         let mut damaged = bytes.clone();
         damaged[at] ^= 1 << (at % 8);
-        let error = Session::of_bytes(&damaged, "x").unwrap_err().to_string();
+        let error = Session::from_bytes(&damaged, "x").unwrap_err().to_string();
         assert!(is_a_sentence(&error), "{at}: {error}");
-        let error = Session::of_bytes(&bytes[..at], "x")
+        let error = Session::from_bytes(&bytes[..at], "x")
             .unwrap_err()
             .to_string();
         assert!(is_a_sentence(&error), "{at}: {error}");
@@ -286,14 +286,14 @@ fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
 }
 
 #[test]
-fn bytes_that_nobody_wrote_are_a_sentence_or_a_session_that_can_be_used() {
+fn forged_bytes_give_an_error_or_a_usable_session() {
     let bytes = saved(&run(40, 0..12));
     let mut accepted = 0;
     for at in (HEAD_BYTES..bytes.len() - TAIL_BYTES).step_by(3) {
         for value in [0x00, 0x7f, 0xff] {
             let mut forged = bytes.clone();
             forged[at] = value;
-            match Session::of_bytes(&signed(forged), "x") {
+            match Session::from_bytes(&signed(forged), "x") {
                 Err(error) => assert!(is_a_sentence(&error.to_string()), "{at}: {error}"),
                 Ok(session) => {
                     accepted += 1;
@@ -313,18 +313,18 @@ fn a_map_may_have_lost_every_loop_that_was_driven() {
     let mapped = session.mapped.as_mut().unwrap();
     mapped.loops.clear();
     session.driven.optimized_edges = session.driven.edges.len();
-    let read = Session::of_bytes(&session.to_bytes(), "x").unwrap();
+    let read = Session::from_bytes(&session.to_bytes(), "x").unwrap();
     assert_eq!(read, session);
     assert_eq!(read.graph().optimized_edges(), read.graph().edge_count());
 }
 
 #[test]
-fn what_no_run_can_have_left_is_refused() {
+fn impossible_states_are_rejected() {
     let good = run(40, 0..12).session().unwrap();
     let refused = |change: &dyn Fn(&mut Session), said: &str| {
         let mut session = good.clone();
         change(&mut session);
-        let told = Session::of_bytes(&session.to_bytes(), "x").unwrap_err();
+        let told = Session::from_bytes(&session.to_bytes(), "x").unwrap_err();
         assert!(told.to_string().contains(said), "{told}");
     };
     let far = SE2::new(1e60, 0.0, 0.0);
@@ -340,17 +340,17 @@ fn what_no_run_can_have_left_is_refused() {
     refused(&|x| x.driven.keyframes[1].stamp_s = 0.0, "not in order");
     let last_s = good.driven.last_stamp_s;
     refused(
-        &|x| x.places.last_mut().unwrap().stamp_s = last_s + 1.0,
+        &|x| x.scan_poses.last_mut().unwrap().stamp_s = last_s + 1.0,
         "poses of scans are not in order",
     );
     refused(
-        &|x| x.places[0].keyframe = 1,
+        &|x| x.scan_poses[0].keyframe = 1,
         "poses of scans are not in order",
     );
 }
 
 #[test]
-fn what_is_no_session_is_told_from_what_was_one() {
+fn foreign_files_are_distinguished_from_damaged_sessions() {
     let bytes = saved(&run(40, 0..3));
     let mut newer = bytes.clone();
     newer[8] = 7;
@@ -372,7 +372,7 @@ fn what_is_no_session_is_told_from_what_was_one() {
         ),
         (&longer, "x continues after its end at byte"),
     ] {
-        let error = Session::of_bytes(file, "x").unwrap_err().to_string();
+        let error = Session::from_bytes(file, "x").unwrap_err().to_string();
         assert!(error.starts_with(said), "{error}");
     }
 }
@@ -384,7 +384,7 @@ fn every_parameter_is_written_and_read() {
         let mut run = LogRun::new(OdometryUse::Log).with_setting(setting, value);
         // Few enough points to be stored exactly.
         run.step(frame(0, 120)).unwrap();
-        let session = Session::of_bytes(&saved(&run), "x").unwrap();
+        let session = Session::from_bytes(&saved(&run), "x").unwrap();
         let robot = session.driven.config.robot.unwrap();
         assert_eq!(setting.value(&robot), value, "{}", setting.name);
         assert!(session == run.session().unwrap(), "{}", setting.name);
@@ -416,8 +416,8 @@ fn rays_to_a_thinned_wall_end_on_it_and_leave_gaps_open() {
 }
 
 #[test]
-fn a_robot_that_waits_does_not_fill_the_file_with_places() {
-    let place = |number: usize, keyframe: usize| ScanPose {
+fn a_waiting_robot_does_not_fill_the_file_with_scan_poses() {
+    let scan_pose = |number: usize, keyframe: usize| ScanPose {
         stamp_s: number as f64,
         keyframe,
         keyframe_from_body: SE2::identity(),
@@ -427,12 +427,12 @@ fn a_robot_that_waits_does_not_fill_the_file_with_places() {
         100..105 => 1,
         _ => 2,
     };
-    let places: Vec<ScanPose> = (0..150).map(|k| place(k, keyframe(k))).collect();
-    let kept = places_kept(&places);
+    let scans: Vec<ScanPose> = (0..150).map(|k| scan_pose(k, keyframe(k))).collect();
+    let kept = selected_scan_poses(&scans);
     // Eight of the first keyframe, all of the second, and all of the last, which may get more.
     assert_eq!(kept.len(), 8 + 5 + 45);
-    assert_eq!((kept[0], kept[7].stamp_s), (places[0], 87.0));
-    assert_eq!(places_kept(&kept), kept);
+    assert_eq!((kept[0], kept[7].stamp_s), (scans[0], 87.0));
+    assert_eq!(selected_scan_poses(&kept), kept);
 }
 
 #[test]

@@ -40,7 +40,7 @@ fn good_stamps_stay_as_they_are_through_a_pause_and_with_late_recording() {
 }
 
 #[test]
-fn single_stamps_from_another_world_are_replaced() {
+fn single_outlier_stamps_are_replaced() {
     for off_s in [1e6, -1e6, 30.0, -3.0] {
         for at in [0, 1, 20, 58, 59] {
             let (good, recorded) = stream(60);
@@ -70,7 +70,7 @@ fn stamps_of_zero_are_those_of_the_recording() {
 }
 
 #[test]
-fn a_clock_that_steps_is_put_back() {
+fn clock_steps_are_removed() {
     for by_s in [-100.0, 3600.0, -1.5] {
         let (good, recorded) = stream(60);
         let mut stamps = good.clone();
@@ -91,7 +91,7 @@ fn a_clock_that_steps_is_put_back() {
 }
 
 #[test]
-fn neighbours_that_changed_places_keep_their_stamps() {
+fn swapped_neighbours_keep_their_stamps() {
     let (mut stamps, recorded) = stream(40);
     for pair in stamps.chunks_exact_mut(2) {
         pair.swap(0, 1);

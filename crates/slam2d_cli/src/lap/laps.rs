@@ -95,7 +95,7 @@ pub fn run(
         let saved = Session {
             driven: laps.slam().snapshot(),
             mapped: None,
-            places: Vec::new(),
+            scan_poses: Vec::new(),
             sensor: Some(LaserScan {
                 ranges_m: Vec::new(),
                 ..drive.frame(0).scan

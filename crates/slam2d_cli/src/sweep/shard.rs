@@ -30,7 +30,7 @@ impl Shard {
 
     /// Whether the seed at this index is in the shard. Consecutive seeds go to different shards, which
     /// balances their run times.
-    fn holds(self, index: u32) -> bool {
+    fn contains(self, index: u32) -> bool {
         index % self.count == self.number - 1
     }
 }
@@ -74,7 +74,7 @@ pub fn drive(
     let file = Mutex::new(file);
     let seeds: Vec<u32> = (0..)
         .zip(args.seeds.first..=args.seeds.last)
-        .filter_map(|(index, seed)| part.holds(index).then_some(seed))
+        .filter_map(|(index, seed)| part.contains(index).then_some(seed))
         .collect();
     let bar = progress_bar(seeds.len() as u64);
     let by_seed: Result<Vec<Vec<(LapOutcome, bool)>>, RowsFailure> = seeds
@@ -119,10 +119,10 @@ mod tests {
         for count in 1..12 {
             for index in 0..50 {
                 let shards = (1..=count).map(|number| Shard { number, count });
-                assert_eq!(shards.filter(|shard| shard.holds(index)).count(), 1);
+                assert_eq!(shards.filter(|shard| shard.contains(index)).count(), 1);
             }
         }
-        assert!(Shard::WHOLE.holds(7));
+        assert!(Shard::WHOLE.contains(7));
     }
 
     #[test]

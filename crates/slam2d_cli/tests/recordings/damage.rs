@@ -112,7 +112,7 @@ fn a_cloud_of_several_rings_is_cut_by_heights() {
 }
 
 #[test]
-fn a_laser_may_be_placed_by_hand() {
+fn the_user_may_set_the_mounting() {
     let mut all = messages();
     turned(&mut all, 180);
     mirrored(&mut all);

@@ -663,7 +663,7 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
 ];
 
 #[test]
-fn every_fault_is_mended_or_named() {
+fn every_fault_is_corrected_or_named() {
     let mut failures = Vec::new();
     for (name, change, most_m, word) in VARIANTS {
         let mut all = messages();

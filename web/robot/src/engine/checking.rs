@@ -28,9 +28,9 @@ impl Engine<'_> {
         if !self.is_ranked {
             self.rank();
         }
-        self.news.keyframes = true;
-        self.news.loops = true;
-        self.news.doubts = true;
+        self.changes.keyframes = true;
+        self.changes.loops = true;
+        self.changes.doubts = true;
         self.work = Work::Idle;
     }
 
@@ -108,7 +108,7 @@ impl Engine<'_> {
         let stamps: Vec<f64> = quality.keyframes.iter().map(|k| k.stamp_s).collect();
         let at = |stamp_s: f64| stamps.partition_point(|&s| s <= stamp_s).saturating_sub(1);
         let poor = self.run.poor().iter().map(|poor| at(poor.stamp_s));
-        let refuted = quality.refuted_ways.iter().map(|way| way.to);
+        let refuted = quality.refuted_paths.iter().map(|path| path.to);
         let doubted = contradicting(&self.links).chain(refuted).chain(poor);
         let mut all: Vec<usize> = doubted.collect();
         all.sort_unstable();

@@ -48,7 +48,7 @@ impl<'a> Engine<'a> {
             Err(_) if checkup.scans() > 0 => {}
             Err(problem) => return self.end_of_log(&examination.reader, Some(problem.to_string())),
         }
-        self.tell_diagnosis(&examination);
+        self.send_diagnosis(&examination);
         let Examination {
             reader,
             given,
@@ -57,20 +57,20 @@ impl<'a> Engine<'a> {
         } = *examination;
         self.work = match compared(&given, &choices) {
             Ok(again) => Work::Reading(Box::new(match reader.motion() {
-                Some(motion) => again.knowing(motion.clone()),
+                Some(motion) => again.with_motion(motion.clone()),
                 None => again,
             })),
             Err(problem) => Work::Failed(problem),
         };
     }
 
-    pub(super) fn tell_diagnosis(&mut self, examination: &Examination<'_>) {
+    pub(super) fn send_diagnosis(&mut self, examination: &Examination<'_>) {
         let Examination {
             reader, checkup, ..
         } = examination;
         let motion = reader.motion().cloned().unwrap_or_default();
         let diagnosis = checkup.finish(&self.name, reader.notes(), &motion);
-        let told = serde_json::to_string(&diagnosis).expect("plain numbers, strings and lists");
-        self.waiting.push(Update::text("diagnosis", told));
+        let json = serde_json::to_string(&diagnosis).expect("plain numbers, strings and lists");
+        self.waiting.push(Update::text("diagnosis", json));
     }
 }

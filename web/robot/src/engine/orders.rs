@@ -5,7 +5,7 @@ use ch16_slam2d::localize::StartPose;
 use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::metrics::position_error_m;
 use pr_geom::SE2;
-use robot_io::map_image::map_of;
+use robot_io::map_image::build_map;
 use robot_io::report::Report;
 use robot_io::session;
 
@@ -83,7 +83,7 @@ impl<'a> Engine<'a> {
         }
         match core::mem::replace(&mut self.work, Work::Idle) {
             Work::Examining(examination) => {
-                self.tell_diagnosis(&examination);
+                self.send_diagnosis(&examination);
                 self.end_of_log(&examination.reader, None);
                 Ok(String::new())
             }
@@ -121,9 +121,9 @@ impl<'a> Engine<'a> {
             return Err(format!("there is no loop {link}"));
         };
         let (before, ends) = (found.verdict, format!("{} to {}", found.new, found.old));
-        found.verdict = before.turned();
+        found.verdict = before.toggled();
         let said = match found.verdict {
-            Verdict::Refused => format!("The loop {ends} was removed from the graph"),
+            Verdict::Removed => format!("The loop {ends} was removed from the graph"),
             _ => format!("The loop {ends} was added to the graph"),
         };
         match self.resolve() {
@@ -146,7 +146,7 @@ impl<'a> Engine<'a> {
         }
         let reason = link.reason.clone();
         self.links.insert(0, link);
-        self.news.loops = true;
+        self.changes.loops = true;
         if !found.accepted() {
             return Ok(format!(
                 "Keyframe {new} does not close a loop with {old}: {reason}. The loop is in the list, and you can still add it."
@@ -233,15 +233,15 @@ impl<'a> Engine<'a> {
                 *slam.graph_mut() = graph;
                 let in_graph = self.links.iter().filter(|link| link.verdict.is_in_graph());
                 let found = in_graph.filter_map(|link| link.found);
-                let told = found.map(|found| LoopVerification {
+                let accepted = found.map(|found| LoopVerification {
                     rejection: None,
                     ..found
                 });
-                self.run.set_links(told.collect());
+                self.run.set_links(accepted.collect());
             }
             _ => self.graph = Some(graph),
         }
-        self.changed();
+        self.graph_changed();
         Ok(moved_m)
     }
 
@@ -252,7 +252,7 @@ impl<'a> Engine<'a> {
     pub fn take_reference(&mut self, bytes: &[u8], name: &str) -> Result<(), String> {
         let reference = Reference::read(bytes, name)?;
         self.reference = Some((name.to_owned(), reference));
-        self.news.grade = true;
+        self.changes.grade = true;
         Ok(())
     }
 
@@ -295,7 +295,7 @@ impl<'a> Engine<'a> {
             },
             _ => {
                 let lines = self.recorder.map_lines(&self.run);
-                let map = map_of(&lines, MAP_CELL_M).map_err(|problem| problem.to_string())?;
+                let map = build_map(&lines, MAP_CELL_M).map_err(|problem| problem.to_string())?;
                 let saved = files::MAP_IMAGES.into_iter().find(|image| *image == name);
                 self.image = saved.unwrap_or(self.image);
                 files::map_file(&map, name, self.image)
@@ -306,7 +306,7 @@ impl<'a> Engine<'a> {
     fn report(&mut self) -> String {
         let quality = self.quality();
         let lines = self.recorder.map_lines(&self.run);
-        let map = map_of(&lines, REPORT_CELL_M).ok();
+        let map = build_map(&lines, REPORT_CELL_M).ok();
         let mut remarks = self.remarks.clone();
         remarks.extend(self.grade_updates().into_iter().map(|update| update.text));
         remarks.retain(|remark| !remark.is_empty());

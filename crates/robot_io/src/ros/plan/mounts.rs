@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use crate::laser_mount::LaserMount;
 use crate::log::LogOptions;
 use crate::ros::survey::Survey;
-use crate::ros::transforms::mount_of;
+use crate::ros::transforms::planar_mount;
 
 /// A mounting, and how it was determined.
 pub struct Found {
@@ -61,7 +61,7 @@ pub fn find(
         found.warning = None;
         return found;
     }
-    let why = match chain.as_ref().map(mount_of) {
+    let why = match chain.as_ref().map(planar_mount) {
         Some(Ok(mount)) => {
             found.mount = mount;
             found.body_from_sensor = chain.unwrap_or_default();

@@ -33,7 +33,7 @@ fn assert_taken(fields: ScanFields, first: f64, step: f64, words: &str) {
 }
 
 #[test]
-fn angles_that_agree_are_taken_and_others_by_what_two_say() {
+fn inconsistent_angles_are_corrected_by_two_that_agree() {
     let (first, step) = (-PI, TAU / 360.0);
     assert_taken(fields(), first, step, "");
     // Some drivers state the angle after the last beam.
@@ -99,7 +99,7 @@ fn angles_that_agree_are_taken_and_others_by_what_two_say() {
 }
 
 #[test]
-fn angles_of_which_nothing_agrees_are_refused() {
+fn inconsistent_angles_are_rejected() {
     let bad = ScanFields {
         angle_max: 40.0,
         angle_increment: 3.0,

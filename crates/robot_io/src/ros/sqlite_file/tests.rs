@@ -16,7 +16,7 @@ fn count(bytes: &[u8]) -> (usize, usize) {
                 messages += 1;
             }
             Ok(None) => return (messages, lost),
-            Err(error) if error.goes_on() => lost += 1,
+            Err(error) if error.is_recoverable() => lost += 1,
             Err(_) => return (messages, lost + 1),
         }
         assert!(messages + lost < 10_000, "it never ends");
@@ -47,7 +47,7 @@ fn a_damaged_page_costs_the_rows_on_it() {
 }
 
 #[test]
-fn a_database_of_something_else_is_told_by_its_tables() {
+fn other_databases_are_rejected_by_their_tables() {
     let mut bytes = PLAIN.to_vec();
     let name = b"messages";
     let at: Vec<usize> = (0..4096)

@@ -14,26 +14,26 @@ impl Engine<'_> {
     /// Changes since the last call.
     pub fn updates(&mut self) -> Vec<Update> {
         let mut updates = Vec::new();
-        let news = core::mem::take(&mut self.news);
-        if news.file {
+        let changes = core::mem::take(&mut self.changes);
+        if changes.file {
             let mut file = Update::text("file", self.name.clone());
             let has_scans = f64::from(u8::from(self.has_scans));
             file.numbers = vec![self.size_bytes as f64, has_scans];
             updates.push(file);
         }
         updates.push(self.stage_update());
-        if news.keyframes {
+        if changes.keyframes {
             updates.push(self.keyframes_update());
         }
-        if news.loops {
+        if changes.loops {
             updates.push(self.loops_update());
         }
-        if news.doubts {
+        if changes.doubts {
             let mut doubts = Update::text("doubts", self.doubts.join("\n"));
             doubts.numbers = self.look_into.iter().map(|&k| k as f64).collect();
             updates.push(doubts);
         }
-        if news.grade && !matches!(self.stage(), Stage::Reading | Stage::Failed) {
+        if changes.grade && !matches!(self.stage(), Stage::Reading | Stage::Failed) {
             updates.extend(self.grade_updates());
         }
         if self.has_scans {
@@ -111,7 +111,7 @@ impl Engine<'_> {
     }
 
     /// Reports the choices for the options of a recording.
-    pub(super) fn tell_offers(&mut self, offers: &[LogOffer]) {
+    pub(super) fn send_offers(&mut self, offers: &[LogOffer]) {
         let lines = offers.iter().map(|offer| {
             let taken = offer.taken.as_deref().unwrap_or_default();
             let names = offer.names.iter().map(String::as_str);

@@ -3,10 +3,10 @@
 use super::TRANSFORMS;
 use crate::lines::listed;
 use crate::log::LogOptions;
+use crate::odometry_poses::{OdometryPoses, jumps_remark};
 use crate::remark::{NO_ODOMETRY, Part, Remark};
 use crate::ros::survey::{Survey, Track};
 use crate::stamps::MendedStamps;
-use crate::wheel_poses::{WheelPoses, jumps_remark};
 
 /// Clocks that differ by less are one clock with a delay, s.
 const SAME_CLOCK_S: f64 = 1.0;
@@ -16,7 +16,7 @@ const AHEAD_S: f64 = 0.1;
 const COVERS: f64 = 0.8;
 
 /// The selected odometry.
-pub struct Wheels<'a> {
+pub struct SelectedOdometry<'a> {
     /// Topic.
     pub topic: String,
     /// Poses.
@@ -35,7 +35,7 @@ pub fn chosen<'a>(
     options: &LogOptions,
     sensor: &str,
     scans: &MendedStamps,
-) -> Option<Wheels<'a>> {
+) -> Option<SelectedOdometry<'a>> {
     let wanted = options.odometry_topic.as_deref();
     let topics = survey
         .odometry
@@ -54,10 +54,10 @@ pub fn chosen<'a>(
         });
     let scored = candidates.map(|(topic, track, is_transform)| {
         let clock = MendedStamps::new(&track.stamps_s, &track.recorded_s);
-        let leads = leads_to(survey, track, sensor);
+        let link = laser_link(survey, track, sensor);
         let score = (
             track.moves,
-            leads,
+            link,
             covers(&clock, scans),
             !is_transform,
             std::cmp::Reverse(track.order),
@@ -72,7 +72,7 @@ pub fn chosen<'a>(
     let others = scored
         .map(|(_, topic, track, ..)| format!("{topic} from {} to {}", track.above, track.body));
     let others = listed(others.take(5));
-    Some(Wheels {
+    Some(SelectedOdometry {
         topic,
         track,
         clock,
@@ -85,16 +85,16 @@ pub fn chosen<'a>(
 
 /// Whether the moving body carries the laser.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Leads {
+enum LaserLink {
     /// The transforms contain the body, but do not connect it to the laser.
-    Not,
+    None,
     /// No transform contains the body.
-    Perhaps,
+    Unknown,
     /// Transforms connect the body to the laser.
-    Surely,
+    Connected,
 }
 
-fn leads_to(survey: &Survey, track: &Track, sensor: &str) -> Leads {
+fn laser_link(survey: &Survey, track: &Track, sensor: &str) -> LaserLink {
     let transforms = &survey.transforms;
     let ground = Some(track.above.as_str());
     let mut edges = transforms.edges();
@@ -102,13 +102,13 @@ fn leads_to(survey: &Survey, track: &Track, sensor: &str) -> Leads {
         .body_from_sensor(&track.body, sensor, ground)
         .is_some()
     {
-        Leads::Surely
+        LaserLink::Connected
     } else if edges
         .any(|(parent, child)| parent == track.body || child == track.body && parent != track.above)
     {
-        Leads::Not
+        LaserLink::None
     } else {
-        Leads::Perhaps
+        LaserLink::Unknown
     }
 }
 
@@ -135,11 +135,11 @@ fn ends_s(stamps_s: &[f64]) -> (f64, f64) {
 }
 
 /// Offset of the scans' clock from the odometry's clock, if the recording's time shows it, s.
-fn clock_offset_s(scans: &MendedStamps, wheels: &MendedStamps) -> Option<f64> {
-    let (of_scans, of_wheels) = (scans.ahead_s?, wheels.ahead_s?);
-    let offset_s = of_scans - of_wheels;
+fn clock_offset_s(scans: &MendedStamps, odometry: &MendedStamps) -> Option<f64> {
+    let (of_scans, of_odometry) = (scans.ahead_s?, odometry.ahead_s?);
+    let offset_s = of_scans - of_odometry;
     // A stamp after its recording is from another clock; one before it may be delayed.
-    let least_s = if of_scans.max(of_wheels) > AHEAD_S {
+    let least_s = if of_scans.max(of_odometry) > AHEAD_S {
         AHEAD_S
     } else {
         SAME_CLOCK_S
@@ -150,17 +150,17 @@ fn clock_offset_s(scans: &MendedStamps, wheels: &MendedStamps) -> Option<f64> {
 /// Scans and odometry on one clock.
 pub struct Aligned {
     /// Odometry poses on that clock.
-    pub poses: WheelPoses,
+    pub poses: OdometryPoses,
     /// Offset added to the scans' stamps, s.
     pub scans_by_s: f64,
     /// Remarks on the correction.
-    pub said: Vec<Remark>,
+    pub remarks: Vec<Remark>,
 }
 
 /// Aligns both to the clock of the recording, or to that of the odometry.
-pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
-    let clock = &wheels.clock;
-    let (mut scans_by_s, mut wheels_by_s, mut said) = (0.0, 0.0, Vec::new());
+pub fn aligned(odometry: &SelectedOdometry<'_>, scans: &MendedStamps) -> Aligned {
+    let clock = &odometry.clock;
+    let (mut scans_by_s, mut odometry_by_s, mut remarks) = (0.0, 0.0, Vec::new());
     if let Some(offset_s) = clock_offset_s(scans, clock) {
         let is_scans_off = scans
             .ahead_s
@@ -168,10 +168,10 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
         if is_scans_off {
             scans_by_s = -offset_s;
         } else {
-            wheels_by_s = offset_s;
+            odometry_by_s = offset_s;
         }
         let whose = if is_scans_off { "scans" } else { "odometry" };
-        said.push(Remark::mended(
+        remarks.push(Remark::mended(
             Part::Clocks,
             format!(
                 "the clocks of scans and odometry differ by {:.1} s, by the time of recording; that of the {whose} was shifted. Synchronize both computers' clocks by NTP",
@@ -183,7 +183,7 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
             (ends_s(&clock.stamps_s), ends_s(&scans.stamps_s));
         if last_s < scan_s || first_s > end_s {
             let apart_s = scan_s - first_s;
-            said.push(Remark::wrong(
+            remarks.push(Remark::wrong(
                 Part::Clocks,
                 format!(
                     "the clocks of scans and odometry differ by {:.0} s, and the recording does not show which is right; synchronize both computers' clocks by NTP and record again, or use scans alone with {NO_ODOMETRY}",
@@ -193,15 +193,15 @@ pub fn aligned(wheels: &Wheels<'_>, scans: &MendedStamps) -> Aligned {
             .with_option(NO_ODOMETRY));
         }
     }
-    let stamped = clock.stamps_s.iter().zip(&wheels.track.poses);
+    let stamped = clock.stamps_s.iter().zip(&odometry.track.poses);
     let poses = stamped
         .filter(|(stamp_s, _)| stamp_s.is_finite())
-        .map(|(stamp_s, pose)| (stamp_s + wheels_by_s, *pose));
-    let (poses, jumps) = WheelPoses::new(poses.collect(), clock.period_s);
-    said.extend(jumps_remark(&jumps));
+        .map(|(stamp_s, pose)| (stamp_s + odometry_by_s, *pose));
+    let (poses, jumps) = OdometryPoses::new(poses.collect(), clock.period_s);
+    remarks.extend(jumps_remark(&jumps));
     Aligned {
         poses,
         scans_by_s,
-        said,
+        remarks,
     }
 }

@@ -26,13 +26,13 @@ const LEAST_APART_S: f64 = 1e-3;
 
 /// Odometry poses of the body in the order of time.
 #[derive(Clone, Debug)]
-pub struct WheelPoses {
+pub struct OdometryPoses {
     poses: VecDeque<(f64, SE2)>,
     slack_s: f64,
     gap_s: f64,
 }
 
-impl Default for WheelPoses {
+impl Default for OdometryPoses {
     fn default() -> Self {
         Self {
             poses: VecDeque::new(),
@@ -42,7 +42,7 @@ impl Default for WheelPoses {
     }
 }
 
-impl WheelPoses {
+impl OdometryPoses {
     /// Takes all poses of a recording with their stamps (s), in any order; `period_s` is the usual time between two.
     /// Also returns the stamps at which odometry jumped, for example because it restarted at zero; later poses are
     /// shifted to continue the path.
@@ -159,39 +159,39 @@ mod tests {
     use super::*;
 
     #[test]
-    fn between_two_poses_of_the_wheels_the_body_is_on_the_way() {
-        let mut wheels = WheelPoses::default();
-        assert_eq!(wheels.at(1.0), None);
+    fn poses_are_interpolated_between_odometry() {
+        let mut odometry = OdometryPoses::default();
+        assert_eq!(odometry.at(1.0), None);
         for (stamp_s, x) in [(1.0, 0.0), (2.0, 1.0), (1.5, 9.0), (4.0, 2.0)] {
-            wheels.push(stamp_s, SE2::translation(x, 0.0));
+            odometry.push(stamp_s, SE2::translation(x, 0.0));
         }
         // The pose of 1.5 s came too late and is skipped.
         for (stamp_s, x) in [(0.9, 0.0), (1.5, 0.5), (3.0, 1.5), (4.1, 2.0)] {
-            let pose = wheels.at(stamp_s).unwrap();
+            let pose = odometry.at(stamp_s).unwrap();
             assert!((pose.x() - x).abs() < 1e-12, "{stamp_s}: {}", pose.x());
         }
-        assert!(wheels.reaches(4.0) && !wheels.reaches(4.1));
+        assert!(odometry.reaches(4.0) && !odometry.reaches(4.1));
     }
 
     #[test]
-    fn odometry_that_starts_again_goes_on_where_it_was() {
+    fn restarted_odometry_continues_the_path() {
         let pose = |k: u32| SE2::translation(5.0 + 0.1 * f64::from(k % 30), 0.0);
         let poses = (0..60).map(|k| (0.1 * f64::from(k), pose(k)));
-        let (wheels, jumps) = WheelPoses::new(poses.collect(), 0.1);
+        let (odometry, jumps) = OdometryPoses::new(poses.collect(), 0.1);
         assert_eq!(jumps.len(), 1);
         // 29 steps before and 29 after it.
-        assert!((wheels.at(5.9).unwrap().x() - 10.8).abs() < 1e-9);
+        assert!((odometry.at(5.9).unwrap().x() - 10.8).abs() < 1e-9);
     }
 
     #[test]
     fn beyond_the_known_poses_and_in_a_gap_there_is_none() {
-        let mut wheels = WheelPoses::default();
+        let mut odometry = OdometryPoses::default();
         for stamp_s in [1.0, 2.0, 60.0] {
-            wheels.push(stamp_s, SE2::translation(stamp_s, 0.0));
+            odometry.push(stamp_s, SE2::translation(stamp_s, 0.0));
         }
         for stamp_s in [0.0, 30.0, 61.0] {
-            assert_eq!(wheels.at(stamp_s), None, "{stamp_s}");
+            assert_eq!(odometry.at(stamp_s), None, "{stamp_s}");
         }
-        assert!(wheels.at(2.2).is_some() && wheels.at(59.9).is_some());
+        assert!(odometry.at(2.2).is_some() && odometry.at(59.9).is_some());
     }
 }

@@ -12,7 +12,7 @@ const LONGEST_S: f64 = 1e12;
 ///
 /// # Errors
 /// If it is not finite or out of bounds.
-pub fn checked_stamp_s(stamp_s: f64) -> Result<f64, String> {
+pub fn plausible_stamp_s(stamp_s: f64) -> Result<f64, String> {
     if stamp_s.abs() <= LONGEST_S {
         Ok(stamp_s)
     } else {
@@ -23,7 +23,7 @@ pub fn checked_stamp_s(stamp_s: f64) -> Result<f64, String> {
 }
 
 /// Whether a length is plausible.
-pub fn is_length(value_m: f64) -> bool {
+pub fn is_plausible_length(value_m: f64) -> bool {
     value_m.abs() <= FARTHEST_M
 }
 
@@ -31,9 +31,9 @@ pub fn is_length(value_m: f64) -> bool {
 ///
 /// # Errors
 /// If a number is not finite or out of bounds.
-pub fn checked(pose: SE2) -> Result<SE2, String> {
+pub fn plausible_pose(pose: SE2) -> Result<SE2, String> {
     let [x, y, theta] = pose.to_array();
-    if is_length(x) && is_length(y) && theta.is_finite() {
+    if is_plausible_length(x) && is_plausible_length(y) && theta.is_finite() {
         Ok(pose)
     } else {
         Err(format!(
@@ -48,12 +48,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pose_on_earth_is_taken_and_one_beyond_is_told() {
+    fn poses_on_earth_are_accepted_and_others_rejected() {
         // Northern end of a UTM zone, in metres from the equator.
         let far = SE2::new(834_000.0, 9_328_000.0, 3.0);
-        assert_eq!(checked(far), Ok(far));
+        assert_eq!(plausible_pose(far), Ok(far));
         for x in [1e300, f64::INFINITY, f64::NAN] {
-            let said = checked(SE2::new(x, 0.0, 0.0)).unwrap_err();
+            let said = plausible_pose(SE2::new(x, 0.0, 0.0)).unwrap_err();
             assert!(
                 said.starts_with("a pose must lie within 41000 km"),
                 "{said}"
@@ -62,12 +62,12 @@ mod tests {
     }
 
     #[test]
-    fn a_time_of_any_clock_is_taken_and_one_beyond_is_told() {
+    fn times_of_any_clock_are_accepted_and_others_rejected() {
         // Nanoseconds since 1970 read as milliseconds are rejected.
-        assert_eq!(checked_stamp_s(1.7e9), Ok(1.7e9));
-        assert_eq!(checked_stamp_s(-1.0), Ok(-1.0));
+        assert_eq!(plausible_stamp_s(1.7e9), Ok(1.7e9));
+        assert_eq!(plausible_stamp_s(-1.0), Ok(-1.0));
         for stamp_s in [1.7e15, f64::NAN] {
-            let said = checked_stamp_s(stamp_s).unwrap_err();
+            let said = plausible_stamp_s(stamp_s).unwrap_err();
             assert!(said.starts_with("a time must lie within 1e12 s"), "{said}");
         }
     }

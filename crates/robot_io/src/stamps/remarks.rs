@@ -8,40 +8,40 @@ impl MendedStamps {
     #[must_use]
     pub fn remarks(&self, messages: &str) -> Vec<Remark> {
         let all = self.stamps_s.len();
-        let mut said = Vec::new();
+        let mut remarks = Vec::new();
         if self.unset > 0 {
-            said.push(format!(
+            remarks.push(format!(
                 "{} of {all} {messages} have no stamp; their time of recording is used. Set header.stamp in the driver",
                 self.unset
             ));
         }
         if self.outliers > 0 {
-            said.push(format!(
+            remarks.push(format!(
                 "{} of {all} {messages} have a stamp far from their neighbours'; it was replaced using the time of recording and the neighbours",
                 self.outliers
             ));
         }
         if self.equal > 0 {
-            said.push(format!(
+            remarks.push(format!(
                 "{} of {all} {messages} have the same stamp as the one before, as with stamps printed with too few digits; they were spread evenly, so speeds are unreliable. Write stamps with six decimals",
                 self.equal
             ));
         }
         for step in self.steps.iter().take(3) {
             let direction = if step.by_s < 0.0 { "back" } else { "ahead" };
-            said.push(format!(
+            remarks.push(format!(
                 "the clock of the {messages} steps {direction} by {:.1} s at number {}; the step was removed and both parts are mapped",
                 step.by_s.abs(),
                 step.at
             ));
         }
         if self.swapped > 0 {
-            said.push(format!(
+            remarks.push(format!(
                 "{} of {all} {messages} come after a later one; they were sorted by stamp",
                 self.swapped
             ));
         }
         let mended = |text| Remark::mended(Part::Clocks, text);
-        said.into_iter().map(mended).collect()
+        remarks.into_iter().map(mended).collect()
     }
 }
