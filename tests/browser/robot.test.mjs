@@ -258,10 +258,10 @@ describe('a log of one’s own', () => {
       const before = (await outcome(tab)).facts.loops;
       const loops = async () => (await outcome(tab)).facts.loops;
       await press(tab, 'turn');
-      await says(tab, /is out of the graph/);
+      await says(tab, /was removed from the graph/);
       assert.equal(await loops(), before - 1);
       await press(tab, 'turn');
-      await says(tab, /is in the graph/);
+      await says(tab, /was added to the graph/);
       assert.equal(await loops(), before);
       await tab.evaluate(() => Object.assign(document.querySelector('slam-widget').value = { keyframe: 0 }));
       await press(tab, 'mark');
@@ -294,7 +294,7 @@ describe('a log of one’s own', () => {
         return Math.abs(Number(rows[at + 1].split(',')[2]) - old) > 0.05;
       }, [x, middle]);
       await press(tab, 'unpin');
-      await says(tab, /No keyframe is held any more/);
+      await says(tab, /No keyframe is fixed any more/);
       await isMapped(tab);
       const [back] = await row();
       assert.ok(Math.abs(back - x) < 0.02, `${back} and ${x}`);
@@ -331,7 +331,7 @@ describe('a log of one’s own', () => {
       await says(tab, /saved\.g2o: \d+ poses/);
       assert.equal((await outcome(tab)).facts.loops, facts.loops);
       await press(tab, 'turn');
-      await says(tab, /is out of the graph/);
+      await says(tab, /was removed from the graph/);
     });
   });
 
@@ -357,7 +357,7 @@ describe('a log of one’s own', () => {
         const after = (await outcome(tab)).facts;
         for (const id of ['scans', 'keyframes', 'loops', 'path_length_m']) assert.equal(after[id], before[id], id);
         await press(tab, 'turn');
-        await says(tab, /is out of the graph/);
+        await says(tab, /was removed from the graph/);
         const [, changed] = await saved(tab, 'session');
         assert.ok(!changed.equals(session));
         await giveBytes(tab, 'changed.slam2d', changed);
@@ -374,8 +374,8 @@ describe('a log of one’s own', () => {
         for (const [bytes, said] of [
           [session.subarray(0, session.length / 2), /no map: bad\.slam2d ends at byte \d+ of \d+/],
           [spoilt, /no map: bad\.slam2d is damaged/],
-          [newer, /no map: bad\.slam2d is a session of version 9, and this program reads version 3/],
-          [Buffer.from('hello'), /no map: bad\.slam2d is no session/],
+          [newer, /no map: bad\.slam2d is a session of version 9, but this program reads version 3/],
+          [Buffer.from('hello'), /no map: bad\.slam2d is not a session/],
           [Buffer.alloc(0), /no map: bad\.slam2d is empty/],
         ]) {
           await giveBytes(tab, 'bad.slam2d', bytes);
@@ -417,7 +417,7 @@ describe('a log of one’s own', () => {
 
       // What the reader moves moves the places, and a worker that breaks finds them again.
       await press(tab, 'turn');
-      await says(tab, /is out of the graph/);
+      await says(tab, /was removed from the graph/);
       await widget(tab, (it) => it.crashForTest('worker'));
       await says(tab, /was begun again/);
       await says(tab, /^(mapped|loops contradict): .*is found at its scan \d+: of/);
@@ -481,7 +481,7 @@ describe('a log of one’s own', () => {
       for (const [name, text, said] of [
         ['empty.log', '', /no map: empty\.log is empty; give a recorded log/],
         ['packed.log', '\u001f\u008b', /no map: packed\.log/],
-        ['photo.png', '\u0089PNG\u0000\u0001', /no map: photo\.png is no CARMEN log/],
+        ['photo.png', '\u0089PNG\u0000\u0001', /no map: photo\.png is not a CARMEN log/],
         ['broken.g2o', 'VERTEX_SE2 0 zero\n', /no map: broken\.g2o.*line 1/],
         ['cut.mcap', '\u0089MCAP', /no map: cut\.mcap/],
         ['<b>x</b>.log', 'words', /no map: <b>x<\/b>\.log/],
@@ -493,7 +493,7 @@ describe('a log of one’s own', () => {
       await says(tab, /(mapped|contradict): half\.log/);
       const remarks = (await tab.evaluate(() => document.querySelector('slam-widget').tables()))
         .find(({ id }) => id === 'remarks');
-      assert.match(remarks.csv, /half written/);
+      assert.match(remarks.csv, /is incomplete/);
       await give(tab, 'truth.tum', 'not a pose\n');
       await says(tab, /truth\.tum: line 1/);
       assert.match((await outcome(tab)).sentence, /half\.log/, 'the map stays');
@@ -505,7 +505,7 @@ describe('a log of one’s own', () => {
       await press(tab, 'sample');
       await isMapped(tab);
       await press(tab, 'turn');
-      await says(tab, /is out of the graph/);
+      await says(tab, /was removed from the graph/);
       const { facts: { loops, keyframes } } = await outcome(tab);
       const same = async () => {
         await isMapped(tab);
@@ -629,7 +629,7 @@ describe('the doctor', () => {
         await says(tab, /(mapped|contradict): bag_0\.db3: 24 scans/);
         const metadata = 'relative_file_paths:\n  - bag_0.db3\n  - bag_1.db3\n';
         await drop(tab, [['bag_0.db3', readFileSync(join(folder, 'bag_0.db3'))], ['metadata.yaml', metadata]]);
-        await says(tab, /no map: metadata\.yaml names bag_1\.db3, which did not come with it/);
+        await says(tab, /no map: metadata\.yaml lists bag_1\.db3, which is missing/);
         await drop(tab, [['a.log', SAMPLE], ['b.log', SAMPLE]]);
         await says(tab, /no map: a\.log and 1 more is several files.*give one log at a time/);
       });

@@ -5,9 +5,9 @@
     python3 crates/robot_io/recordings/long.py drive.jsonl long.clf --megabytes 500
     venv/bin/python crates/robot_io/recordings/long.py drive.jsonl long.mcap --megabytes 500
 
-The drive is repeated along the line of time, as a robot would that goes its round all day. Its scanner is made one
-of three times the beams and sixteen times the rate, as those of today are: new beams lie between their neighbours, and
-each scan is recorded sixteen times while the robot is where it was. A name that ends in .mcap is written by the
+The drive is repeated over time, as by a robot that patrols all day. The scanner gets three times the beams and
+sixteen times the rate, as current ones have: new beams are interpolated between their neighbours, and
+each scan is recorded sixteen times at the same pose. A name that ends in .mcap is written by the
 PyPI packages that `make.py` needs; .clf needs none.
 """
 
@@ -17,7 +17,7 @@ import struct
 
 BEAMS = 3
 RATE = 16
-# Neighbours that differ by more see two things, and nothing lies between them.
+# Neighbours that differ by more hit different objects, and are not interpolated.
 ONE_WALL_M = 0.3
 START_S = 1_700_000_000
 

@@ -1,12 +1,12 @@
-"""Writes the fixtures beside it, by other people's writers: PyPI `rosbags` and `mcap`.
+"""Writes the fixtures next to it with independent writers: PyPI `rosbags` and `mcap`.
 
     slam2d lap --frames lap.jsonl
     python3 -m venv venv && venv/bin/pip install rosbags==0.11.9 mcap==1.6.0
     venv/bin/python crates/robot_io/recordings/make.py lap.jsonl
 
-The first frames of the simulator's lap become recordings of a robot whose laser sits 0.1 m in front
-of its centre. The wheels are recorded 20 ms before and after each scan, so that the reader has to
-work out the pose at the scan's own time.
+The first frames of the simulator's lap become recordings of a robot whose laser is 0.1 m in front
+of its centre. Odometry is recorded 20 ms before and after each scan, so the reader must interpolate
+the pose at the scan's stamp.
 """
 
 import json
@@ -50,14 +50,14 @@ def messages(lines, kind):
     before = lines[0]['odometry']
     for line in lines:
         pose, stamp = line['odometry'], START_S + line['stamp_s']
-        # The wheels do not tell the scan's own pose: it lies between those two, on one twist.
-        yield wheels(kind, stamp - 0.02, along(before, pose, 0.9))
+        # The pose of the scan is not recorded: it is interpolated between these two, on one twist.
+        yield odometry(kind, stamp - 0.02, along(before, pose, 0.9))
         yield stamp + 0.001, '/scan', scan(kind, stamp, line)
-        yield wheels(kind, stamp + 0.02, along(before, pose, 1.1))
+        yield odometry(kind, stamp + 0.02, along(before, pose, 1.1))
         before = pose
 
 
-def wheels(kind, stamp, pose):
+def odometry(kind, stamp, pose):
     if kind == 'tf':
         return stamp, '/tf', lambda m: m.tf([m.transform(stamp, 'odom', 'base_link', pose)])
     return stamp, '/odom', lambda m: m.odometry(stamp, pose)

@@ -1,17 +1,16 @@
 //! CARMEN logs: one message on each line, its kind first.
 //!
-//! | line | what it says |
+//! | line | content |
 //! |---|---|
 //! | `FLASER n r… laser_pose odom_pose ipc_time host logger_time` | ranges from −90° on, counter-clockwise |
 //! | `ROBOTLASER1 type start fov step max … n r… m e… laser_pose robot_pose tv rv … ipc_time host logger_time` | ranges with their geometry |
 //! | `RAWLASER1 type start fov step max … n r… m e… ipc_time host logger_time` | the same without poses |
-//! | `ODOM x y θ tv rv acceleration ipc_time host logger_time` | the wheels' pose |
+//! | `ODOM x y θ tv rv acceleration ipc_time host logger_time` | pose by odometry |
 //! | `PARAM name value …` | mounting, longest range and field of view of the front laser |
 //!
-//! The first kind of scan that comes with odometry is the one that is read; others are counted. A
-//! raw scan waits for the ODOM line after it and takes the pose in between. Where the laser sits is
-//! what the two poses of a scan differ by, where they do so by the same all the while, or what PARAM
-//! lines say.
+//! Reads the first kind of scan that comes with odometry and counts the others. A raw scan waits for the next ODOM line
+//! and takes the pose interpolated between the two around it. The mounting is the relative pose between the two poses
+//! of a scan if it is constant, or what PARAM lines state.
 //!
 //! Source: Roy, Montemerlo, Thrun, "Perspectives on standardization in mobile robot programming: the
 //! Carnegie Mellon navigation (CARMEN) toolkit", 2003, and the header that its logger writes.
@@ -30,7 +29,7 @@ use fields::{Fields, laser_message, odometry_message};
 use raw_scans::RawScans;
 use sensor::FrontLaser;
 
-/// So many lines without one known word are no CARMEN log.
+/// A log with this many lines and no known message is not CARMEN.
 const FOREIGN_AFTER_LINES: usize = 200;
 
 /// Which message the scans come from.
@@ -44,7 +43,7 @@ enum Source {
 /// Reads a CARMEN log, line by line.
 pub type CarmenReader<R> = LineReader<R, Carmen>;
 
-/// What the lines of a CARMEN log said so far.
+/// State of a CARMEN log that is being read.
 #[derive(Debug, Default)]
 pub struct Carmen {
     front: FrontLaser,
@@ -64,7 +63,7 @@ impl LineFormat for Carmen {
         notes: &mut LogNotes,
     ) -> Result<Option<LogFrame>, String> {
         let text = std::str::from_utf8(line)
-            .map_err(|_| "the line has to be text, and holds other bytes".to_owned())?;
+            .map_err(|_| "the line must be UTF-8 text and contains other bytes".to_owned())?;
         let text = text.trim_start_matches('\u{feff}').trim();
         if text.is_empty() || text.starts_with('#') {
             return Ok(None);
@@ -80,7 +79,7 @@ impl LineFormat for Carmen {
         };
         match kind {
             "FLASER" => {
-                // What is not read waits for nothing.
+                // A kind that is not read must not keep frames.
                 let mut other = FrontLaser::default();
                 let is_read = matches!(self.chosen, None | Some(Source::Flaser));
                 let front = if is_read { &mut self.front } else { &mut other };
@@ -97,7 +96,7 @@ impl LineFormat for Carmen {
             "RAWLASER1" => {
                 let mut frame = laser_message(&mut fields, false, frames + self.raw.waiting())?;
                 count();
-                frame.scan.body_from_sensor = self.front.told_mount().unwrap_or_default();
+                frame.scan.body_from_sensor = self.front.stated_mount().unwrap_or_default();
                 // A log often has the same scan as ROBOTLASER1 right after it.
                 if matches!(self.chosen, None | Some(Source::RawLaser)) {
                     self.raw.push(frame);
@@ -123,11 +122,11 @@ impl LineFormat for Carmen {
                     .all(|b| b.is_ascii_uppercase() || b.is_ascii_digit() || b == b'_');
                 if !is_message || kind.parse::<f64>().is_ok() {
                     return Err(format!(
-                        "a line has to start with the name of a message, such as FLASER, and starts with ‘{}’",
+                        "a line must start with the name of a message, such as FLASER, but starts with ‘{}’",
                         printable(kind)
                     ));
                 }
-                // A log of garbage has no end of names: memory is bounded.
+                // Garbage has an unbounded number of names: bound the memory.
                 if records < 100 {
                     count();
                 }
@@ -150,14 +149,14 @@ impl LineFormat for Carmen {
 
     fn foreign(&self) -> Option<(&'static str, &'static str)> {
         (self.known_lines == 0).then_some((
-            "no CARMEN log",
+            "not a CARMEN log",
             "give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1",
         ))
     }
 }
 
 impl Carmen {
-    /// Whether scans of this kind are the ones that are read.
+    /// Returns whether frames of this kind are read; the first kind offered is chosen.
     fn choose(&mut self, kind: Source) -> bool {
         if self.chosen.is_none() {
             self.chosen = Some(kind);

@@ -1,4 +1,4 @@
-//! Numbers with their nouns, for sentences.
+//! Counts with their nouns, for messages.
 
 /// “1 scan”, “2 scans”.
 pub(crate) fn counted(count: usize, noun: &str) -> String {

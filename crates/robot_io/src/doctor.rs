@@ -1,7 +1,7 @@
-//! How it stands with a recording: sensor, odometry, mounting, clocks and file on one screen.
+//! Diagnosis of a recording: sensor, odometry, mounting, clocks and file on one screen.
 //!
-//! [`Checkup`] takes every frame of a log. What its reader mended on the way, and what scans against odometry
-//! showed, is in the log's notes.
+//! [`Checkup`] takes every frame of a log. What the reader repaired, and what the comparison of scans and odometry
+//! found, comes from the log's notes.
 
 use serde::Serialize;
 
@@ -10,61 +10,61 @@ use crate::log::{LogFrame, LogNotes, LogOption};
 use crate::motion::Motion;
 use crate::remark::{Part, Remark, Verdict};
 
-/// A sensor of which fewer beams see something may look into a cover, or its limits are wrong.
+/// A lower share of returns suggests a covered laser or wrong range limits.
 const LEAST_VALID: f64 = 0.1;
 
-/// The scans in numbers.
+/// Summary of the scans.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SensorSummary {
-    /// Scans.
+    /// Number of scans.
     pub scans: usize,
     /// Most beams of a scan.
     pub beams: usize,
     /// From the first beam to the last, degrees.
     pub field_of_view_deg: f64,
-    /// Shortest range that counts, m.
+    /// Shortest valid range, m.
     pub range_min_m: f64,
-    /// Longest one, m; none if the sensor states none.
+    /// Longest valid range, m; `None` if the sensor states none.
     pub range_max_m: Option<f64>,
-    /// Scans a second.
+    /// Scans per second.
     pub rate_hz: f64,
-    /// Share of the beams that see something.
+    /// Share of the beams with a return.
     pub valid: f64,
 }
 
-/// The odometry in numbers.
+/// Summary of the odometry.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct OdometrySummary {
-    /// Where it comes from; none in a log of lines.
+    /// Topic; `None` in a log of lines.
     pub source: Option<String>,
-    /// Poses a second; none in a log of lines.
+    /// Poses per second; `None` in a log of lines.
     pub rate_hz: Option<f64>,
-    /// Path, m.
+    /// Path length, m.
     pub path_m: f64,
-    /// Share of the scans that have it.
+    /// Share of the scans with odometry.
     pub covered: f64,
 }
 
-/// All that is known of a recording.
+/// Diagnosis of a recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Diagnosis {
-    /// Its name.
+    /// Name of the recording.
     pub name: String,
-    /// The worst of the verdicts.
+    /// Worst of the verdicts.
     pub verdict: Verdict,
     /// The scans.
     pub sensor: SensorSummary,
-    /// The odometry; none where there is none.
+    /// The odometry; `None` if there is none.
     pub odometry: Option<OdometrySummary>,
-    /// Where the laser is taken to sit, as `--laser` sets it; none if only the lines of the log have it.
+    /// Mounting of the laser, as `--laser` sets it; `None` if each line of the log states it.
     pub laser: Option<String>,
-    /// Scans against odometry.
+    /// Comparison of scans and odometry.
     pub motion: Motion,
-    /// A sentence for each thing that was looked at.
+    /// One remark for each check.
     pub remarks: Vec<Remark>,
 }
 
-/// Counts the frames of a log.
+/// Accumulates statistics over the frames of a log.
 #[derive(Clone, Debug, Default)]
 pub struct Checkup {
     info: LogInfo,
@@ -90,13 +90,13 @@ impl Checkup {
         (self.range_min_m, self.range_max_m) = (scan.range_min_m, scan.range_max_m);
     }
 
-    /// Scans so far.
+    /// Number of scans so far.
     #[must_use]
     pub fn scans(&self) -> usize {
         self.info.scans
     }
 
-    /// The diagnosis of the log of that name.
+    /// The diagnosis of the log with that name.
     #[must_use]
     pub fn finish(&self, name: &str, notes: &LogNotes, motion: &Motion) -> Diagnosis {
         let info = &self.info;
@@ -138,10 +138,10 @@ impl Checkup {
                 covered: self.covered as f64 / info.scans.max(1) as f64,
             }
         });
-        let mut remarks = vec![file(notes), of_sensor(&sensor)];
-        remarks.push(of_odometry(odometry.as_ref(), motion));
-        remarks.extend(of_mounting(notes, motion));
-        remarks.extend(of_clocks(notes, info));
+        let mut remarks = vec![file_remark(notes), sensor_remark(&sensor)];
+        remarks.push(odometry_remark(odometry.as_ref(), motion));
+        remarks.extend(mounting_remark(notes, motion));
+        remarks.extend(clocks_remark(notes, info));
         remarks.extend(notes.warnings.iter().cloned());
         remarks.sort_by_key(|remark| remark.part);
         let worst = remarks.iter().map(|remark| remark.verdict).max();
@@ -157,32 +157,29 @@ impl Checkup {
     }
 }
 
-fn file(notes: &LogNotes) -> Remark {
+fn file_remark(notes: &LogNotes) -> Remark {
     let records: usize = notes.records.values().sum();
     let plain = LogNotes {
         broken: notes.broken,
         first_broken: notes.first_broken.clone(),
-        half_written: notes.half_written.clone(),
+        truncated: notes.truncated.clone(),
         ended_early: notes.ended_early.clone(),
         ..LogNotes::default()
     };
     let said = plain.sentences("the file").join("; ");
     match (said.is_empty(), notes.ended_early.is_some()) {
-        (true, _) => Remark::good(
-            Part::File,
-            format!("all of its {records} records were read"),
-        ),
+        (true, _) => Remark::good(Part::File, format!("all {records} records were read")),
         (false, false) => Remark::mended(Part::File, said),
         (false, true) => Remark::wrong(Part::File, said),
     }
 }
 
-fn of_sensor(sensor: &SensorSummary) -> Remark {
+fn sensor_remark(sensor: &SensorSummary) -> Remark {
     let reach = sensor
         .range_max_m
         .map_or("no limit".to_owned(), |range_m| format!("{range_m:.1} m"));
     let text = format!(
-        "{} scans of {} beams over {:.0}°, from {:.2} m to {reach}, {:.1} a second; {:.0} % of the beams see something",
+        "{} scans of {} beams over {:.0}°, from {:.2} m to {reach}, {:.1} scans per second; {:.0} % of the beams have a return",
         sensor.scans,
         sensor.beams,
         sensor.field_of_view_deg,
@@ -191,35 +188,37 @@ fn of_sensor(sensor: &SensorSummary) -> Remark {
         100.0 * sensor.valid
     );
     if sensor.valid < LEAST_VALID {
-        let text = format!("{text}. Check range_min and range_max, and what covers the laser");
+        let text = format!(
+            "{text}. Check range_min and range_max, and whether something covers the laser"
+        );
         return Remark::wrong(Part::Sensor, text);
     }
     Remark::good(Part::Sensor, text)
 }
 
-fn of_odometry(odometry: Option<&OdometrySummary>, motion: &Motion) -> Remark {
+fn odometry_remark(odometry: Option<&OdometrySummary>, motion: &Motion) -> Remark {
     let Some(odometry) = odometry else {
-        let text = "there is none; scans go alone, which needs many of them and no bare corridor";
+        let text = "there is none; matching scans alone needs a high scan rate and a path without featureless corridors";
         return Remark::mended(Part::Odometry, text.to_owned());
     };
-    let source = odometry.source.as_deref().unwrap_or("the log's own");
-    let mut text = format!("{source}, {:.1} m of path", odometry.path_m);
+    let source = odometry.source.as_deref().unwrap_or("from the log");
+    let mut text = format!("{source}, {:.1} m path length", odometry.path_m);
     if let Some(rate_hz) = odometry.rate_hz {
-        text.push_str(&format!(", {rate_hz:.1} poses a second"));
+        text.push_str(&format!(", {rate_hz:.1} poses per second"));
     }
     if let (Some(scale), Some(drift)) = (motion.scale, motion.drift_m_per_m) {
         text.push_str(&format!(
-            "; {scale:.2} m for each metre by scans, from which it differs by {:.1} cm a metre",
+            "; {scale:.2} m per metre by scans, with a drift of {:.1} cm per metre",
             100.0 * drift
         ));
     }
     if let Some(turn) = motion.turn_scale {
-        text.push_str(&format!("; {turn:.2}° for each degree by scans"));
+        text.push_str(&format!("; {turn:.2}° per degree by scans"));
     }
     Remark::good(Part::Odometry, text)
 }
 
-fn of_mounting(notes: &LogNotes, motion: &Motion) -> Option<Remark> {
+fn mounting_remark(notes: &LogNotes, motion: &Motion) -> Option<Remark> {
     if notes
         .warnings
         .iter()
@@ -227,9 +226,9 @@ fn of_mounting(notes: &LogNotes, motion: &Motion) -> Option<Remark> {
     {
         return None;
     }
-    let place = notes
+    let mount = notes
         .laser
-        .map_or("the laser, as its log has it,".to_owned(), |mount| {
+        .map_or("the laser's mounting in the log".to_owned(), |mount| {
             let [x, y, theta] = mount.body_from_sensor.to_array();
             let flipped = if mount.is_flipped {
                 ", upside down"
@@ -245,20 +244,20 @@ fn of_mounting(notes: &LogNotes, motion: &Motion) -> Option<Remark> {
         (Some(direction_rad), Some(correlation)) => Remark::good(
             Part::Mounting,
             format!(
-                "{place} looks where it is said to, to {:.1}°, and turns as odometry does (correlation {correlation:.2})",
+                "{mount} agrees with scans and odometry to {:.1}°, and their turns correlate ({correlation:.2})",
                 direction_rad.to_degrees().abs()
             ),
         ),
         _ => Remark::mended(
             Part::Mounting,
             format!(
-                "{place} cannot be checked against odometry, which takes a path with metres and turns"
+                "{mount} cannot be checked against odometry, because the path is too short or has too few turns"
             ),
         ),
     })
 }
 
-fn of_clocks(notes: &LogNotes, info: &LogInfo) -> Option<Remark> {
+fn clocks_remark(notes: &LogNotes, info: &LogInfo) -> Option<Remark> {
     if notes
         .warnings
         .iter()
@@ -273,13 +272,13 @@ fn of_clocks(notes: &LogNotes, info: &LogInfo) -> Option<Remark> {
         ),
         late => Remark::wrong(
             Part::Clocks,
-            format!("{late} scans are not after the one before"),
+            format!("{late} scans are not later than the one before"),
         ),
     })
 }
 
 impl Diagnosis {
-    /// The screen: a line for each remark, under the name of its part.
+    /// The report: one line per remark, under the name of its part.
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = format!("{} {}\n", self.verdict.sign(), self.name);

@@ -1,4 +1,4 @@
-//! How good a trajectory is: against relations between two times, or against the true poses.
+//! Accuracy of a trajectory against relations between two times or against the true poses.
 
 mod relation_errors;
 mod statistics;

@@ -1,14 +1,14 @@
-//! What a run keeps of its loops and scans, for whoever judges its map.
+//! Evidence that a run keeps of its loops and scans, for the quality report.
 
 use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::slam::LoopAttempt;
 
-/// A loop that was looked at, with the evidence and whether it is in the graph.
+/// A loop candidate that was tested, with the evidence and the decision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriedLoop {
     /// Candidate, registration and tests.
     pub verification: LoopVerification,
-    /// Whether it was closed.
+    /// Whether it is in the graph.
     pub accepted: bool,
 }
 
@@ -21,11 +21,11 @@ impl From<&LoopAttempt> for TriedLoop {
     }
 }
 
-/// A scan that hardly fits the map.
+/// A scan that fits the map poorly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoorFit {
-    /// Its time, s.
+    /// Stamp, s.
     pub stamp_s: f64,
-    /// Share of it that fits, 0 to 1.
+    /// Share of its points that fit, 0 to 1.
     pub score: f64,
 }

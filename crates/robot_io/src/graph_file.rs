@@ -36,21 +36,21 @@ pub struct GraphFile {
 /// A pose.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GraphNode {
-    /// Its number in the file.
+    /// Id in the file.
     pub id: i64,
     /// `world_from_body`: m, m, rad.
     pub pose: [f64; 3],
-    /// Whether a solver leaves it where it is.
+    /// Whether a solver keeps it fixed.
     #[serde(default)]
     pub fixed: bool,
 }
 
-/// A measured motion.
+/// A measured relative pose.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GraphEdge {
-    /// The node that measured.
+    /// Source node.
     pub from: i64,
-    /// The node that was measured.
+    /// Target node.
     pub to: i64,
     /// The target in the frame of the source: m, m, rad.
     pub measurement: [f64; 3],
@@ -61,7 +61,7 @@ pub struct GraphEdge {
 /// Why a graph cannot be read.
 #[derive(Debug, Error)]
 pub enum GraphError {
-    /// A line is not what it has to be.
+    /// A line is malformed.
     #[error("{name}: {source}")]
     Text {
         /// The file's name.
@@ -69,16 +69,16 @@ pub enum GraphError {
         /// The line and what is wrong.
         source: G2oError,
     },
-    /// It is a graph of another kind.
+    /// The file is not a planar graph.
     #[error("{name}: {problem}")]
     Foreign {
         /// The file's name.
         name: String,
-        /// What it is, and what to do.
+        /// What the file is, and what to do.
         problem: String,
     },
-    /// It is no graph in JSON.
-    #[error("{name}: a graph with nodes and edges as JSON was expected: {problem}")]
+    /// The JSON does not describe a graph.
+    #[error("{name}: expected a JSON graph with nodes and edges: {problem}")]
     Json {
         /// The file's name.
         name: String,
@@ -88,7 +88,7 @@ pub enum GraphError {
 }
 
 impl GraphFile {
-    /// The graph of a problem whose nodes have these ids.
+    /// Converts a problem; `id_of` maps nodes to ids.
     fn from_problem(problem: &pr_optim::Problem, id_of: impl Fn(usize) -> i64) -> Self {
         let nodes = problem.poses().iter().zip(problem.fixed()).enumerate();
         let nodes = nodes.map(|(node, (pose, &fixed))| GraphNode {
@@ -118,9 +118,9 @@ impl GraphFile {
         }
     }
 
-    /// The graph of an estimator; nodes are numbered from 0.
+    /// Converts a pose graph; nodes are numbered from 0.
     #[must_use]
-    pub fn of_graph(graph: &ch16_slam2d::graph::PoseGraph) -> Self {
+    pub fn from_pose_graph(graph: &ch16_slam2d::graph::PoseGraph) -> Self {
         let mut problem = pr_optim::Problem::new();
         for (_, node) in graph.nodes() {
             if node.fixed {
@@ -140,12 +140,12 @@ impl GraphFile {
         Self::from_problem(&problem, |node| node as i64)
     }
 
-    /// Reads a graph of g2o, TORO or JSON, told apart by what stands in it.
+    /// Reads a graph in g2o, TORO or JSON, detected by content.
     ///
     /// # Errors
-    /// The line that is not what it has to be.
+    /// If a line is malformed, or the file is not a planar graph.
     pub fn read(bytes: &[u8], name: &str) -> Result<Self, GraphError> {
-        let told = |source| GraphError::Text {
+        let text_error = |source| GraphError::Text {
             name: name.to_owned(),
             source,
         };
@@ -154,7 +154,7 @@ impl GraphFile {
                 name: name.to_owned(),
                 problem: in_words(&e),
             })?;
-            // The rules of g2o hold for every graph: ids, ends, information, and what is tied.
+            // The rules of g2o apply to every graph: ids, ends of edges, information, and connectivity.
             G2oFile::parse(graph.to_g2o()).map_err(|e| GraphError::Json {
                 name: name.to_owned(),
                 problem: format!("{} (as g2o, line {})", e.problem, e.line),
@@ -165,7 +165,7 @@ impl GraphFile {
             name: name.to_owned(),
             problem,
         })?;
-        let file = G2oFile::parse(&prepared.text).map_err(told)?;
+        let file = G2oFile::parse(&prepared.text).map_err(text_error)?;
         Ok(Self::from_problem(&file.problem, |node| file.id_of(node)))
     }
 
@@ -175,7 +175,7 @@ impl GraphFile {
         self.written(&AS_G2O)
     }
 
-    /// The graph in the format of TORO, which has no fixed nodes: its first one holds the gauge.
+    /// The graph in the format of TORO, which has no fixed nodes: its first node fixes the gauge.
     #[must_use]
     pub fn to_toro(&self) -> String {
         self.written(&AS_TORO)
@@ -205,7 +205,7 @@ impl GraphFile {
     }
 }
 
-/// What is wrong with JSON, and where.
+/// Line, column and cause of a JSON error.
 fn in_words(problem: &serde_json::Error) -> String {
     format!(
         "line {}, column {}: {}",
@@ -215,13 +215,13 @@ fn in_words(problem: &serde_json::Error) -> String {
     )
 }
 
-/// What a format calls its records.
+/// Names and order of a format's records.
 struct Records {
     vertex: &'static str,
     edge: &'static str,
-    /// `None` where the format fixes no node.
+    /// `None` if the format cannot fix nodes.
     fix: Option<&'static str>,
-    /// In which order it writes the upper triangle of the information.
+    /// Order of the upper triangle of the information.
     order: [usize; 6],
 }
 
@@ -254,7 +254,7 @@ mod tests {
         let toro = graph.to_toro();
         assert!(toro.ends_with("EDGE2 3 7 1 0.5 0.25 10 1 20 30 2 3\n"));
         let back = GraphFile::read(toro.as_bytes(), "x.graph").unwrap();
-        // Without FIX the first node holds the gauge, as it did here.
+        // Without FIX the first node fixes the gauge, as in the original.
         assert_eq!(back, graph);
         let json = serde_json::to_vec(&graph).unwrap();
         assert_eq!(GraphFile::read(&json, "x.json").unwrap(), graph);
@@ -275,7 +275,7 @@ mod tests {
             ),
             (
                 "{\"nodes\": 1}",
-                "x: a graph with nodes and edges as JSON was expected",
+                "x: expected a JSON graph with nodes and edges",
             ),
             ("", "x: line 1: the file has no VERTEX_SE2"),
         ] {

@@ -1,14 +1,14 @@
-//! What is in a log, frame by frame.
+//! Summary of a log, updated frame by frame.
 
 use pr_geom::{SE2, math};
 use serde::Serialize;
 
 use crate::log::LogFrame;
 
-/// A log in a few numbers.
+/// Summary of a log.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LogInfo {
-    /// Scans.
+    /// Number of scans.
     pub scans: usize,
     /// Fewest beams of a scan.
     pub fewest_beams: usize,
@@ -16,19 +16,19 @@ pub struct LogInfo {
     pub most_beams: usize,
     /// From the first to the last beam of the first scan, degrees.
     pub field_of_view_deg: f64,
-    /// Longest range that is a point, m.
+    /// Longest range that is a return, m.
     pub longest_return_m: f64,
-    /// Points of the median scan.
+    /// Returns of the median scan.
     pub median_returns: usize,
     /// From the first scan to the last, s.
     pub duration_s: f64,
-    /// Scans whose stamp is not after the one before.
+    /// Scans whose stamp is not later than that of the scan before.
     pub late: usize,
-    /// Length of the way by odometry, m; none without odometry.
+    /// Path length by odometry, m; `None` without odometry.
     pub odometry_path_length_m: Option<f64>,
-    /// Longest way from one scan to the next, m.
+    /// Longest step between consecutive scans, m.
     pub longest_step_m: f64,
-    /// Largest turn from one scan to the next, degrees.
+    /// Largest turn between consecutive scans, degrees.
     pub largest_turn_deg: f64,
     #[serde(skip)]
     first_s: f64,
@@ -36,7 +36,7 @@ pub struct LogInfo {
     newest_s: f64,
     #[serde(skip)]
     last_odometry: Option<SE2>,
-    /// How many scans have so many points.
+    /// Histogram of the number of returns per scan.
     #[serde(skip)]
     scans_with: Vec<usize>,
 }

@@ -1,4 +1,4 @@
-//! A log as lines of JSON, one frame each: for scripts, and to carry a log from one format to another.
+//! Logs as lines of JSON, one frame each: for scripts and for conversion between formats.
 //!
 //! ```text
 //! {"stamp_s": 1.0, "odometry": [x, y, theta], "first_angle_rad": -3.14, "angle_step_rad": 0.05,
@@ -6,9 +6,8 @@
 //!  "ranges_m": [1.2, null]}
 //! ```
 //!
-//! A range that is no number, and an endless longest range, are `null`. `odometry` may be missing,
-//! and so may `truth`, the true pose of a simulated robot, and `pose`, the one of an estimator: a log
-//! does not read these two.
+//! A range that is not a number, and an unlimited longest range, are `null`. `odometry` is optional. `truth`, the true
+//! pose of a simulated robot, and `pose`, an estimated one, are optional and ignored when a log is read.
 
 use std::io::{self, Write};
 
@@ -19,39 +18,39 @@ use serde::{Deserialize, Serialize};
 use crate::line_log::{LineFormat, LineReader};
 use crate::lines::json_words;
 use crate::log::{LogFrame, LogNotes};
-use crate::place::{checked, checked_stamp_s};
+use crate::plausible::{plausible_pose, plausible_stamp_s};
 
-/// One line.
+/// One line: a frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameLine {
-    /// Time of the scan, s.
+    /// Stamp of the scan, s.
     pub stamp_s: f64,
     /// Pose of the body in the odometry's frame: m, m, rad.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub odometry: Option<[f64; 3]>,
-    /// Where an estimator says that the body was, `world_from_body`: m, m, rad.
+    /// Estimated pose of the body, `world_from_body`: m, m, rad.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pose: Option<[f64; 3]>,
-    /// True pose of the body, where it is known: m, m, rad.
+    /// True pose of the body, if known: m, m, rad.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub truth: Option<[f64; 3]>,
     /// Bearing of the first beam in the sensor's frame, rad.
     pub first_angle_rad: f64,
-    /// Bearing from one beam to the next, rad.
+    /// Angle from one beam to the next, rad.
     pub angle_step_rad: f64,
-    /// Shorter ranges are no points, m.
+    /// Shorter ranges are no returns, m.
     #[serde(default)]
     pub range_min_m: f64,
-    /// Ranges at or beyond this are no points, m; none where all are.
+    /// Ranges at or beyond this are no returns, m; `None` if there is no limit.
     #[serde(default)]
     pub range_max_m: Option<f64>,
     /// Time from one beam to the next, s.
     #[serde(default)]
     pub beam_interval_s: f64,
-    /// Where the sensor sits on the body: m, m, rad.
+    /// Mounting of the sensor on the body: m, m, rad.
     #[serde(default)]
     pub body_from_sensor: [f64; 3],
-    /// One range for each beam, m; none where it is no number.
+    /// One range per beam, m; `None` if it is not a number.
     pub ranges_m: Vec<Option<f64>>,
 }
 
@@ -102,32 +101,32 @@ impl From<FrameLine> for LogFrame {
 }
 
 impl FrameLine {
-    /// Reads a line that has to have a pose.
+    /// Reads a line that must have a pose.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// If the line is not a frame or has no pose.
     pub fn with_pose(line: &str) -> Result<Self, String> {
         let line: Self = serde_json::from_str(line).map_err(|problem| in_words(&problem))?;
         if line.pose.is_none() {
-            return Err("a frame with a pose was expected".to_owned());
+            return Err("expected a frame with a pose".to_owned());
         }
         Ok(line)
     }
 
-    /// Writes the line with its end.
+    /// Writes the line with its newline.
     ///
     /// # Errors
-    /// Where `target` cannot take it.
+    /// If `target` fails.
     pub fn write(&self, mut target: impl Write) -> io::Result<()> {
         serde_json::to_writer(&mut target, self)?;
         target.write_all(b"\n")
     }
 }
 
-/// Reads such a log, line by line.
+/// Reads a log of JSON lines.
 pub type JsonLogReader<R> = LineReader<R, JsonLines>;
 
-/// Lines of JSON, each by itself.
+/// The format: each line is independent.
 #[derive(Debug, Default)]
 pub struct JsonLines;
 
@@ -140,26 +139,26 @@ impl LineFormat for JsonLines {
         _frames: usize,
         notes: &mut LogNotes,
     ) -> Result<Option<LogFrame>, String> {
-        // What some editors put in front of the first line.
+        // Byte order mark that some editors write.
         let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line);
         if line.trim_ascii().is_empty() {
             return Ok(None);
         }
         let line: FrameLine = serde_json::from_slice(line).map_err(|problem| in_words(&problem))?;
         let frame = LogFrame::from(line);
-        checked_stamp_s(frame.stamp_s)?;
+        plausible_stamp_s(frame.stamp_s)?;
         for pose in [Some(frame.scan.body_from_sensor), frame.odometry] {
-            pose.map(checked).transpose()?;
+            pose.map(plausible_pose).transpose()?;
         }
         *notes.records.entry("frame".to_owned()).or_default() += 1;
         Ok(Some(frame))
     }
 }
 
-/// What serde expects, without its own place in the line.
+/// The error of serde without its own position.
 fn in_words(problem: &serde_json::Error) -> String {
     format!(
-        "a frame as JSON was expected, but at column {}: {}",
+        "expected a frame as JSON, but at column {}: {}",
         problem.column(),
         json_words(problem)
     )
@@ -202,7 +201,7 @@ mod tests {
         let mut reader = JsonLogReader::new(&bytes[..], "x.jsonl");
         let error = reader.next_frame().unwrap_err().to_string();
         assert!(
-            error.starts_with("x.jsonl holds no scan that can be used: line 1: a frame as JSON"),
+            error.starts_with("x.jsonl has no usable scan: line 1: expected a frame as JSON"),
             "{error}"
         );
         FrameLine::from(&frame()).write(&mut bytes).unwrap();
@@ -211,6 +210,6 @@ mod tests {
         while reader.next_frame().unwrap().is_some() {}
         let said = reader.notes().sentences("x.jsonl").join(" ");
         assert!(said.contains("the first is line 1"), "{said}");
-        assert!(said.contains("the last line, 3, is half written"), "{said}");
+        assert!(said.contains("the last line, 3, is incomplete"), "{said}");
     }
 }

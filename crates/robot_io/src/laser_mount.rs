@@ -1,4 +1,4 @@
-//! Where a planar laser sits on the body.
+//! Mounting of a planar laser on the body.
 
 use std::str::FromStr;
 
@@ -7,27 +7,27 @@ use pr_geom::SE2;
 
 use crate::lines::finite;
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
-use crate::place::checked;
+use crate::plausible::plausible_pose;
 
-/// Where a planar laser sits, and whether its axis points up or down.
+/// Pose of a planar laser on the body, and whether its axis points up or down.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LaserMount {
-    /// The sensor on the body, in the plane.
+    /// Pose of the sensor on the body, in the plane.
     pub body_from_sensor: SE2,
-    /// Whether its beams turn clockwise, seen from above: it hangs upside down, or its driver lists them so.
+    /// Whether its beams turn clockwise seen from above: it is mounted upside down, or its driver reverses them.
     pub is_flipped: bool,
 }
 
 impl LaserMount {
-    /// Puts a scan where the laser sits.
-    pub fn place(&self, scan: &mut LaserScan) {
+    /// Sets the mounting of a scan, and reverses its beams if needed.
+    pub fn apply(&self, scan: &mut LaserScan) {
         scan.body_from_sensor = self.body_from_sensor;
         if self.is_flipped {
             flip(scan);
         }
     }
 
-    /// The option that sets it by hand: `--laser 0.1,0,180,flipped`.
+    /// The command line option that sets it: `--laser 0.1,0,180,flipped`.
     #[must_use]
     pub fn option(&self) -> String {
         format!("--laser {}", self.value())
@@ -38,7 +38,7 @@ impl LaserMount {
     pub fn value(&self) -> String {
         let [x, y, theta] = self.body_from_sensor.to_array();
         let flipped = if self.is_flipped { ",flipped" } else { "" };
-        // Rounded, and never a negative zero.
+        // Rounds, and avoids negative zero.
         let tidy = |value: f64, scale: f64| (value * scale).round() / scale + 0.0;
         format!(
             "{},{},{}{flipped}",
@@ -49,21 +49,21 @@ impl LaserMount {
     }
 }
 
-/// The same beams listed the other way round the sensor.
+/// Reverses the order of the beams.
 pub fn flip(scan: &mut LaserScan) {
     scan.first_angle_rad = -scan.first_angle_rad;
     scan.angle_step_rad = -scan.angle_step_rad;
 }
 
-/// A log whose laser sits where an option says.
-pub(crate) struct PlacedReader<'a> {
+/// A log whose laser has the mounting that an option sets.
+pub(crate) struct MountedReader<'a> {
     inner: Box<dyn LogReader + 'a>,
     mount: LaserMount,
     notes: LogNotes,
 }
 
-impl<'a> PlacedReader<'a> {
-    /// The frames of `inner`, with their laser at `mount`.
+impl<'a> MountedReader<'a> {
+    /// Yields the frames of `inner` with their laser at `mount`.
     pub(crate) fn new(inner: Box<dyn LogReader + 'a>, mount: LaserMount) -> Self {
         Self {
             inner,
@@ -73,13 +73,13 @@ impl<'a> PlacedReader<'a> {
     }
 }
 
-impl LogReader for PlacedReader<'_> {
+impl LogReader for MountedReader<'_> {
     fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError> {
         let frame = self.inner.next_frame();
         self.notes.clone_from(self.inner.notes());
         self.notes.laser = Some(self.mount);
         Ok(frame?.map(|mut frame| {
-            self.mount.place(&mut frame.scan);
+            self.mount.apply(&mut frame.scan);
             frame
         }))
     }
@@ -94,7 +94,7 @@ impl FromStr for LaserMount {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let expected = || {
-            "the laser's place has to be x,y,degrees, and ,flipped if it hangs upside down, such as 0.1,0,180".to_owned()
+            "the laser's mounting must be x,y,degrees, with ,flipped if it is upside down, such as 0.1,0,180".to_owned()
         };
         let mut fields = text.split(',').map(str::trim);
         let mut number = |name| finite(fields.next(), name).map_err(|_| expected());
@@ -108,7 +108,7 @@ impl FromStr for LaserMount {
             return Err(expected());
         }
         Ok(Self {
-            body_from_sensor: checked(SE2::new(x, y, heading.to_radians()))?,
+            body_from_sensor: plausible_pose(SE2::new(x, y, heading.to_radians()))?,
             is_flipped,
         })
     }
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_reads_back_from_the_option_that_sets_it() {
+    fn a_mounting_reads_back_from_the_option_that_sets_it() {
         for text in ["0.1,-0.05,180", "0,0,0,flipped", "0.25,0,-90.5"] {
             let mount: LaserMount = text.parse().unwrap();
             assert_eq!(mount.option(), format!("--laser {text}"));

@@ -1,30 +1,29 @@
 #![doc = include_str!("../README.md")]
 //!
-//! Recorded logs of real robots: read, run through the estimator, and graded.
+//! Reads recorded logs of real robots, runs the estimator on them, and evaluates the result.
 //!
-//! - [`log`]: what every log yields, frames in the order of the file, and what is told of it.
-//! - [`log_format`]: which format a file has, and its reader.
+//! - [`log`]: what every log yields: frames in the order of the file, and notes.
+//! - [`log_format`]: detects the format of a file and opens its reader.
 //! - [`carmen`]: the text format of CARMEN, in both directions.
 //! - [`ros`]: recordings of ROS 2 (MCAP) and ROS 1 (bags).
-//! - [`json_log`]: a log as lines of JSON, in both directions.
-//! - [`line_log`]: what all formats of text share.
+//! - [`json_log`]: JSON lines, in both directions.
+//! - [`line_log`]: shared by all text formats.
 //! - [`graph_file`]: pose graphs of g2o, TORO and JSON.
 //! - [`map_image`]: maps for Nav2's map_server.
-//! - [`recorder`] and [`report`]: what a run leaves for a map, and one HTML file with pictures.
-//! - [`info`]: what is in a log.
-//! - [`run`]: a log through [`Slam`](ch16_slam2d::slam::Slam), frame by frame.
-//! - [`session`]: all that a run is, in one file.
-//! - [`settings`]: the numbers of the estimator by name.
-//! - [`localize`]: a log on the map of a session.
-//! - [`evidence`]: what a run keeps of its loops and scans.
-//! - [`quality`]: how far each keyframe and each loop is to be trusted, and what is to be doubted.
+//! - [`recorder`] and [`report`]: output of a run for maps, and a report in one HTML file.
+//! - [`info`]: summary of a log.
+//! - [`run`]: runs [`Slam`](ch16_slam2d::slam::Slam) on a log, frame by frame.
+//! - [`session`]: the complete state of a run in one file.
+//! - [`settings`]: the parameters of the estimator by name.
+//! - [`localize`]: localizes a log on the map of a session.
+//! - [`evidence`]: evidence of loops and scans that a run keeps.
+//! - [`quality`]: reliability of each keyframe and loop, and what is doubtful.
 //! - [`trajectory`]: stamped poses, and the TUM format in both directions.
-//! - [`relations`]: reference relations between two times.
+//! - [`relations`]: reference relative poses between two times.
 //! - [`evaluate`]: errors against relations or against a true trajectory.
 //!
-//! Nothing here opens a file or asks a clock: readers take any [`std::io::BufRead`], so all of it
-//! works in the browser as well. A file that cannot be used ends in one sentence with its name, the
-//! line and what was expected.
+//! The crate opens no files and reads no clock: readers take any [`std::io::BufRead`], so all of it also runs in the
+//! browser. An unusable file gives one sentence with its name, the line and what was expected.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
 
@@ -57,7 +56,7 @@ pub mod trajectory;
 
 mod counted;
 mod lines;
-mod place;
+mod odometry_poses;
+mod plausible;
 mod restamped;
 mod stamps;
-mod wheel_poses;

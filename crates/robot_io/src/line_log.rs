@@ -1,23 +1,23 @@
-//! Logs of lines: what every format of text shares.
+//! Reader of text logs, shared by all line formats.
 //!
-//! A format says what one line means. The reader goes through the file within a bound of memory, leaves
-//! out what cannot be read, and says where that was.
+//! A format parses one line. The reader iterates over the file in bounded memory, skips unreadable lines, and reports
+//! where they were.
 
 use std::io::BufRead;
 
 use crate::lines::{LineEnd, next_line};
 use crate::log::{BrokenRecord, FilePosition, LogError, LogFrame, LogNotes, LogReader};
 
-/// What the lines of a format mean, one after the other.
+/// Parser of a format's lines, in order.
 pub trait LineFormat: Default {
-    /// What is missing in a log without any scan.
+    /// What is missing in a log without scans.
     const NO_SCANS: &'static str;
 
-    /// Takes one line, without its newline; answers with its frame where it completes one. `frames` is
-    /// how many came before, and `notes` counts the records.
+    /// Takes one line without its newline; returns a frame if the line completes one. `frames` is the number of frames
+    /// before it, and `notes` counts the records.
     ///
     /// # Errors
-    /// What was expected, and what stands there.
+    /// If the line is malformed: what was expected and what was found.
     fn take_line(
         &mut self,
         line: &[u8],
@@ -25,17 +25,17 @@ pub trait LineFormat: Default {
         notes: &mut LogNotes,
     ) -> Result<Option<LogFrame>, String>;
 
-    /// A frame that waited for a later line, or for the end.
+    /// A frame that waited for a later line or for the end.
     fn waiting(&mut self, _is_done: bool) -> Option<LogFrame> {
         None
     }
 
-    /// Whether so many lines are enough to tell that the file is something else.
+    /// Whether this many lines are enough to conclude that the file has another format.
     fn is_foreign(&self, _lines: usize) -> bool {
         false
     }
 
-    /// What a file without scans is instead, and what to do; none where it is a log of this format.
+    /// What a file without scans is, and what to do; `None` if it is a log of this format.
     fn foreign(&self) -> Option<(&'static str, &'static str)> {
         None
     }
@@ -54,7 +54,7 @@ pub struct LineReader<R, F> {
 }
 
 impl<R: BufRead, F: LineFormat> LineReader<R, F> {
-    /// A reader at the log's start; `name` is what errors call it.
+    /// Creates a reader at the log's start; errors contain `name`.
     #[must_use]
     pub fn new(source: R, name: &str) -> Self {
         Self {
@@ -68,7 +68,7 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
         }
     }
 
-    fn nothing_found(&self) -> LogError {
+    fn no_scans_error(&self) -> LogError {
         let name = self.name.clone();
         if self.notes.bytes == 0 {
             return LogError::Empty { name };
@@ -81,8 +81,8 @@ impl<R: BufRead, F: LineFormat> LineReader<R, F> {
             };
         }
         let broken = self.notes.first_broken.as_ref();
-        let detail = match broken.or(self.notes.half_written.as_ref()) {
-            Some(broken) => format!("{}: {}", broken.place, broken.problem),
+        let detail = match broken.or(self.notes.truncated.as_ref()) {
+            Some(broken) => format!("{}: {}", broken.position, broken.problem),
             None => F::NO_SCANS.to_owned(),
         };
         LogError::NoScans { name, detail }
@@ -98,7 +98,7 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
             }
             if self.is_done {
                 return if self.frames == 0 {
-                    Err(self.nothing_found())
+                    Err(self.no_scans_error())
                 } else {
                     Ok(None)
                 };
@@ -106,7 +106,7 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
             let read =
                 next_line(&mut self.source, &mut self.line).map_err(|source| LogError::Io {
                     name: self.name.clone(),
-                    place: FilePosition::Line(self.notes.lines + 1),
+                    position: FilePosition::Line(self.notes.lines + 1),
                     source,
                 })?;
             let Some((end, bytes)) = read else {
@@ -115,9 +115,9 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
             };
             self.notes.lines += 1;
             self.notes.bytes += bytes;
-            let place = FilePosition::Line(self.notes.lines);
+            let position = FilePosition::Line(self.notes.lines);
             let taken = if end == LineEnd::TooLong {
-                Err("a line has to be shorter than 4 MB".to_owned())
+                Err("a line must be shorter than 4 MB".to_owned())
             } else {
                 self.format
                     .take_line(&self.line, self.frames, &mut self.notes)
@@ -129,12 +129,12 @@ impl<R: BufRead, F: LineFormat> LogReader for LineReader<R, F> {
                 }
                 Ok(None) => {}
                 Err(problem) if end == LineEnd::CutOff => {
-                    self.notes.half_written = Some(BrokenRecord { place, problem });
+                    self.notes.truncated = Some(BrokenRecord { position, problem });
                 }
-                Err(problem) => self.notes.leave_out(place, problem),
+                Err(problem) => self.notes.skip(position, problem),
             }
             if self.format.is_foreign(self.notes.lines) {
-                return Err(self.nothing_found());
+                return Err(self.no_scans_error());
             }
         }
     }

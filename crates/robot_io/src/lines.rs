@@ -1,8 +1,8 @@
-//! Lines of a file, one at a time, with a bound on the memory.
+//! Reads lines one at a time in bounded memory.
 
 use std::io::{self, BufRead};
 
-/// Longer lines are no text of a log: a scan of 10,000 beams has 100 kB.
+/// Longer lines are not log text: a scan of 10,000 beams has 100 kB.
 const MOST_BYTES: usize = 1 << 22;
 
 /// How a line ended.
@@ -12,13 +12,13 @@ pub enum LineEnd {
     Whole,
     /// By the end of the file.
     CutOff,
-    /// It is too long to be kept; the rest of it was skipped.
+    /// Too long to be kept; the rest was skipped.
     TooLong,
 }
 
-/// Reads the next line into `line`, without its end; none at the end of the file.
+/// Reads the next line into `line` without its end; `None` at the end of the file.
 ///
-/// A line ends by LF, by CR and LF, or by CR alone.
+/// Lines end with LF, CR LF, or CR alone.
 pub fn next_line(
     source: &mut impl BufRead,
     line: &mut Vec<u8>,
@@ -49,12 +49,12 @@ pub fn next_line(
     }
 }
 
-/// How a line ended of which all was kept, or not.
+/// The end of a line, or `TooLong` if it was not kept in full.
 fn ended(end: LineEnd, is_kept: bool) -> LineEnd {
     if is_kept { end } else { LineEnd::TooLong }
 }
 
-/// What can be read without waiting, at least a byte of it; nothing at the end.
+/// Bytes that are available, at least one; empty at the end.
 fn filled(source: &mut impl BufRead) -> io::Result<&[u8]> {
     while let Err(error) = source.fill_buf() {
         if error.kind() != io::ErrorKind::Interrupted {
@@ -64,24 +64,24 @@ fn filled(source: &mut impl BufRead) -> io::Result<&[u8]> {
     source.fill_buf()
 }
 
-/// A field fit to be printed: short, and without control characters.
+/// A field for messages: short, and without control characters.
 pub fn printable(field: &str) -> String {
     clipped(field, 24)
 }
 
-/// A name from a file: of a topic, a type, a frame. ROS 2 allows it 255 characters.
+/// A name from a file, of a topic, type or frame. ROS 2 allows 255 characters.
 pub fn name(text: &str) -> String {
     clipped(text, 255)
 }
 
-/// What the reader of JSON expects, without its own place in the text, of which it may quote any words.
+/// The JSON reader's message without its own position; bounded because it may quote the text.
 pub fn json_words(problem: &serde_json::Error) -> String {
     let said = problem.to_string();
     let end = said.find(" at line ").unwrap_or(said.len());
     clipped(&said[..end], 200)
 }
 
-/// Names one after the other, up to a length that can be read.
+/// Joins names up to a readable length.
 pub fn listed(names: impl Iterator<Item = String>) -> String {
     let mut list = String::new();
     for name in names {
@@ -97,13 +97,13 @@ pub fn listed(names: impl Iterator<Item = String>) -> String {
     list
 }
 
-/// At most so many characters of a text, none of which moves a cursor.
+/// At most `most` characters of a text, without control characters.
 fn clipped(text: &str, most: usize) -> String {
     let clean = text.chars().filter(|c| !c.is_control());
     clean.take(most).collect()
 }
 
-/// A finite number, or what stands there instead.
+/// Parses a finite number.
 pub fn finite(field: Option<&str>, name: &str) -> Result<f64, String> {
     let Some(text) = field else {
         return Err(format!("{name} is missing"));
@@ -111,7 +111,7 @@ pub fn finite(field: Option<&str>, name: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err(format!(
-            "{name} has to be a finite number, and is ‘{}’",
+            "{name} must be a finite number, not ‘{}’",
             printable(text)
         )),
     }
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn words_of_a_file_are_told_on_one_line_of_a_readable_length() {
+    fn text_of_a_file_is_printed_on_one_line_of_readable_length() {
         assert_eq!(name("/sc\nan\u{7f}"), "/scan");
         let other: Result<u8, _> = serde_json::from_str(&format!("\"{}\"", "x".repeat(10_000)));
         assert_eq!(json_words(&other.unwrap_err()).len(), 200);
@@ -170,8 +170,8 @@ mod tests {
     fn numbers_that_are_none_are_named() {
         assert_eq!(finite(Some("1.5"), "x"), Ok(1.5));
         for (field, said) in [
-            (Some("nan"), "x has to be a finite number, and is ‘nan’"),
-            (Some("1,5"), "x has to be a finite number, and is ‘1,5’"),
+            (Some("nan"), "x must be a finite number, not ‘nan’"),
+            (Some("1,5"), "x must be a finite number, not ‘1,5’"),
             (None, "x is missing"),
         ] {
             assert_eq!(finite(field, "x").unwrap_err(), said);

@@ -1,4 +1,4 @@
-//! A log on the map of a session, one scan at a time: where the robot was, and when it was lost.
+//! Localizes a log on the map of a session, one scan at a time.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::run::OdometryUse;
 use crate::session::Session;
 use crate::trajectory::{StampedPose, Trajectory};
 
-/// A log under way on a map that stays as it is.
+/// Localization of a log on a fixed map.
 pub struct LocalizeRun {
     localizer: Localizer,
     odometry_use: OdometryUse,
@@ -24,10 +24,10 @@ pub struct LocalizeRun {
 }
 
 impl LocalizeRun {
-    /// A run on the map of a session.
+    /// Starts on the map of a session.
     ///
     /// # Errors
-    /// Where the session's scans have no point, or lie farther apart than any grid reaches.
+    /// If the session's scans have no points, or extend beyond the largest grid.
     pub fn new(
         session: &Session,
         odometry_use: OdometryUse,
@@ -48,8 +48,8 @@ impl LocalizeRun {
         })
     }
 
-    /// Takes the next scan; none where it is left out, because it is not after the one before it or
-    /// because its numbers are no scan.
+    /// Takes the next scan; returns `None` if the scan is skipped because its stamp is not later than the one before or
+    /// because it is invalid.
     pub fn step(&mut self, log: LogFrame) -> Option<&LocalizeReport> {
         if log.stamp_s <= self.last_stamp_s {
             self.late += 1;
@@ -76,25 +76,25 @@ impl LocalizeRun {
         self.reports.last()
     }
 
-    /// What became of each scan, in order.
+    /// Results, one per scan, in order.
     #[must_use]
     pub fn reports(&self) -> &[LocalizeReport] {
         &self.reports
     }
 
-    /// Scans left out because their stamp was not after the one before.
+    /// Number of scans skipped because their stamp was not later than the one before.
     #[must_use]
     pub fn late(&self) -> usize {
         self.late
     }
 
-    /// Why the first scan was refused whose numbers are no scan.
+    /// The reason why the first invalid scan was rejected.
     #[must_use]
     pub fn refused(&self) -> Option<FrameError> {
         self.refused
     }
 
-    /// The poses that are localized, in the frame of the session's map.
+    /// The localized poses, in the frame of the session's map.
     #[must_use]
     pub fn trajectory(&self) -> Trajectory {
         let localized = self

@@ -1,4 +1,4 @@
-//! What every log yields, whatever its format.
+//! Output of every log reader: frames, notes and errors.
 
 pub use ch16_slam2d::pipeline::LogFrame;
 use std::collections::BTreeMap;
@@ -10,12 +10,12 @@ use thiserror::Error;
 use crate::laser_mount::LaserMount;
 use crate::remark::Remark;
 
-/// A place in a file.
+/// A position in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilePosition {
     /// Number of the line, counted from 1.
     Line(usize),
-    /// Bytes before it, or before the end of the record that it is in.
+    /// Byte offset, or the offset of the end of the record that contains it.
     Byte(u64),
 }
 
@@ -28,23 +28,22 @@ impl fmt::Display for FilePosition {
     }
 }
 
-/// Which of several topics and frames of a recording are meant; none: found by type.
+/// Chooses among several topics and frames of a recording; `None`: found by type.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LogOptions {
-    /// The topic that scans come from; else the first one with scans.
+    /// The topic of scans; default: the first one with scans.
     pub scan_topic: Option<String>,
-    /// The topic that the wheels' poses come from, or /tf; else the first one of nav_msgs/Odometry,
-    /// and /tf where there is none.
+    /// The topic of odometry, or /tf; default: the first one of nav_msgs/Odometry, else /tf.
     pub odometry_topic: Option<String>,
-    /// The frame that /tf gives the wheels' poses in; else one whose name holds ‘odom’.
+    /// The odometry frame in /tf; default: one whose name contains ‘odom’.
     pub odometry_frame: Option<String>,
-    /// The frame of the robot's body; else the one that the odometry moves.
+    /// The frame of the robot's body; default: the child frame of the odometry.
     pub body_frame: Option<String>,
-    /// Where the laser sits, in place of what the recording says.
+    /// Mounting of the laser, which overrides the recording.
     pub laser: Option<LaserMount>,
-    /// Where the laser sits if neither an option nor the recording says: as in the session that it goes on with.
+    /// Mounting of the laser if neither an option nor the recording states it: that of the session that is continued.
     pub laser_before: Option<LaserMount>,
-    /// Heights (m) that points of a 3-D sensor have to lie between, on the body; else only clouds of one ring are read.
+    /// Height band (m, on the body) for points of a 3-D sensor; without it, only single-ring clouds are read.
     pub heights_m: Option<(f64, f64)>,
 }
 
@@ -62,7 +61,7 @@ pub enum LogOption {
 }
 
 impl LogOption {
-    /// All of them.
+    /// All options.
     pub const ALL: [Self; 4] = [
         Self::ScanTopic,
         Self::OdometryTopic,
@@ -70,7 +69,7 @@ impl LogOption {
         Self::BodyFrame,
     ];
 
-    /// Its name on the command line, without the dashes.
+    /// Name on the command line, without the dashes.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -83,7 +82,7 @@ impl LogOption {
 }
 
 impl LogOptions {
-    /// The same options with one of them chosen.
+    /// Sets one option.
     #[must_use]
     pub fn with(mut self, option: LogOption, value: &str) -> Self {
         let slot = match option {
@@ -97,87 +96,87 @@ impl LogOptions {
     }
 }
 
-/// What a recording offers for one of its options.
+/// The choices that a recording offers for one option.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogOffer {
     /// The option.
     pub option: LogOption,
-    /// What is taken; none where nothing is.
+    /// The choice in use; `None` if there is none.
     pub taken: Option<String>,
-    /// What may be taken, in the order of the alphabet.
+    /// Possible choices, sorted.
     pub names: Vec<String>,
 }
 
 /// A line or record that could not be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BrokenRecord {
-    /// Where it is.
-    pub place: FilePosition,
-    /// What was expected, and what stands there.
+    /// Position.
+    pub position: FilePosition,
+    /// What was expected and what was found.
     pub problem: String,
 }
 
-/// What a reader has met so far, besides frames.
+/// Counts, choices and problems of a reader so far.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LogNotes {
-    /// How many records of each kind were read.
+    /// Number of records of each kind.
     pub records: BTreeMap<String, usize>,
-    /// Lines or records that were left out because they could not be read.
+    /// Number of lines or records that were skipped as unreadable.
     pub broken: usize,
     /// The first of them.
     pub first_broken: Option<BrokenRecord>,
-    /// The last line or record, where it was cut off in the middle.
-    pub half_written: Option<BrokenRecord>,
+    /// The last line or record, if it is incomplete.
+    pub truncated: Option<BrokenRecord>,
     /// Lines read.
     pub lines: usize,
     /// Bytes read.
     pub bytes: u64,
-    /// What was chosen and found: topics, frames, where the laser sits.
+    /// Choices made and what was found: topics, frames, mounting.
     pub about: Vec<String>,
-    /// What options could choose; nothing in a log of lines.
+    /// Choices for options; empty in a log of lines.
     pub offers: Vec<LogOffer>,
-    /// Where the laser sits, where the recording or an option says it.
+    /// Mounting of the laser, if the recording or an option states it.
     pub laser: Option<LaserMount>,
-    /// What was missing and how it was made up for.
+    /// What was missing and how it was repaired.
     pub warnings: Vec<Remark>,
-    /// Why what follows in the file was not read.
+    /// Why the rest of the file was not read.
     pub ended_early: Option<String>,
 }
 
 impl LogNotes {
-    /// What the owner of the log should know, a sentence each.
+    /// Sentences for the user, without those about the choices.
     #[must_use]
     pub fn sentences(&self, name: &str) -> Vec<String> {
         let mut said = Vec::new();
         if let Some(first) = &self.first_broken {
-            let thing = match first.place {
+            let thing = match first.position {
                 FilePosition::Line(_) => "line",
                 FilePosition::Byte(_) => "record",
             };
             let count = match self.broken {
-                1 => format!("one {thing} was left out"),
-                many => format!("{many} {thing}s were left out"),
+                1 => format!("one {thing} was skipped"),
+                many => format!("{many} {thing}s were skipped"),
             };
             let rest = self.ended_early.as_ref();
             let rest = rest.map_or(String::new(), |rest| format!("; {rest}"));
-            let at = if first.place == FilePosition::Byte(0) || thing == "line" {
+            let at = if first.position == FilePosition::Byte(0) || thing == "line" {
                 "is"
             } else {
                 "ends at"
             };
             said.push(format!(
                 "{name}: {count}; the first {at} {}: {}{rest}",
-                first.place, first.problem
+                first.position, first.problem
             ));
         }
-        if let Some(last) = &self.half_written {
-            said.push(match last.place {
+        if let Some(last) = &self.truncated {
+            said.push(match last.position {
                 FilePosition::Line(line) => format!(
-                    "{name}: the last line, {line}, is half written and was left out: {}",
+                    "{name}: the last line, {line}, is incomplete and was skipped: {}",
                     last.problem
                 ),
                 FilePosition::Byte(byte) => format!(
-                    "{name}: the file is cut off at byte {byte}, and what stood there was left out: {}",
+                    "{name}: the file is cut off at byte {byte}, and the incomplete record was skipped: {}",
                     last.problem
                 ),
             });
@@ -187,10 +186,10 @@ impl LogNotes {
         said
     }
 
-    pub(crate) fn leave_out(&mut self, place: FilePosition, problem: String) {
+    pub(crate) fn skip(&mut self, position: FilePosition, problem: String) {
         self.broken += 1;
         if self.first_broken.is_none() {
-            self.first_broken = Some(BrokenRecord { place, problem });
+            self.first_broken = Some(BrokenRecord { position, problem });
         }
     }
 }
@@ -198,64 +197,64 @@ impl LogNotes {
 /// Why a log cannot be read.
 #[derive(Debug, Error)]
 pub enum LogError {
-    /// The system could not give its bytes.
-    #[error("{name}: {place}: {source}")]
+    /// The bytes could not be read.
+    #[error("{name}: {position}: {source}")]
     Io {
         /// The log's name.
         name: String,
-        /// Where it happened.
-        place: FilePosition,
-        /// What the system says.
+        /// Position.
+        position: FilePosition,
+        /// The system's error.
         source: io::Error,
     },
-    /// There is nothing in it.
+    /// The file is empty.
     #[error("{name} is empty; give a recorded log")]
     Empty {
         /// The log's name.
         name: String,
     },
-    /// It is something else than a log.
+    /// The file is not a log.
     #[error("{name} is {found}; {advice}")]
     Foreign {
         /// The log's name.
         name: String,
-        /// What it looks like.
+        /// What it is.
         found: &'static str,
         /// What to do.
         advice: &'static str,
     },
-    /// A topic or frame that was asked for and is not there.
+    /// A requested topic or frame does not exist.
     #[error("{name} has no {option} {wanted}; {advice}")]
     Missing {
         /// The log's name.
         name: String,
-        /// Name of the option: `odom-topic`.
+        /// Option, for example `odom-topic`.
         option: &'static str,
-        /// What was asked for.
+        /// The requested name.
         wanted: String,
-        /// What there is.
+        /// The names that exist.
         advice: String,
     },
-    /// It has records, but no scan that could be used.
-    #[error("{name} holds no scan that can be used: {detail}")]
+    /// The file has records but no usable scan.
+    #[error("{name} has no usable scan: {detail}")]
     NoScans {
         /// The log's name.
         name: String,
-        /// What it holds instead.
+        /// What it contains instead.
         detail: String,
     },
 }
 
-/// Reads the scans of a log, one after the other.
+/// Reads the scans of a log in order.
 ///
-/// A record in the middle that cannot be read is left out and counted in [`notes`](Self::notes).
+/// Skips an unreadable record and counts it in [`notes`](Self::notes).
 pub trait LogReader {
-    /// The next scan with its odometry; none at the end.
+    /// Returns the next scan with its odometry; `None` at the end.
     ///
     /// # Errors
-    /// Where the log as a whole cannot be used.
+    /// If the log as a whole is unusable.
     fn next_frame(&mut self) -> Result<Option<LogFrame>, LogError>;
 
-    /// What was met so far.
+    /// Counts, choices and problems so far.
     fn notes(&self) -> &LogNotes;
 }

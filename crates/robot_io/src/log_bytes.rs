@@ -1,9 +1,8 @@
-//! The bytes of a log, which may be read more than once.
+//! Bytes of a log, which can be read more than once.
 //!
-//! Most faults of a recording show only in the whole of it: a transform at its end, a clock that steps
-//! back, odometry that starts late. So a log is looked through once before its first frame is taken, and
-//! whoever opens one gives a way to open it again. Files that are packed as a whole by gzip or zstd are
-//! unpacked on the way.
+//! Most faults of a recording show only in a pass over the whole file: a transform at its end, a clock that jumps back,
+//! odometry that starts late. Therefore a log is scanned once before its first frame is read, and the caller passes a
+//! function that opens it. Files compressed as a whole by gzip or zstd are decompressed on the fly.
 
 use std::io::{self, BufRead, BufReader, Cursor, Read, Seek};
 use std::rc::Rc;
@@ -11,7 +10,7 @@ use std::rc::Rc;
 use flate2::bufread::MultiGzDecoder;
 use ruzstd::decoding::StreamingDecoder;
 
-/// Larger files of SQLite have to be unpacked before: they are read here and there.
+/// Most bytes of a decompressed SQLite file: it needs random access and is kept in memory.
 const MOST_UNPACKED: u64 = 1 << 30;
 
 /// First bytes of gzip.
@@ -19,34 +18,34 @@ const GZIP: &[u8] = b"\x1f\x8b";
 /// First bytes of zstd.
 const ZSTD: &[u8] = b"\x28\xb5\x2f\xfd";
 
-/// Bytes that can be read from any place on.
+/// Bytes with random access.
 pub trait SeekRead: BufRead + Seek {}
 
 impl<T: BufRead + Seek> SeekRead for T {}
 
 type Open<'a> = dyn Fn() -> io::Result<Box<dyn SeekRead + 'a>> + 'a;
 
-/// The bytes of a log: opened again for each pass over it.
+/// The bytes of a log, opened again for each pass.
 #[derive(Clone)]
 pub struct LogBytes<'a> {
     open: Rc<Open<'a>>,
 }
 
 impl<'a> LogBytes<'a> {
-    /// Bytes that `open` gives from their start, each time it is called.
+    /// Creates from a function that opens the bytes at their start.
     pub fn new<R: SeekRead + 'a>(open: impl Fn() -> io::Result<R> + 'a) -> Self {
         Self {
             open: Rc::new(move || Ok(Box::new(open()?) as Box<dyn SeekRead + 'a>)),
         }
     }
 
-    /// The bytes in their order, unpacked.
+    /// The decompressed bytes in order.
     ///
     /// # Errors
-    /// What the system says.
+    /// If the system cannot read them.
     pub fn stream(&self) -> io::Result<Box<dyn BufRead + 'a>> {
         let mut source: Box<dyn BufRead + 'a> = Box::new((self.open)()?);
-        // Packed once, or twice by mistake.
+        // Compressed once, or twice by mistake.
         for _ in 0..2 {
             let start = source.fill_buf()?;
             source = if start.starts_with(GZIP) {
@@ -63,10 +62,10 @@ impl<'a> LogBytes<'a> {
         Ok(source)
     }
 
-    /// The bytes, unpacked, to be read here and there.
+    /// The decompressed bytes with random access.
     ///
     /// # Errors
-    /// What the system says, or that packed bytes are too many for memory.
+    /// If the system cannot read them, or the decompressed bytes exceed the memory bound.
     pub fn seekable(&self) -> io::Result<Box<dyn SeekRead + 'a>> {
         let mut source = (self.open)()?;
         let start = source.fill_buf()?;
@@ -80,22 +79,22 @@ impl<'a> LogBytes<'a> {
             .read_to_end(&mut bytes)?;
         if bytes.len() as u64 > MOST_UNPACKED {
             return Err(io::Error::other(
-                "it unpacks to more than 1 GB; unpack it with zstd -d or gunzip and give the result",
+                "it decompresses to more than 1 GB; decompress it with zstd -d or gunzip first",
             ));
         }
         Ok(Box::new(Cursor::new(bytes)))
     }
 
-    /// Whether the file is packed as a whole.
+    /// Whether the file is compressed as a whole.
     ///
     /// # Errors
-    /// What the system says.
+    /// If the system cannot read it.
     pub fn is_packed(&self) -> io::Result<bool> {
         Ok(packs((self.open)()?.fill_buf()?))
     }
 }
 
-/// Whether a file that starts so is packed as a whole, by gzip or zstd.
+/// Whether a file with this start is compressed as a whole, by gzip or zstd.
 pub(crate) fn packs(start: &[u8]) -> bool {
     start.starts_with(GZIP) || start.starts_with(ZSTD)
 }
@@ -113,7 +112,7 @@ impl From<Vec<u8>> for LogBytes<'_> {
     }
 }
 
-/// Frames of zstd one after the other: a decoder of one frame stops at its end.
+/// Concatenated zstd frames: the decoder handles one frame at a time.
 struct ZstdFrames<R: Read> {
     decoder: Option<StreamingDecoder<R, ruzstd::decoding::FrameDecoder>>,
     source: Option<R>,
@@ -132,7 +131,7 @@ impl<R: BufRead> Read for ZstdFrames<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         loop {
             if let Some(decoder) = &mut self.decoder {
-                // What the decoder cannot read is damage, not a fault of the system.
+                // A decoder error means damaged data, not a system fault.
                 let damaged =
                     |problem: io::Error| io::Error::new(io::ErrorKind::InvalidData, problem);
                 let count = decoder.read(into).map_err(damaged)?;
@@ -167,7 +166,7 @@ mod tests {
         let gzip = gzip.finish().unwrap();
         let level = ruzstd::encoding::CompressionLevel::Fastest;
         let frame = |bytes: &[u8]| ruzstd::encoding::compress_to_vec(bytes, level);
-        // Two frames, as of programs that pack on several cores.
+        // Two frames, as parallel compressors write.
         let zstd = [frame(b"FLA"), frame(b"SER")].concat();
         for packed in [&b"FLASER"[..], &gzip, &zstd] {
             let bytes = LogBytes::from(packed);

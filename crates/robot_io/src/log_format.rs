@@ -1,8 +1,8 @@
-//! Which format a log has, and the reader that goes with it.
+//! Detects the format of a log and opens its reader.
 
 use crate::carmen::CarmenReader;
 use crate::json_log::JsonLogReader;
-use crate::laser_mount::PlacedReader;
+use crate::laser_mount::MountedReader;
 use crate::log::{FilePosition, LogError, LogOptions, LogReader};
 use crate::log_bytes::{LogBytes, packs};
 use crate::restamped::restamped;
@@ -10,24 +10,24 @@ use crate::ros::RosReader;
 use crate::session::Session;
 use std::io::{self, BufRead};
 
-/// The formats that are told apart by their first bytes.
+/// Formats, distinguished by their first bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogFormat {
     /// Lines of text, one message each.
     Carmen,
-    /// A container of ROS 2 messages.
+    /// Container of ROS 2 messages.
     Mcap,
-    /// A recording of ROS 1.
+    /// Recording of ROS 1.
     RosBag,
-    /// A database of SQLite, the older container of ROS 2.
+    /// SQLite database, the older container of ROS 2.
     Sqlite,
-    /// Packed as a whole, by gzip or zstd.
+    /// Compressed as a whole, by gzip or zstd.
     Packed,
-    /// A recording of ROS 1 older than version 2.0.
+    /// Recording of ROS 1 older than version 2.0.
     OldRosBag,
-    /// The file metadata.yaml of rosbag2.
+    /// metadata.yaml of rosbag2.
     Metadata,
-    /// What GMapping writes: particles and their scans.
+    /// Output of GMapping: particles and their scans.
     Gfs,
     /// A log of the canonical scan matcher, in JSON.
     Csm,
@@ -41,12 +41,12 @@ pub enum LogFormat {
     Json,
     /// A saved session.
     Session,
-    /// Text whose characters have two bytes each.
+    /// Text in UTF-16.
     Utf16,
 }
 
 impl LogFormat {
-    /// The format that a file's first bytes belong to; CARMEN's is what is nothing else.
+    /// Detects the format by a file's first bytes; CARMEN if nothing else matches.
     #[must_use]
     pub fn detect(start: &[u8]) -> Self {
         let starts = |magic: &[u8]| start.starts_with(magic);
@@ -69,7 +69,7 @@ impl LogFormat {
         } else if starts(b"{")
             && [&b"\"nrays\""[..], b"\"readings\""]
                 .iter()
-                .all(|key| holds(start, key))
+                .all(|key| contains(start, key))
         {
             Self::Csm
         } else if packs(start) {
@@ -87,10 +87,10 @@ impl LogFormat {
         }
     }
 
-    /// Opens a log by its first bytes; `name` is what errors call it.
+    /// Opens a log by its first bytes; errors contain `name`.
     ///
     /// # Errors
-    /// Where the bytes cannot be had, there are none, or the format holds no log that is read here.
+    /// If the bytes cannot be read, are empty, or have a format that is not supported.
     pub fn open<'a>(
         bytes: impl Into<LogBytes<'a>>,
         name: &str,
@@ -99,10 +99,10 @@ impl LogFormat {
         Self::open_parts(vec![bytes.into()], name, options)
     }
 
-    /// Opens a log of several files, in their order: a recording of ROS 2 may be split.
+    /// Opens a log of several files in order: a recording of ROS 2 may be split.
     ///
     /// # Errors
-    /// As of [`open`](Self::open), and where several files are no recording of ROS.
+    /// Those of [`open`](Self::open), and if several files are not a recording of ROS.
     pub fn open_parts<'a>(
         parts: Vec<LogBytes<'a>>,
         name: &str,
@@ -110,7 +110,7 @@ impl LogFormat {
     ) -> Result<Box<dyn LogReader + 'a>, LogError> {
         let io = |source| LogError::Io {
             name: name.to_owned(),
-            place: FilePosition::Byte(0),
+            position: FilePosition::Byte(0),
             source,
         };
         let Some(first) = parts.first().cloned() else {
@@ -122,7 +122,7 @@ impl LogFormat {
             Ok(true) => LogError::NoScans {
                 name: name.to_owned(),
                 detail: format!(
-                    "it is packed by gzip or zstd and does not unpack: {problem}; copy it once more from where it was recorded"
+                    "it is compressed by gzip or zstd and cannot be decompressed: {problem}; copy it again from its source"
                 ),
             },
             _ => io(problem),
@@ -142,7 +142,7 @@ impl LogFormat {
         let found = Self::detect(start);
         if parts.len() > 1 && !matches!(found, Self::Mcap | Self::RosBag | Self::Sqlite) {
             return Err(foreign(
-                "several files, the first of which is no recording of ROS",
+                "several files, the first of which is not a ROS recording",
                 "give one log at a time",
             ));
         }
@@ -155,7 +155,7 @@ impl LogFormat {
                 };
                 let reader = reader.map_err(io)?;
                 Ok(match options.laser {
-                    Some(mount) => Box::new(PlacedReader::new(reader, mount)),
+                    Some(mount) => Box::new(MountedReader::new(reader, mount)),
                     None => reader,
                 })
             }
@@ -163,40 +163,37 @@ impl LogFormat {
                 Ok(Box::new(RosReader::new(parts, name, options)))
             }
             Self::Packed => Err(foreign(
-                "packed more than twice",
-                "unpack it with zstd -d or gunzip and give the result",
+                "compressed more than twice",
+                "decompress it with zstd -d or gunzip first",
             )),
             Self::OldRosBag => Err(foreign(
-                "a recording of ROS 1 older than version 2.0",
-                "convert it with rosbag fix and give the result",
+                "a ROS 1 recording older than version 2.0",
+                "convert it with rosbag fix first",
             )),
             Self::Metadata => Err(foreign(
-                "the description of a recording of ROS 2, not the recording",
-                "give its folder, or the files that it names",
+                "the description of a ROS 2 recording, not the recording itself",
+                "pass its folder, or the files that it lists",
             )),
             Self::Gfs => Err(foreign(
                 "the output of GMapping, not a log of scans",
-                "give the log that GMapping was run on",
+                "pass the log that GMapping was run on",
             )),
             Self::Csm => Err(foreign(
                 "a log of CSM, the canonical scan matcher",
-                "convert it to CARMEN with json2carmen of CSM and give the result",
+                "convert it to CARMEN with CSM's json2carmen first",
             )),
             Self::Trajectory => Err(foreign(
                 "a trajectory, not a log of scans",
-                "give a log; slam2d evaluate grades a trajectory",
+                "pass a log; slam2d evaluate evaluates a trajectory",
             )),
             Self::Archive => Err(foreign(
-                "an archive of files",
-                "unpack it and give the recording in it",
+                "an archive",
+                "extract it and pass the recording in it",
             )),
-            Self::Utf16 => Err(foreign(
-                "text in UTF-16",
-                "save it as UTF-8 and give the result",
-            )),
+            Self::Utf16 => Err(foreign("text in UTF-16", "save it as UTF-8 first")),
             Self::Session => Err(foreign(
                 "a saved session, not a log of scans",
-                "give a log; slam2d run LOG --continue takes a session to go on from",
+                "pass a log; slam2d run LOG --continue continues a session",
             )),
             Self::Graph => Err(foreign(
                 "a pose graph, not a log of scans",
@@ -206,12 +203,12 @@ impl LogFormat {
     }
 }
 
-/// Whether `key` stands in the bytes.
-fn holds(bytes: &[u8], key: &[u8]) -> bool {
+/// Whether the bytes contain `key`.
+fn contains(bytes: &[u8], key: &[u8]) -> bool {
     bytes.windows(key.len()).any(|window| window == key)
 }
 
-/// Whether the first line that is no comment has the eight numbers of a stamped pose, or more.
+/// Whether the first line that is not a comment has the eight numbers of a stamped pose, or more.
 fn is_trajectory(start: &[u8]) -> bool {
     let mut lines = start.split(|&byte| byte == b'\n');
     let line = lines.find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"));
@@ -226,7 +223,7 @@ fn is_trajectory(start: &[u8]) -> bool {
     words.len() >= 8 && words.iter().all(|word| word.parse::<f64>().is_ok())
 }
 
-/// Whether a line starts as those of GMapping do.
+/// Whether a line starts with a keyword of GMapping.
 fn is_gfs(start: &[u8]) -> bool {
     let words: [&[u8]; 5] = [
         b"LASER_READING ",
@@ -249,35 +246,35 @@ mod tests {
             (&b""[..], "x.log is empty; give a recorded log"),
             (
                 b"\x1f\x8b\x08",
-                "x.log holds no scan that can be used: it is packed by gzip or zstd and does not unpack: unexpected end of file; copy it once more from where it was recorded",
+                "x.log has no usable scan: it is compressed by gzip or zstd and cannot be decompressed: unexpected end of file; copy it again from its source",
             ),
             (
                 b"\xff\xfeF\0L\0",
-                "x.log is text in UTF-16; save it as UTF-8 and give the result",
+                "x.log is text in UTF-16; save it as UTF-8 first",
             ),
             (
                 b"#ROSRECORD V1.1\n",
-                "x.log is a recording of ROS 1 older than version 2.0; convert it with rosbag fix and give the result",
+                "x.log is a ROS 1 recording older than version 2.0; convert it with rosbag fix first",
             ),
             (
                 b"# stamp\n1,0,0,0,0,0,0,1\n",
-                "x.log is a trajectory, not a log of scans; give a log; slam2d evaluate grades a trajectory",
+                "x.log is a trajectory, not a log of scans; pass a log; slam2d evaluate evaluates a trajectory",
             ),
             (
                 b"LASER_READING 361 1.2\n",
-                "x.log is the output of GMapping, not a log of scans; give the log that GMapping was run on",
+                "x.log is the output of GMapping, not a log of scans; pass the log that GMapping was run on",
             ),
             (
                 b"{\"nrays\":3,\"min_theta\":0,\"readings\":[1,2,3]}\n",
-                "x.log is a log of CSM, the canonical scan matcher; convert it to CARMEN with json2carmen of CSM and give the result",
+                "x.log is a log of CSM, the canonical scan matcher; convert it to CARMEN with CSM's json2carmen first",
             ),
             (
                 b"rosbag2_bagfile_information:\n",
-                "x.log is the description of a recording of ROS 2, not the recording; give its folder, or the files that it names",
+                "x.log is the description of a ROS 2 recording, not the recording itself; pass its folder, or the files that it lists",
             ),
             (
                 b"SLAM2D\r\n",
-                "x.log is a saved session, not a log of scans; give a log; slam2d run LOG --continue takes a session to go on from",
+                "x.log is a saved session, not a log of scans; pass a log; slam2d run LOG --continue continues a session",
             ),
             (
                 b"VERTEX_SE2 0 0 0 0\n",

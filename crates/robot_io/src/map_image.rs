@@ -1,4 +1,4 @@
-//! A map as an image with a YAML file beside it, as Nav2's map_server reads them.
+//! Occupancy maps as an image with a YAML file, as Nav2's map_server reads them.
 //!
 //! | mode | a cell is | pixel |
 //! |---|---|---|
@@ -21,27 +21,27 @@ use crate::json_log::FrameLine;
 use crate::log::LogFrame;
 use crate::session::Session;
 
-/// Above this probability a cell is an obstacle.
+/// A cell with a higher probability is occupied.
 const OCCUPIED: f64 = 0.65;
-/// Below this probability a cell is free: one ray through it is enough.
+/// A cell with a lower probability is free: one ray through it is enough.
 const FREE: f64 = 0.4;
-/// Pixels above this are free to a map server: 205 of 255 is 0.1961, so that unknown stays unknown.
+/// A map server takes pixels above this as free; 205 of 255 is 0.1961, which keeps unknown cells unknown.
 const FREE_PIXEL: f64 = 0.196;
-/// Longer rays clear nothing, m: far readings are rare and graze.
+/// Longer rays mark no free space, m: distant readings are sparse and graze surfaces.
 const FARTHEST_M: f64 = 30.0;
 
-/// What a pixel says.
+/// Meaning of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum MapMode {
     /// Occupied, free or unknown.
     #[default]
     Trinary,
-    /// The probability.
+    /// Probability.
     Scale,
 }
 
 impl MapMode {
-    /// Its name in the YAML file.
+    /// Name in the YAML file.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -54,26 +54,26 @@ impl MapMode {
 /// Why there is no map.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum MapError {
-    /// The cells are too small for so large a place.
+    /// The mapped area needs too many cells.
     #[error(transparent)]
     TooLarge(#[from] GridTooLarge),
     /// No scan has a point.
-    #[error("no scan has a point, so there is nothing to map")]
+    #[error("no scan has a point, so the map is empty")]
     Nothing,
 }
 
-/// The map of scans that were taken at known poses; those without one are left out.
+/// Builds the map of scans with known poses; skips those without one.
 ///
 /// # Errors
-/// Where no scan has a point, or there would be too many cells.
-pub fn map_of(lines: &[FrameLine], cell_m: f64) -> Result<MapImage, MapError> {
+/// If no scan has a point, or there are too many cells.
+pub fn build_map(lines: &[FrameLine], cell_m: f64) -> Result<MapImage, MapError> {
     built(MapBuilder::new(cell_m), lines)
 }
 
-/// As [`map_of`], with free space where beams saw nothing out to the sensor's limit.
+/// Builds the map of [`build_map`] with free space along beams without a return, up to the sensor's limit.
 ///
 /// # Errors
-/// As of [`map_of`].
+/// Those of [`build_map`].
 pub fn map_with_free_space(lines: &[FrameLine], cell_m: f64) -> Result<MapImage, MapError> {
     built(MapBuilder::new(cell_m).with_free_space(), lines)
 }
@@ -88,37 +88,37 @@ fn built(mut map: MapBuilder, lines: &[FrameLine]) -> Result<MapImage, MapError>
     map.finish()
 }
 
-/// The map of a session: its keyframes' thinned scans at the poses of its map, the oldest first.
+/// Builds the map of a session from its keyframes' filtered scans at the poses of its map, oldest first.
 ///
 /// # Errors
-/// Where no scan has a point, or there would be too many cells.
-pub fn map_of_session(session: &Session, cell_m: f64) -> Result<MapImage, MapError> {
+/// If no scan has a point, or there are too many cells.
+pub fn build_session_map(session: &Session, cell_m: f64) -> Result<MapImage, MapError> {
     let mut map = MapBuilder::new(cell_m);
-    for (pose, scan) in session.placed_scans() {
+    for (pose, scan) in session.posed_scans() {
         map.add(&pose, &scan)?;
     }
     map.finish()
 }
 
-/// How far a scan sees, m.
+/// Range up to which a scan marks free space, m.
 fn reach_of(scan: &LaserScan) -> f64 {
     math::min(scan.range_max_m, FARTHEST_M)
 }
 
-/// Adds scans to an occupancy grid that grows with them.
+/// Adds scans to an occupancy grid that grows as needed.
 #[derive(Clone, Debug)]
 pub struct MapBuilder {
     cell_m: f64,
-    /// Whether beams that saw nothing out to the sensor's limit clear what is before it.
+    /// Whether beams without a return mark free space up to the sensor's limit.
     clears: bool,
     grid: Option<OccupancyGrid>,
-    /// Bounds of all points and robots, m: the image ends there.
+    /// Bounds of all points and poses, m: the extent of the image.
     low: Point2<f64>,
     high: Point2<f64>,
 }
 
 impl MapBuilder {
-    /// An empty map of cells of this side, m.
+    /// An empty map with cells of this side, m.
     #[must_use]
     pub fn new(cell_m: f64) -> Self {
         Self {
@@ -130,17 +130,17 @@ impl MapBuilder {
         }
     }
 
-    /// The same map, in which beams that saw nothing out to the sensor's limit mark free space, as REP 117 has them.
+    /// Lets beams without a return mark free space up to the sensor's limit, as REP 117 defines them.
     #[must_use]
     pub fn with_free_space(mut self) -> Self {
         self.clears = true;
         self
     }
 
-    /// Adds the scan that was taken at `world_from_body`; rays that saw nothing say nothing.
+    /// Adds the scan taken at `world_from_body`; beams without a return are ignored.
     ///
     /// # Errors
-    /// Where the map would have too many cells; it stays as it was.
+    /// If the map would have too many cells; it stays unchanged.
     pub fn add(&mut self, world_from_body: &SE2, scan: &LaserScan) -> Result<(), GridTooLarge> {
         let world_from_sensor = *world_from_body * scan.body_from_sensor;
         let mut beams: Vec<(f64, f64)> = Vec::with_capacity(scan.ranges_m.len());
@@ -154,7 +154,7 @@ impl MapBuilder {
         if scan.angle_step_rad < 0.0 {
             beams.reverse();
         }
-        // More than a turn: the grid asks each bearing once.
+        // More than a turn: the grid evaluates each bearing once.
         let first = beams.first().map_or(0.0, |beam| beam.0);
         beams.retain(|beam| beam.0 - first < core::f64::consts::TAU);
         let reach_m = beams.iter().map(|beam| beam.1).fold(0.0, f64::max);
@@ -187,11 +187,11 @@ impl MapBuilder {
         let cell_m = self.cell_m;
         GridConfig {
             sensor: InverseSensorModel {
-                // A return marks its own cell and no wall thicker than that.
+                // A return marks its own cell only.
                 obstacle_thickness_m: 1.5 * cell_m,
-                // Half a step to either side, and what is lost in rounding.
+                // Half a step to either side, plus rounding.
                 beam_width_rad: 1.001 * scan.angle_step_rad.abs(),
-                // A reading at it hit nothing.
+                // A reading at the limit is no return.
                 max_range_m: if self.clears {
                     reach_of(scan)
                 } else {
@@ -203,10 +203,10 @@ impl MapBuilder {
         }
     }
 
-    /// The map, cut to what was seen.
+    /// The map, cropped to the observed area.
     ///
     /// # Errors
-    /// Where nothing was.
+    /// If there is no observation.
     pub fn finish(&self) -> Result<MapImage, MapError> {
         let grid = self.grid.as_ref().ok_or(MapError::Nothing)?;
         let margin = 2;
@@ -235,7 +235,7 @@ impl MapBuilder {
     }
 }
 
-/// A map, cell by cell.
+/// An occupancy map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapImage {
     /// Columns.
@@ -246,12 +246,12 @@ pub struct MapImage {
     pub origin_m: [f64; 2],
     /// Side of a cell, m.
     pub cell_m: f64,
-    /// Log odds, row by row from the highest y; 0 is unknown.
+    /// Log odds, row by row from the highest y; 0 if unknown.
     pub log_odds: Vec<f64>,
 }
 
 impl MapImage {
-    /// Probability that a cell is occupied; none where nothing is known.
+    /// Probability that a cell is occupied; `None` if unknown.
     fn probability(log_odds: f64) -> Option<f64> {
         (log_odds != 0.0).then(|| 1.0 / (1.0 + math::exp(-log_odds)))
     }
@@ -267,17 +267,17 @@ impl MapImage {
     /// Writes the trinary map as PGM.
     ///
     /// # Errors
-    /// Where `target` cannot take it.
+    /// If `target` fails.
     pub fn write_pgm(&self, mut target: impl Write) -> io::Result<()> {
         write!(target, "P5\n{} {}\n255\n", self.width, self.height)?;
         let pixels: Vec<u8> = self.log_odds.iter().map(|&l| Self::trinary(l)).collect();
         target.write_all(&pixels)
     }
 
-    /// Writes the map as PNG: grey, with transparency where the mode needs it.
+    /// Writes the map as greyscale PNG, with transparency if the mode needs it.
     ///
     /// # Errors
-    /// Where `target` cannot take it.
+    /// If `target` fails.
     pub fn write_png(&self, target: impl Write, mode: MapMode) -> io::Result<()> {
         let mut encoder = png::Encoder::new(target, self.width as u32, self.height as u32);
         encoder.set_depth(png::BitDepth::Eight);
@@ -303,7 +303,7 @@ impl MapImage {
         Ok(())
     }
 
-    /// The YAML file that names `image`.
+    /// The YAML file that refers to `image`.
     #[must_use]
     pub fn yaml(&self, image: &str, mode: MapMode) -> String {
         let [x, y] = self.origin_m;
@@ -315,7 +315,7 @@ impl MapImage {
         )
     }
 
-    /// Cells that are obstacles, that are free, and that are unknown.
+    /// Numbers of occupied, free and unknown cells.
     #[must_use]
     pub fn counts(&self) -> [usize; 3] {
         let mut counts = [0; 3];

@@ -1,16 +1,16 @@
-//! Scans and odometry compared: does the laser sit as the recording says, and what does odometry measure in?
+//! Compares scans with odometry to check the mounting of the laser and the units and clock of the odometry.
 //!
-//! The first scans are matched alone. Over each stretch of the path that gives the motion of the sensor, and
-//! odometry gives that of the body:
+//! The first scans are matched without odometry. Over each segment of the path this gives the motion of the sensor,
+//! and odometry gives the motion of the body:
 //!
-//! | what | right | else |
+//! | quantity | expected | otherwise |
 //! |---|---|---|
-//! | correlation of the turns | near 1 | near −1: the scans are a mirror image |
-//! | angle between the displacements | 0 | 180°: the laser looks backward |
-//! | ratio of the displacements | 1 | 1000: millimetres; a tenth off: wheel size |
-//! | lag at which the turns correlate best | 0 | clocks that differ by less than a second |
+//! | correlation of the turns | near 1 | near −1: the scans are mirrored |
+//! | angle between the displacements | 0 | 180°: the laser faces backward |
+//! | ratio of the displacements | 1 | 1000: millimetres; off by a tenth: wheel size |
+//! | lag that maximizes the correlation of the turns | 0 | clock offset of less than a second |
 //!
-//! A finding needs most stretches to agree on it, so that scans which cannot be matched alone find nothing.
+//! A finding needs the agreement of most segments, so scans that cannot be matched alone give no finding.
 
 mod finding;
 mod lag;
@@ -26,13 +26,13 @@ use pr_geom::SE2;
 use crate::log::LogFrame;
 use lag::Heading;
 
-/// A stretch ends after so much motion of the sensor, m or rad.
+/// A segment ends after this motion of the sensor, m or rad.
 const STRETCH_M: f64 = 0.3;
 const STRETCH_RAD: f64 = 0.25;
-/// Scans nearer in time say nothing new, s.
+/// Scans closer in time add no information, s.
 const LEAST_APART_S: f64 = 0.08;
 
-/// A stretch of the path, by scans and by odometry.
+/// A segment of the path, by scans and by odometry.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
     /// Motion of the sensor in its own frame.
@@ -41,11 +41,11 @@ struct Stretch {
     body: SE2,
 }
 
-/// Scans matched alone, and the odometry beside them.
+/// Scans matched without odometry, and the odometry at their stamps.
 struct Comparison {
     slam: Slam,
     last_s: f64,
-    /// Where the last stretch began: the sensor by scans, and the body by odometry.
+    /// Start of the last segment: the sensor by scans, and the body by odometry.
     began: Option<(SE2, SE2)>,
     stretches: Vec<Stretch>,
     headings: Vec<Heading>,
@@ -107,13 +107,13 @@ impl Comparison {
         }
     }
 
-    /// Whether more would add nothing.
+    /// Whether further scans add no information.
     fn is_enough(&self) -> bool {
         self.stretches.len() >= 60 && self.moved_m >= 10.0 && self.turned_rad >= 6.0
     }
 }
 
-/// A scan as if its laser were the body.
+/// A scan with the sensor at the body's origin.
 fn unmounted(scan: &LaserScan) -> LaserScan {
     LaserScan {
         body_from_sensor: SE2::identity(),

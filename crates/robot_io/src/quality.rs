@@ -1,11 +1,10 @@
-//! How far a map is to be trusted: keyframes, loops, and a list of what is to be doubted.
+//! Reliability of a map: keyframes, loops, and a list of doubts.
 //!
-//! A keyframe's covariance is that of the graph, against its first keyframe, times what its
-//! contradictions say of it ([`Slam::keyframe_covariances`]). A loop that is in the graph
-//! is tested against all else that the graph knows: with the residual e of its edge, the information
-//! Ω of its measurement and the marginal covariance P of the relative pose by the whole graph, the loop
-//! included, `eᵀ(Ω⁻¹ − P)⁻¹e` has three degrees of freedom. It is the innovation of the loop against the
-//! graph without it. A step from one keyframe to the next is tested in the same way.
+//! A keyframe's covariance is that of the graph relative to its first keyframe, scaled by the keyframe's inconsistency
+//! ([`Slam::keyframe_covariances`]). A loop in the graph is tested against the rest of the graph. With the residual e
+//! of its edge, the information Ω of its measurement and the marginal covariance P of the relative pose by the whole
+//! graph including the loop, `eᵀ(Ω⁻¹ − P)⁻¹e` has three degrees of freedom. It is the squared innovation of the loop
+//! against the graph without it. A step between consecutive keyframes is tested in the same way.
 //!
 //! Source: Cook & Weisberg, "Residuals and influence in regression", 1982, §2.1.2.
 
@@ -19,43 +18,44 @@ use serde::Serialize;
 
 use crate::evidence::{PoorFit, TriedLoop};
 
-/// The largest χ² of a loop that is not doubted: of three degrees of freedom, 999 of 1,000 lie below.
+/// Gate of a loop's χ²: the 99.9 % quantile with three degrees of freedom.
 pub const GATE_CHI2: f64 = 16.266;
 
-/// What is known of a map's quality.
+/// Quality of a map.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Quality {
     /// The keyframes in order.
     pub keyframes: Vec<KeyframeQuality>,
     /// The loops of the graph.
     pub links: Vec<LinkQuality>,
-    /// The parts of the way whose steps the rest of the graph contradicts, in order.
-    pub refuted_ways: Vec<RefutedWay>,
-    /// The loops that were tried while scans came in.
+    /// Path segments that the rest of the graph contradicts, in order.
+    #[serde(rename = "refuted_ways")]
+    pub refuted_paths: Vec<RefutedPath>,
+    /// The loops that were tested while scans came in.
     pub tried: Vec<LinkQuality>,
-    /// What should be looked at, a sentence each.
+    /// What should be checked, one sentence each.
     pub doubts: Vec<String>,
 }
 
-/// A keyframe and how well it is known.
+/// A keyframe with its covariance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct KeyframeQuality {
-    /// Time of its scan, s.
+    /// Stamp of its scan, s.
     pub stamp_s: f64,
     /// `[x, y, θ]`, `world_from_body`, m and rad.
     pub pose: [f64; 3],
-    /// Covariance against the first keyframe in the body's frame, x, y, θ: m² and rad².
+    /// Covariance relative to the first keyframe in the body frame, x, y, θ: m² and rad².
     pub covariance: [[f64; 3]; 3],
 }
 
-/// Measured steps in a row, each of which the rest of the graph contradicts.
+/// Consecutive odometry edges, each of which the rest of the graph contradicts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct RefutedWay {
-    /// The keyframe before the first of them.
+pub struct RefutedPath {
+    /// The keyframe before the first edge.
     pub from: usize,
-    /// The keyframe after the last one.
+    /// The keyframe after the last edge.
     pub to: usize,
-    /// The largest squared innovation of them.
+    /// The largest squared innovation.
     pub chi2: f64,
 }
 
@@ -66,26 +66,26 @@ pub struct LinkQuality {
     pub from: usize,
     /// The older keyframe.
     pub to: usize,
-    /// Share of the newer scan that fits, 0 to 1.
+    /// Share of the newer scan that are inliers, 0 to 1.
     pub score: Option<f64>,
-    /// Root mean square distance of what fits, m; null where nothing does.
+    /// Root mean square distance of the inliers, m; null if there are none.
     pub rmse_m: Option<f64>,
-    /// Points that fit.
+    /// Number of inliers.
     pub inliers: usize,
-    /// By how much the best other place was behind, as far as one was looked for; null where nobody looked.
+    /// Score margin over the best alternative pose; null if no search was done.
     pub margin: Option<f64>,
-    /// Squared innovation; null where it is not to be had.
+    /// Squared innovation; null if it could not be computed.
     pub chi2: Option<f64>,
-    /// The largest that passes.
+    /// Gate of the squared innovation.
     pub gate_chi2: f64,
     /// Whether it is in the graph.
     pub accepted: bool,
-    /// Why it is not.
+    /// Why it is not in the graph.
     pub reason: Option<String>,
 }
 
 impl Quality {
-    /// The quality of the graph as it is; nothing where there is none.
+    /// Evaluates the graph; empty if there is none.
     pub(crate) fn new(
         slam: Option<&mut Slam>,
         tried: &[TriedLoop],
@@ -98,7 +98,7 @@ impl Quality {
         let mut quality = Self {
             keyframes: keyframes(slam),
             links: Vec::new(),
-            refuted_ways: Vec::new(),
+            refuted_paths: Vec::new(),
             tried: tried.iter().map(LinkQuality::tried).collect(),
             doubts: Vec::new(),
         };
@@ -110,7 +110,7 @@ impl Quality {
             links.iter().filter(|link| link.accepted()).collect()
         };
         for link in evidence {
-            // Loops that others have taken out since are no links.
+            // Loops that were removed again are no links.
             let mut tests = tests.iter();
             let test = tests.find(|(view, _)| view.edge.measurement == link.registered);
             let Some((_, chi2)) = test else { continue };
@@ -120,12 +120,12 @@ impl Quality {
                 ..LinkQuality::new(link, true)
             });
         }
-        quality.refuted_ways = refuted_ways(&tests);
-        quality.doubts = doubts::sentences(&quality, &doubts::disputed(slam, tried), poor);
+        quality.refuted_paths = refuted_paths(&tests);
+        quality.doubts = doubts::sentences(&quality, &doubts::violated(slam, tried), poor);
         quality
     }
 
-    /// Length of the way over the keyframes, m.
+    /// Path length over the keyframes, m.
     #[must_use]
     pub fn path_length_m(&self) -> f64 {
         let steps = self.keyframes.windows(2);
@@ -176,7 +176,7 @@ impl LinkQuality {
             rmse_m: found.rmse_m.is_finite().then_some(found.rmse_m),
             inliers: found.inliers,
             margin: found.margin.filter(|margin| margin.is_finite()),
-            // Where no place was found, nothing was gated.
+            // Without a pose there was no gate test.
             chi2: (found.gate.chi2.is_finite() && !is_nowhere).then_some(found.gate.chi2),
             gate_chi2: found.gate.gate_chi2,
             accepted,
@@ -189,29 +189,31 @@ impl LinkQuality {
     }
 }
 
-/// Why a loop was turned away, in words.
+/// The reason of a rejection, in words.
 #[must_use]
 pub fn reason(rejection: &LoopRejection) -> String {
     match rejection {
         LoopRejection::PoorFit { rmse_m, max_rmse_m } => {
-            format!("what fits is {rmse_m:.3} m off, {max_rmse_m:.3} m is asked")
+            format!("the inliers' RMSE is {rmse_m:.3} m, above {max_rmse_m:.3} m")
         }
         LoopRejection::FewInliers {
             inliers,
             min_inliers,
-        } => format!("{inliers} points fit, {min_inliers} are asked"),
+        } => format!("{inliers} inliers, at least {min_inliers} are needed"),
         LoopRejection::LowScore { score, min_score } => {
-            format!("{score:.2} of the scan fits, {min_score:.2} is asked")
+            format!("a score of {score:.2}, at least {min_score:.2} is needed")
         }
         LoopRejection::NoPlace {
             half_width_m,
             min_score,
-        } => format!("no place within {half_width_m:.1} m fits by {min_score:.2}"),
+        } => format!("no pose within {half_width_m:.1} m has a score of at least {min_score:.2}"),
         LoopRejection::Ambiguous { margin, min_margin } => {
-            format!("another place is behind by {margin:.2} only, {min_margin:.2} is asked")
+            format!(
+                "ambiguous: the margin over the next best pose is {margin:.2}, at least {min_margin:.2} is needed"
+            )
         }
         LoopRejection::Waiting { agreeing, needed } => {
-            format!("it waits for others: {agreeing} agree, {needed} are asked")
+            format!("pending: {agreeing} loops agree, {needed} are needed")
         }
         LoopRejection::OutsideGate(gate) => {
             format!(
@@ -233,8 +235,8 @@ fn keyframes(slam: &mut Slam) -> Vec<KeyframeQuality> {
     let Ok(covariances) = slam.keyframe_covariances() else {
         return Vec::new();
     };
-    let places = slam.keyframes().iter().zip(slam.graph().poses());
-    places
+    let posed = slam.keyframes().iter().zip(slam.graph().poses());
+    posed
         .zip(&covariances)
         .map(|((keyframe, pose), covariance)| KeyframeQuality {
             stamp_s: keyframe.stamp_s,
@@ -244,7 +246,7 @@ fn keyframes(slam: &mut Slam) -> Vec<KeyframeQuality> {
         .collect()
 }
 
-/// The measurements of the graph, each with its innovation against the rest; none where it is not to be had.
+/// The edges of the graph, each with its squared innovation against the rest; `None` if it cannot be computed.
 #[must_use]
 pub fn edge_tests(slam: &mut Slam) -> Vec<(EdgeView, Option<f64>)> {
     let Ok(covariances) = slam.graph_mut().edge_covariances() else {
@@ -266,27 +268,27 @@ pub fn edge_tests(slam: &mut Slam) -> Vec<(EdgeView, Option<f64>)> {
         .collect()
 }
 
-/// The steps beyond the gate, those in a row as one.
-fn refuted_ways(tests: &[(EdgeView, Option<f64>)]) -> Vec<RefutedWay> {
-    let mut ways: Vec<RefutedWay> = Vec::new();
+/// Odometry edges beyond the gate, with consecutive ones merged.
+fn refuted_paths(tests: &[(EdgeView, Option<f64>)]) -> Vec<RefutedPath> {
+    let mut paths: Vec<RefutedPath> = Vec::new();
     for (view, chi2) in tests {
         let beyond = chi2.filter(|chi2| *chi2 > GATE_CHI2);
         let (EdgeKind::Odometry, Some(chi2)) = (view.edge.kind, beyond) else {
             continue;
         };
         let (from, to) = (view.from.index(), view.to.index());
-        match ways.last_mut() {
-            Some(way) if way.to == from => {
-                way.to = to;
-                way.chi2 = math::max(way.chi2, chi2);
+        match paths.last_mut() {
+            Some(path) if path.to == from => {
+                path.to = to;
+                path.chi2 = math::max(path.chi2, chi2);
             }
-            _ => ways.push(RefutedWay { from, to, chi2 }),
+            _ => paths.push(RefutedPath { from, to, chi2 }),
         }
     }
-    ways
+    paths
 }
 
-/// `eᵀ(Ω⁻¹ − P)⁻¹e`; none where the measurement alone holds the two nodes together.
+/// `eᵀ(Ω⁻¹ − P)⁻¹e`; `None` if the measurement alone connects the two nodes.
 fn innovation_chi2(
     measured: &SE2,
     information: &Matrix3<f64>,
@@ -311,7 +313,7 @@ mod tests {
         let relative = SE2::translation(0.6, 0.0);
         let measured = SE2::translation(3.0, 0.0);
         let chi2 = innovation_chi2(&measured, &information, &relative, &covariance).unwrap();
-        // Against the graph without it: 3² / (1 + 4).
+        // Against the graph without the loop: 3² / (1 + 4).
         assert!((chi2 - 1.8).abs() < 1e-12, "{chi2}");
     }
 

@@ -1,4 +1,4 @@
-//! What a run leaves besides its trajectory and its quality: scans for a map, and χ² over time.
+//! Records scans for a map, and χ² over time, during a run.
 
 use ch16_slam2d::slam::SlamReport;
 
@@ -7,7 +7,7 @@ use crate::log::LogFrame;
 use crate::run::LogRun;
 use crate::session::Session;
 
-/// Keeps the frames of keyframes, and χ² at each, while a run goes on.
+/// Keeps the frames of keyframes, and χ² at each of them.
 #[derive(Clone, Debug, Default)]
 pub struct RunRecorder {
     keyframes: Vec<LogFrame>,
@@ -15,11 +15,11 @@ pub struct RunRecorder {
 }
 
 impl RunRecorder {
-    /// A recorder for a run that goes on from a session: it has the session's keyframes already.
+    /// A recorder for a run that continues a session, which has its own keyframes already.
     #[must_use]
     pub fn resume(session: &Session) -> Self {
         let keyframes = session.driven.keyframes.iter();
-        let scans = session.placed_scans().map(|(_, scan)| scan);
+        let scans = session.posed_scans().map(|(_, scan)| scan);
         let frames = keyframes.zip(scans).map(|(keyframe, scan)| LogFrame {
             stamp_s: keyframe.stamp_s,
             odometry: None,
@@ -31,7 +31,7 @@ impl RunRecorder {
         }
     }
 
-    /// Takes what a frame did.
+    /// Records the result of a frame.
     pub fn take(&mut self, frame: &LogFrame, report: &SlamReport) {
         if report.new_keyframe.is_some() {
             self.keyframes.push(frame.clone());
@@ -45,7 +45,7 @@ impl RunRecorder {
         &self.keyframes
     }
 
-    /// The keyframes' scans with the poses that the graph gives them now: what a map is made of.
+    /// The keyframes' scans at their current poses in the graph, for building a map.
     #[must_use]
     pub fn map_lines(&self, run: &LogRun) -> Vec<FrameLine> {
         let poses = run.slam().map_or(&[][..], |slam| slam.graph().poses());
@@ -58,7 +58,7 @@ impl RunRecorder {
             .collect()
     }
 
-    /// Time (s) and χ² of the graph, after each keyframe.
+    /// Time (s) and χ² of the graph after each keyframe.
     #[must_use]
     pub fn chi2_over_time(&self) -> &[[f64; 2]] {
         &self.chi2

@@ -1,13 +1,13 @@
-//! Reference relations: where the body was at one time, seen from where it was at another.
+//! Reference relations: relative poses of the body between two times.
 //!
 //! A line is `t1 t2 x y z roll pitch yaw`, in s, m and rad. Kümmerle et al., "On measuring the
-//! accuracy of SLAM algorithms", 2009, give such files for recorded logs.
+//! accuracy of SLAM algorithms", 2009, provide such files for recorded logs.
 
 use std::io::BufRead;
 
 use pr_geom::SE2;
 
-use crate::place::checked;
+use crate::plausible::plausible_pose;
 use crate::trajectory::{NumberLines, TextError};
 
 /// A reference relation.
@@ -23,16 +23,16 @@ pub struct Relation {
 
 const LINE: &str = "t1 t2 x y z roll pitch yaw";
 
-/// Reads the lines of a file of relations; `#` starts a comment. Height, roll and pitch are not
-/// looked at.
+/// Reads a file of relations; `#` starts a comment. Height, roll and pitch are ignored.
 ///
 /// # Errors
-/// The first line that is no relation, or that there is none.
+/// If a line is malformed, or there is no line.
 pub fn read_relations(source: impl BufRead, name: &str) -> Result<Vec<Relation>, TextError> {
     let mut relations = Vec::new();
     let mut numbers = NumberLines::new(source, name, LINE);
     while let Some([first_s, second_s, x, y, _, _, _, yaw]) = numbers.next_line()? {
-        let motion = checked(SE2::new(x, y, yaw)).map_err(|problem| numbers.refuse(problem))?;
+        let motion =
+            plausible_pose(SE2::new(x, y, yaw)).map_err(|problem| numbers.refuse(problem))?;
         relations.push(Relation {
             first_s,
             second_s,

@@ -1,8 +1,8 @@
-//! What is wrong with a recording, by the part of the robot that it is about.
+//! Remarks on a recording, by the part of the robot that they concern.
 
 use serde::Serialize;
 
-/// The option that maps by scans alone.
+/// The option for mapping by scans alone.
 pub const NO_ODOMETRY: &str = "--no-odometry";
 
 /// A part of a robot's recording.
@@ -15,26 +15,26 @@ pub enum Part {
     Sensor,
     /// Odometry.
     Odometry,
-    /// Where the laser sits.
+    /// Pose of the laser on the body.
     Mounting,
-    /// Times.
+    /// Stamps.
     Clocks,
 }
 
-/// How it stands with a part.
+/// Condition of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// As it should be.
+    /// Correct.
     Good,
-    /// Something was wrong and was mended, or is missing and can be done without.
+    /// Something was wrong and was corrected, or is missing and not required.
     Mended,
-    /// Something is wrong and stays so.
+    /// Something is wrong and was not corrected.
     Wrong,
 }
 
 impl Verdict {
-    /// Its sign: ✓, ! or ✗.
+    /// Symbol: ✓, ! or ✗.
     #[must_use]
     pub fn sign(self) -> char {
         match self {
@@ -45,16 +45,16 @@ impl Verdict {
     }
 }
 
-/// A sentence about a part.
+/// A sentence on a part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Remark {
-    /// What it is about.
+    /// The part that it concerns.
     pub part: Part,
-    /// How it stands with it.
+    /// Its verdict.
     pub verdict: Verdict,
-    /// The sentence, without a point at its end.
+    /// The sentence, without a full stop.
     pub text: String,
-    /// Options of the command that answer it, such as `--laser 0,0,180`: any of them, not all.
+    /// Command line options that resolve it, such as `--laser 0,0,180`: alternatives.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub options: Vec<String>,
 }
@@ -69,25 +69,25 @@ impl Remark {
         }
     }
 
-    /// Something that is as it should be.
+    /// A remark that something is correct.
     #[must_use]
     pub fn good(part: Part, text: String) -> Self {
         Self::new(part, Verdict::Good, text)
     }
 
-    /// Something that was mended.
+    /// A remark that something was corrected.
     #[must_use]
     pub fn mended(part: Part, text: String) -> Self {
         Self::new(part, Verdict::Mended, text)
     }
 
-    /// Something that is wrong.
+    /// A remark that something is wrong.
     #[must_use]
     pub fn wrong(part: Part, text: String) -> Self {
         Self::new(part, Verdict::Wrong, text)
     }
 
-    /// The same remark with an option more that answers it.
+    /// Adds an option that resolves it.
     #[must_use]
     pub fn with_option(mut self, option: impl AsRef<str>) -> Self {
         self.options.push(option.as_ref().to_owned());

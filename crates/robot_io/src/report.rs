@@ -1,8 +1,7 @@
-//! The report of a run: one HTML file with pictures, which needs no script and no other file.
+//! Report of a run as one HTML file with pictures, without scripts or other files.
 //!
-//! Map, way, loops and uncertainty are one picture; χ² and the uncertainty over time are two more.
-//! Below stand what should be doubted, every loop with its evidence, and the keyframes. Colours follow
-//! the reader's choice of light or dark.
+//! One picture shows map, path, loops and uncertainty; two charts show χ² and the uncertainty over time. Below are the
+//! doubts, every loop with its evidence, and the keyframes. Colours follow the reader's light or dark scheme.
 
 mod chart;
 mod picture;
@@ -13,7 +12,7 @@ use crate::counted::counted;
 use crate::map_image::MapImage;
 use crate::quality::{LinkQuality, Quality};
 
-/// Longer tables hold the first rows and say so.
+/// Longer tables are cut after this many rows, with a note.
 const MOST_ROWS: usize = 2000;
 
 const STYLE: &str = "
@@ -39,39 +38,39 @@ td.text, th.text { text-align: left }
 .key { color: var(--faint) }
 ";
 
-/// What the report is made of.
+/// Content of the report.
 #[derive(Clone, Copy, Debug)]
 pub struct Report<'a> {
-    /// What was run: the name of the log.
+    /// Name of the log.
     pub name: &'a str,
-    /// Scans taken.
+    /// Number of scans.
     pub scans: usize,
     /// Keyframes, loops and doubts.
     pub quality: &'a Quality,
-    /// Time (s) and χ² of the graph, after each keyframe.
+    /// Time (s) and χ² of the graph after each keyframe.
     pub chi2_over_time: &'a [[f64; 2]],
-    /// The map, where there is one.
+    /// The map, if there is one.
     pub map: Option<&'a MapImage>,
-    /// Sentences about the log and the grade, a paragraph each.
+    /// Sentences about the log and its evaluation, one paragraph each.
     pub remarks: &'a [String],
 }
 
 impl Report<'_> {
-    /// The whole file.
+    /// The complete HTML file.
     #[must_use]
     pub fn html(&self) -> String {
         let quality = self.quality;
-        let name = escaped(self.name);
+        let name = escape_html(self.name);
         let closed = quality.tried.iter().filter(|tried| tried.accepted);
         let mut page = format!(
             "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width\">\n<title>Map of {name}</title>\n\
              <style>{STYLE}</style>\n<h1>Map of {name}</h1>\n"
         );
-        say(
+        push_line(
             &mut page,
             format_args!(
-                "<p>{} became {} on a way of {:.1} m. Loops on the way: {} looked at, {} closed; \
+                "<p>{} gave {} over a path length of {:.1} m. Loops during the run: {} tested, {} accepted; \
                  in the graph at the end: {}.</p>",
                 counted(self.scans, "scan"),
                 counted(quality.keyframes.len(), "keyframe"),
@@ -82,33 +81,31 @@ impl Report<'_> {
             ),
         );
         for remark in self.remarks {
-            say(&mut page, format_args!("<p>{}</p>", escaped(remark)));
+            push_line(&mut page, format_args!("<p>{}</p>", escape_html(remark)));
         }
-        say(&mut page, format_args!("<h2>What should be doubted</h2>"));
+        push_line(&mut page, format_args!("<h2>Doubts</h2>"));
         if quality.doubts.is_empty() {
-            say(
+            push_line(
                 &mut page,
-                format_args!(
-                    "<p>Nothing that the graph could tell: no measurement disagrees with the rest of it.</p>"
-                ),
+                format_args!("<p>None: no measurement contradicts the rest of the graph.</p>"),
             );
         } else {
-            say(&mut page, format_args!("<ul>"));
+            push_line(&mut page, format_args!("<ul>"));
             for doubt in &quality.doubts {
-                say(&mut page, format_args!("<li>{}</li>", escaped(doubt)));
+                push_line(&mut page, format_args!("<li>{}</li>", escape_html(doubt)));
             }
-            say(&mut page, format_args!("</ul>"));
+            push_line(&mut page, format_args!("</ul>"));
         }
-        say(&mut page, format_args!("<h2>The map</h2>"));
+        push_line(&mut page, format_args!("<h2>The map</h2>"));
         page.push_str(&picture::map(quality, self.map));
-        say(
+        push_line(
             &mut page,
             format_args!(
-                "<p class=\"key\">The line is the way over the keyframes. A full line across it is a loop of \
-                 the graph, a dashed one a loop that was refused. Ellipses show where the robot may have been (3σ).</p>"
+                "<p class=\"key\">The line is the path over the keyframes. A solid line between keyframes is a loop of \
+                 the graph, a dashed one a rejected loop. Ellipses are the position's uncertainty (3σ).</p>"
             ),
         );
-        say(&mut page, format_args!("<h2>Over time</h2>"));
+        push_line(&mut page, format_args!("<h2>Over time</h2>"));
         let start_s = quality.keyframes.first().map_or(0.0, |k| k.stamp_s);
         let loops: Vec<f64> = closed
             .filter_map(|tried| Some(quality.keyframes.get(tried.from)?.stamp_s - start_s))
@@ -121,18 +118,18 @@ impl Report<'_> {
             .map(|keyframe| [keyframe.stamp_s - start_s, keyframe.sigma_m()])
             .collect();
         page.push_str(&chart::over_time("σ of the position, m", &sigma, &loops));
-        say(
+        push_line(
             &mut page,
             format_args!(
-                "<p class=\"key\">Seconds since the first scan. Upright lines are the loops that were closed.</p>"
+                "<p class=\"key\">Seconds since the first scan. Vertical lines are accepted loops.</p>"
             ),
         );
-        say(&mut page, format_args!("<h2>Loops</h2>"));
+        push_line(&mut page, format_args!("<h2>Loops</h2>"));
         if quality.tried.is_empty() && quality.links.is_empty() {
-            say(&mut page, format_args!("<p>No place was seen twice.</p>"));
+            push_line(&mut page, format_args!("<p>No location was revisited.</p>"));
         }
         loops_table(&mut page, "In the graph at the end", &quality.links);
-        loops_table(&mut page, "Tried on the way", &quality.tried);
+        loops_table(&mut page, "Tested during the run", &quality.tried);
         keyframes_table(&mut page, quality);
         page.push_str("</html>\n");
         page
@@ -143,21 +140,21 @@ fn loops_table(page: &mut String, title: &str, loops: &[LinkQuality]) {
     if loops.is_empty() {
         return;
     }
-    say(page, format_args!("<h3>{title}</h3>"));
-    say(
+    push_line(page, format_args!("<h3>{title}</h3>"));
+    push_line(
         page,
         format_args!(
-            "<div class=\"scroll\"><table><tr><th>from<th>to<th>share<th>fit, m<th>points<th>margin<th>χ²<th>gate\
+            "<div class=\"scroll\"><table><tr><th>from<th>to<th>score<th>RMSE, m<th>inliers<th>margin<th>χ²<th>gate\
              <th class=\"text\">verdict</tr>"
         ),
     );
     for tried in loops.iter().take(MOST_ROWS) {
         let verdict = match (&tried.reason, tried.accepted) {
             (_, true) => "closed".to_owned(),
-            (Some(why), false) => format!("refused: {why}"),
+            (Some(why), false) => format!("rejected: {why}"),
             (None, false) => "refused".to_owned(),
         };
-        say(
+        push_line(
             page,
             format_args!(
                 "<tr><td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{:.1}<td class=\"text\">{}</tr>",
@@ -169,16 +166,16 @@ fn loops_table(page: &mut String, title: &str, loops: &[LinkQuality]) {
                 number(tried.margin, 3),
                 number(tried.chi2, 1),
                 tried.gate_chi2,
-                escaped(&verdict)
+                escape_html(&verdict)
             ),
         );
     }
-    say(page, format_args!("</table></div>"));
+    push_line(page, format_args!("</table></div>"));
     more(page, loops.len());
 }
 
 fn keyframes_table(page: &mut String, quality: &Quality) {
-    say(
+    push_line(
         page,
         format_args!(
             "<details><summary>All keyframes</summary><div class=\"scroll\"><table>\
@@ -187,7 +184,7 @@ fn keyframes_table(page: &mut String, quality: &Quality) {
     );
     for (index, keyframe) in quality.keyframes.iter().take(MOST_ROWS).enumerate() {
         let [x, y, theta] = keyframe.pose;
-        say(
+        push_line(
             page,
             format_args!(
                 "<tr><td>{index}<td>{:.2}<td>{x:.3}<td>{y:.3}<td>{:.2}<td>{:.3}<td>{:.3}</tr>",
@@ -198,34 +195,34 @@ fn keyframes_table(page: &mut String, quality: &Quality) {
             ),
         );
     }
-    say(page, format_args!("</table></div>"));
+    push_line(page, format_args!("</table></div>"));
     more(page, quality.keyframes.len());
-    say(page, format_args!("</details>"));
+    push_line(page, format_args!("</details>"));
 }
 
 fn more(page: &mut String, rows: usize) {
     if rows > MOST_ROWS {
-        say(
+        push_line(
             page,
             format_args!(
-                "<p class=\"key\">{} more stand in quality.json.</p>",
+                "<p class=\"key\">{} more rows are in quality.json.</p>",
                 rows - MOST_ROWS
             ),
         );
     }
 }
 
-/// A number with so many digits behind the point; a dash where there is none.
+/// A number with `digits` decimals, or a dash if there is none.
 fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or("–".to_owned(), |value| format!("{value:.digits$}"))
 }
 
-fn say(page: &mut String, text: impl Display) {
+fn push_line(page: &mut String, text: impl Display) {
     writeln!(page, "{text}").expect("memory takes text");
 }
 
-/// Text from outside as text.
-fn escaped(text: &str) -> String {
+/// Escapes external text for HTML.
+fn escape_html(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
@@ -277,8 +274,8 @@ mod tests {
             remarks: &["<b>bold</b>".to_owned()],
         };
         let page = report.html();
-        assert!(page.contains("3 scans became 3 keyframes on a way of 2.0 m"));
-        assert!(page.contains("&lt;b&gt;bold") && page.contains("refused: a &lt; b"));
+        assert!(page.contains("3 scans gave 3 keyframes over a path length of 2.0 m"));
+        assert!(page.contains("&lt;b&gt;bold") && page.contains("rejected: a &lt; b"));
         for word in ["<script", "http:", "https:", "src=", "href=", "NaN", "inf"] {
             assert!(!page.contains(word), "{word}");
         }
@@ -322,7 +319,7 @@ mod tests {
             let paper = colour("--paper: ");
             for text in [colour(""), colour("--faint: ")] {
                 let (light, dark) = (text.max(paper), text.min(paper));
-                // 4.5: what WCAG 2.2 asks for, level AA.
+                // 4.5: contrast that WCAG 2.2 requires, level AA.
                 assert!((light + 0.05) / (dark + 0.05) >= 4.5, "{scheme}");
             }
         }
@@ -339,7 +336,7 @@ mod tests {
             remarks: &[],
         }
         .html();
-        assert!(page.contains("No place was seen twice"));
+        assert!(page.contains("No location was revisited"));
         assert!(!page.contains("NaN") && !page.contains("inf"));
     }
 }

@@ -1,4 +1,4 @@
-//! Logs of lines in the order of time, with stamps that were mended and odometry without jumps.
+//! Text logs in the order of time, with corrected stamps and odometry without jumps.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -8,23 +8,23 @@ use pr_geom::SE2;
 
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
 use crate::log_bytes::LogBytes;
+use crate::odometry_poses::{jumps_remark, take_jumps_out};
 use crate::remark::Remark;
 use crate::stamps::MendedStamps;
-use crate::wheel_poses::{jumps_remark, take_jumps_out};
 
-/// A frame waits for so many others at most that stand after it and were taken before it.
+/// Most frames that wait for an earlier one which comes later in the file.
 const MOST_WAITING: usize = 1024;
 
-/// A frame under its time, in an order that whole numbers have.
+/// Stamp as an ordered integer, and number of the frame.
 type Key = (u64, usize);
 
-/// Frames whose stamps and odometry were mended by a pass over all of the log.
+/// Frames whose stamps and odometry were corrected by a pass over the whole log.
 struct Restamped<R> {
     inner: R,
     stamps_s: Vec<f64>,
     /// The odometry of each frame; empty if it does not jump.
     odometry: Vec<Option<SE2>>,
-    said: Vec<Remark>,
+    remarks: Vec<Remark>,
     /// Earliest stamp of any frame after this one, s.
     earliest_after_s: Vec<f64>,
     waiting: BTreeMap<Reverse<Key>, LogFrame>,
@@ -33,33 +33,33 @@ struct Restamped<R> {
     notes: LogNotes,
 }
 
-/// A reader of a log of lines: as it is if its stamps are in order and its odometry does not jump, else mended.
+/// Opens a text log; corrects it if its stamps are out of order or its odometry jumps.
 ///
 /// # Errors
-/// What the system says.
+/// If the system cannot read the bytes.
 pub fn restamped<'a, R: LogReader + 'a>(
     bytes: &LogBytes<'a>,
     reader: impl Fn(Box<dyn io::BufRead + 'a>) -> R,
 ) -> io::Result<Box<dyn LogReader + 'a>> {
     let mut first = reader(bytes.stream()?);
     let (mut stamps_s, mut odometry) = (Vec::new(), Vec::new());
-    // What goes wrong here goes wrong again, and is told then.
+    // Errors recur in the second pass and are reported there.
     while let Ok(Some(frame)) = first.next_frame() {
         stamps_s.push(frame.stamp_s);
         odometry.push(frame.odometry);
     }
     let inner = reader(bytes.stream()?);
-    let mut said = Vec::new();
+    let mut remarks = Vec::new();
     if let Some(mended) = mended_stamps(&stamps_s) {
-        said = mended.remarks("scans");
+        remarks = mended.remarks("scans");
         stamps_s = mended.stamps_s;
     }
     let jumps = without_jumps(&stamps_s, &mut odometry);
     if jumps.is_empty() {
         odometry.clear();
     }
-    said.extend(jumps_remark(&jumps));
-    if said.is_empty() {
+    remarks.extend(jumps_remark(&jumps));
+    if remarks.is_empty() {
         return Ok(Box::new(inner));
     }
     let mut earliest_s = f64::INFINITY;
@@ -75,7 +75,7 @@ pub fn restamped<'a, R: LogReader + 'a>(
     earliest_after_s.reverse();
     Ok(Box::new(Restamped {
         inner,
-        said,
+        remarks,
         stamps_s,
         odometry,
         earliest_after_s,
@@ -86,9 +86,9 @@ pub fn restamped<'a, R: LogReader + 'a>(
     }))
 }
 
-/// Stamps in an order that a clock may have had; none if they are so.
+/// Corrected stamps; `None` if they are in order.
 fn mended_stamps(stamps_s: &[f64]) -> Option<MendedStamps> {
-    // A log may count its frames from 0, which is a stamp here.
+    // A log may count its frames from 0, which would be an unset stamp.
     let least_s = stamps_s.iter().copied().fold(f64::INFINITY, f64::min);
     let moved: Vec<f64> = stamps_s
         .iter()
@@ -108,7 +108,7 @@ fn mended_stamps(stamps_s: &[f64]) -> Option<MendedStamps> {
     Some(mended)
 }
 
-/// Takes the jumps out of the odometry of frames with these stamps; returns the stamps of the jumps, s.
+/// Removes jumps from the odometry of frames with these stamps; returns the stamps of the jumps, s.
 fn without_jumps(stamps_s: &[f64], odometry: &mut [Option<SE2>]) -> Vec<f64> {
     let known = odometry.iter().enumerate();
     let mut order: Vec<(usize, SE2)> = known.filter_map(|(k, pose)| Some((k, (*pose)?))).collect();
@@ -145,7 +145,7 @@ impl<R: LogReader> LogReader for Restamped<R> {
             }
             let frame = self.inner.next_frame();
             self.notes.clone_from(self.inner.notes());
-            self.notes.warnings.extend(self.said.iter().cloned());
+            self.notes.warnings.extend(self.remarks.iter().cloned());
             match frame? {
                 Some(mut frame) => {
                     if let Some(&stamp_s) = self.stamps_s.get(self.read) {
@@ -168,7 +168,7 @@ impl<R: LogReader> LogReader for Restamped<R> {
     }
 }
 
-/// The bits of a finite number as a whole number in the same order.
+/// Maps a finite number to an integer in the same order.
 fn ordered(value: f64) -> u64 {
     let bits = value.to_bits();
     if bits >> 63 == 0 {
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn odometry_that_starts_again_goes_on_where_it_was() {
+    fn restarted_odometry_continues_the_path() {
         let lines = |k: u32| {
             let (x, k) = (0.1 * f64::from(k % 30), 0.1 * f64::from(k));
             format!("FLASER 3 1 1 1 {x} 0 0 {x} 0 0 {k} h {k}\n")
@@ -217,12 +217,12 @@ mod tests {
         while let Some(frame) = reader.next_frame().unwrap() {
             last = frame.odometry;
         }
-        // 29 steps before and 29 after the start in between.
+        // 29 steps before and 29 after the restart.
         assert!((last.unwrap().x() - 5.8).abs() < 1e-9, "{last:?}");
-        let said = &reader.notes().warnings[0].text;
+        let remarks = &reader.notes().warnings[0].text;
         assert!(
-            said.starts_with("odometry jumps 1 time, first at 3.00 s"),
-            "{said}"
+            remarks.starts_with("odometry jumps 1 time, first at 3.00 s"),
+            "{remarks}"
         );
     }
 
@@ -231,9 +231,9 @@ mod tests {
         let good: Vec<f64> = (0..40).map(f64::from).collect();
         assert_eq!(stamps(&log(good.iter().copied())).0.len(), 40);
         let swapped = good.chunks(2).flat_map(|two| [two[1] + 5.0, two[0] + 5.0]);
-        let (found, said) = stamps(&log(swapped));
+        let (found, remarks) = stamps(&log(swapped));
         assert!(found.windows(2).all(|two| two[0] < two[1]) && found.len() == 40);
-        assert!(said[0].text.contains("sorted by stamp"), "{said:?}");
+        assert!(remarks[0].text.contains("sorted by stamp"), "{remarks:?}");
         let reset = good.iter().map(|stamp_s| {
             if *stamp_s < 20.0 {
                 stamp_s + 100.0
@@ -241,8 +241,8 @@ mod tests {
                 stamp_s - 19.0
             }
         });
-        let (found, said) = stamps(&log(reset));
+        let (found, remarks) = stamps(&log(reset));
         assert!(found.windows(2).all(|two| two[0] < two[1]) && found.len() == 40);
-        assert!(said[0].text.contains("steps back"), "{said:?}");
+        assert!(remarks[0].text.contains("steps back"), "{remarks:?}");
     }
 }

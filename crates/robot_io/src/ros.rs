@@ -1,22 +1,22 @@
-//! Recordings of ROS: MCAP and SQLite files of ROS 2 and bags of ROS 1, through one set of messages.
+//! ROS recordings: MCAP and SQLite files of ROS 2 and bags of ROS 1, with one set of messages.
 //!
 //! A container yields messages with topic, type and bytes: `mcap_file`, `sqlite_file` or `bag_file`. A recording
-//! is read twice. A `survey` finds what is in it: topics, transforms, odometry and the times of scans. A
-//! `plan` chooses among them, puts all clocks together and says where the laser sits. Then a
+//! is read twice. A `survey` collects topics, transforms, odometry and the stamps of scans. A
+//! `plan` selects among them, aligns the clocks and determines the mounting. Then a
 //! `cursor` for each laser yields its scans in the order of time.
 //!
-//! | type | what it gives |
+//! | type | use |
 //! |---|---|
 //! | `sensor_msgs/LaserScan` | scans with their geometry and the time of each beam |
-//! | `sensor_msgs/MultiEchoLaserScan` | the same of the first echo |
-//! | `sensor_msgs/PointCloud2` | scans, where the cloud is one ring or heights are given to cut it by |
+//! | `sensor_msgs/MultiEchoLaserScan` | scans of the first echo |
+//! | `sensor_msgs/PointCloud2` | scans, if the cloud is one ring or a height band is given |
 //! | `nav_msgs/Odometry` | the body's pose by odometry |
-//! | `tf2_msgs/TFMessage` | where the laser sits, and odometry where no better one is recorded |
+//! | `tf2_msgs/TFMessage` | mounting of the laser, and odometry if there is no better source |
 //!
-//! Everything is found by type; [`LogOptions`] chooses where there are several.
+//! Topics are found by type; [`LogOptions`] chooses if there are several.
 //!
-//! Chunks may be compressed by lz4, zstd (MCAP) and bzip2 (bags). In memory are a chunk and the message under
-//! way, the times of all scans and the poses of odometry, up to a bound.
+//! Chunks may be compressed by lz4, zstd (MCAP) and bzip2 (bags). Memory holds one chunk and one message, the stamps of
+//! all scans and the poses of odometry, up to a bound.
 //!
 //! [`LogOptions`]: crate::log::LogOptions
 

@@ -1,16 +1,16 @@
-//! A folder of rosbag2: which files it has, by its `metadata.yaml`.
+//! Files of a rosbag2 folder, by its `metadata.yaml`.
 
-/// The name of the file that describes a recording.
+/// Name of the file that describes a recording.
 pub const METADATA: &str = "metadata.yaml";
 
-/// What a recorder or its owner packs the files of a recording with, by the ends of their names.
+/// File name extensions of compressed recordings.
 const PACKED: [&str; 3] = [".zstd", ".zst", ".gz"];
 
-/// The names of the files of a recording, in their order, as `metadata.yaml` lists them.
+/// The file names of a recording in order, as `metadata.yaml` lists them.
 ///
-/// rosbag2 writes one name on each line of `relative_file_paths`; that is all that is read.
+/// Reads only `relative_file_paths`, in which rosbag2 writes one name per line.
 #[must_use]
-pub fn files_of(metadata: &str) -> Vec<String> {
+pub fn listed_files(metadata: &str) -> Vec<String> {
     let mut lines = metadata.lines();
     let mut names = Vec::new();
     let begins = |line: &str| line.trim_start().starts_with("relative_file_paths:");
@@ -26,7 +26,7 @@ pub fn files_of(metadata: &str) -> Vec<String> {
     names
 }
 
-/// Whether the name of a file is that of a recording of ROS 2, packed or not.
+/// Whether a file name is that of a ROS 2 recording, compressed or not.
 #[must_use]
 pub fn is_recording(name: &str) -> bool {
     let lower = name.to_ascii_lowercase();
@@ -37,22 +37,21 @@ pub fn is_recording(name: &str) -> bool {
     [".mcap", ".db3"].iter().any(|end| plain.ends_with(end))
 }
 
-/// Which of the files of these names make up a recording, in the order in which they are read: those that
-/// `metadata` lists, else all of ROS 2 by name.
+/// Indices of the files of a recording in reading order: those that `metadata` lists, else all ROS 2 files by name.
 ///
 /// # Errors
-/// The name of a file that is listed and not there.
+/// The name of a listed file that is missing.
 pub fn in_order(metadata: Option<&str>, names: &[String]) -> Result<Vec<usize>, String> {
-    let listed = metadata.map(files_of).unwrap_or_default();
+    let listed = metadata.map(listed_files).unwrap_or_default();
     if listed.is_empty() {
         let all = 0..names.len();
         let mut found: Vec<usize> = all.filter(|&k| is_recording(&names[k])).collect();
-        // a_10.mcap comes after a_9.mcap.
+        // a_10.mcap follows a_9.mcap.
         found.sort_by_key(|&k| (names[k].len(), &names[k]));
         return Ok(found);
     }
     let find = |listed: String| {
-        // Older versions list them from the folder above, and packing changes their ends.
+        // Older versions list them relative to the parent folder, and compression changes their extension.
         let last = listed.rsplit('/').next().unwrap_or(&listed);
         let is_it = |name: &String| {
             let end = name.strip_prefix(last);
@@ -88,8 +87,8 @@ mod tests {
     #[test]
     fn the_files_of_a_recording_come_in_their_order() {
         let text = "rosbag2_bagfile_information:\n  version: 5\n  relative_file_paths:\n    - a_0.db3\n    - \"a_1.db3\"\n  message_count: 3\n  files:\n    - path: x\n";
-        assert_eq!(files_of(text), ["a_0.db3", "a_1.db3"]);
-        assert_eq!(files_of("version: 5"), Vec::<String>::new());
+        assert_eq!(listed_files(text), ["a_0.db3", "a_1.db3"]);
+        assert_eq!(listed_files("version: 5"), Vec::<String>::new());
         assert!(is_recording("a.db3.zstd") && is_recording("A.MCAP") && !is_recording("a.yaml"));
     }
 }

@@ -1,4 +1,4 @@
-//! A log through the pipeline, with what its owner should know of it.
+//! Runs the pipeline on a log and collects messages for the user.
 
 use ch16_slam2d::loops::LoopVerification;
 pub use ch16_slam2d::pipeline::OdometryUse;
@@ -10,54 +10,55 @@ use pr_geom::SE2;
 use crate::evidence::{PoorFit, TriedLoop};
 use crate::log::LogFrame;
 use crate::quality::Quality;
-use crate::session::{MappedGraph, Session, places_kept};
+use crate::session::{MappedGraph, Session, selected_scan_poses};
 use crate::settings::Setting;
 use crate::trajectory::{StampedPose, Trajectory};
 
-/// What is said of a log in which no beam tells anything.
-pub const NOTHING_SEEN: &str = "no beam of any keyframe has a range between the shortest and the longest that the sensor tells";
+/// Message for a log without any return.
+pub const NOTHING_SEEN: &str =
+    "no beam of any keyframe has a range between the sensor's shortest and longest range";
 
-/// Wheels that stand still in a log of so many scans are told: they may not have been recorded.
+/// Odometry without motion in this many scans is reported: it may not have been recorded.
 const STILL_SCANS: usize = 20;
 
-/// Scans of which less than this fits are told.
+/// Scans with a lower score are reported.
 const POOR_SCORE: f64 = 0.5;
 
-/// A log under way: the pipeline of the core, and the evidence for whoever judges its map.
+/// A run over a log: the pipeline of the core, and the evidence for the quality report.
 pub struct LogRun {
     settings: Vec<(&'static Setting, f64)>,
     pipeline: Pipeline,
-    /// How many of its scans are those of a session.
+    /// Number of scans that belong to a resumed session.
     resumed: usize,
-    /// Where the beams point, without ranges.
+    /// Beam geometry, without ranges.
     sensor: Option<LaserScan>,
     loops: Vec<TriedLoop>,
     links: Vec<LoopVerification>,
     poor: Vec<PoorFit>,
     late: usize,
-    /// Scans for which the wheels told that they stand still; none once they moved.
+    /// Number of scans with zero odometry motion; `None` once the robot moved.
     still: Option<usize>,
     refused: Option<FrameError>,
-    /// Where the beams of the log point that a session goes on with, where it is not as in the session.
+    /// Beam geometry of a log that continues a session, if it differs from the session's.
     other_sensor: Option<LaserScan>,
 }
 
-/// What is said of a log with scans that are not after the one before them; nothing where it has none.
+/// Message on scans whose stamp is not later than the one before; `None` if there are none.
 #[must_use]
 pub fn late_scans(name: &str, late: usize) -> Option<String> {
     match late {
         0 => None,
         1 => Some(format!(
-            "{name}: one scan is not after the one before it and was left out"
+            "{name}: one scan is not later than the one before it and was skipped"
         )),
         _ => Some(format!(
-            "{name}: {late} scans are not after the one before them and were left out"
+            "{name}: {late} scans are not later than the one before them and were skipped"
         )),
     }
 }
 
 impl LogRun {
-    /// A run that has seen nothing.
+    /// An empty run.
     #[must_use]
     pub fn new(odometry_use: OdometryUse) -> Self {
         Self::with_pipeline(Pipeline::new(odometry_use))
@@ -79,28 +80,27 @@ impl LogRun {
         }
     }
 
-    /// The same run with another value of a setting, if it can take that value.
+    /// Sets a parameter, if the value is valid.
     #[must_use]
     pub fn with_setting(mut self, setting: &'static Setting, value: f64) -> Self {
         self.settings.push((setting, value));
         self
     }
 
-    /// A run that goes on where a session ended, in the same odometry's frame: its first scan is the
-    /// one after the session's last.
+    /// Continues a session in the same odometry frame: the first scan is the one after the session's last.
     ///
     /// # Errors
-    /// Where the session contradicts itself.
+    /// If the session is inconsistent.
     pub fn resume(session: &Session, odometry_use: OdometryUse) -> Result<Self, SnapshotError> {
         let slam = Slam::restore(&session.driven)?;
         Ok(Self::holding(session, slam, odometry_use))
     }
 
-    /// A run that stands where a session was saved, with its map as it was linked at the end: to be looked
-    /// at and changed by hand, not to be gone on with. What it is saved as, a run goes on with.
+    /// Restores a session with its map as optimized at the end, for viewing and manual changes, not for further scans.
+    /// A session saved from it can be continued.
     ///
     /// # Errors
-    /// Where the session contradicts itself.
+    /// If the session is inconsistent.
     pub fn reopen(session: &Session) -> Result<Self, SnapshotError> {
         let mut slam = Slam::restore(&session.driven)?;
         *slam.graph_mut() = session.graph();
@@ -109,7 +109,7 @@ impl LogRun {
         Ok(run)
     }
 
-    /// A run with what a session has seen.
+    /// A run with the state of a session.
     fn holding(session: &Session, slam: Slam, odometry_use: OdometryUse) -> Self {
         let keyframes = session.driven.keyframes.iter().enumerate();
         let of_keyframes = keyframes.map(|(number, keyframe)| ScanPose {
@@ -117,10 +117,10 @@ impl LogRun {
             keyframe: number,
             keyframe_from_body: SE2::identity(),
         });
-        let scans = if session.places.is_empty() {
+        let scans = if session.scan_poses.is_empty() {
             of_keyframes.collect()
         } else {
-            session.places.clone()
+            session.scan_poses.clone()
         };
         let pipeline = Pipeline::resume(slam, scans, session.last_odometry, odometry_use);
         Self {
@@ -129,8 +129,8 @@ impl LogRun {
         }
     }
 
-    /// Takes the next scan; none where it is left out, because it is not after the one before it or
-    /// because its numbers are no scan.
+    /// Takes the next scan; returns `None` if the scan is skipped because its stamp is not later than the one before or
+    /// because it is invalid.
     pub fn step(&mut self, log: LogFrame) -> Option<SlamReport> {
         if self.pipeline.slam().is_none() && !self.settings.is_empty() {
             let mut robot = RobotConfig::for_scan(&log.scan);
@@ -177,7 +177,7 @@ impl LogRun {
         Some(report)
     }
 
-    /// Says that no scan follows: loops that wait are closed where nothing contradicts them.
+    /// Ends the run: pending loops are accepted unless something contradicts them.
     pub fn finish(&mut self) {
         if let Some(concluded) = self.pipeline.finish() {
             self.links = concluded.links;
@@ -185,7 +185,7 @@ impl LogRun {
         }
     }
 
-    /// Keeps what became of loops; one that waited is the same loop once it is closed.
+    /// Records the results of loops; a pending loop is updated once it is accepted.
     fn note(&mut self, attempts: &[LoopAttempt]) {
         for attempt in attempts {
             let found = &attempt.verification;
@@ -200,59 +200,58 @@ impl LogRun {
         }
     }
 
-    /// Whether the graph holds a loop: those that were closed may have been taken out by others since.
+    /// Whether the graph contains a loop: an accepted loop may have been removed since.
     #[must_use]
-    pub fn holds(&self, tried: &TriedLoop) -> bool {
+    pub fn has_loop(&self, tried: &TriedLoop) -> bool {
         let measured = tried.verification.registered;
         let graph = self.slam().map(Slam::graph);
         let mut edges = graph.into_iter().flat_map(|graph| graph.edges());
         tried.accepted && edges.any(|view| view.edge.measurement == measured)
     }
 
-    /// The estimator; none before the first scan.
+    /// The estimator; `None` before the first scan.
     #[must_use]
     pub fn slam(&self) -> Option<&Slam> {
         self.pipeline.slam()
     }
 
-    /// The estimator, for who changes its graph by hand; none before the first scan.
+    /// The estimator, for manual changes of its graph; `None` before the first scan.
     pub fn slam_mut(&mut self) -> Option<&mut Slam> {
         self.pipeline.slam_mut()
     }
 
-    /// Says which links are in the graph, after it was changed by hand.
+    /// Sets the links of the graph after it was changed manually.
     pub fn set_links(&mut self, links: Vec<LoopVerification>) {
         self.links = links;
     }
 
-    /// Scans taken, without those of a session that it goes on from.
+    /// Number of scans taken, without those of a resumed session.
     #[must_use]
     pub fn scans(&self) -> usize {
         self.pipeline.scans().len() - self.resumed
     }
 
-    /// The loops that were looked at, in order.
+    /// The loops tested, in order.
     #[must_use]
     pub fn loops(&self) -> &[TriedLoop] {
         &self.loops
     }
 
-    /// The links of the last pass after the end, accepted or not.
+    /// The links of the final pass, accepted or not.
     #[must_use]
     pub fn links(&self) -> &[LoopVerification] {
         &self.links
     }
 
-    /// The scans that hardly fit.
+    /// The scans with a poor fit.
     #[must_use]
     pub fn poor(&self) -> &[PoorFit] {
         &self.poor
     }
 
-    /// All that the run is, to be saved; none before the first scan.
+    /// The state of the run for saving; `None` before the first scan.
     ///
-    /// To go on from it is to go on from the last scan: what [`finish`](Self::finish) linked anew is
-    /// kept beside it.
+    /// A continued run starts from the last scan; the links of [`finish`](Self::finish) are kept separately.
     #[must_use]
     pub fn session(&self) -> Option<Session> {
         let slam = self.slam().filter(|_| self.pipeline.is_finished());
@@ -260,13 +259,13 @@ impl LogRun {
         Some(Session {
             driven: self.pipeline.snapshot_before_finish()?,
             mapped: graph.map(MappedGraph::from_graph),
-            places: places_kept(self.pipeline.scans()),
+            scan_poses: selected_scan_poses(self.pipeline.scans()),
             sensor: self.sensor.clone(),
             last_odometry: self.pipeline.last_odometry(),
         })
     }
 
-    /// What is known of the map's quality.
+    /// Evaluates the map's quality.
     pub fn quality(&mut self) -> Quality {
         Quality::new(
             self.pipeline.slam_mut(),
@@ -283,19 +282,19 @@ impl LogRun {
         keyframes.iter().any(|keyframe| !keyframe.scan.is_empty())
     }
 
-    /// Scans left out because their stamp was not after the one before.
+    /// Number of scans skipped because their stamp was not later than the one before.
     #[must_use]
     pub fn late(&self) -> usize {
         self.late
     }
 
-    /// Why the first scan was refused whose numbers are no scan.
+    /// The reason why the first invalid scan was rejected.
     #[must_use]
     pub fn refused(&self) -> Option<FrameError> {
         self.refused
     }
 
-    /// What the owner of a log should know of the scans that were taken from it, and of those left out.
+    /// Messages for the user on the scans that were taken and those that were skipped.
     #[must_use]
     pub fn sentences(&self, name: &str) -> Vec<String> {
         let other = self.sensor.as_ref().zip(self.other_sensor.as_ref());
@@ -303,37 +302,37 @@ impl LogRun {
             let [known, other] = [known, other].map(|sensor| {
                 let degrees = |angle_rad: f64| angle_rad.to_degrees();
                 format!(
-                    "start at {:.1}° and stand {:.2}° apart",
+                    "start at {:.1}° with a step of {:.2}°",
                     degrees(sensor.first_angle_rad),
                     degrees(sensor.angle_step_rad)
                 )
             });
             format!(
-                "{name}: its beams {other}, and those of the session {known}; the values stay those for the \
+                "{name}: its beams {other}, and those of the session {known}; the parameters remain those of the \
                  session's scanner"
             )
         });
         let refused = self
             .refused
-            .map(|problem| format!("{name}: scans were left out; the first because {problem}"));
+            .map(|problem| format!("{name}: scans were skipped; the first because {problem}"));
         let late = late_scans(name, self.late);
-        let still = self.still_wheels(name);
+        let still = self.still_odometry(name);
         [other, late, still, refused]
             .into_iter()
             .flatten()
             .collect()
     }
 
-    /// What is said of wheels that never moved; nothing where they did.
-    fn still_wheels(&self, name: &str) -> Option<String> {
+    /// Message on odometry that never moved; `None` if it did.
+    fn still_odometry(&self, name: &str) -> Option<String> {
         let scans = self.still.filter(|&scans| scans >= STILL_SCANS)?;
         Some(format!(
-            "{name}: its odometry stands still for all {scans} scans; if the robot moved, leave it out with \
+            "{name}: its odometry stands still for all {scans} scans; if the robot moved, ignore it with \
              slam2d run LOG --no-odometry"
         ))
     }
 
-    /// Where every scan was taken, by the graph as it is now; those of a session come first.
+    /// The pose of every scan by the current graph; those of a resumed session come first.
     #[must_use]
     pub fn trajectory(&self) -> Trajectory {
         let poses = self.pipeline.trajectory();
@@ -342,7 +341,7 @@ impl LogRun {
     }
 }
 
-/// Whether two sensors point their beams the same way, to a thousandth of a step.
+/// Whether two sensors have the same beam geometry, to a thousandth of a step.
 fn has_same_beams(one: &LaserScan, other: &LaserScan) -> bool {
     let little_rad = 1e-3 * one.angle_step_rad.abs();
     (one.first_angle_rad - other.first_angle_rad).abs() <= little_rad

@@ -1,9 +1,8 @@
-//! Saved sessions: all that a run is, in one file, to go on with, to map, and to be found again in.
+//! Saved sessions: the complete state of a run in one file, for continuing, mapping and localization.
 //!
-//! `docs/sessions.md` describes the file byte by byte. What is read was checked: a file that is cut
-//! off, damaged, foreign or of another version ends in one sentence, and no length in it is believed
-//! beyond the bytes that are there. What is written reads back to the same estimator; writing that
-//! again gives the same bytes.
+//! `docs/sessions.md` describes the file byte by byte. Content is checked when it is read: a file that is truncated,
+//! damaged, of another format or version gives one sentence, and no length is trusted beyond the bytes that are
+//! present. A written session restores the same estimator, and writing that again gives the same bytes.
 
 mod bytes;
 mod error;
@@ -30,54 +29,53 @@ use bytes::{Cursor, Writer};
 
 /// The first bytes of a session.
 pub const MAGIC: [u8; 8] = *b"SLAM2D\r\n";
-/// The version that is written and read; version 1 belongs to an estimator that is no more.
+/// The version that is written and read.
 pub const VERSION: u32 = 3;
-/// The usual name of a session in the folder of a run.
+/// Default name of a session in the folder of a run.
 pub const FILE_NAME: &str = "session.slam2d";
-/// Larger files are refused before they are read, bytes: 150,000 keyframes.
+/// Larger files are rejected before they are read, bytes: 150,000 keyframes.
 pub const MOST_BYTES: u64 = 1 << 29;
 
-/// Magic, version and length of what follows.
+/// Bytes of magic, version and length.
 const HEAD_BYTES: usize = 20;
-/// The checksum at the end.
+/// Bytes of the checksum.
 const TAIL_BYTES: usize = 8;
 
 /// A saved session.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Session {
-    /// The estimator after its last frame, to go on with.
+    /// The estimator after its last frame.
     pub driven: SlamSnapshot,
-    /// The map as it was linked once more after the last frame, where that was done.
+    /// The map after the final pass over all keyframes, if there was one.
     pub mapped: Option<MappedGraph>,
-    /// Where the scans were taken, at most eight for each keyframe but the last; none where nobody kept
-    /// them.
-    pub places: Vec<ScanPose>,
-    /// Where the beams of the laser point, without ranges.
+    /// Poses of the scans, at most eight for each keyframe but the last; empty if they were not kept.
+    pub scan_poses: Vec<ScanPose>,
+    /// Beam geometry of the laser, without ranges.
     pub sensor: Option<LaserScan>,
-    /// Pose by the wheels at the last frame, in the odometry's frame.
+    /// Odometry pose at the last frame.
     pub last_odometry: Option<SE2>,
 }
 
-/// Scans that are kept for a keyframe that has been left.
-const PLACES_KEPT: usize = 8;
+/// Most scans kept of a keyframe that is not the last.
+const SCANS_PER_KEYFRAME: usize = 8;
 
-/// At most eight places for each keyframe but the last, evenly chosen: a robot that waits for an hour
+/// Selects at most eight scans of each keyframe but the last, evenly: a robot that waits for an hour
 /// does not fill the file.
-pub(crate) fn places_kept(places: &[ScanPose]) -> Vec<ScanPose> {
+pub(crate) fn selected_scan_poses(poses: &[ScanPose]) -> Vec<ScanPose> {
     let mut kept = Vec::new();
-    let last = places.last().map(|place| place.keyframe);
-    for of_one in places.chunk_by(|a, b| a.keyframe == b.keyframe) {
+    let last = poses.last().map(|scan| scan.keyframe);
+    for of_one in poses.chunk_by(|a, b| a.keyframe == b.keyframe) {
         let count = of_one.len();
-        if Some(of_one[0].keyframe) == last || count <= PLACES_KEPT {
+        if Some(of_one[0].keyframe) == last || count <= SCANS_PER_KEYFRAME {
             kept.extend_from_slice(of_one);
         } else {
-            kept.extend((0..PLACES_KEPT).map(|k| of_one[k * count / PLACES_KEPT]));
+            kept.extend((0..SCANS_PER_KEYFRAME).map(|k| of_one[k * count / SCANS_PER_KEYFRAME]));
         }
     }
     kept
 }
 
-/// Poses and loops after all keyframes were linked once more; what is not a loop is as it was driven.
+/// Poses and loops after the final pass; odometry edges are those of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MappedGraph {
     /// Poses of all keyframes, `world_from_body`.
@@ -87,7 +85,7 @@ pub struct MappedGraph {
 }
 
 impl MappedGraph {
-    /// What refinement changes of a graph; its loops are numbered from 0.
+    /// Extracts what the final pass changes in a graph; loops are numbered from 0.
     #[must_use]
     pub fn from_graph(graph: &PoseGraph) -> Self {
         let loops = graph
@@ -107,7 +105,7 @@ impl MappedGraph {
 }
 
 impl Session {
-    /// Whether a file that begins like this is a session.
+    /// Whether a file with these first bytes is a session.
     #[must_use]
     pub fn begins(first_bytes: &[u8]) -> bool {
         first_bytes.starts_with(&MAGIC)
@@ -138,20 +136,20 @@ impl Session {
         let edges = self.driven.edges.iter();
         let driven = edges.filter(|view| view.edge.kind == EdgeKind::Odometry);
         let mut graph = PoseGraph::from_parts(&nodes, driven.chain(&mapped.loops));
-        // The map was optimized after its last loop.
+        // The final pass optimizes after its last loop.
         graph.mark_optimized(graph.edge_count());
         graph.solved_with(jacobians)
     }
 
-    /// The scans of the keyframes with their poses, as rays from the sensor to what it saw.
-    pub fn placed_scans(&self) -> impl Iterator<Item = (SE2, LaserScan)> + '_ {
+    /// The keyframes' scans with their poses, as rays from the sensor.
+    pub fn posed_scans(&self) -> impl Iterator<Item = (SE2, LaserScan)> + '_ {
         let sensor = self.sensor.clone().unwrap_or_default();
         let cell_m = self.driven.config.scan.cell_m;
         let keyframes = self.driven.keyframes.iter().zip(self.poses());
         keyframes.map(move |(keyframe, pose)| (pose, rays(&keyframe.scan, &sensor, cell_m)))
     }
 
-    /// The file.
+    /// Serializes the session.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut body = Writer::default();
@@ -170,23 +168,23 @@ impl Session {
     /// Reads a file; `name` is what errors call it.
     ///
     /// # Errors
-    /// One sentence where it is no session that can be used.
+    /// If it is not a usable session; the message is one sentence.
     pub fn read(source: impl Read, name: &str) -> Result<Self, SessionError> {
         let mut file = Vec::new();
-        let told = |source| SessionError::Io {
+        let io_error = |source| SessionError::Io {
             name: name.to_owned(),
             source,
         };
         let mut source = source.take(MOST_BYTES + 1);
-        source.read_to_end(&mut file).map_err(told)?;
-        Self::of_bytes(&file, name)
+        source.read_to_end(&mut file).map_err(io_error)?;
+        Self::from_bytes(&file, name)
     }
 
-    /// The session in these bytes; see [`read`](Self::read).
+    /// Reads a session from these bytes; see [`read`](Self::read).
     ///
     /// # Errors
-    /// One sentence where it is no session that can be used.
-    pub fn of_bytes(file: &[u8], name: &str) -> Result<Self, SessionError> {
+    /// If it is not a usable session; the message is one sentence.
+    pub fn from_bytes(file: &[u8], name: &str) -> Result<Self, SessionError> {
         let named = || name.to_owned();
         if file.is_empty() {
             return Err(SessionError::Empty { name: named() });
@@ -252,7 +250,7 @@ impl Session {
         if let Some(sensor) = &self.sensor {
             sensor.validate().map_err(|problem| problem.to_string())?;
         }
-        // The next scan is after all of them.
+        // The next scan must be later than all of them.
         let (keyframes, end_s) = (&self.driven.keyframes, self.driven.last_stamp_s);
         let is_before_end = |last_s: Option<f64>| last_s.is_none_or(|last_s| last_s <= end_s);
         if !keyframes.is_sorted_by(|a, b| a.stamp_s < b.stamp_s)
@@ -260,21 +258,23 @@ impl Session {
         {
             return Err("the stamps of keyframes are not in order".to_owned());
         }
-        let last_place = self.places.last();
+        let last_scan = self.scan_poses.last();
         if !self
-            .places
+            .scan_poses
             .is_sorted_by(|a, b| a.stamp_s < b.stamp_s && a.keyframe <= b.keyframe)
-            || !is_before_end(last_place.map(|place| place.stamp_s))
-            || last_place.is_some_and(|place| place.keyframe >= keyframes.len())
+            || !is_before_end(last_scan.map(|scan| scan.stamp_s))
+            || last_scan.is_some_and(|scan| scan.keyframe >= keyframes.len())
         {
-            return Err("the places of scans are not in order".to_owned());
+            return Err("the poses of scans are not in order".to_owned());
         }
         let Some(mapped) = &self.mapped else {
             return Ok(());
         };
-        // The same rules hold for the map's poses and loops.
+        // The map's poses and loops must satisfy the same rules.
         if mapped.poses.len() != self.driven.nodes.len() {
-            return Err("the map has another number of poses than keyframes".to_owned());
+            return Err(
+                "the map's number of poses differs from the number of keyframes".to_owned(),
+            );
         }
         let nodes = self.driven.nodes.iter().zip(&mapped.poses);
         let as_driven = SlamSnapshot {
@@ -287,11 +287,11 @@ impl Session {
         };
         as_driven
             .check()
-            .map_err(|problem| format!("of the map, {problem}"))
+            .map_err(|problem| format!("in the map, {problem}"))
     }
 }
 
-/// FNV-1a over the bytes as words of 64 bits, the last one filled with zeros.
+/// FNV-1a over the bytes as 64-bit words, the last one padded with zeros.
 fn checksum(bytes: &[u8]) -> u64 {
     let mut digest = Digest::new();
     for word in bytes.chunks(8) {

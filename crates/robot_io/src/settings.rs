@@ -1,171 +1,195 @@
-//! The numbers of the estimator by name, so that each can be varied and its effect measured.
+//! Parameters of the estimator by name, for varying each one and measuring its effect.
 //!
-//! Names are the fields of [`RobotConfig`], joined by points. The values go through serde, which has the
-//! same names in a session's file.
+//! Names are the fields of [`RobotConfig`], joined by dots. The values pass through serde with the
+//! same names as in a session's file.
 
 use ch16_slam2d::slam::RobotConfig;
 use serde_json::{Number, Value};
 use thiserror::Error;
 
-/// A number of the estimator.
+/// A parameter of the estimator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// Its fields, joined by points.
+    /// Its fields, joined by dots.
     pub name: &'static str,
-    /// Its unit; empty for counts and shares.
+    /// Unit; empty for counts and shares.
     pub unit: &'static str,
-    /// What it does, in a few words.
+    /// Short description.
     pub about: &'static str,
 }
 
-/// Why a number was not set.
+/// Why a parameter was not set.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SettingError {
-    /// No setting has that name.
+    /// There is no parameter with that name.
     #[error("the estimator has no parameter {0}; docs/robots-parameters.md lists them")]
     Unknown(String),
-    /// It is not a number that the setting can take.
-    #[error("{name} has to be a finite number that is not negative, not {value}")]
+    /// The value is out of range.
+    #[error("{name} must be a finite non-negative number, not {value}")]
     Range {
-        /// The setting.
+        /// The parameter.
         name: &'static str,
-        /// What it should have become.
+        /// The rejected value.
         value: f64,
     },
 }
 
-/// Larger numbers are no settings.
+/// Largest plausible value.
 const MOST: f64 = 1e6;
 
 const fn setting(name: &'static str, unit: &'static str, about: &'static str) -> Setting {
     Setting { name, unit, about }
 }
 
-/// All of them, in the order of [`RobotConfig`].
+/// All parameters, in the order of [`RobotConfig`].
 pub const SETTINGS: &[Setting] = &[
-    setting("scan_cell_m", "m", "side of the cells that thin a scan"),
+    setting("scan_cell_m", "m", "cell size of the scan's grid filter"),
     setting(
         "scan_normal_radius_m",
         "m",
-        "radius for normals within one scan",
+        "neighbourhood radius for normals within one scan",
     ),
-    setting("window_sweeps", "", "last scans in the local map"),
+    setting("window_sweeps", "", "number of scans in the local map"),
     setting(
         "window_distance_m",
         "m",
-        "distance after which a scan joins it",
+        "distance after which a scan is added to the local map",
     ),
     setting(
         "normal_radius_m",
         "m",
-        "radius for normals in the local map",
+        "neighbourhood radius for normals in the local map",
     ),
     setting(
         "max_correspondence_m",
         "m",
-        "largest distance of a pair in the first stage",
+        "largest correspondence distance in the first stage",
     ),
     setting(
         "inlier_distance_m",
         "m",
-        "the same in the last stage, and of a point that fits",
+        "largest correspondence distance in the last stage, and of an inlier",
     ),
     setting(
         "point_sigma_m",
         "m",
-        "standard deviation of a point across its wall",
+        "standard deviation of a point along its normal",
     ),
     setting(
         "independent_points",
         "",
-        "independent points that a scan counts as",
+        "effective number of independent points of a scan",
     ),
     setting(
         "unseen_cost",
         "",
-        "cost of a point in unseen space, as a share of a miss",
+        "cost of a point in unobserved space, as a share of an outlier's cost",
     ),
     setting(
         "good_score",
         "",
-        "score below which the window around the prediction is searched",
+        "score below which a window around the prediction is searched",
     ),
-    setting("search_m", "m", "half width of that window"),
-    setting("search_rad", "rad", "half its range of headings"),
+    setting("search_m", "m", "half width of the search window"),
+    setting(
+        "search_rad",
+        "rad",
+        "half range of headings of the search window",
+    ),
     setting(
         "odometry.floor_m",
         "m",
-        "deviation of any motion by odometry",
+        "constant part of odometry's translational standard deviation",
     ),
-    setting("odometry.per_metre", "", "the same for each metre"),
-    setting("odometry.metre_per_rad", "m", "the same for each radian"),
+    setting(
+        "odometry.per_metre",
+        "",
+        "translational standard deviation per metre",
+    ),
+    setting(
+        "odometry.metre_per_rad",
+        "m",
+        "translational standard deviation per radian",
+    ),
     setting(
         "odometry.floor_rad",
         "rad",
-        "deviation of the heading of any motion",
+        "constant part of odometry's rotational standard deviation",
     ),
-    setting("odometry.per_rad", "", "the same for each radian"),
-    setting("odometry.rad_per_metre", "rad", "the same for each metre"),
+    setting(
+        "odometry.per_rad",
+        "",
+        "rotational standard deviation per radian",
+    ),
+    setting(
+        "odometry.rad_per_metre",
+        "rad",
+        "rotational standard deviation per metre",
+    ),
     setting(
         "keyframe_distance_m",
         "m",
-        "distance after which a keyframe is taken",
+        "distance after which a keyframe is added",
     ),
-    setting("keyframe_turn_rad", "rad", "or turn"),
+    setting(
+        "keyframe_turn_rad",
+        "rad",
+        "turn after which a keyframe is added",
+    ),
     setting(
         "loops.bundle",
         "",
-        "newest keyframes that are looked for together",
+        "number of latest keyframes matched together",
     ),
     setting(
         "loops.min_path_m",
         "m",
-        "path length to the submaps they are looked for on",
+        "least path length to a submap they are matched to",
     ),
     setting(
         "loops.window_sigmas",
         "",
-        "standard deviations that the window is wide",
+        "half width of the search window in standard deviations",
     ),
     setting(
         "loops.max_window_m",
         "m",
-        "half width of the window at most",
+        "largest half width of the search window",
     ),
     setting(
         "loops.max_turn_rad",
         "rad",
-        "half its range of headings at most",
+        "largest half range of headings of the search window",
     ),
-    setting("loops.min_score", "", "score that a loop needs"),
+    setting("loops.min_score", "", "least score of a loop"),
     setting(
         "loops.min_margin",
         "",
-        "lead that it needs over the best other place",
+        "least score margin over the next best pose",
     ),
     setting(
         "loops.unconfirmed_gate_radius_m",
         "m",
-        "half width of a window within which it needs no other loop",
+        "largest half width of the search window for acceptance without confirmation",
     ),
     setting(
         "loops.pending_distance_m",
         "m",
-        "path length on which it waits for another one",
+        "path length on which a loop waits for confirmation",
     ),
 ];
 
 impl Setting {
-    /// The setting of that name.
+    /// Finds a parameter by name.
     ///
     /// # Errors
-    /// Where there is none.
+    /// If there is none with that name.
     pub fn named(name: &str) -> Result<&'static Self, SettingError> {
         let found = SETTINGS.iter().find(|setting| setting.name == name);
         found.ok_or_else(|| SettingError::Unknown(name.to_owned()))
     }
 
-    /// Its value.
+    /// Value in a configuration.
     #[must_use]
     pub fn value(&self, config: &RobotConfig) -> f64 {
         let tree = tree(config);
@@ -173,10 +197,10 @@ impl Setting {
         value.expect("every setting is a number of the configuration")
     }
 
-    /// Whether it can take a value.
+    /// Checks whether a value is valid.
     ///
     /// # Errors
-    /// Where that is negative or not finite.
+    /// If the value is negative, not finite or too large.
     pub fn check(&self, value: f64) -> Result<(), SettingError> {
         let name = self.name;
         if value.is_finite() && value >= 0.0 {
@@ -186,10 +210,10 @@ impl Setting {
         }
     }
 
-    /// The configuration with another value; a count takes the whole part, at least 1.
+    /// Sets the value in a copy of the configuration; a count is truncated, and at least 1.
     ///
     /// # Errors
-    /// Where the value is negative or not finite.
+    /// If the value is negative, not finite or too large.
     pub fn set(&self, config: &RobotConfig, value: f64) -> Result<RobotConfig, SettingError> {
         self.check(value)?;
         let mut tree = tree(config);
@@ -209,15 +233,15 @@ impl Setting {
     }
 }
 
-/// A configuration that was read from a file, if all its numbers can be used.
+/// Checks all numbers of a configuration that was read from a file.
 ///
 /// # Errors
-/// The first number that is out of its range, in a sentence.
+/// If a number is out of range; the message names the first.
 pub(crate) fn checked(config: RobotConfig) -> Result<RobotConfig, String> {
     for setting in SETTINGS {
         let value = setting.value(&config);
-        let is_length = setting.unit == "m" && !setting.name.contains('.');
-        let is_positive = !is_length || value > 0.0;
+        let is_plausible_length = setting.unit == "m" && !setting.name.contains('.');
+        let is_positive = !is_plausible_length || value > 0.0;
         if setting.check(value).is_err() || value > MOST || !is_positive {
             return Err(format!("{} cannot be {value}", setting.name));
         }
@@ -282,7 +306,7 @@ mod tests {
         let said = reach.set(&RobotConfig::default(), -1.0).unwrap_err();
         assert_eq!(
             said.to_string(),
-            "max_correspondence_m has to be a finite number that is not negative, not -1"
+            "max_correspondence_m must be a finite non-negative number, not -1"
         );
     }
 }

@@ -1,68 +1,68 @@
-//! Stamps of one stream of messages, judged by their neighbours and by the recording's own time.
+//! Corrects the stamps of a stream of messages by their neighbours and by the time of recording.
 //!
-//! | fault | what becomes of it |
+//! | fault | correction |
 //! |---|---|
-//! | a stamp of zero | the recording's time, moved by the clocks' usual difference |
-//! | a stamp far from its neighbours | the same, or between its neighbours where no time was recorded |
-//! | a clock that steps (a reset of simulated time, a step of NTP) | what follows is moved back by the step |
-//! | several equal stamps, as of a log with six digits | spread evenly up to the next stamp |
+//! | stamp of zero | the time of recording, shifted by the clocks' median offset |
+//! | stamp far from its neighbours | the same, or interpolated if no time was recorded |
+//! | clock that steps (reset of simulated time, NTP) | later stamps are shifted back by the step |
+//! | equal stamps, as in a log with six digits | spread evenly up to the next stamp |
 //!
-//! Two messages that changed places keep their stamps: they are sorted later.
+//! Swapped messages keep their stamps; they are sorted later.
 
-mod told;
+mod remarks;
 
 use pr_geom::sort_numbers;
 
-/// Stamps on each side that judge one between them.
+/// Number of stamps on each side that a stamp is compared with.
 const NEIGHBOURS: usize = 5;
-/// A stamp nearer than this to the median of its neighbours is believed, s.
+/// A stamp closer than this to the median of its neighbours is accepted, s.
 const LEAST_OFF_S: f64 = 0.5;
 /// The same in periods of the stream.
 const LEAST_OFF_PERIODS: f64 = 8.0;
-/// Smaller steps back are messages that changed places, s.
+/// Smaller steps back are swapped messages, s.
 const LEAST_STEP_S: f64 = 1.0;
-/// Where the recording's time shows a step, it may be as small as this, s, and so many times the jitter.
+/// Smallest step that the time of recording can show, s, and in multiples of the jitter.
 const LEAST_STEP_BY_RECORD_S: f64 = 0.15;
 const JITTERS: f64 = 8.0;
-/// Scans of which only coarse stamps are known are taken to be no farther apart, s.
+/// Messages with coarse stamps are assumed to be at most this far apart, s.
 const LONGEST_SPREAD_S: f64 = 1.0;
 
 /// A step of a clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClockStep {
-    /// The first message after it.
+    /// Index of the first message after it.
     pub at: usize,
-    /// How far the clock stepped, s; negative where it went back.
+    /// Size of the step, s; negative if the clock went back.
     pub by_s: f64,
 }
 
-/// Stamps that can be used, and what was done to get them.
+/// Corrected stamps, and what was corrected.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MendedStamps {
-    /// A stamp for each message, s.
+    /// Stamp of each message, s.
     pub stamps_s: Vec<f64>,
-    /// Messages whose stamp was not set.
+    /// Number of messages without a stamp.
     pub unset: usize,
-    /// Messages whose stamp was far from those around it.
+    /// Number of messages whose stamp was far from its neighbours.
     pub outliers: usize,
-    /// Messages whose stamp was that of the one before.
+    /// Number of messages with the stamp of the one before.
     pub equal: usize,
-    /// Steps of the clock, which are taken out.
+    /// Clock steps that were removed.
     pub steps: Vec<ClockStep>,
-    /// Messages before which one with a later stamp stands.
+    /// Number of messages that follow one with a later stamp.
     pub swapped: usize,
-    /// From one message to the next, median, s.
+    /// Median time between messages, s.
     pub period_s: f64,
-    /// Stamp minus the recording's time, median, s; none where the file does not say when they were recorded.
+    /// Median of stamp minus time of recording, s; `None` if the file has no time of recording.
     pub ahead_s: Option<f64>,
 }
 
 impl MendedStamps {
-    /// Mends the stamps (s) of messages in the order of the file; `recorded_s` is when each was recorded,
-    /// NaN where the file does not say. A stamp that is not above zero was not set.
+    /// Corrects the stamps (s) of messages in the order of the file; `recorded_s` is their time of recording, NaN if
+    /// unknown. A stamp that is not positive is unset.
     #[must_use]
     pub fn new(stamps_s: &[f64], recorded_s: &[f64]) -> Self {
-        // Times of recording that are all the same say nothing.
+        // Times of recording that are all equal carry no information.
         let is_same = recorded_s.windows(2).all(|two| two[0] == two[1]);
         let recorded_s = if is_same && recorded_s.len() > 1 {
             &[]
@@ -89,8 +89,8 @@ impl MendedStamps {
         }
     }
 
-    /// Moves these stamps by the steps of another stream of the same clock: both stepped by the same, which each
-    /// knows only to its own period.
+    /// Shifts these stamps by the steps of another stream of the same clock, because each stream locates a step only to
+    /// within its own period.
     pub fn take_steps_of(&mut self, other: &Self) {
         if self.steps.len() != other.steps.len() {
             return;
@@ -105,7 +105,7 @@ impl MendedStamps {
         }
     }
 
-    /// Whether nothing was changed.
+    /// Whether nothing was corrected.
     #[must_use]
     pub fn is_unchanged(&self) -> bool {
         self.unset + self.outliers + self.equal == 0 && self.steps.is_empty()
@@ -117,7 +117,7 @@ struct Work<'a> {
     recorded_s: &'a [f64],
     is_unset: Vec<bool>,
     is_good: Vec<bool>,
-    /// Whether the recording's times tell anything that the stamps do not.
+    /// Whether the times of recording carry information beyond the stamps.
     is_recorded: bool,
 }
 
@@ -146,7 +146,7 @@ impl<'a> Work<'a> {
         (self.is_recorded && recorded_s.is_finite()).then_some(recorded_s)
     }
 
-    /// How far the good stamps of a range are ahead of the recording, median, s.
+    /// Median of stamp minus time of recording over the good stamps of a range, s.
     fn ahead_s(&self, from: usize, to: usize) -> Option<f64> {
         let range = from..to.min(self.stamps_s.len());
         let ahead = range.filter(|&at| self.is_good[at]).filter_map(|at| {
@@ -173,8 +173,8 @@ impl<'a> Work<'a> {
             if (stamp_s - typical_s).abs() <= far_s {
                 continue;
             }
-            // A pause of the recording is no fault: what stands in order is believed, unless the
-            // recording's own time contradicts it and the next stamp does not.
+            // A pause of the recording is no fault: stamps in order are accepted unless the time of recording
+            // contradicts them and the next stamp does not.
             let is_inverted = before.iter().any(|&other_s| other_s > stamp_s + far_s)
                 || after.iter().any(|&other_s| other_s < stamp_s - far_s);
             let is_reset = self.is_step_back(&stamps, k);
@@ -194,7 +194,7 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Whether stamp `k` is near to a step back: those on one side are all later than those on the other.
+    /// Whether stamp `k` is close to a step back: all stamps on one side are later than those on the other.
     fn is_step_back(&self, stamps: &[f64], k: usize) -> bool {
         let near = k.saturating_sub(NEIGHBOURS)..(k + NEIGHBOURS).min(stamps.len());
         near.filter(|&cut| cut > 0).any(|cut| {
@@ -205,7 +205,7 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// How much the difference of stamps and recorded times changes from one message to the next, median, s.
+    /// Median change of stamp minus time of recording from one message to the next, s.
     fn jitter_s(&self, good: &[usize]) -> f64 {
         let ahead = good
             .iter()
@@ -215,7 +215,7 @@ impl<'a> Work<'a> {
         median(changes.collect()).unwrap_or(0.0)
     }
 
-    /// Finds steps of the clock and moves what follows.
+    /// Finds steps of the clock and shifts the stamps after them.
     fn take_steps_out(&mut self) -> Vec<ClockStep> {
         let good: Vec<usize> = (0..self.stamps_s.len())
             .filter(|&at| self.is_good[at])
@@ -240,8 +240,7 @@ impl<'a> Work<'a> {
                 .map(|(old_s, new_s)| new_s - old_s);
             let recorded_s = self.recorded(now).zip(self.recorded(last));
             let by_record = by_record.filter(|by_s| {
-                // The stamps have to jump by it while the recording goes on as ever: a recorder that was
-                // held up is no step.
+                // The stamps must jump while the recording continues as before: a delayed recorder is no step.
                 let jumps = (moved_s - period_s - by_s).abs() < 0.5 * by_s.abs();
                 let off_s = (moved_s - period_s).abs();
                 let goes_on = recorded_s
@@ -261,7 +260,7 @@ impl<'a> Work<'a> {
         steps
     }
 
-    /// Gives the messages without a good stamp one.
+    /// Assigns stamps to the messages without a good one.
     fn fill(&mut self) {
         let all_ahead_s = self.ahead_s(0, self.stamps_s.len());
         let filled: Vec<(usize, f64)> = (0..self.stamps_s.len())
@@ -302,8 +301,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// How far stamps are ahead of the recording's times, median, s: each in its own order, so that messages which
-/// changed places count for nothing.
+/// Median of stamp minus time of recording, s. Both are sorted, which ignores swapped messages.
 fn ahead_s(stamps_s: &[f64], recorded_s: &[f64]) -> Option<f64> {
     let known = stamps_s.iter().zip(recorded_s);
     let known = known.filter(|(stamp_s, recorded_s)| (**stamp_s - **recorded_s).is_finite());
@@ -319,7 +317,7 @@ fn ahead_s(stamps_s: &[f64], recorded_s: &[f64]) -> Option<f64> {
 
 /// Spreads runs of equal stamps evenly; returns how many stamps were equal to the one before.
 ///
-/// One in twenty is left as it is: a scan that was sent twice is no fault of the clock.
+/// Up to one in twenty is left unchanged: a duplicate scan is no fault of the clock.
 fn spread_equal(stamps_s: &mut [f64]) -> usize {
     let equal = stamps_s.windows(2).filter(|two| two[0] == two[1]).count();
     if equal * 20 < stamps_s.len() || stamps_s.len() < 3 {
@@ -351,7 +349,7 @@ fn spread_equal(stamps_s: &mut [f64]) -> usize {
     equal
 }
 
-/// Stamps below the highest one before them.
+/// Number of stamps below the maximum of those before them.
 fn swapped(stamps_s: &[f64]) -> usize {
     let mut newest_s = f64::NEG_INFINITY;
     let late = stamps_s.iter().filter(|&&stamp_s| {
@@ -362,7 +360,7 @@ fn swapped(stamps_s: &[f64]) -> usize {
     late.count()
 }
 
-/// Median time from one stamp to the next later one, s; 0 of fewer than two.
+/// Median time between increasing stamps, s; 0 of fewer than two.
 fn period_s(stamps_s: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = stamps_s.iter().copied().filter(|s| s.is_finite()).collect();
     sort_numbers(&mut sorted);
@@ -378,7 +376,7 @@ fn highest(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The middle one of some numbers.
+/// Upper median.
 pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     sort_numbers(&mut values);
     values.get(values.len() / 2).copied()

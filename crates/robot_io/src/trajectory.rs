@@ -1,7 +1,7 @@
-//! Stamped poses, and the TUM format: `stamp x y z qx qy qz qw` on each line, with blanks or commas between.
+//! Stamped poses, and the TUM format: `stamp x y z qx qy qz qw` on each line, separated by blanks or commas.
 //!
-//! EuRoC's ground truth is read as well: `stamp,x,y,z,qw,qx,qy,qz` with whole nanoseconds, and more columns after
-//! them. Source: Burri et al., "The EuRoC micro aerial vehicle datasets", 2016.
+//! Also reads EuRoC's ground truth: `stamp,x,y,z,qw,qx,qy,qz` with integer nanoseconds, followed by more columns.
+//! Source: Burri et al., "The EuRoC micro aerial vehicle datasets", 2016.
 
 use std::io::{BufRead, Write};
 
@@ -9,7 +9,7 @@ use pr_geom::{SE2, math};
 use thiserror::Error;
 
 use crate::lines::{LineEnd, finite, next_line};
-use crate::place::{checked, checked_stamp_s};
+use crate::plausible::{plausible_pose, plausible_stamp_s};
 
 /// Poses in the order of time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,42 +17,42 @@ pub struct Trajectory {
     poses: Vec<StampedPose>,
 }
 
-/// A pose at a time.
+/// A pose with its stamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StampedPose {
-    /// Time, s.
+    /// Stamp, s.
     pub stamp_s: f64,
     /// `world_from_body`.
     pub pose: SE2,
 }
 
-/// Why a file of times and poses, or of times and relations, cannot be used.
+/// Why a file of poses or relations cannot be used.
 #[derive(Debug, Error)]
 pub enum TextError {
-    /// The system could not give its bytes.
+    /// The bytes could not be read.
     #[error("{name}: line {line}: {source}")]
     Io {
         /// The file's name.
         name: String,
-        /// The line at which it happened.
+        /// Line number.
         line: usize,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// A line is not what it has to be.
+    /// A line is malformed.
     #[error("{name}: line {line}: {problem}; a line is ‘{expected}’")]
     Line {
         /// The file's name.
         name: String,
-        /// Number of the line, counted from 1.
+        /// Line number, counted from 1.
         line: usize,
         /// What is wrong.
         problem: String,
         /// The fields of a line.
         expected: &'static str,
     },
-    /// There is no line in it.
-    #[error("{name} holds nothing; lines of ‘{expected}’ are expected")]
+    /// The file has no data lines.
+    #[error("{name} has no data; expected lines of ‘{expected}’")]
     Empty {
         /// The file's name.
         name: String,
@@ -61,15 +61,15 @@ pub enum TextError {
     },
 }
 
-/// Stamps as large as this are nanoseconds: eleven days after 1970.
+/// Stamps of at least this are nanoseconds: eleven days after 1970.
 const LEAST_STAMP_NS: f64 = 1e15;
-/// What a stamp of nanoseconds becomes in a whole number of 32 bits.
+/// A nanosecond stamp that overflowed a 32-bit integer.
 const OVERFLOWN: f64 = 2_147_483_647.0;
 
 const TUM_LINE: &str = "stamp x y z qx qy qz qw";
 
 impl Trajectory {
-    /// A trajectory of these poses, which stand in the order of time.
+    /// Creates a trajectory from poses in the order of time.
     #[must_use]
     pub fn new(poses: Vec<StampedPose>) -> Self {
         Self { poses }
@@ -81,10 +81,10 @@ impl Trajectory {
         &self.poses
     }
 
-    /// Reads lines of TUM or EuRoC; `#` starts a comment. Height, roll and pitch are not looked at.
+    /// Reads lines of TUM or EuRoC; `#` starts a comment. Height, roll and pitch are ignored.
     ///
     /// # Errors
-    /// The first line that is no pose, that is not after the one before it, or that there is none.
+    /// If a line is malformed or not later than the one before, or there is no line.
     pub fn read_tum(source: impl BufRead, name: &str) -> Result<Self, TextError> {
         let mut poses: Vec<StampedPose> = Vec::new();
         let mut numbers = NumberLines::new(source, name, TUM_LINE);
@@ -100,9 +100,11 @@ impl Trajectory {
                 return Err(numbers.refuse(problem.to_owned()));
             }
             if poses.last().is_some_and(|last| stamp_s <= last.stamp_s) {
-                return Err(numbers.refuse("the stamp is not after the one before it".to_owned()));
+                return Err(
+                    numbers.refuse("the stamp is not later than the one before it".to_owned())
+                );
             }
-            // Yaw of a quaternion, whatever its length.
+            // Yaw of a quaternion of any length.
             let norm = qx * qx + qy * qy + qz * qz + qw * qw;
             if norm < 1e-12 {
                 return Err(numbers.refuse("the quaternion is zero".to_owned()));
@@ -110,8 +112,8 @@ impl Trajectory {
             let sin = 2.0 * (qw * qz + qx * qy);
             let cos = qw * qw + qx * qx - qy * qy - qz * qz;
             let pose = SE2::new(x, y, math::atan2(sin, cos));
-            let stamped = checked_stamp_s(stamp_s).and_then(|stamp_s| {
-                let pose = checked(pose)?;
+            let stamped = plausible_stamp_s(stamp_s).and_then(|stamp_s| {
+                let pose = plausible_pose(pose)?;
                 Ok(StampedPose { stamp_s, pose })
             });
             poses.push(stamped.map_err(|problem| numbers.refuse(problem))?);
@@ -120,10 +122,10 @@ impl Trajectory {
         Ok(Self { poses })
     }
 
-    /// Writes TUM lines. Numbers are the shortest that read back to the same bits.
+    /// Writes TUM lines, with the shortest numbers that read back to the same bits.
     ///
     /// # Errors
-    /// Where `target` cannot take them.
+    /// If `target` fails.
     pub fn write_tum(&self, mut target: impl Write) -> std::io::Result<()> {
         for StampedPose { stamp_s, pose } in &self.poses {
             let (sin, cos) = math::sin_cos(pose.theta() / 2.0);
@@ -137,8 +139,7 @@ impl Trajectory {
         Ok(())
     }
 
-    /// The pose at a time: on the twist between the poses around it, none beyond `slack_s` (s) of
-    /// either end.
+    /// The pose at a time, interpolated on the twist between its neighbours; `None` beyond `slack_s` (s) of either end.
     #[must_use]
     pub fn at(&self, stamp_s: f64, slack_s: f64) -> Option<SE2> {
         let after = self.poses.partition_point(|pose| pose.stamp_s < stamp_s);
@@ -157,8 +158,7 @@ impl Trajectory {
         }
     }
 
-    /// The pose at each of the times of `odometry`: the nearest pose here in time, carried on by
-    /// `odometry` from there.
+    /// The pose at each stamp of `odometry`: the nearest pose of this trajectory in time, propagated by `odometry`.
     #[must_use]
     pub fn carried_by(&self, odometry: &Self) -> Self {
         if self.poses.is_empty() {
@@ -192,14 +192,14 @@ impl Trajectory {
     }
 }
 
-/// Lines of a fixed number of finite numbers.
+/// Reads lines with a fixed count of finite numbers.
 pub(crate) struct NumberLines<'a, R> {
     source: R,
     name: &'a str,
     expected: &'static str,
     line: Vec<u8>,
     number: usize,
-    /// Whether commas stand in the last line.
+    /// Whether the last line has commas.
     has_commas: bool,
 }
 
@@ -234,7 +234,7 @@ impl<'a, R: BufRead> NumberLines<'a, R> {
         })
     }
 
-    /// The numbers of the next line that is neither empty nor a comment.
+    /// Returns the numbers of the next line that is neither empty nor a comment.
     pub(crate) fn next_line<const N: usize>(&mut self) -> Result<Option<[f64; N]>, TextError> {
         loop {
             let read =
@@ -251,7 +251,7 @@ impl<'a, R: BufRead> NumberLines<'a, R> {
                 return Err(self.refuse("the line is longer than 4 MB".to_owned()));
             }
             let text = std::str::from_utf8(&self.line)
-                .map_err(|_| self.refuse("the line is no text".to_owned()))?;
+                .map_err(|_| self.refuse("the line is not UTF-8 text".to_owned()))?;
             let text = text.trim_start_matches('\u{feff}').trim();
             if text.is_empty() || text.starts_with('#') {
                 continue;
@@ -322,18 +322,18 @@ mod tests {
     #[test]
     fn wrong_lines_are_named() {
         for (text, said) in [
-            ("", "t.tum holds nothing"),
-            ("# only words\n", "t.tum holds nothing"),
+            ("", "t.tum has no data"),
+            ("# only words\n", "t.tum has no data"),
             (
                 "1 0 0 0 0 0 0 1\n2 0 0 x 0 0 0 1\n",
-                "t.tum: line 2: z has to be a finite number",
+                "t.tum: line 2: z must be a finite number",
             ),
             ("1 0 0 0 0 0 0\n", "t.tum: line 1: qw is missing"),
             ("1 0 0 0 0 0 0 0\n", "line 1: the quaternion is zero"),
-            ("1 1e9 0 0 0 0 0 1\n", "line 1: a pose has to lie within"),
+            ("1 1e9 0 0 0 0 0 1\n", "line 1: a pose must lie within"),
             (
                 "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n",
-                "line 2: the stamp is not after",
+                "line 2: the stamp is not later than",
             ),
         ] {
             let error = read(text).unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! ATE and RPE are evo's, on the files that `tests/evo/make.py` wrote with evo 1.38.1.
+//! ATE and RPE equal evo's, on the files that `tests/evo/make.py` wrote with evo 1.38.1.
 
 use robot_io::evaluate::{Alignment, PoseErrors, truth_errors};
 use robot_io::trajectory::Trajectory;
@@ -21,7 +21,7 @@ fn assert_same(found: &PoseErrors, evo: &Value) {
     ];
     for (name, value) in pairs {
         let expected = evo[name].as_f64().unwrap();
-        // 1e-9: what is promised; both round numbers below 10 a few hundred times.
+        // 1e-9: the guaranteed accuracy; both round numbers below 10 a few hundred times.
         assert!(
             (value - expected).abs() < 1e-9,
             "{name}: {value} {expected}"

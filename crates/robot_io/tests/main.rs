@@ -1,4 +1,4 @@
-//! What the readers and the grades say of files.
+//! Tests of the readers and the evaluation on files.
 
 mod evo;
 mod recorded;

@@ -1,7 +1,7 @@
-//! Recorded logs, mapped with the defaults and graded.
+//! Recorded logs, mapped with the default parameters and evaluated.
 //!
-//! The recordings carry no licence and are no part of the project: where the folder with the
-//! reference data is absent, these tests say so and pass.
+//! The recordings have no licence and are not part of the project. If the folder with the reference data is absent,
+//! these tests report it and pass.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -20,7 +20,7 @@ fn open(name: &str) -> Option<BufReader<File>> {
     File::open(folder.join(name)).ok().map(BufReader::new)
 }
 
-/// The whole log through the estimator; none without the data.
+/// Runs the estimator on the whole log; `None` without the data.
 fn mapped(log: &'static str, odometry: OdometryUse) -> Option<LogRun> {
     open(log)?;
     let bytes = LogBytes::new(move || Ok(open(log).expect("it was there")));
@@ -49,25 +49,25 @@ fn intel_is_mapped_to_eight_centimetres_with_its_loops() {
         return skip("the errors on Intel", NO_RECORDED_LOGS);
     };
     let mean_m = intel_mean_m(&run);
-    // What a trajectory scores that follows the scans perfectly is 0.06 to 0.08: README of the data.
+    // A trajectory that follows the scans perfectly has an error of 0.06 to 0.08: README of the data.
     assert!(mean_m <= 0.08, "{mean_m}");
     let closed = run.loops().iter().filter(|tried| tried.accepted).count();
-    // Three rounds, each through the same corridors and most of the rooms: 405 when this was written.
+    // Three rounds through the same corridors and most of the rooms: 405 when this was written.
     assert!(closed >= 300, "{closed}");
 }
 
 #[test]
-fn intel_without_its_wheels_is_mapped_to_eight_centimetres() {
+fn intel_without_odometry_is_mapped_to_eight_centimetres() {
     let Some(run) = mapped("intel.clf", OdometryUse::None) else {
         return skip("the errors on Intel by scans alone", NO_RECORDED_LOGS);
     };
     let mean_m = intel_mean_m(&run);
-    // As with them: what scans alone allow.
+    // The same bound as with odometry.
     assert!(mean_m <= 0.08, "{mean_m}");
 }
 
 #[test]
-fn duke_comes_back_to_where_it_began() {
+fn duke_closes_its_loop() {
     let Some(run) = mapped("duke-loop5.clf", OdometryUse::Log) else {
         return skip("the loop of Duke", NO_RECORDED_LOGS);
     };

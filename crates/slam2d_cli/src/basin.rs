@@ -1,4 +1,4 @@
-//! `slam2d basin`: where ICP ends in w16.1, from one start or a sweep of headings.
+//! `slam2d basin`: basin of convergence of ICP in w16.1, from one start or a sweep of headings.
 
 use ch16_lab::basin::{BasinOutcome, BasinScene, BasinStart};
 use ch16_slam2d::cloud::PointCloud;
@@ -9,10 +9,10 @@ use serde::Serialize;
 use crate::numbers::{self, Headings};
 use crate::output::{pose, print_json, say};
 
-/// Register the two sweeps of room A from a start that is off.
+/// Register the two scans of room A from a perturbed initial guess.
 #[derive(Args, Clone, Debug)]
 pub struct BasinArgs {
-    /// Which error the increments reduce.
+    /// Error that the increments minimize.
     #[arg(long, value_enum, default_value_t = VariantName::PointToPoint)]
     variant: VariantName,
     /// Correspondence distance τ, m.
@@ -41,10 +41,10 @@ pub struct BasinArgs {
 /// `--variant`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum VariantName {
-    /// Distances between points.
+    /// Point-to-point distances.
     #[value(alias = "p2p")]
     PointToPoint,
-    /// Distances along normals.
+    /// Point-to-plane distances, along normals.
     #[value(alias = "p2l")]
     PointToPlane,
 }
@@ -53,7 +53,7 @@ enum VariantName {
 struct BasinJson {
     /// Points of the target in its sensor's frame, m.
     target: Vec<[f64; 2]>,
-    /// Unit normals of the target's points; null where a point has none.
+    /// Unit normals of the target's points; null for points without one.
     normals: Vec<Option<[f64; 2]>>,
     /// Points of the source in its sensor's frame, m.
     source: Vec<[f64; 2]>,
@@ -79,7 +79,7 @@ struct RunJson {
     minimum: &'static str,
 }
 
-/// Runs every heading and prints the outcomes.
+/// Registers from every heading and prints the outcomes.
 pub fn run(args: &BasinArgs) {
     let scene = BasinScene::new();
     let (variant, variant_name) = match args.variant {
@@ -144,7 +144,7 @@ pub fn run(args: &BasinArgs) {
                 StopReason::SmallStep { .. } => "",
                 StopReason::IterationLimit { .. } => " (limit)",
                 StopReason::TooFewPairs { .. } => " (too few pairs)",
-                StopReason::NotFinite => " (too large a number)",
+                StopReason::NotFinite => " (numeric overflow)",
             },
             pose(&outcome.pose),
         );

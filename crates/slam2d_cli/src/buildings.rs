@@ -1,4 +1,4 @@
-//! `slam2d buildings`: the defaults for robots on simulated recordings of office buildings.
+//! `slam2d buildings`: the default parameters for robots on simulated recordings of office buildings.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -21,49 +21,49 @@ use crate::trial::choice;
 /// Most buildings of one sweep: each takes a second.
 const MAX_SEEDS: u64 = 100_000;
 
-/// Run the defaults for robots on simulated recordings of office buildings.
+/// Run the default parameters for robots on simulated recordings of office buildings.
 #[derive(Args, Clone, Debug)]
 pub struct BuildingsArgs {
     /// Seeds: A..=B, A..B or one.
     #[arg(long, default_value = "1..=20", value_parser = numbers::seeds, allow_hyphen_values = true)]
     seeds: Seeds,
-    /// What is driven through, and with which scanner.
+    /// Kind of environment and scanner.
     #[arg(long, default_value = "ring", value_parser = choice::<Kind>())]
     kind: Kind,
-    /// Who drives through it, where it is not the robot of that kind.
+    /// Robot that drives through it; default: the robot of that kind.
     #[arg(long, default_value = "own", value_parser = choice::<Robot>())]
     robot: Robot,
-    /// Leave the wheels out: scans alone.
+    /// Ignore odometry and match scans alone.
     #[arg(long)]
     no_odometry: bool,
-    /// Another value of a parameter of the estimator, as docs/robots-parameters.md lists them.
+    /// Set a parameter of the estimator; docs/robots-parameters.md lists them.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
     settings: Vec<(String, f64)>,
-    /// Write the recording of the first seed as a log of CARMEN instead, and its truth beside it.
+    /// Write the recording of the first seed as a CARMEN log instead, and its true trajectory next to it.
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
-    /// Print one JSON list, an object for each seed.
+    /// Print one JSON list with an object for each seed.
     #[arg(long)]
     json: bool,
 }
 
-/// Why nothing was run.
+/// Why no run was done.
 #[derive(Debug, Error)]
 pub enum BuildingsFailure {
-    /// More than anyone waits for.
-    #[error("{seeds} seeds are too many, at most {MAX_SEEDS}")]
+    /// Too many seeds.
+    #[error("{seeds} seeds are too many; use at most {MAX_SEEDS}")]
     TooMany {
-        /// How many.
+        /// Number of seeds.
         seeds: u64,
     },
-    /// A lap has a robot of its own.
+    /// A lap has a fixed robot.
     #[error(
-        "--robot {robot} drives through buildings, not on --kind {kind}: leave it out, or take another kind"
+        "--robot {robot} applies to buildings, not to --kind {kind}; omit it or use another kind"
     )]
     OtherRobot {
-        /// Who should drive.
+        /// The requested robot.
         robot: &'static str,
-        /// What is no building.
+        /// The requested kind.
         kind: &'static str,
     },
     /// A parameter cannot be set.
@@ -74,12 +74,12 @@ pub enum BuildingsFailure {
     Write {
         /// The file.
         path: String,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
 }
 
-/// A run of one building.
+/// Result for one building.
 #[derive(Clone, Debug, Serialize)]
 struct Row {
     seed: u32,
@@ -90,13 +90,13 @@ struct Row {
     closed_wrong: usize,
     links_right: usize,
     links_wrong: usize,
-    /// Mean error of relations between near keyframes, m.
+    /// Mean error of the relative poses of nearby keyframes, m.
     relation_m: f64,
-    /// The largest of them, m.
+    /// Largest of these errors, m.
     worst_relation_m: f64,
     /// Largest error of a keyframe, m.
     worst_m: f64,
-    /// What 95 % of the normalized errors squared lie below; 7.8 by right.
+    /// 95th percentile of the squared normalized errors; 7.8 if consistent.
     nees_95: f64,
     /// Share of the keyframes within their 95 % ellipsoid.
     within_95: f64,
@@ -104,15 +104,17 @@ struct Row {
 
 /// `NAME=VALUE`.
 pub fn setting(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or("it has to be NAME=VALUE")?;
-    let value = value.parse().map_err(|_| format!("{value} is no number"))?;
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
+    let value = value
+        .parse()
+        .map_err(|_| format!("{value} is not a number"))?;
     Ok((name.to_owned(), value))
 }
 
 /// Runs the buildings and prints a line for each.
 ///
 /// # Errors
-/// Where there are too many, a parameter cannot be set, or the log cannot be written.
+/// If there are too many seeds, a parameter cannot be set, or the log cannot be written.
 pub fn run(args: &BuildingsArgs) -> Result<(), BuildingsFailure> {
     let seeds = args.seeds.count();
     if seeds > MAX_SEEDS {
@@ -231,7 +233,7 @@ fn print(rows: &[Row]) {
     );
 }
 
-/// Writes the log, and its truth as TUM beside it.
+/// Writes the log, and its true trajectory as TUM.
 fn write(path: &PathBuf, recording: &Recording) -> std::io::Result<()> {
     let mut log = BufWriter::new(File::create(path)?);
     let mut truth = BufWriter::new(File::create(path.with_extension("tum"))?);

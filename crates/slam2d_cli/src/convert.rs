@@ -1,4 +1,4 @@
-//! `slam2d convert`: one format into another, by the names of the files.
+//! `slam2d convert`: converts between formats, chosen by file name extension.
 
 use std::fs;
 use std::io;
@@ -16,22 +16,22 @@ use crate::log_file::{FileError, TopicArgs, open, open_log};
 use crate::optimize::{WholeFile, write_whole};
 use crate::session_file::{SessionFileError, is_session, read_session};
 
-/// Write a log, a pose graph or a trajectory in another format; the ends of the names say which.
+/// Convert a log, a pose graph or a trajectory to another format, chosen by the file name extensions.
 ///
 /// Logs (.clf .log .mcap .bag .jsonl) become .clf, .jsonl, or .tum with the odometry. Pose graphs
 /// (.g2o .graph .toro .json) become .g2o, .graph, .toro or .json. Trajectories (.tum) become .json.
 /// Sessions (.slam2d) become .g2o, .graph, .toro or .json, or .tum with the keyframes.
 #[derive(Args, Clone, Debug)]
 pub struct ConvertArgs {
-    /// What is read.
+    /// File to read.
     input: PathBuf,
-    /// What is written.
+    /// File to write.
     output: PathBuf,
     #[command(flatten)]
     topics: TopicArgs,
 }
 
-/// Why nothing was converted.
+/// Why the conversion failed.
 #[derive(Debug, Error)]
 pub enum ConvertError {
     /// A file cannot be read or written.
@@ -46,25 +46,25 @@ pub enum ConvertError {
     /// The session cannot be read.
     #[error(transparent)]
     Session(#[from] SessionFileError),
-    /// What is read would be lost.
-    #[error("{0} is what is read and what is written; write another file")]
+    /// Input and output are the same file.
+    #[error("{0} is both input and output; choose another output file")]
     Itself(String),
-    /// One does not become the other.
-    #[error("{input} cannot become {output}; {advice}")]
+    /// There is no conversion between these formats.
+    #[error("{input} cannot be converted to {output}; {advice}")]
     NoSense {
-        /// What is read.
+        /// Input file.
         input: String,
-        /// What was to be written.
+        /// Output file.
         output: String,
-        /// What it can become.
+        /// Possible conversions.
         advice: &'static str,
     },
     /// The log has no odometry.
-    #[error("{0} has no odometry, so there is no trajectory to write")]
+    #[error("{0} has no odometry, so it has no trajectory to convert")]
     NoOdometry(String),
 }
 
-/// What stands in a file, by the end of its name.
+/// Content of a file, by its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Log,
@@ -87,14 +87,14 @@ impl Kind {
 
     fn advice(self) -> &'static str {
         match self {
-            Self::Log => "a log becomes .clf, .jsonl, or .tum with its odometry",
-            Self::Graph => "a pose graph becomes .g2o, .graph, .toro or .json",
-            Self::Trajectory => "a trajectory becomes .json",
+            Self::Log => "convert a log to .clf, .jsonl, or .tum with its odometry",
+            Self::Graph => "convert a pose graph to .g2o, .graph, .toro or .json",
+            Self::Trajectory => "convert a trajectory to .json",
             Self::Session => {
-                "a session becomes .g2o, .graph, .toro or .json, or .tum with its keyframes"
+                "convert a session to .g2o, .graph, .toro or .json, or .tum with its keyframes"
             }
             Self::Other => {
-                "name a log (.clf .log .mcap .bag .jsonl), a pose graph (.g2o .graph .toro .json), a trajectory (.tum) or a session (.slam2d)"
+                "use a log (.clf .log .mcap .bag .jsonl), a pose graph (.g2o .graph .toro .json), a trajectory (.tum) or a session (.slam2d)"
             }
         }
     }
@@ -107,14 +107,14 @@ struct PoseJson {
     pose: [f64; 3],
 }
 
-/// Converts.
+/// Runs the conversion.
 ///
 /// # Errors
-/// Where a file cannot be used, or one does not become the other.
+/// If a file cannot be used, or there is no such conversion.
 pub fn run(args: &ConvertArgs) -> Result<(), ConvertError> {
     let [from, to] = [&args.input, &args.output].map(|path| extension(path));
     let kind = match Kind::from_extension(&from) {
-        // The folder of a run is its session.
+        // The folder of a run stands for its session.
         Kind::Other if args.input.is_dir() && is_session(&args.input) => Kind::Session,
         kind => kind,
     };
@@ -134,7 +134,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), ConvertError> {
     }
 }
 
-/// Whether both are there and one.
+/// Whether both exist and are the same file.
 fn is_same_file(a: &Path, b: &Path) -> bool {
     let [a, b] = [a, b].map(fs::canonicalize);
     a.is_ok_and(|a| b.is_ok_and(|b| a == b))
@@ -145,7 +145,7 @@ fn extension(path: &Path) -> String {
     extension.to_ascii_lowercase()
 }
 
-fn told(path: &Path) -> impl Fn(io::Error) -> FileError {
+fn io_error(path: &Path) -> impl Fn(io::Error) -> FileError {
     let path = path.to_owned();
     move |source| FileError::Io {
         path: path.clone(),
@@ -155,15 +155,15 @@ fn told(path: &Path) -> impl Fn(io::Error) -> FileError {
 
 fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
     let (mut reader, mut progress) = open_log(&args.input, &args.topics)?;
-    let told = told(&args.output);
-    // A log that cannot be read leaves the output as it was.
+    let io_error = io_error(&args.output);
+    // If the log cannot be read, the output is left unchanged.
     let mut next = reader.next_frame().map_err(FileError::from)?;
     let mut file: Option<WholeFile> = None;
     let mut odometry: Vec<StampedPose> = Vec::new();
     let mut count = 0;
     while let Some(frame) = next {
         count += 1;
-        progress.tell(count);
+        progress.report(count);
         if to == "tum" {
             let is_later = odometry
                 .last()
@@ -177,11 +177,11 @@ fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
         } else {
             let file = match &mut file {
                 Some(file) => file,
-                none => none.insert(WholeFile::create(&args.output).map_err(&told)?),
+                none => none.insert(WholeFile::create(&args.output).map_err(&io_error)?),
             };
             match to {
-                "jsonl" => FrameLine::from(&frame).write(file).map_err(&told)?,
-                _ => write_carmen(&frame, file).map_err(&told)?,
+                "jsonl" => FrameLine::from(&frame).write(file).map_err(&io_error)?,
+                _ => write_carmen(&frame, file).map_err(&io_error)?,
             }
         }
         next = reader.next_frame().map_err(FileError::from)?;
@@ -191,7 +191,7 @@ fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
         eprintln!("slam2d: {sentence}");
     }
     if let Some(file) = file {
-        file.finish().map_err(&told)?;
+        file.finish().map_err(&io_error)?;
     }
     if to == "tum" {
         if odometry.is_empty() {
@@ -201,13 +201,13 @@ fn convert_log(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
         let written = Trajectory::new(odometry).write_tum(&mut text);
         written
             .and_then(|()| write_whole(&args.output, &text))
-            .map_err(&told)?;
+            .map_err(&io_error)?;
     }
     Ok(())
 }
 
 fn convert_graph(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
-    let bytes = fs::read(&args.input).map_err(told(&args.input))?;
+    let bytes = fs::read(&args.input).map_err(io_error(&args.input))?;
     let graph = GraphFile::read(&bytes, &args.input.display().to_string())?;
     write_graph(args, &graph, to)
 }
@@ -218,14 +218,14 @@ fn write_graph(args: &ConvertArgs, graph: &GraphFile, to: &str) -> Result<(), Co
         "json" => json(graph),
         _ => graph.to_toro(),
     };
-    write_whole(&args.output, text.as_bytes()).map_err(told(&args.output))?;
+    write_whole(&args.output, text.as_bytes()).map_err(io_error(&args.output))?;
     Ok(())
 }
 
 fn convert_session(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
     let (session, _) = read_session(&args.input)?;
     if to != "tum" {
-        return write_graph(args, &GraphFile::of_graph(&session.graph()), to);
+        return write_graph(args, &GraphFile::from_pose_graph(&session.graph()), to);
     }
     let keyframes = session.driven.keyframes.iter().zip(session.poses());
     let poses = keyframes.map(|(keyframe, pose)| StampedPose {
@@ -235,7 +235,7 @@ fn convert_session(args: &ConvertArgs, to: &str) -> Result<(), ConvertError> {
     let mut text = Vec::new();
     let written = Trajectory::new(poses.collect()).write_tum(&mut text);
     let written = written.and_then(|()| write_whole(&args.output, &text));
-    Ok(written.map_err(told(&args.output))?)
+    Ok(written.map_err(io_error(&args.output))?)
 }
 
 fn convert_trajectory(args: &ConvertArgs) -> Result<(), ConvertError> {
@@ -249,7 +249,7 @@ fn convert_trajectory(args: &ConvertArgs) -> Result<(), ConvertError> {
             pose: stamped.pose.to_array(),
         })
         .collect();
-    write_whole(&args.output, json(&poses).as_bytes()).map_err(told(&args.output))?;
+    write_whole(&args.output, json(&poses).as_bytes()).map_err(io_error(&args.output))?;
     Ok(())
 }
 

@@ -1,4 +1,4 @@
-//! `slam2d doctor`: what is wrong with a recording, and what mends it.
+//! `slam2d doctor`: what is wrong with a recording, and how to correct it.
 
 use std::path::PathBuf;
 
@@ -9,10 +9,10 @@ use robot_io::log::LogReader;
 use crate::log_file::{FileError, TopicArgs, open_compared};
 use crate::output::{print_json, say};
 
-/// Print how it stands with a recording: sensor, odometry, mounting, clocks and file, each with ✓, ! or ✗.
+/// Check a recording: print sensor, odometry, mounting, clocks and file, each with ✓, ! or ✗.
 #[derive(Args, Clone, Debug)]
 pub struct DoctorArgs {
-    /// The log, or the folder of a recording of ROS 2.
+    /// The log, or the folder of a ROS 2 recording.
     log: PathBuf,
     #[command(flatten)]
     topics: TopicArgs,
@@ -24,13 +24,13 @@ pub struct DoctorArgs {
 /// Reads the log and prints the diagnosis.
 ///
 /// # Errors
-/// Where it cannot be read at all.
+/// If the log cannot be read at all.
 pub fn run(args: &DoctorArgs) -> Result<(), FileError> {
     let (mut reader, mut progress) = open_compared(&args.log, &args.topics)?;
     let mut checkup = Checkup::default();
     while let Some(frame) = reader.next_frame()? {
         checkup.take(&frame);
-        progress.tell(checkup.scans());
+        progress.report(checkup.scans());
     }
     progress.end();
     let name = args.log.file_name().unwrap_or(args.log.as_os_str());

@@ -1,4 +1,4 @@
-//! `slam2d evaluate`: how good a trajectory is.
+//! `slam2d evaluate`: accuracy of a trajectory.
 
 use std::path::{Path, PathBuf};
 
@@ -11,14 +11,14 @@ use crate::grade::{GradeError, ReferenceArgs};
 use crate::log_file::{FileError, TopicArgs, open, open_compared};
 use crate::output::print_json;
 
-/// Grade a trajectory against reference relations or against the true trajectory.
+/// Evaluate a trajectory against reference relations or the true trajectory.
 #[derive(Args, Clone, Debug)]
 pub struct EvaluateArgs {
     /// The trajectory: TUM lines, stamp x y z qx qy qz qw.
     trajectory: PathBuf,
     #[command(flatten)]
     reference: ReferenceArgs,
-    /// The log that it was made from: its odometry carries the poses on to the scans in between.
+    /// The log that it was made from: its odometry propagates the poses to the scans in between.
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
     #[command(flatten)]
@@ -28,14 +28,14 @@ pub struct EvaluateArgs {
     json: bool,
 }
 
-/// Why there is no grade.
+/// Why the evaluation failed.
 #[derive(Debug, Error)]
 pub enum EvaluateError {
-    /// Neither relations nor truth were named.
-    #[error("there is nothing to compare with; give --relations FILE or --truth FILE")]
+    /// Neither relations nor a true trajectory are given.
+    #[error("no reference is given; use --relations FILE or --truth FILE")]
     NoReference,
-    /// The log has no odometry to carry poses on with.
-    #[error("{0} has no odometry, so it cannot carry poses on; leave --log out")]
+    /// The log has no odometry for propagating poses.
+    #[error("{0} has no odometry to propagate poses; omit --log")]
     NoOdometry(String),
     /// The log cannot be read.
     #[error(transparent)]
@@ -45,10 +45,10 @@ pub enum EvaluateError {
     Grade(#[from] GradeError),
 }
 
-/// Reads both and prints the errors.
+/// Reads trajectory and reference and prints the errors.
 ///
 /// # Errors
-/// Where a file cannot be used, or nothing can be compared.
+/// If a file cannot be used, or nothing can be compared.
 pub fn run(args: &EvaluateArgs) -> Result<(), EvaluateError> {
     let reference = args.reference.read()?.ok_or(EvaluateError::NoReference)?;
     let name = args.trajectory.display().to_string();
@@ -67,12 +67,12 @@ pub fn run(args: &EvaluateArgs) -> Result<(), EvaluateError> {
     Ok(())
 }
 
-/// The odometry of a log at its scans, as far as it is in the order of time.
+/// The odometry of a log at its scans, without those whose stamp is not later than the one before.
 fn odometry(path: &Path, topics: &TopicArgs) -> Result<Trajectory, EvaluateError> {
     let (mut reader, mut progress) = open_compared(path, topics)?;
     let mut poses: Vec<StampedPose> = Vec::new();
     while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
-        progress.tell(poses.len());
+        progress.report(poses.len());
         let Some(pose) = frame.odometry else { continue };
         let stamp_s = frame.stamp_s;
         if poses.last().is_none_or(|last| stamp_s > last.stamp_s) {

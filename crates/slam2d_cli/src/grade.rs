@@ -1,4 +1,4 @@
-//! A trajectory against a file of relations, or against the true one.
+//! Evaluates a trajectory against a file of relations or the true trajectory.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ use thiserror::Error;
 use crate::log_file::{FileError, open};
 use crate::output::say;
 
-/// What a trajectory is compared with.
+/// Reference of the evaluation.
 #[derive(Args, Clone, Debug)]
 pub struct ReferenceArgs {
     /// Reference relations: lines of t1 t2 x y z roll pitch yaw.
@@ -23,17 +23,17 @@ pub struct ReferenceArgs {
     /// The true trajectory: TUM lines.
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
-    /// Whether the trajectory is moved onto the true one before it is compared.
+    /// Whether the trajectory is aligned with the true one before the comparison.
     #[arg(long, value_enum, default_value = "none")]
     pub align: AlignArg,
 }
 
-/// [`Alignment`] by its names.
+/// Command line values of [`Alignment`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum AlignArg {
-    /// Both are in the same frame.
+    /// None: both are in the same frame.
     None,
-    /// By the best rigid motion of the plane.
+    /// Least-squares rigid motion in the plane.
     Se2,
 }
 
@@ -46,24 +46,24 @@ impl From<AlignArg> for Alignment {
     }
 }
 
-/// Why there is no grade.
+/// Why the evaluation failed.
 #[derive(Debug, Error)]
 pub enum GradeError {
     /// A file cannot be opened.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A file is not what it has to be.
+    /// A file is malformed.
     #[error(transparent)]
     Text(#[from] TextError),
-    /// The two have no times in common.
+    /// Too few common stamps.
     #[error("{0}")]
     Truth(#[from] TruthProblem),
     /// No relation lies within the times of the trajectory.
     #[error(
-        "none of the {count} relations lies within the times of the trajectory, {first_s} s to {last_s} s; give both the same clock"
+        "none of the {count} relations lies within the times of the trajectory, {first_s} s to {last_s} s; use the same clock for both"
     )]
     Outside {
-        /// Relations of the file.
+        /// Number of relations in the file.
         count: usize,
         /// First stamp of the trajectory, s.
         first_s: f64,
@@ -72,7 +72,7 @@ pub enum GradeError {
     },
 }
 
-/// The references, read before anything is run.
+/// The reference, read before the run.
 pub enum Reference {
     /// Relations between two times.
     Relations(Vec<Relation>),
@@ -80,7 +80,7 @@ pub enum Reference {
     Truth(Trajectory, Alignment),
 }
 
-/// The errors against a reference.
+/// Errors against a reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Grade {
@@ -91,10 +91,10 @@ pub enum Grade {
 }
 
 impl ReferenceArgs {
-    /// Reads the reference that was named, if one was.
+    /// Reads the reference, if one is given.
     ///
     /// # Errors
-    /// Where its file cannot be used.
+    /// If its file cannot be used.
     pub fn read(&self) -> Result<Option<Reference>, GradeError> {
         if let Some(path) = &self.relations {
             let relations = read_relations(open(path)?, &path.display().to_string())?;
@@ -109,10 +109,10 @@ impl ReferenceArgs {
 }
 
 impl Reference {
-    /// The errors of a trajectory; what could not be compared is told on standard error.
+    /// Evaluates a trajectory; reports skipped relations on standard error.
     ///
     /// # Errors
-    /// Where nothing can be compared.
+    /// If nothing can be compared.
     pub fn grade(&self, trajectory: &Trajectory) -> Result<Grade, GradeError> {
         match self {
             Self::Relations(relations) => {
@@ -129,7 +129,7 @@ impl Reference {
                 }
                 if errors.outside > 0 {
                     eprintln!(
-                        "slam2d: {} of {} relations lie outside of the trajectory's times and are not counted",
+                        "slam2d: {} of {} relations lie outside the trajectory's times and are ignored",
                         errors.outside,
                         relations.len()
                     );
@@ -144,7 +144,7 @@ impl Reference {
 }
 
 impl Grade {
-    /// Prints it for people.
+    /// Prints the errors as text.
     pub fn print(&self) {
         match self {
             Self::Relations(report) => {

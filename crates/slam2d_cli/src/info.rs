@@ -1,4 +1,4 @@
-//! `slam2d info`: what is in a recorded log, or in a session.
+//! `slam2d info`: summary of a recorded log or a session.
 
 mod session_info;
 
@@ -14,7 +14,7 @@ use crate::log_file::{FileError, TopicArgs, open_log};
 use crate::output::{print_json, say};
 use crate::session_file::{SessionFileError, is_session};
 
-/// Print what is in a recorded log or in a session: scans, beams, odometry, times, and what cannot be read.
+/// Print a summary of a recorded log or a session: scans, beams, odometry, stamps, and unreadable records.
 #[derive(Args, Clone, Debug)]
 pub struct InfoArgs {
     /// The log, the session, or the folder of a run.
@@ -26,13 +26,13 @@ pub struct InfoArgs {
     json: bool,
 }
 
-/// Why nothing can be said.
+/// Why there is no summary.
 #[derive(Debug, Error)]
 pub enum InfoError {
-    /// It is no log.
+    /// It is not a log.
     #[error(transparent)]
     Log(#[from] FileError),
-    /// It is no session.
+    /// It is not a session.
     #[error(transparent)]
     Session(#[from] SessionFileError),
 }
@@ -46,10 +46,10 @@ struct InfoJson<'a> {
     info: &'a LogInfo,
 }
 
-/// Reads the log once and prints what is in it.
+/// Reads the log once and prints its summary.
 ///
 /// # Errors
-/// Where it cannot be read.
+/// If it cannot be read.
 pub fn run(args: &InfoArgs) -> Result<(), InfoError> {
     if is_session(&args.log) {
         return Ok(session_info::run(&args.log, args.json)?);
@@ -58,7 +58,7 @@ pub fn run(args: &InfoArgs) -> Result<(), InfoError> {
     let mut info = LogInfo::default();
     while let Some(frame) = reader.next_frame().map_err(FileError::from)? {
         info.take(&frame);
-        progress.tell(info.scans);
+        progress.report(info.scans);
     }
     progress.end();
     let notes = reader.notes();
@@ -98,7 +98,7 @@ pub fn run(args: &InfoArgs) -> Result<(), InfoError> {
         if info.late == 0 {
             "in order".to_owned()
         } else {
-            format!("{} are not after the one before", info.late)
+            format!("{} are not later than the one before", info.late)
         }
     );
     match info.odometry_path_length_m {

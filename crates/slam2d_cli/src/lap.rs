@@ -1,4 +1,4 @@
-//! `slam2d lap`: a lap at one seed and noise factor, through the Apartment or another world.
+//! `slam2d lap`: a lap at one seed and noise factor in the Apartment or another world.
 
 mod incremental;
 mod laps;
@@ -20,24 +20,24 @@ use crate::output::{print_json, say};
 use crate::trial::{TrialArgs, choice};
 use crate::world::WorldError;
 
-/// Drive the lap through the Apartment, or through another world, and estimate it.
+/// Simulate the lap in the Apartment or another world, and estimate it.
 #[derive(Args, Clone, Debug)]
 pub struct LapArgs {
     /// Seed of all noise, decimal or 0x….
     #[arg(long, default_value = "0xC0FFEE", value_parser = numbers::seed, allow_hyphen_values = true)]
     seed: u32,
-    /// Factor of the wheels' six noise parameters.
+    /// Factor on the six parameters of odometry noise.
     #[arg(long, default_value = "1", value_parser = numbers::noise_factor, allow_hyphen_values = true)]
     noise: f64,
     #[command(flatten)]
     trial: TrialArgs,
-    /// What estimates the lap.
+    /// Estimator of the lap.
     #[arg(long, default_value = "graph", value_parser = choice::<LapEstimator>())]
     estimator: LapEstimator,
-    /// The front end alone: no loop is closed; the same as --estimator front-end.
+    /// Use the front end without loop closure; same as --estimator front-end.
     #[arg(long, conflicts_with = "estimator")]
     no_loops: bool,
-    /// Write what the robot recorded into this file, a line of JSON for each scan: a log.
+    /// Write the recorded scans to this file, one line of JSON each: a log.
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
     #[command(flatten)]
@@ -103,15 +103,15 @@ struct TickJson {
     keyframe: bool,
 }
 
-/// Why a lap was not driven or not written.
+/// Why a lap was not run or not written.
 #[derive(Debug, Error)]
 pub enum LapError {
-    /// The world cannot be driven.
+    /// The world cannot be used.
     #[error(transparent)]
     World(#[from] WorldError),
-    /// The estimator has no use for an argument.
+    /// The estimator ignores an argument.
     #[error(
-        "{argument} says nothing to the estimator {estimator}: leave it out, or take --estimator graph"
+        "{argument} has no effect on the estimator {estimator}; omit it or use --estimator graph"
     )]
     OfTheGraph {
         /// The argument.
@@ -119,17 +119,15 @@ pub enum LapError {
         /// The estimator.
         estimator: &'static str,
     },
-    /// The wardrobe has its place in the Apartment.
-    #[error("--wardrobe moves one through the Apartment; leave --world out")]
+    /// The wardrobe exists only in the Apartment.
+    #[error("--wardrobe applies to the Apartment only; omit --world")]
     NotTheApartment,
-    /// The wardrobe stays until a lap that is never driven.
-    #[error(
-        "--wardrobe {lap} waits for a lap that --laps {count} does not drive; take one up to {count}"
-    )]
+    /// The wardrobe would move after the last lap.
+    #[error("--wardrobe {lap} is beyond --laps {count}; use a lap up to {count}")]
     NoSuchLap {
         /// The lap.
         lap: usize,
-        /// How many are driven.
+        /// Number of laps.
         count: usize,
     },
     /// The session cannot be written.
@@ -137,7 +135,7 @@ pub enum LapError {
     Written {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
     /// The frames cannot be written.
@@ -145,7 +143,7 @@ pub enum LapError {
     Frames {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
 }
@@ -153,7 +151,7 @@ pub enum LapError {
 /// Runs the lap and prints it.
 ///
 /// # Errors
-/// Where the file of the world cannot be used, or that of the frames cannot be written.
+/// If the world file cannot be used, or the frames cannot be written.
 pub fn run(args: &LapArgs) -> Result<(), LapError> {
     if let Some(count) = args.laps.laps {
         let course = args.trial.course()?;
@@ -189,7 +187,7 @@ pub fn run(args: &LapArgs) -> Result<(), LapError> {
     Ok(())
 }
 
-/// Writes every frame of a drive, with the true pose beside it.
+/// Writes every frame of a drive with the true pose.
 fn write_frames(path: &Path, drive: &Drive) -> io::Result<()> {
     let mut file = BufWriter::new(File::create(path)?);
     let mut odometry = SE2::identity();
@@ -266,7 +264,7 @@ impl TickJson {
             estimate: report.estimate.to_array(),
             tau: report.registration.next_tau_m,
             inliers: matched.inliers,
-            // Infinite without pairs, and JSON has no infinity.
+            // Infinite without pairs, which JSON cannot represent.
             rmse: matched.rmse_m.is_finite().then_some(matched.rmse_m),
             iterations: matched.iterations,
             keyframe: report.new_keyframe.is_some(),
@@ -285,7 +283,7 @@ fn print_text(record: &LapRecord, args: &LapArgs) {
     say!("keyframes, rms    {:.4} m", summary.keyframe_rms_m);
     match summary.map_disagreement_m {
         Some(value) => say!("map disagreement  {value:.4} m"),
-        None => say!("map disagreement  none: nothing was seen twice"),
+        None => say!("map disagreement  none: no area was scanned twice"),
     }
     say!("graph chi2        {:.4}", summary.chi2);
     for attempt in record.lap.loop_attempts() {

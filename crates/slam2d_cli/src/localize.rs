@@ -1,4 +1,4 @@
-//! `slam2d localize`: where the robot of a log was, on the map of a session.
+//! `slam2d localize`: localizes a log on the map of a session.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -22,7 +22,7 @@ use crate::optimize::{check_file, write_whole};
 use crate::output::{print_json, say};
 use crate::session_file::{SessionFileError, read_session};
 
-/// Say where the robot of a log was on the map of a session, how sure that is, and when it was lost.
+/// Localize a log on the map of a session: print poses, their uncertainty, and when the robot was lost.
 #[derive(Args, Clone, Debug)]
 pub struct LocalizeArgs {
     /// The session, or the folder of a run.
@@ -31,7 +31,7 @@ pub struct LocalizeArgs {
     log: PathBuf,
     #[command(flatten)]
     topics: TopicArgs,
-    /// Where the log begins on the map: x,y,deg in metres and degrees, or anywhere.
+    /// Initial pose on the map: x,y,deg in metres and degrees, or anywhere.
     #[arg(
         long,
         value_name = "x,y,deg|anywhere",
@@ -39,10 +39,10 @@ pub struct LocalizeArgs {
         allow_hyphen_values = true
     )]
     init: Init,
-    /// Leave the wheels out: scans alone.
+    /// Ignore odometry and match scans alone.
     #[arg(long)]
     no_odometry: bool,
-    /// Write the poses that are localized into this file, in the TUM format.
+    /// Write the localized poses to this file, in the TUM format.
     #[arg(short = 'o', long, value_name = "FILE.tum")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -75,7 +75,7 @@ impl FromStr for Init {
             .collect();
         match numbers.as_deref() {
             Some(&[x, y, deg]) => Ok(Self(StartPose::Near(SE2::new(x, y, deg.to_radians())))),
-            _ => Err("neither x,y,deg nor anywhere".to_owned()),
+            _ => Err("expected x,y,deg or anywhere".to_owned()),
         }
     }
 }
@@ -89,23 +89,23 @@ pub enum LocalizeError {
     /// The session cannot be used.
     #[error(transparent)]
     Session(#[from] SessionFileError),
-    /// The session is no map.
-    #[error("{}: the session is no map to be found on: {source}; map a log first", path.display())]
+    /// The session has no usable map.
+    #[error("{}: the session has no map for localization: {source}; map a log first", path.display())]
     Map {
         /// The session.
         path: PathBuf,
-        /// Why not.
+        /// Reason.
         source: SearchError,
     },
     /// The comparison failed.
     #[error(transparent)]
     Grade(#[from] GradeError),
-    /// Every scan was refused.
+    /// Every scan was invalid.
     #[error("{name}: no scan could be used: {problem}")]
     NoScan {
         /// The log.
         name: String,
-        /// Why the first one was not.
+        /// Why the first one was invalid.
         problem: String,
     },
 }
@@ -114,12 +114,12 @@ pub enum LocalizeError {
 #[derive(Serialize)]
 struct LocalizeJson {
     scans: usize,
-    /// Scans with each verdict.
+    /// Number of scans by verdict.
     found: usize,
     tracking: usize,
     doubtful: usize,
     lost: usize,
-    /// Time of the first scan whose pose is localized, s.
+    /// Stamp of the first localized scan, s.
     first_found_s: Option<f64>,
     cpu_s: f64,
     peak_mb: Option<f64>,
@@ -130,7 +130,7 @@ struct LocalizeJson {
     poses: Vec<PoseJson>,
 }
 
-/// A scan; numbers that are not known are null.
+/// A scan; unknown numbers are null.
 #[derive(Serialize)]
 struct PoseJson {
     stamp_s: f64,
@@ -157,10 +157,10 @@ impl PoseJson {
     }
 }
 
-/// Localizes the log and prints what came of it.
+/// Localizes the log and prints the result.
 ///
 /// # Errors
-/// Where a file cannot be used.
+/// If a file cannot be used.
 pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
     let name = args.log.display().to_string();
     if let Some(path) = &args.output {
@@ -184,7 +184,7 @@ pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
     })?;
     let is_interrupted = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&is_interrupted);
-    // Without a handler Ctrl-C ends the process at once, which loses the work and nothing else.
+    // If the handler cannot be set, Ctrl-C ends the process without results.
     let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
     let (mut reader, mut progress) = open_compared(&args.log, &args.topics)?;
     while !is_interrupted.load(Ordering::Relaxed) {
@@ -192,7 +192,7 @@ pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
             break;
         };
         run.step(frame);
-        progress.tell(run.reports().len());
+        progress.report(run.reports().len());
     }
     progress.end();
     if run.reports().is_empty() {
@@ -249,7 +249,7 @@ pub fn run(args: &LocalizeArgs) -> Result<(), LocalizeError> {
     Ok(())
 }
 
-/// A line for each change of the verdict, and the numbers.
+/// Prints a line for each change of the verdict, and the totals.
 fn print_text(result: &LocalizeJson, reports: &[LocalizeReport]) {
     for run in reports.chunk_by(|a, b| a.verdict == b.verdict) {
         let (first, scans) = (&run[0], run.len());
@@ -260,7 +260,7 @@ fn print_text(result: &LocalizeJson, reports: &[LocalizeReport]) {
                 match first.covariance {
                     Some(known) => {
                         let sigma_m = known[(0, 0)].max(known[(1, 1)]).sqrt();
-                        format!(" at {at}, known to {sigma_m:.2} m")
+                        format!(" at {at}, standard deviation {sigma_m:.2} m")
                     }
                     None => format!(" about {at}"),
                 }

@@ -1,4 +1,4 @@
-//! A recorded log as a file: opened, and read with progress on standard error.
+//! Opens a recorded log, and reads it with progress on standard error.
 
 use std::fs::{self, File};
 use std::io::{self, BufReader, IsTerminal, Read, Seek, SeekFrom, stderr};
@@ -15,7 +15,7 @@ use robot_io::motion::ComparedReader;
 use robot_io::rosbag2;
 use thiserror::Error;
 
-/// Which topics and frames of a recording of ROS are meant, where there are several.
+/// Choice of topics and frames in a ROS recording, if there are several.
 #[derive(Args, Clone, Debug, Default)]
 pub struct TopicArgs {
     /// The topic of the scans, such as /scan.
@@ -24,25 +24,25 @@ pub struct TopicArgs {
     /// The topic of the odometry, such as /odom, or /tf.
     #[arg(long, value_name = "TOPIC")]
     odom_topic: Option<String>,
-    /// The frame that /tf gives the odometry in.
+    /// The odometry frame in /tf.
     #[arg(long, value_name = "FRAME")]
     odom_frame: Option<String>,
     /// The frame of the robot's body.
     #[arg(long, value_name = "FRAME")]
     body_frame: Option<String>,
-    /// Where the laser sits on the body, in place of what the recording says: metres ahead and to the left, and
-    /// degrees counter-clockwise; ,flipped if it hangs upside down or its driver lists beams clockwise.
+    /// Mounting of the laser on the body, which overrides the recording: metres forward and to the left, and degrees
+    /// counter-clockwise; ,flipped if it is mounted upside down or its driver lists beams clockwise.
     #[arg(long, value_name = "X,Y,DEG[,flipped]", allow_hyphen_values = true)]
     laser: Option<LaserMount>,
-    /// Cut clouds of a 3-D sensor to the points between these heights above the body's origin, m.
+    /// Use the points of a 3-D sensor between these heights above the body's origin, m.
     #[arg(long, value_name = "LOW,HIGH", value_parser = heights, allow_hyphen_values = true)]
     heights: Option<(f64, f64)>,
-    /// Where the laser sits in the session that the log goes on with.
+    /// Mounting of the laser in the session that the log continues.
     #[arg(skip)]
     laser_before: Option<LaserMount>,
 }
 
-/// Two heights, the lower one first.
+/// Parses two heights, the lower one first.
 fn heights(text: &str) -> Result<(f64, f64), String> {
     let numbers = text.split_once(',').and_then(|(low, high)| {
         let (low, high) = (
@@ -51,13 +51,11 @@ fn heights(text: &str) -> Result<(f64, f64), String> {
         );
         (low < high && low.is_finite() && high.is_finite()).then_some((low, high))
     });
-    numbers.ok_or_else(|| {
-        "two heights have to be given, the lower one first, such as 0.2,0.6".to_owned()
-    })
+    numbers.ok_or_else(|| "expected two heights, the lower one first, such as 0.2,0.6".to_owned())
 }
 
 impl TopicArgs {
-    /// The same choice for a log that goes on with a session whose laser sits so.
+    /// The options for a log that continues a session with this mounting.
     pub fn resuming_with(&self, laser: Option<LaserMount>) -> Self {
         Self {
             laser_before: laser,
@@ -86,40 +84,40 @@ pub enum FileError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
     /// A folder without a recording.
-    #[error("{} is a folder without a recording of ROS 2; give a log, or a folder with files that end in .mcap or .db3", path.display())]
+    #[error("{} is a folder without a ROS 2 recording; pass a log, or a folder with .mcap or .db3 files", path.display())]
     NoRecording {
         /// The folder.
         path: PathBuf,
     },
-    /// It is no log that can be read.
+    /// It is not a readable log.
     #[error(transparent)]
     Log(#[from] LogError),
 }
 
-/// Opens a file; a folder is refused here, not at its first byte.
+/// Opens a file; rejects a folder before it is read.
 ///
 /// # Errors
-/// What the system says, with the name.
+/// If the system cannot open it; the error contains the name.
 pub fn open(path: &Path) -> Result<BufReader<File>, FileError> {
-    let told = |source| FileError::Io {
+    let io_error = |source| FileError::Io {
         path: path.to_owned(),
         source,
     };
-    let file = File::open(path).map_err(told)?;
-    if file.metadata().map_err(told)?.is_dir() {
-        return Err(told(io::ErrorKind::IsADirectory.into()));
+    let file = File::open(path).map_err(io_error)?;
+    if file.metadata().map_err(io_error)?.is_dir() {
+        return Err(io_error(io::ErrorKind::IsADirectory.into()));
     }
     Ok(BufReader::with_capacity(1 << 16, file))
 }
 
-/// Opens a log, or the folder of one, with a bar that follows its bytes.
+/// Opens a log or its folder, with a progress bar over its bytes.
 ///
 /// # Errors
-/// Where it cannot be opened, or is no log.
+/// If it cannot be opened or is not a log.
 pub fn open_log(
     path: &Path,
     topics: &TopicArgs,
@@ -130,10 +128,10 @@ pub fn open_log(
     Ok((reader, progress))
 }
 
-/// All frames of a log.
+/// Reads all frames of a log.
 ///
 /// # Errors
-/// Where it cannot be read, or is no log.
+/// If it cannot be read or is not a log.
 pub fn read_frames(path: &Path, topics: &TopicArgs) -> Result<Vec<LogFrame>, FileError> {
     let (mut reader, progress) = open_log(path, topics)?;
     let mut frames = Vec::new();
@@ -144,11 +142,11 @@ pub fn read_frames(path: &Path, topics: &TopicArgs) -> Result<Vec<LogFrame>, Fil
     Ok(frames)
 }
 
-/// Opens a log as [`open_log`] does, and compares its first scans with its odometry: what surely is wrong about
-/// the mounting or the units is mended and told.
+/// Opens a log as [`open_log`] does, compares its first scans with its odometry, and corrects and reports faults of the
+/// mounting or the units that are certain.
 ///
 /// # Errors
-/// Where it cannot be opened, or is no log.
+/// If it cannot be opened or is not a log.
 pub fn open_compared(
     path: &Path,
     topics: &TopicArgs,
@@ -160,20 +158,20 @@ pub fn open_compared(
     ))
 }
 
-/// The files of a log, and a bar for them.
+/// The files of a log, and a progress bar.
 fn parts(path: &Path) -> Result<(Vec<LogBytes<'static>>, Progress), FileError> {
     let files = log_files(path)?;
     let sizes = files
         .iter()
         .map(|file| file.metadata().map_or(0, |about| about.len()));
-    // A log is read once to see what is in it, and once for its scans.
+    // A log is read twice: for the survey and for its scans.
     let progress = Progress::new(2 * sizes.sum::<u64>());
     let bytes = files.into_iter().map(|file| bytes_of(file, &progress.bar));
     let parts: Result<Vec<_>, FileError> = bytes.collect();
     Ok((parts?, progress))
 }
 
-/// The bytes of a file, opened again for each pass; of a pipe, all of them at once.
+/// The bytes of a file, opened again for each pass; a pipe is read into memory.
 fn bytes_of(path: PathBuf, bar: &ProgressBar) -> Result<LogBytes<'static>, FileError> {
     let mut file = open(&path)?;
     let is_file = file.get_ref().metadata().is_ok_and(|about| about.is_file());
@@ -193,9 +191,9 @@ fn bytes_of(path: PathBuf, bar: &ProgressBar) -> Result<LogBytes<'static>, FileE
     }))
 }
 
-/// The files of a recording: one, or those of a folder of rosbag2.
+/// The files of a recording: one, or those of a rosbag2 folder.
 fn log_files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
-    let told = |path: &Path| {
+    let io_error = |path: &Path| {
         let path = path.to_owned();
         move |source| FileError::Io { path, source }
     };
@@ -204,17 +202,17 @@ fn log_files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
     }
     let metadata = path.join(rosbag2::METADATA);
     let listed = if metadata.is_file() {
-        Some(fs::read_to_string(&metadata).map_err(told(&metadata))?)
+        Some(fs::read_to_string(&metadata).map_err(io_error(&metadata))?)
     } else {
         None
     };
     let mut names = Vec::new();
-    for entry in fs::read_dir(path).map_err(told(path))? {
-        let name = entry.map_err(told(path))?.file_name();
+    for entry in fs::read_dir(path).map_err(io_error(path))? {
+        let name = entry.map_err(io_error(path))?.file_name();
         names.push(name.to_string_lossy().into_owned());
     }
     let order = rosbag2::in_order(listed.as_deref(), &names)
-        .map_err(|absent| told(&path.join(absent))(io::ErrorKind::NotFound.into()))?;
+        .map_err(|absent| io_error(&path.join(absent))(io::ErrorKind::NotFound.into()))?;
     let files: Vec<PathBuf> = order.into_iter().map(|k| path.join(&names[k])).collect();
     if files.is_empty() {
         return Err(FileError::NoRecording {
@@ -224,11 +222,11 @@ fn log_files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
     Ok(files)
 }
 
-/// Share, speed and time left: a bar in a terminal, a line every ten seconds elsewhere.
+/// Progress, speed and time left: a bar in a terminal, otherwise a line every ten seconds.
 pub struct Progress {
     bar: ProgressBar,
     started: Instant,
-    told: Instant,
+    reported: Instant,
 }
 
 impl Progress {
@@ -243,31 +241,31 @@ impl Progress {
         Self {
             bar,
             started: now,
-            told: now,
+            reported: now,
         }
     }
 
-    /// Says that so many scans are done.
-    pub fn tell(&mut self, scans: usize) {
+    /// Reports the number of scans done.
+    pub fn report(&mut self, scans: usize) {
         let seconds = self.started.elapsed().as_secs_f64();
         let per_second = scans as f64 / seconds.max(1e-3);
         if stderr().is_terminal() {
             self.bar
-                .set_message(format!("{scans} scans, {per_second:.0} a second"));
-        } else if self.told.elapsed() >= Self::EVERY {
-            self.told = Instant::now();
+                .set_message(format!("{scans} scans, {per_second:.0} per second"));
+        } else if self.reported.elapsed() >= Self::EVERY {
+            self.reported = Instant::now();
             let left = self.bar.eta().as_secs();
-            eprintln!("slam2d: {scans} scans, {per_second:.0} a second, {left} s left");
+            eprintln!("slam2d: {scans} scans, {per_second:.0} per second, {left} s left");
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn end(&self) {
         self.bar.finish_and_clear();
     }
 }
 
-/// Bytes that a bar counts.
+/// A reader that advances a progress bar.
 struct Counted {
     source: File,
     bar: ProgressBar,

@@ -1,7 +1,7 @@
-//! The command slam2d: the chapter's numbers on the command line.
+//! The command `slam2d`: the chapter's numbers on the command line.
 //!
-//! Every subcommand is one file: its arguments, what it runs, what it prints. Wrong arguments and
-//! files that cannot be used end in one line on standard error and exit code 2.
+//! Each subcommand is one file with its arguments, its run and its output. Wrong arguments and
+//! unusable files give one line on standard error and exit code 2.
 
 mod basin;
 mod buildings;
@@ -111,13 +111,13 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints help and version as asked for, and anything else as one line.
+/// Prints help and version on request, and argument errors as one line.
 fn refuse_arguments(error: &clap::Error) -> ExitCode {
     if matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
     ) {
-        // The text of clap ends its own last line.
+        // Clap's text ends with a newline.
         say!("{}", error.to_string().trim_end());
         return ExitCode::SUCCESS;
     }
@@ -128,7 +128,7 @@ fn refuse_arguments(error: &clap::Error) -> ExitCode {
 /// The message of an argument error without usage and tips.
 fn one_line(error: &clap::Error) -> String {
     if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        return "a subcommand is needed".to_owned();
+        return "a subcommand is required".to_owned();
     }
     let text = error.to_string();
     let message = text.split("\n\n").next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! `slam2d map`: the map of a run, for Nav2's map_server.
+//! `slam2d map`: writes the map of a run for Nav2's map_server.
 
 use std::fs;
 use std::io;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use robot_io::json_log::FrameLine;
 use robot_io::log::LogError;
-use robot_io::map_image::{MapError, MapMode, map_of, map_of_session, map_with_free_space};
+use robot_io::map_image::{MapError, MapMode, build_map, build_session_map, map_with_free_space};
 use thiserror::Error;
 
 use crate::log_file::{FileError, open};
@@ -17,35 +17,35 @@ use crate::output::say;
 use crate::run_output::KEYFRAMES;
 use crate::session_file::{SessionFileError, read_session};
 
-/// Write the map of a run as an image with a YAML file beside it, for Nav2's map_server.
+/// Write the map of a run as an image with a YAML file, for Nav2's map_server.
 #[derive(Args, Clone, Debug)]
 pub struct MapArgs {
     /// A session, or a folder that slam2d run -o DIR wrote.
     #[arg(value_name = "SESSION|DIR")]
     run: PathBuf,
-    /// The YAML file; the image stands beside it.
+    /// The YAML file; the image is written next to it.
     #[arg(short = 'o', long, value_name = "MAP.yaml")]
     output: PathBuf,
     /// Side of a cell, m.
     #[arg(long, default_value = "0.05", value_parser = numbers::cell_m, allow_hyphen_values = true)]
     resolution: f64,
-    /// Mark as free what lies before the sensor's limit on beams that saw nothing (REP 117); takes the folder of a run.
+    /// Mark free space along beams without a return, up to the sensor's limit (REP 117); needs the folder of a run.
     #[arg(long)]
     free_space: bool,
-    /// What a pixel says: occupied, free or unknown, or the probability.
+    /// Meaning of a pixel: occupied, free or unknown, or the probability.
     #[arg(long, value_enum, default_value = "trinary")]
     mode: ModeArg,
-    /// The format of the image; scale needs png.
+    /// Format of the image; scale needs png.
     #[arg(long, value_enum)]
     image: Option<ImageArg>,
 }
 
-/// [`MapMode`] by its names.
+/// Command line values of [`MapMode`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum ModeArg {
     /// Black, white and grey.
     Trinary,
-    /// Shades; unknown is transparent.
+    /// Shades of grey; unknown is transparent.
     Scale,
 }
 
@@ -58,43 +58,43 @@ enum ImageArg {
     Png,
 }
 
-/// Why there is no map.
+/// Why no map was written.
 #[derive(Debug, Error)]
 pub enum MapFailure {
     /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The folder is not one of a run.
-    #[error("{} has no {KEYFRAMES}; give a session, or a folder that slam2d run -o DIR wrote", .0.display())]
+    /// The folder is not that of a run.
+    #[error("{} has no {KEYFRAMES}; pass a session, or a folder that slam2d run -o DIR wrote", .0.display())]
     NoRun(PathBuf),
-    /// A session has no beams that saw nothing.
-    #[error("{} keeps only beams that saw something, so it has no free space beyond them; give the folder of the run", .0.display())]
+    /// A session has no beams without a return.
+    #[error("{} stores only beams with a return, so it has no free space along the others; pass the folder of the run", .0.display())]
     NoBeams(PathBuf),
     /// The session cannot be used.
     #[error(transparent)]
     Session(#[from] SessionFileError),
-    /// The name of the output.
-    #[error("{} has to end in .yaml", .0.display())]
+    /// The output has another extension.
+    #[error("{} must end in .yaml", .0.display())]
     NotYaml(PathBuf),
-    /// PGM cannot be transparent.
+    /// PGM has no transparency.
     #[error(
-        "--mode scale marks unknown cells by transparency, which PGM does not have; take --image png"
+        "--mode scale marks unknown cells by transparency, which PGM does not have; use --image png"
     )]
     ScaleNeedsPng,
-    /// The scans make no map.
+    /// The scans give no map.
     #[error("{}: {source}", path.display())]
     Map {
         /// The folder.
         path: PathBuf,
-        /// Why not.
+        /// Reason.
         source: MapError,
     },
 }
 
-/// Writes the map and says what is in it.
+/// Writes the map and prints its cell counts.
 ///
 /// # Errors
-/// Where a file cannot be used, or the map is too large.
+/// If a file cannot be used, or the map is too large.
 pub fn run(args: &MapArgs) -> Result<(), MapFailure> {
     let extension = args.output.extension().unwrap_or_default();
     if extension != "yaml" && extension != "yml" {
@@ -105,7 +105,7 @@ pub fn run(args: &MapArgs) -> Result<(), MapFailure> {
         (ModeArg::Scale, _) => (MapMode::Scale, ImageArg::Png),
         (ModeArg::Trinary, image) => (MapMode::Trinary, image.unwrap_or(ImageArg::Pgm)),
     };
-    // A folder's keyframes have all beams, a session has thinned scans.
+    // A folder's keyframes have all beams, a session has filtered scans.
     if args.free_space && !args.run.is_dir() {
         return Err(MapFailure::NoBeams(args.run.clone()));
     }
@@ -113,11 +113,11 @@ pub fn run(args: &MapArgs) -> Result<(), MapFailure> {
         let draw = if args.free_space {
             map_with_free_space
         } else {
-            map_of
+            build_map
         };
         draw(&keyframes(&args.run)?, args.resolution)
     } else {
-        map_of_session(&read_session(&args.run)?.0, args.resolution)
+        build_session_map(&read_session(&args.run)?.0, args.resolution)
     };
     let map = map.map_err(|source| MapFailure::Map {
         path: args.run.clone(),

@@ -1,9 +1,9 @@
-//! Numbers as arguments: read once, checked once, with a message that names the range.
+//! Parses and checks numeric arguments; error messages state the range.
 
 use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 
-/// Largest |offset| that a start may have, m: the Apartment is 12 m long.
+/// Largest |offset| of a start, m: the Apartment is 12 m long.
 const MAX_OFFSET_M: f64 = 20.0;
 
 /// A finite number.
@@ -32,7 +32,7 @@ pub fn tau_m(text: &str) -> Result<f64, String> {
     within(text, 0.01..=10.0, " m")
 }
 
-/// Side of a map's cell in metres.
+/// Cell size of a map in metres.
 pub fn cell_m(text: &str) -> Result<f64, String> {
     within(text, 0.01..=1.0, " m")
 }
@@ -49,33 +49,27 @@ pub fn offset_m(text: &str) -> Result<f64, String> {
     within(text, -MAX_OFFSET_M..=MAX_OFFSET_M, " m")
 }
 
-/// A share of something.
+/// A share, 0 to 1.
 pub fn share(text: &str) -> Result<f64, String> {
     within(text, 0.0..=1.0, "")
 }
 
-/// A factor of the wheels' noise.
+/// A factor of odometry noise.
 pub fn noise_factor(text: &str) -> Result<f64, String> {
     within(text, 0.0..=100.0, "")
 }
 
-/// Shifts along each axis of a landscape: two make an axis, and a thousand take seconds.
+/// Shifts along each axis of a cost landscape: at least two, and a thousand take seconds.
 pub fn shifts(text: &str) -> Result<usize, String> {
     let range = 2..=1001;
     let count = text.parse().ok().filter(|count| range.contains(count));
-    count.ok_or_else(|| {
-        format!(
-            "not a whole number from {} to {}",
-            range.start(),
-            range.end()
-        )
-    })
+    count.ok_or_else(|| format!("not an integer from {} to {}", range.start(), range.end()))
 }
 
 /// A number of threads.
 pub fn threads(text: &str) -> Result<NonZeroUsize, String> {
     let count = text.parse();
-    count.map_err(|_| "not a whole number from 1 on; without it all cores work".to_owned())
+    count.map_err(|_| "not a positive integer; omit it to use all cores".to_owned())
 }
 
 /// Headings in degrees: one, or `from:to:step` with both ends included.
@@ -96,13 +90,11 @@ pub fn headings_deg(text: &str) -> Result<Headings, String> {
     };
     let count = ((to - from) / step + 1e-9).floor();
     if step == 0.0 || count < 0.0 {
-        return Err(format!(
-            "a step of {step} does not lead from {from} to {to}"
-        ));
+        return Err(format!("a step of {step} does not reach {to} from {from}"));
     }
     if count >= MAX_HEADINGS {
         return Err(format!(
-            "a step of {step} makes too many headings, at most {MAX_HEADINGS}"
+            "a step of {step} gives too many headings; use at most {MAX_HEADINGS}"
         ));
     }
     Ok(Headings(
@@ -129,13 +121,13 @@ impl Seeds {
     }
 }
 
-/// A seed, decimal or with `0x`.
+/// Reads a seed, decimal or with `0x`.
 pub fn seed(text: &str) -> Result<u32, String> {
     let parsed = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
         Some(hex) => u32::from_str_radix(hex, 16),
         None => text.parse(),
     };
-    parsed.map_err(|_| format!("not a whole number from 0 to {}", u32::MAX))
+    parsed.map_err(|_| format!("not an integer from 0 to {}", u32::MAX))
 }
 
 /// Reads `A`, `A..B` or `A..=B`.
@@ -174,16 +166,16 @@ mod tests {
     }
 
     #[test]
-    fn a_step_that_leads_away_is_told_from_one_that_is_too_small() {
+    fn a_step_in_the_wrong_direction_differs_from_one_that_is_too_small() {
         let refused = |text| headings_deg(text).unwrap_err();
         for away in ["0:10:-1", "0:10:0", "10:10:0"] {
-            assert!(refused(away).contains("does not lead"), "{away}");
+            assert!(refused(away).contains("does not reach"), "{away}");
         }
         for small in ["0:10:1e-9", "0:10:1e-320", "0:100:0.001"] {
             assert!(refused(small).contains("too many headings"), "{small}");
         }
         assert_eq!(headings_deg("0:99.999:0.001").unwrap().0.len(), 100_000);
-        // Where both ends are one, any step leads there.
+        // With equal ends, any step is accepted.
         assert_eq!(headings_deg("3:3:1").unwrap().0, [3.0]);
     }
 

@@ -1,4 +1,4 @@
-//! `slam2d optimize`: solve a pose graph in a g2o file.
+//! `slam2d optimize`: optimizes a pose graph in a g2o file.
 
 mod args;
 mod robust;
@@ -21,63 +21,63 @@ use self::tried::{Tried, start_name};
 pub use self::whole_file::{WholeFile, check_file, check_folder, write_whole};
 use crate::output::{print_json, say};
 
-/// Why a graph was not solved.
+/// Why a graph was not optimized.
 #[derive(Debug, Error)]
 pub enum OptimizeFailure {
     /// A file cannot be read or written.
     #[error("{}: {source}", path.display())]
     File {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// The file is a graph of another kind.
+    /// The file is not a planar graph.
     #[error("{}: {problem}", path.display())]
     Foreign {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What it is, and what to do.
+        /// What the file is, and what to do.
         problem: String,
     },
-    /// The file is not a graph that can be solved.
+    /// The graph cannot be optimized.
     #[error("{}: {source}", path.display())]
     Graph {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What is wrong, and in which line.
+        /// The problem and its line.
         source: G2oError,
     },
-    /// An edge is so far from its measurement that χ² overflows.
+    /// The residual of an edge is so large that χ² overflows.
     #[error(
         "{}: line {line}: eᵀΩe of this edge is too large for a number: \
          its vertices lie too far apart, or its information is too large",
         path.display()
     )]
     Overflow {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// The line of the edge.
+        /// Line of the edge.
         line: usize,
     },
-    /// The measurements do not determine a pose.
+    /// A pose is not observable.
     #[error(
         "{}: line {line}: the measurements do not determine the pose of vertex {id}: they say \
          nothing about a direction, or their weights differ by too many orders of magnitude",
         path.display()
     )]
     Undetermined {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// The line of the vertex.
+        /// Line of the vertex.
         line: usize,
         /// Its id.
         id: i64,
     },
-    /// The poses left what numbers can hold.
-    #[error("{}: the steps lead out of the range of numbers: try --method lm", path.display())]
+    /// The poses overflow.
+    #[error("{}: the steps overflow: try --method lm", path.display())]
     Diverged {
-        /// Which file.
+        /// The file.
         path: PathBuf,
     },
 }
@@ -92,28 +92,28 @@ struct Summary {
     total_iterations: usize,
     chi2_initial: f64,
     chi2: f64,
-    /// What was lowered: χ² where there is no kernel.
+    /// The final cost; equals χ² without a kernel.
     cost: f64,
     stop: String,
-    /// Every start that was looked at, in this order.
+    /// Every start that was tried, in this order.
     tried: Vec<Tried>,
-    /// What `--robust` inliers; χ² is that of the measurements that are.
+    /// Result of `--robust`; χ² is that of the inliers.
     #[serde(skip_serializing_if = "Option::is_none")]
     robust: Option<InlierCounts>,
     cpu_ms: f64,
     cpu_ms_first: f64,
 }
 
-/// Reads, solves, writes and prints.
+/// Reads, optimizes, writes and prints.
 ///
 /// # Errors
-/// Where the file is malformed or cannot be solved; then no output file is touched.
+/// If the file is malformed or cannot be optimized; the output file is not written then.
 pub fn run(args: &OptimizeArgs) -> Result<(), OptimizeFailure> {
     let (file, summary) = solve_file(args)?;
     for (record, count) in file.kept_records() {
-        // Priors are part of it, and told before.
+        // Priors are part of the problem and were reported before.
         if record != "EDGE_PRIOR_SE2" {
-            eprintln!("{count} × {record} kept as it is, not part of the problem");
+            eprintln!("{count} × {record} kept unchanged, not part of the problem");
         }
     }
     print_summary(&summary, args);
@@ -134,8 +134,8 @@ fn solve_file(args: &OptimizeArgs) -> Result<(G2oFile, Summary), OptimizeFailure
         path: path.clone(),
         source,
     })?;
-    for said in &prepared.said {
-        eprintln!("slam2d: {}: {said}", path.display());
+    for remark in &prepared.remarks {
+        eprintln!("slam2d: {}: {remark}", path.display());
     }
     let chi2_initial = file.problem.chi2();
     if !chi2_initial.is_finite() {
@@ -173,7 +173,7 @@ fn solve_file(args: &OptimizeArgs) -> Result<(G2oFile, Summary), OptimizeFailure
     Ok((file, summary))
 }
 
-/// The first factor that is not finite at the present poses, or else the largest.
+/// The first factor that is not finite at the current poses, or else the largest.
 fn worst_factor(file: &G2oFile) -> usize {
     let size = |factor: &usize| {
         let chi2 = file.problem.factor_chi2(*factor);
@@ -183,15 +183,15 @@ fn worst_factor(file: &G2oFile) -> usize {
             f64::INFINITY
         }
     };
-    // From the end: `max_by` keeps the last of equal ones.
+    // Reversed, because `max_by` returns the last of equal elements.
     (0..file.problem.factors().len())
         .rev()
         .max_by(|a, b| size(a).total_cmp(&size(b)))
-        .expect("a graph without edges costs nothing")
+        .expect("a graph without edges has zero cost")
 }
 
-/// A solver's error by vertex and line. The file was checked for loose ends and indefinite matrices
-/// when it was read, so these are no causes any more.
+/// Converts a solver's error to vertex and line. Loose ends and indefinite matrices were rejected when the file was
+/// read and cannot occur here.
 fn in_words_of_the_file(path: &Path, file: &G2oFile, error: OptimizeError) -> OptimizeFailure {
     let path = path.to_owned();
     match error {

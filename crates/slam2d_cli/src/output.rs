@@ -1,4 +1,4 @@
-//! What the subcommands print with.
+//! Printing of the subcommands.
 
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Write, stdout};
@@ -7,14 +7,14 @@ use std::process::exit;
 use pr_geom::SE2;
 use serde::Serialize;
 
-/// Prints one line to standard output, as `println!` does, but ends quietly where the reader of a
-/// pipe has seen enough, as `head` has.
+/// Prints one line to standard output like `println!`, but exits silently if the reader of a
+/// pipe has closed it, as `head` does.
 macro_rules! say {
     ($($text:tt)*) => { $crate::output::print_line(format_args!($($text)*)) };
 }
 pub(crate) use say;
 
-/// The function behind [`say!`].
+/// Implementation of [`say!`].
 pub fn print_line(line: Arguments<'_>) {
     match writeln!(stdout().lock(), "{line}") {
         Ok(()) => {}
@@ -32,7 +32,7 @@ pub fn print_json(value: &impl Serialize) {
     say!("{line}");
 }
 
-/// A pose as `x y heading°` for people.
+/// Formats a pose as `x y heading°`.
 pub fn pose(pose: &SE2) -> String {
     format!(
         "({:.4} m, {:.4} m, {:.3}°)",

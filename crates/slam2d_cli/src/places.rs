@@ -1,4 +1,4 @@
-//! `slam2d places`: how well places are recognized, as curves of precision over recall.
+//! `slam2d places`: precision–recall curves of place recognition.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher};
 use ch16_lab::places::{PlaceCurve, PlacePair, place_curves, place_pairs};
@@ -13,27 +13,27 @@ use crate::output::{print_json, say};
 /// Most seeds: every lap has a thousand pairs.
 const MAX_SEEDS: u64 = 10_000;
 
-/// Compare detectors of places over many laps in both built-in worlds.
+/// Compare place recognition detectors over many laps in both built-in worlds.
 ///
-/// Pairs of keyframes at least 22 apart count; they are the same place where the truths are within
-/// 1 m. The laps are driven by NDT, with no loop closed.
+/// Pairs of keyframes at least 22 apart are evaluated; they are the same place if their true poses are within
+/// 1 m. The laps use NDT without loop closure.
 #[derive(Args, Clone, Debug)]
 pub struct PlacesArgs {
     /// Seeds: A..=B, A..B or one.
     #[arg(long, default_value = "1..=20", value_parser = numbers::seeds, allow_hyphen_values = true)]
     seeds: Seeds,
-    /// Print one JSON list, an object with all curves for each world.
+    /// Print one JSON list with all curves for each world.
     #[arg(long)]
     json: bool,
 }
 
-/// Why nothing was compared.
+/// Why there is no result.
 #[derive(Debug, Error)]
 pub enum PlacesFailure {
-    /// More laps than anyone waits for.
-    #[error("{seeds} seeds are too many, at most {MAX_SEEDS}")]
+    /// Too many seeds.
+    #[error("{seeds} seeds are too many; use at most {MAX_SEEDS}")]
     TooMany {
-        /// How many.
+        /// Number of seeds.
         seeds: u64,
     },
 }
@@ -51,7 +51,7 @@ struct DetectorJson {
     detector: &'static str,
     average_precision: f64,
     recall_without_errors: f64,
-    /// Threshold, precision, recall.
+    /// Threshold, precision and recall.
     curve: Vec<[f64; 3]>,
 }
 
@@ -80,10 +80,10 @@ impl DetectorJson {
     }
 }
 
-/// Drives the laps and prints how each detector does.
+/// Runs the laps and prints the result of each detector.
 ///
 /// # Errors
-/// Where there are too many seeds.
+/// If there are too many seeds.
 pub fn run(args: &PlacesArgs) -> Result<(), PlacesFailure> {
     let seeds = args.seeds.count();
     if seeds > MAX_SEEDS {

@@ -1,4 +1,4 @@
-//! `slam2d register`: one registration of a scan file on a map file, timed.
+//! `slam2d register`: registers a scan file on a map file and measures the time.
 
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
@@ -14,12 +14,12 @@ use thiserror::Error;
 use crate::numbers;
 use crate::output::{pose, print_json, say};
 
-/// Width of a map cell as a share of τ: a query then sees a handful of cells.
+/// Map cell size as a share of τ: a query then visits a handful of cells.
 const CELL_PER_TAU: f64 = 0.5;
-/// Radius in which a map without normals gets them for point-to-plane, m.
+/// Neighbourhood radius for the normals of a map without them, for point-to-plane, m.
 const NORMAL_RADIUS_M: f64 = 0.3;
 
-/// Register a scan on a map, both files of x,y[,nx,ny] lines in metres.
+/// Register a scan on a map; both files have lines x,y[,nx,ny] in metres.
 #[derive(Args, Clone, Debug)]
 pub struct RegisterArgs {
     /// Points of the map.
@@ -34,7 +34,7 @@ pub struct RegisterArgs {
     /// Correspondence distance τ, m.
     #[arg(long, default_value = "0.5", value_parser = numbers::tau_m, allow_hyphen_values = true)]
     tau: f64,
-    /// Register so many times and report the fastest.
+    /// Register this many times and report the fastest.
     #[arg(long, value_name = "N", default_value = "1")]
     repeat: NonZeroU32,
     /// Print one JSON object.
@@ -45,9 +45,9 @@ pub struct RegisterArgs {
 /// `--method`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum MethodName {
-    /// Distances along normals.
+    /// Point-to-plane distances, along normals.
     P2l,
-    /// Distances between points.
+    /// Point-to-point distances.
     P2p,
 }
 
@@ -57,17 +57,17 @@ pub enum RegisterFailure {
     /// It cannot be read.
     #[error("{}: {source}", path.display())]
     File {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// It holds no cloud.
+    /// It is not a point cloud.
     #[error("{}: {source}", path.display())]
     Cloud {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What is wrong, and in which line.
+        /// The problem and its line.
         source: CsvError,
     },
 }
@@ -90,7 +90,7 @@ struct RegisterJson {
 /// Registers and prints pose and times.
 ///
 /// # Errors
-/// Where a file cannot be read or has a line that is not a point.
+/// If a file cannot be read or has a malformed line.
 pub fn run(args: &RegisterArgs) -> Result<(), RegisterFailure> {
     let map_points = read_points(&args.map)?;
     let scan = read_points(&args.scan)?;
@@ -149,7 +149,7 @@ pub fn run(args: &RegisterArgs) -> Result<(), RegisterFailure> {
     Ok(())
 }
 
-/// Why a registration ended, as a sentence.
+/// Why a registration ended.
 fn why(stop: &StopReason) -> String {
     match stop {
         StopReason::SmallStep { step, tolerance } => {
@@ -159,12 +159,11 @@ fn why(stop: &StopReason) -> String {
             format!("not converged after {max_iterations} iterations")
         }
         StopReason::TooFewPairs { pairs, min_pairs } => format!(
-            "too few pairs within tau: {pairs} where {min_pairs} are needed; \
-             bring the scan nearer to the map, or take a larger --tau"
+            "too few pairs within tau: {pairs}, {min_pairs} are needed; \
+             move the scan closer to the map, or use a larger --tau"
         ),
         StopReason::NotFinite => {
-            "the next step is out of the range of numbers; bring the points nearer to the origin"
-                .to_owned()
+            "the next step overflows; move the points closer to the origin".to_owned()
         }
     }
 }

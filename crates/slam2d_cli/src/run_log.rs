@@ -1,4 +1,4 @@
-//! `slam2d run`: a recorded log through the estimator.
+//! `slam2d run`: runs the estimator on a recorded log.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,27 +26,27 @@ use crate::run_output::write_folder;
 use crate::session_file::{SessionFileError, read_session};
 use crate::tick_costs::{TickCosts, TickSummary};
 
-/// Map a recorded log, and grade the trajectory where a reference is given.
+/// Map a recorded log, and evaluate the trajectory if a reference is given.
 #[derive(Args, Clone, Debug)]
 pub struct RunArgs {
     /// The log.
     log: PathBuf,
     #[command(flatten)]
     topics: TopicArgs,
-    /// Write the results into this folder.
+    /// Write the results to this folder.
     #[arg(short = 'o', long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Leave the wheels out: scans alone.
+    /// Ignore odometry and match scans alone.
     #[arg(long)]
     no_odometry: bool,
-    /// Another value of a parameter of the estimator, as docs/robots-parameters.md lists them.
+    /// Set a parameter of the estimator; docs/robots-parameters.md lists them.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
     settings: Vec<(String, f64)>,
-    /// Go on from this session, or from the folder of a run: the log is the rest of its drive, and the
-    /// parameters stay as they are.
+    /// Continue this session, or that of a run's folder: the log is the rest of its recording, and the
+    /// parameters stay the same.
     #[arg(long = "continue", value_name = "SESSION", conflicts_with = "settings")]
     session: Option<PathBuf>,
-    /// In the map, mark as free what lies before the sensor's limit on beams that saw nothing (REP 117).
+    /// Mark free space in the map along beams without a return, up to the sensor's limit (REP 117).
     #[arg(long)]
     free_space: bool,
     #[command(flatten)]
@@ -56,7 +56,7 @@ pub struct RunArgs {
     json: bool,
 }
 
-/// Why a log was not run to its end.
+/// Why a run was aborted.
 #[derive(Debug, Error)]
 pub enum RunError {
     /// A file cannot be read or written.
@@ -65,12 +65,12 @@ pub enum RunError {
     /// The session cannot be used.
     #[error(transparent)]
     Session(#[from] SessionFileError),
-    /// Nothing can go on from the session.
+    /// The session cannot be continued.
     #[error("{name}: {problem}")]
     Snapshot {
         /// The session.
         name: String,
-        /// Why.
+        /// Reason.
         problem: SnapshotError,
     },
     /// The comparison failed.
@@ -79,20 +79,20 @@ pub enum RunError {
     /// A parameter cannot be set.
     #[error(transparent)]
     Setting(#[from] SettingError),
-    /// The log is not the rest of the session's drive.
+    /// The log has no scan after the session.
     #[error(
-        "{name}: no scan is after the session's last one; give the rest of that drive, or run the log alone"
+        "{name}: no scan is later than the session's last one; pass the rest of that recording, or run the log without --continue"
     )]
     NotLater {
         /// The log.
         name: String,
     },
-    /// Every scan was refused.
+    /// Every scan was invalid.
     #[error("{name}: no scan could be used: {problem}")]
     NoScan {
         /// The log.
         name: String,
-        /// Why the first one was not.
+        /// Why the first one was invalid.
         problem: String,
     },
 }
@@ -104,17 +104,17 @@ struct RunJson {
     keyframes: usize,
     loops_tried: usize,
     loops_accepted: usize,
-    /// Seconds that the process kept a core busy.
+    /// CPU time of the process, s.
     cpu_s: f64,
-    /// Most memory that the process held, MB; null where the system does not tell.
+    /// Peak memory of the process, MB; null if the system does not report it.
     peak_mb: Option<f64>,
-    /// What a scan took, at the start of the log and at its end; null below ten scans.
+    /// Time per scan at the start and at the end of the log; null with fewer than ten scans.
     ticks: Option<TickSummary>,
-    /// Whether Ctrl-C ended the run before the log's end.
+    /// Whether Ctrl-C ended the run early.
     interrupted: bool,
-    /// What should be looked at, a sentence each.
+    /// What should be checked, one sentence each.
     doubts: Vec<String>,
-    /// Every keyframe with its covariance, every loop with its evidence.
+    /// Every keyframe with its covariance, and every loop with its evidence.
     quality: Quality,
     #[serde(skip_serializing_if = "Option::is_none")]
     relations: Option<Grade>,
@@ -122,16 +122,16 @@ struct RunJson {
     truth: Option<Grade>,
 }
 
-/// Runs the log and prints what came of it.
+/// Runs the estimator on the log and prints the result.
 ///
 /// # Errors
-/// Where a file cannot be used. What was mapped before is written.
+/// If a file cannot be used. What was mapped before is written.
 pub fn run(args: &RunArgs) -> Result<(), RunError> {
     let name = args.log.display().to_string();
     let reference = args.reference.read()?;
     let is_interrupted = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&is_interrupted);
-    // Without a handler Ctrl-C ends the process at once, which loses the work and nothing else.
+    // If the handler cannot be set, Ctrl-C ends the process without results.
     let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
     if let Some(folder) = &args.output {
         check_folder(folder).map_err(|source| FileError::Io {
@@ -142,7 +142,7 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     let (mut run, mut recorder, laser_before) = start(args)?;
     let topics = args.topics.resuming_with(laser_before);
     let (reader, mut progress) = open_compared(&args.log, &topics)?;
-    let mut reader = reader.for_scans_alone(args.no_odometry);
+    let mut reader = reader.ignoring_odometry(args.no_odometry);
     let mut broken = None;
     let mut costs = TickCosts::default();
     while !is_interrupted.load(Ordering::Relaxed) {
@@ -153,7 +153,7 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
                 if let Some(report) = report {
                     recorder.take(&frame, &report);
                 }
-                progress.tell(run.scans());
+                progress.report(run.scans());
             }
             Ok(None) => break,
             Err(error) if run.scans() == 0 => return Err(FileError::from(error).into()),
@@ -207,7 +207,7 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
             args.free_space,
         )?;
     }
-    // The results are written before anything that may still fail is told.
+    // Write the results before reporting any later error.
     let grade = grade?;
     if let Some(error) = broken {
         return Err(FileError::from(error).into());
@@ -236,7 +236,7 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     Ok(())
 }
 
-/// A run that has seen nothing, or one that goes on from a session, and where the session has its laser.
+/// A new run, or one that continues a session, and the session's mounting of the laser.
 fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder, Option<LaserMount>), RunError> {
     let odometry_use = if args.no_odometry {
         OdometryUse::None
@@ -253,11 +253,11 @@ fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder, Option<LaserMount>), Ru
         return Ok((run, RunRecorder::default(), None));
     };
     let (session, _) = read_session(path)?;
-    let told = |problem| RunError::Snapshot {
+    let snapshot_error = |problem| RunError::Snapshot {
         name: path.display().to_string(),
         problem,
     };
-    let run = LogRun::resume(&session, odometry_use).map_err(told)?;
+    let run = LogRun::resume(&session, odometry_use).map_err(snapshot_error)?;
     let mount = session.sensor.as_ref().map(|sensor| LaserMount {
         body_from_sensor: sensor.body_from_sensor,
         is_flipped: false,
@@ -265,16 +265,16 @@ fn start(args: &RunArgs) -> Result<(LogRun, RunRecorder, Option<LaserMount>), Ru
     Ok((run, RunRecorder::resume(&session), mount))
 }
 
-/// Writes trajectory, graph, quality and doubts into a folder, which is made where it is missing.
+/// Writes trajectory, graph, quality and doubts to a folder, which is created if needed.
 fn write_results(folder: &Path, run: &LogRun, quality: &Quality) -> Result<(), FileError> {
-    let told = |path: &Path| {
+    let io_error = |path: &Path| {
         let path = path.to_owned();
         move |source| FileError::Io { path, source }
     };
-    fs::create_dir_all(folder).map_err(told(folder))?;
+    fs::create_dir_all(folder).map_err(io_error(folder))?;
     let write = |name: &str, bytes: &[u8]| {
         let path = folder.join(name);
-        fs::write(&path, bytes).map_err(told(&path))
+        fs::write(&path, bytes).map_err(io_error(&path))
     };
     let mut trajectory = Vec::new();
     run.trajectory()
@@ -286,7 +286,7 @@ fn write_results(folder: &Path, run: &LogRun, quality: &Quality) -> Result<(), F
     write("report.txt", report(run, quality).as_bytes())
 }
 
-/// The quality in words.
+/// The quality report as text.
 fn report(run: &LogRun, quality: &Quality) -> String {
     let mut text = format!(
         "{} scans, {} keyframes, {} loops in the graph\n\n",
@@ -295,14 +295,14 @@ fn report(run: &LogRun, quality: &Quality) -> String {
         quality.links.len()
     );
     if quality.doubts.is_empty() {
-        text.push_str("Nothing is to be doubted.\n");
+        text.push_str("No doubts.\n");
     } else {
-        text.push_str("To be doubted:\n");
+        text.push_str("Doubts:\n");
     }
     for doubt in &quality.doubts {
         text.push_str(&format!("- {doubt}\n"));
     }
-    text.push_str("\nLoops: from, to, share that fits, fit (m), points, chi-squared (gate)\n");
+    text.push_str("\nLoops: from, to, score, RMSE (m), inliers, chi-squared (gate)\n");
     for link in &quality.links {
         let number = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.3}"));
         text.push_str(&format!(
@@ -323,7 +323,7 @@ fn print_text(result: &RunJson) {
     say!("scans            {}", result.scans);
     say!("keyframes        {}", result.keyframes);
     say!(
-        "loops            {} tried, {} accepted",
+        "loops            {} tested, {} accepted",
         result.loops_tried,
         result.loops_accepted
     );

@@ -1,19 +1,19 @@
-//! What `slam2d run -o DIR` writes for other tools and for the eye.
+//! Files of `slam2d run -o DIR` for other tools and for viewing.
 //!
-//! | file | what it holds |
+//! | file | content |
 //! |---|---|
-//! | `session.slam2d` | all of it: what `--continue`, `slam2d localize` and `slam2d map` take |
+//! | `session.slam2d` | the complete state: input of `--continue`, `slam2d localize` and `slam2d map` |
 //! | `graph.g2o` | the pose graph |
-//! | `keyframes.jsonl` | the keyframes' scans with their poses: what `slam2d map` takes |
+//! | `keyframes.jsonl` | the keyframes' scans with their poses: input of `slam2d map` |
 //! | `report.html` | keyframes, loops and doubts with pictures |
 //! | `map.pgm`, `map.yaml` | the map for Nav2's map_server |
-//! | `map.png` | the same map to look at |
+//! | `map.png` | the same map for viewing |
 
 use std::io::{self, Write};
 use std::path::Path;
 
 use robot_io::graph_file::GraphFile;
-use robot_io::map_image::{MapMode, map_of, map_with_free_space};
+use robot_io::map_image::{MapMode, build_map, map_with_free_space};
 use robot_io::quality::Quality;
 use robot_io::recorder::RunRecorder;
 use robot_io::report::Report;
@@ -23,18 +23,18 @@ use robot_io::session::FILE_NAME;
 use crate::log_file::FileError;
 use crate::optimize::write_whole;
 
-/// The file of keyframes.
+/// Name of the file of keyframes.
 pub const KEYFRAMES: &str = "keyframes.jsonl";
 
-/// Side of the map's cells, m: what Nav2's maps have.
+/// Cell size of the map, m: Nav2's default.
 const MAP_CELL_M: f64 = 0.05;
-/// Side of the report's cells, m: finer walls than its picture shows cost space.
+/// Cell size of the report, m: finer cells are not visible in its picture.
 const REPORT_CELL_M: f64 = 0.1;
 
-/// Writes all of them into a folder that is there.
+/// Writes all files to an existing folder.
 ///
 /// # Errors
-/// What the system says, with the name.
+/// If the system cannot write a file; the error contains the name.
 pub fn write_folder(
     folder: &Path,
     log: &str,
@@ -55,7 +55,7 @@ pub fn write_folder(
     }
     if let Some(slam) = run.slam() {
         save("graph.g2o", &|out| {
-            out.write_all(GraphFile::of_graph(slam.graph()).to_g2o().as_bytes())
+            out.write_all(GraphFile::from_pose_graph(slam.graph()).to_g2o().as_bytes())
         })?;
     }
     let lines = recorder.map_lines(run);
@@ -65,9 +65,9 @@ pub fn write_folder(
     let draw = if has_free_space {
         map_with_free_space
     } else {
-        map_of
+        build_map
     };
-    // A place too large for cells so small has no map here; `slam2d map --resolution` makes one.
+    // A map too large for this resolution is skipped; `slam2d map --resolution` writes a coarser one.
     if let Ok(map) = draw(&lines, MAP_CELL_M) {
         save("map.pgm", &|out| map.write_pgm(out))?;
         save("map.png", &|out| map.write_png(out, MapMode::Trinary))?;
@@ -75,7 +75,7 @@ pub fn write_folder(
             out.write_all(map.yaml("map.pgm", MapMode::Trinary).as_bytes())
         })?;
     }
-    // A place too large for cells so small has a report without walls.
+    // A map too large for this resolution leaves the report without walls.
     let map = draw(&lines, REPORT_CELL_M).ok();
     let report = Report {
         name: log,

@@ -1,4 +1,4 @@
-//! A session as a file, or as the folder of a run that holds one.
+//! Reads a session from a file, or from the folder of a run.
 
 use std::fs;
 use std::io::{BufRead, Read};
@@ -15,15 +15,15 @@ pub enum SessionFileError {
     /// The system could not open it.
     #[error(transparent)]
     File(#[from] FileError),
-    /// It is no session that can be used.
+    /// It is not a usable session.
     #[error(transparent)]
     Session(#[from] SessionError),
-    /// A folder without one.
-    #[error("{} holds no {FILE_NAME}; give a session, or a folder that slam2d run LOG -o DIR wrote", .0.display())]
+    /// The folder has no session.
+    #[error("{} has no {FILE_NAME}; pass a session, or a folder that slam2d run LOG -o DIR wrote", .0.display())]
     NoSession(PathBuf),
 }
 
-/// The session that a path means: the file, or the one in the folder of a run.
+/// The session file of a path: the file itself, or the one in the folder of a run.
 pub fn session_path(path: &Path) -> PathBuf {
     if path.is_dir() {
         path.join(FILE_NAME)
@@ -32,7 +32,7 @@ pub fn session_path(path: &Path) -> PathBuf {
     }
 }
 
-/// Whether a path means a session and no log, by its name, its folder or its first bytes.
+/// Whether a path is a session and not a log, by its name, its folder or its first bytes.
 pub fn is_session(path: &Path) -> bool {
     if path.is_dir() {
         return path.join(FILE_NAME).is_file();
@@ -41,10 +41,10 @@ pub fn is_session(path: &Path) -> bool {
     named || open(path).is_ok_and(|mut file| file.fill_buf().is_ok_and(Session::begins))
 }
 
-/// Reads a session, and says how many bytes it has.
+/// Reads a session and returns it with its size in bytes.
 ///
 /// # Errors
-/// One sentence where it cannot be used.
+/// If it cannot be used.
 pub fn read_session(path: &Path) -> Result<(Session, u64), SessionFileError> {
     let file = session_path(path);
     if path.is_dir() && !file.is_file() {

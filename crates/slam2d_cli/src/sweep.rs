@@ -1,4 +1,4 @@
-//! `slam2d sweep`: the lap at many seeds and noise factors, over all cores. One seed is an anecdote.
+//! `slam2d sweep`: statistics of the lap over many seeds and noise factors, on all cores.
 
 mod level;
 mod nudge;
@@ -28,16 +28,16 @@ use shard::Shard;
 /// Most laps of one sweep.
 const MAX_LAPS: u64 = 10_000_000;
 
-/// Most threads: beyond any machine's cores, more only cost memory.
+/// Most threads: more than any machine's cores only cost memory.
 const MAX_THREADS: usize = 1024;
 
-/// Drive the lap at many seeds and noise factors and print how its figures are distributed.
+/// Run the lap at many seeds and noise factors and print the distribution of its figures.
 #[derive(Args, Clone, Debug)]
 pub struct SweepArgs {
     /// Seeds: A..=B, A..B or one.
     #[arg(long, default_value = "1..=1000", value_parser = numbers::seeds, allow_hyphen_values = true)]
     seeds: Seeds,
-    /// Factors of the wheels' noise, separated by commas.
+    /// Factors of odometry noise, separated by commas.
     #[arg(
         long,
         default_value = "0.25,1,2,4",
@@ -46,7 +46,7 @@ pub struct SweepArgs {
         allow_hyphen_values = true
     )]
     noise: Vec<f64>,
-    /// What estimates the laps, separated by commas; each has its columns.
+    /// Estimators of the laps, separated by commas; each has its columns.
     #[arg(
         long,
         default_value = "graph",
@@ -56,23 +56,23 @@ pub struct SweepArgs {
     estimator: Vec<LapEstimator>,
     #[command(flatten)]
     trial: TrialArgs,
-    /// Number of threads, at most one for each seed; all cores without it.
+    /// Number of threads, at most one per seed; default: all cores.
     #[arg(long, value_parser = numbers::threads, allow_hyphen_values = true)]
     threads: Option<NonZeroUsize>,
-    /// Drive each lap once more with its start moved by 4e-16 of itself, and count other laps.
+    /// Run each lap again with its start changed by a relative 4e-16, and count the laps that differ.
     #[arg(long, conflicts_with = "estimator")]
     nudge: bool,
-    /// Draw the configuration of each lap from the documented ranges, noise included, and check
+    /// Draw the configuration of each lap from the documented ranges, including noise, and check
     /// that every figure is finite.
     #[arg(long, conflicts_with_all = ["nudge", "noise", "world", "matcher", "front_end", "gate", "information", "estimator"])]
     random: bool,
-    /// Keep what each lap came to in this file, a line each. Laps that are in it are not driven again.
+    /// Store the result of each lap in this file, one line each. Laps that are in it are not run again.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["nudge", "random"])]
     rows: Option<PathBuf>,
-    /// Drive one part of the seeds alone: 2/4 is the second of four. Its laps go to the file of --rows.
+    /// Run one part of the seeds: 2/4 is the second of four. The laps are stored in the file of --rows.
     #[arg(long, value_name = "K/N", value_parser = shard::shard, requires = "rows")]
     shard: Option<Shard>,
-    /// Drive nothing: put the rows of these files together and print how their figures are distributed.
+    /// Run no laps: merge the rows of these files and print the distribution of their figures.
     #[arg(
         long,
         value_name = "FILES",
@@ -83,7 +83,7 @@ pub struct SweepArgs {
         ]
     )]
     merge: Vec<PathBuf>,
-    /// Print one JSON list, an object for each noise factor.
+    /// Print one JSON list with an object for each noise factor.
     #[arg(long)]
     json: bool,
 }
@@ -91,14 +91,14 @@ pub struct SweepArgs {
 /// Why a sweep did not start.
 #[derive(Debug, Error)]
 pub enum SweepFailure {
-    /// More laps than anyone waits for.
-    #[error("{laps} laps are too many, at most {MAX_LAPS}")]
+    /// Too many laps.
+    #[error("{laps} laps are too many; use at most {MAX_LAPS}")]
     TooMany {
         /// Seeds times noise factors.
         laps: u64,
     },
-    /// The estimators have no use for an argument.
-    #[error("{argument} says nothing to {estimators}: leave it out, or add graph to --estimator")]
+    /// The estimators ignore an argument.
+    #[error("{argument} has no effect on {estimators}; omit it or add graph to --estimator")]
     OfTheGraph {
         /// The argument.
         argument: &'static str,
@@ -108,15 +108,15 @@ pub enum SweepFailure {
     /// There is no such world.
     #[error(transparent)]
     World(#[from] WorldError),
-    /// Rows cannot be kept or put together.
+    /// Rows cannot be stored or merged.
     #[error(transparent)]
     Rows(#[from] RowsFailure),
-    /// A lap within the documented ranges broke down.
-    #[error("the lap at the random configuration {seed} is not sound: {fault}")]
+    /// A lap within the documented ranges failed.
+    #[error("the lap at the random configuration {seed} failed: {fault}")]
     Unsound {
-        /// Which one.
+        /// Its seed.
         seed: u32,
-        /// What is wrong with it.
+        /// The fault.
         fault: String,
     },
     /// The threads could not be started.
@@ -124,11 +124,11 @@ pub enum SweepFailure {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// Runs all laps and prints their distribution.
+/// Runs all laps and prints the distribution of their figures.
 ///
 /// # Errors
-/// Where the sweep is too large, the world cannot be driven, the threads cannot be started, rows cannot be
-/// kept or put together, or a random lap is not sound.
+/// If the sweep is too large, the world cannot be used, the threads cannot be started, rows cannot be stored or merged,
+/// or a random lap fails.
 pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
     if !args.merge.is_empty() {
         let (header, rows) = rows::read_all(&args.merge)?;
@@ -184,7 +184,7 @@ pub fn run(args: &SweepArgs) -> Result<(), SweepFailure> {
     Ok(())
 }
 
-/// Prints how the figures are distributed at each noise factor.
+/// Prints the distribution of the figures at each noise factor.
 fn print(args: &SweepArgs, by_seed: &[Vec<LapOutcome>]) {
     let level = |(k, &noise): (usize, &f64)| {
         let outcomes = by_seed.iter().map(|runs| runs[k]).collect();
@@ -198,7 +198,7 @@ fn print(args: &SweepArgs, by_seed: &[Vec<LapOutcome>]) {
     }
 }
 
-/// A part of a sweep has no distribution of its own: it says where its rows are.
+/// Prints where the rows of a shard are: a part of a sweep has no distribution of its own.
 fn say_driven(driven: &shard::ShardResult, path: &Path, json: bool) {
     let file = path.display();
     if json {
@@ -209,12 +209,12 @@ fn say_driven(driven: &shard::ShardResult, path: &Path, json: bool) {
     }
     let kept = match driven.kept {
         0 => String::new(),
-        kept => format!(", {kept} of them from before"),
+        kept => format!(", {kept} of them from an earlier run"),
     };
     say!("{} laps{kept}: {file}", driven.laps);
 }
 
-/// The runs of every seed, in order of the seeds; each has one run for each noise factor.
+/// The runs of every seed, in order of the seeds, with one run per noise factor.
 fn all_runs(args: &SweepArgs, trial: &Trial) -> Vec<Vec<LapOutcome>> {
     let bar = progress_bar(args.seeds.count());
     let runs = (args.seeds.first..=args.seeds.last)
@@ -230,7 +230,7 @@ fn all_runs(args: &SweepArgs, trial: &Trial) -> Vec<Vec<LapOutcome>> {
     runs
 }
 
-/// A bar on a terminal's standard error, one step for each seed.
+/// A progress bar on standard error in a terminal, one step per seed.
 fn progress_bar(seeds: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} seeds, {eta} left")
         .expect("the template is well formed");
@@ -242,12 +242,12 @@ impl SweepArgs {
         self.estimator.contains(&estimator)
     }
 
-    /// Whether anything of a pose graph is asked for: its front end will do.
+    /// Whether any column of a pose graph is requested, including the front end alone.
     fn has_a_graph(&self) -> bool {
         self.has(LapEstimator::Graph) || self.has(LapEstimator::FrontEnd)
     }
 
-    /// Whether a column is asked for; wheels always are.
+    /// Whether a column is requested; odometry always is.
     fn shows(&self, column: Column) -> bool {
         match column {
             Column::Odometry => true,

@@ -1,4 +1,4 @@
-//! `slam2d table`: the chapter's results table, computed.
+//! `slam2d table`: computes the chapter's results table.
 
 use ch16_lab::lap::{LapConfig, LapRunner, LapSummary};
 use clap::Args;
@@ -25,7 +25,7 @@ struct TableJson {
     with_loops: ColumnJson,
 }
 
-/// A column of the table; what odometry has no keyframes for is null.
+/// A column of the table; rows that odometry lacks are null.
 #[derive(Serialize)]
 struct ColumnJson {
     end_error: f64,

@@ -1,4 +1,4 @@
-//! `slam2d terrain`: the landscapes of w16.3.
+//! `slam2d terrain`: the cost landscapes of w16.3.
 
 use ch16_lab::terrain::{SceneKind, Terrain, TerrainScene, TerrainSettings};
 use clap::{Args, ValueEnum};
@@ -7,10 +7,10 @@ use serde::Serialize;
 use crate::numbers;
 use crate::output::{print_json, say};
 
-/// Work out ICP's cost and NDT's score over shifts of the cloud.
+/// Compute ICP's cost and NDT's score over shifts of the point cloud.
 #[derive(Args, Clone, Debug)]
 pub struct TerrainArgs {
-    /// Where the sweep was taken.
+    /// Scene of the scan.
     #[arg(long, value_enum, default_value_t = SceneName::Room)]
     scene: SceneName,
     /// Truncation of ICP's distances τ, m.

@@ -1,14 +1,14 @@
-//! What a scan costs at the start of a log, and at its end.
+//! CPU time per scan at the start and at the end of a log.
 
 use serde::Serialize;
 
-/// The ticks of a run: how long each kept its thread busy.
+/// CPU times of a run's ticks.
 #[derive(Clone, Debug, Default)]
 pub struct TickCosts {
     ms: Vec<f64>,
 }
 
-/// The ticks of the first tenth of a run, and those of the last.
+/// Ticks of the first and the last tenth of a run.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct TickSummary {
     /// The first tenth.
@@ -17,24 +17,24 @@ pub struct TickSummary {
     pub last: Tenth,
 }
 
-/// The ticks of a tenth of a run, milliseconds of CPU.
+/// CPU times of a tenth of a run, ms.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Tenth {
-    /// Half of them took less.
+    /// Median.
     pub median_ms: f64,
-    /// What they took on average: the ticks that close a loop count with all they take.
+    /// Mean, including ticks that close loops.
     pub mean_ms: f64,
-    /// The longest.
+    /// Maximum.
     pub worst_ms: f64,
 }
 
 impl TickCosts {
-    /// The next tick took so many milliseconds.
+    /// Adds the CPU time of a tick, ms.
     pub fn push(&mut self, ms: f64) {
         self.ms.push(ms);
     }
 
-    /// Both tenths; none before ten ticks were made.
+    /// Summarizes both tenths; `None` with fewer than ten ticks.
     pub fn summary(&self) -> Option<TickSummary> {
         let tenth = self.ms.len() / 10;
         (tenth > 0).then(|| TickSummary {
@@ -61,14 +61,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_tenth_and_the_last_are_told_apart() {
+    fn the_first_and_the_last_tenth_are_distinguished() {
         let mut costs = TickCosts::default();
         (0..9).for_each(|k| costs.push(f64::from(k)));
         assert!(costs.summary().is_none());
         (9..35).for_each(|k| costs.push(f64::from(k)));
         let TickSummary { first, last } = costs.summary().unwrap();
-        let told = |tenth: Tenth| [tenth.median_ms, tenth.mean_ms, tenth.worst_ms];
-        assert_eq!(told(first), [1.0, 1.0, 2.0]);
-        assert_eq!(told(last), [33.0, 33.0, 34.0]);
+        let figures = |tenth: Tenth| [tenth.median_ms, tenth.mean_ms, tenth.worst_ms];
+        assert_eq!(figures(first), [1.0, 1.0, 2.0]);
+        assert_eq!(figures(last), [33.0, 33.0, 34.0]);
     }
 }

@@ -1,4 +1,4 @@
-//! What `lap` and `sweep` drive, and with which estimator: `--world`, `--matcher`,
+//! World and estimator of `lap` and `sweep`: `--world`, `--matcher`,
 //! `--loop-matcher`, `--detector`, `--gate`, `--information`.
 
 use ch16_lab::lap::{
@@ -13,34 +13,34 @@ use pr_sim::Course;
 
 use crate::world::{WorldArg, WorldError};
 
-/// The arguments that a lap and a sweep of laps have in common.
+/// Arguments shared by a lap and a sweep of laps.
 #[derive(Args, Clone, Debug)]
 pub struct TrialArgs {
-    /// What registers scans, for the front end and for loops; p2p without it.
+    /// Matcher of the front end and of loops; default: p2p.
     #[arg(long, value_parser = choice::<LapMatcher>())]
     matcher: Option<LapMatcher>,
-    /// What the front end registers scans on; that on a local map finds loops its own way as well.
+    /// Reference that the front end registers scans on; a local map also has its own loop search.
     #[arg(long, value_parser = choice::<LapFrontEnd>())]
     front_end: Option<LapFrontEnd>,
-    /// What registers scans for loops alone; that of the front end without it.
+    /// Matcher of loops only; default: that of the front end.
     #[arg(long, value_parser = choice::<LoopMatcher>())]
     loop_matcher: Option<LoopMatcher>,
-    /// What proposes loops; what is near in the graph without it.
+    /// Detector of loop candidates; default: distance in the graph.
     #[arg(long, value_parser = choice::<LapDetector>())]
     detector: Option<LapDetector>,
-    /// What the gate of loops takes for the drift since the place was seen.
+    /// Drift model of the loop gate.
     #[arg(long, value_parser = choice::<GateModel>())]
     gate: Option<GateModel>,
-    /// What is driven: apartment, ring, twins, corridor, hall, or a file that ends in .json.
+    /// World: apartment, ring, twins, corridor, hall, or a .json file.
     #[arg(long, default_value = "apartment")]
     world: WorldArg,
-    /// In which frame the information of edges is expressed: that of the chapter's figures in the
-    /// Apartment, the exact one elsewhere, unless it is said.
+    /// Frame of the edges' information; default: that of the chapter's figures in the
+    /// Apartment, the exact one elsewhere.
     #[arg(long, value_parser = choice::<InformationFrame>())]
     information: Option<InformationFrame>,
 }
 
-/// The laps that are asked for; they differ in seed and noise.
+/// The requested laps, which differ in seed and noise.
 #[derive(Clone, Debug)]
 pub struct Trial {
     course: Option<Course>,
@@ -53,7 +53,7 @@ pub struct Trial {
 }
 
 impl TrialArgs {
-    /// The first argument that says something only to a pose graph and its front end.
+    /// The first argument that affects only a pose graph and its front end.
     pub fn of_the_graph(&self) -> Option<&'static str> {
         let said = [
             (self.matcher.is_some(), "--matcher"),
@@ -66,10 +66,10 @@ impl TrialArgs {
         said.into_iter().find(|(is, _)| *is).map(|(_, name)| name)
     }
 
-    /// What is driven, read.
+    /// Reads the world.
     ///
     /// # Errors
-    /// Where the file of the world cannot be used.
+    /// If the world file cannot be used.
     pub fn course(&self) -> Result<Course, WorldError> {
         self.world.course()
     }
@@ -77,7 +77,7 @@ impl TrialArgs {
     /// The laps, with the world read.
     ///
     /// # Errors
-    /// Where the file of the world cannot be used.
+    /// If the world file cannot be used.
     pub fn trial(&self) -> Result<Trial, WorldError> {
         let is_the_chapters = self.world == WorldArg::BuiltIn(BuiltInWorld::Apartment);
         let course = (!is_the_chapters).then(|| self.world.course());
@@ -94,8 +94,8 @@ impl TrialArgs {
 }
 
 impl Trial {
-    /// The lap at this seed and noise factor: in the Apartment the chapter's estimator, elsewhere the
-    /// default.
+    /// The lap at this seed and noise factor, by the chapter's estimator in the Apartment and the default one
+    /// elsewhere.
     pub fn lap(&self, seed: u32, noise_factor: f64) -> LapConfig {
         let chapter = LapConfig::with_seed_and_noise(seed, noise_factor);
         let lap = match &self.course {
@@ -119,7 +119,7 @@ impl Trial {
     }
 }
 
-/// Takes the short names of a list, and shows its labels in the help.
+/// Parses the short names of a list, and shows its labels in the help.
 pub fn choice<C: Choice + Send + Sync>() -> impl TypedValueParser<Value = C> {
     let values = C::ALL
         .iter()

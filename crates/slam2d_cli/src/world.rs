@@ -8,12 +8,12 @@ use ch16_lab::lap::{BuiltInWorld, Choice};
 use pr_sim::{Course, CourseError};
 use thiserror::Error;
 
-/// A world as it is named on the command line.
+/// A world on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum WorldArg {
-    /// A built-in one.
+    /// A built-in world.
     BuiltIn(BuiltInWorld),
-    /// A file of the reader's own.
+    /// A custom world file.
     File(PathBuf),
 }
 
@@ -27,13 +27,13 @@ impl FromStr for WorldArg {
             None => {
                 let known = BuiltInWorld::ALL.iter().map(|world| world.name());
                 let known = known.collect::<Vec<_>>().join(", ");
-                Err(format!("not {known} or a file that ends in .json"))
+                Err(format!("expected {known} or a .json file"))
             }
         }
     }
 }
 
-/// Why a world cannot be driven.
+/// Why a world cannot be used.
 #[derive(Debug, Error)]
 pub enum WorldError {
     /// The system cannot read it.
@@ -41,24 +41,24 @@ pub enum WorldError {
     Read {
         /// The file.
         path: String,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// It is no course that can be driven.
+    /// The file is not a valid course.
     #[error("{path}: {source}")]
     Course {
         /// The file.
         path: String,
-        /// What, where and what to do.
+        /// The problem, its position and what to do.
         source: CourseError,
     },
 }
 
 impl WorldArg {
-    /// The world and the way through it.
+    /// The world and the path through it.
     ///
     /// # Errors
-    /// One sentence where the file cannot be used.
+    /// If the file cannot be used.
     pub fn course(&self) -> Result<Course, WorldError> {
         let file = match self {
             Self::BuiltIn(world) => return Ok(world.course()),

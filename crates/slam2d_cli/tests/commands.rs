@@ -1,4 +1,4 @@
-//! The command itself, run as a reader runs it, against the reference files.
+//! Runs the command and compares it with the reference files.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -50,7 +50,7 @@ fn lap_prints_the_fields_of_the_reference() {
         if expected["loops"] == Value::Bool(false) {
             arguments.push("--no-loops");
         }
-        // 1e-6: a whole lap. No pose is near ±π, where a heading could jump.
+        // 1e-6: a whole lap. No heading is near ±π, where it could wrap.
         assert_covers(&arguments.join(" "), &json(&arguments), expected, 1e-6);
     }
 }
@@ -96,7 +96,7 @@ fn basin_prints_the_runs_of_the_reference() {
     assert_eq!(seen, runs.len());
 }
 
-/// Asserts that normals are those of the reference, where a normal and its opposite are the same.
+/// Asserts that normals equal those of the reference up to sign.
 fn assert_same_lines(actual: &Value, expected: &Value) {
     let normals = |list: &Value| -> Vec<Option<[f64; 2]>> {
         serde_json::from_value(list.clone()).expect("a list of normals and nulls")
@@ -116,7 +116,7 @@ fn assert_same_lines(actual: &Value, expected: &Value) {
     }
 }
 
-/// The offsets and thresholds that occur, as the reference writes them.
+/// The offsets and thresholds in the reference, as it writes them.
 fn groups(runs: &[Value]) -> Vec<(String, String, String)> {
     let mut groups: Vec<_> = runs
         .iter()
@@ -186,7 +186,7 @@ fn a_start_moved_by_its_last_digits_makes_another_lap_of_seed_2_and_not_of_1_and
     let level = json(&[&arguments[..], &["--json"]].concat())[0].take();
     assert_eq!(level["runs"], 3);
     assert_eq!(level["changed"], 1);
-    // 32 mm, of a start that moved by less than 1e-15 m.
+    // 32 mm, although the start moved by less than 1e-15 m.
     let farthest_m = level["farthest_m"].as_f64().unwrap();
     assert_close("farthest", farthest_m, 0.032, 5e-4);
 }
@@ -217,7 +217,7 @@ fn sweep_counts_every_run_once_and_does_not_depend_on_threads() {
             let medians = level["along_the_way"][column].as_array().unwrap();
             assert_eq!((medians.len(), medians[0].as_f64()), (21, Some(0.0)));
         }
-        // Ids as the figures of the page have them, no prose.
+        // Ids as in the figures of the page, not display names.
         for entry in entries {
             let [column, row] = ["column", "row"].map(|key| entry[key].as_str().unwrap());
             assert!(COLUMNS.contains(&column) && ROWS.contains(&row), "{entry}");
@@ -284,7 +284,7 @@ fn register_says_in_words_why_it_ended() {
     };
     assert!(said(&near).contains("converged: the last step"));
     let text = said(&far);
-    assert!(text.contains("too few pairs within tau: 0 where"), "{text}");
+    assert!(text.contains("too few pairs within tau: 0,"), "{text}");
     assert!(!text.contains("inf") && !text.contains('{'), "{text}");
 }
 
@@ -300,7 +300,7 @@ fn a_bad_line_is_named_with_its_file() {
 #[test]
 fn wrong_arguments_end_in_one_line_and_exit_code_2() {
     for (arguments, said) in [
-        (&[][..], "a subcommand is needed"),
+        (&[][..], "a subcommand is required"),
         (&["bogus"], "bogus"),
         (&["lap", "--seed", "-1"], "4294967295"),
         (&["lap", "--seed", "4294967296"], "4294967295"),
@@ -309,19 +309,19 @@ fn wrong_arguments_end_in_one_line_and_exit_code_2() {
         (&["lap", "--frob"], "--frob"),
         (&["basin", "--tau", "inf"], "finite"),
         (&["basin", "--variant", "plane"], "plane"),
-        (&["basin", "--heading-deg", "0:10:0"], "does not lead"),
+        (&["basin", "--heading-deg", "0:10:0"], "does not reach"),
         (
             &["basin", "--heading-deg", "0:10:1e-9"],
             "too many headings",
         ),
         (&["terrain", "--scene", "attic"], "attic"),
         (&["terrain", "--n", "1"], "from 2 to 1001"),
-        (&["terrain", "--n", "48.5"], "whole number from 2 to 1001"),
-        (&["terrain", "--n", "-3"], "whole number from 2 to 1001"),
+        (&["terrain", "--n", "48.5"], "integer from 2 to 1001"),
+        (&["terrain", "--n", "-3"], "integer from 2 to 1001"),
         (&["sweep", "--seeds", "5..5"], "empty"),
         (&["sweep", "--seeds", "0..=4294967295"], "too many"),
         (&["sweep", "--seeds", "-1..3"], "4294967295"),
-        (&["sweep", "--threads", "0"], "whole number from 1 on"),
+        (&["sweep", "--threads", "0"], "positive integer"),
         (
             &["sweep", "--random", "--noise", "2"],
             "cannot be used with",
@@ -375,14 +375,14 @@ fn a_full_disk_is_one_line_and_exit_code_2() {
 }
 
 #[test]
-fn a_reader_that_has_seen_enough_is_no_error() {
+fn a_closed_pipe_is_not_an_error() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_slam2d"))
         .args(["lap", "--json"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .expect("the binary was built for this test");
-    // Closed before the lap is computed, and far shorter than what is printed.
+    // Closed before the lap is computed; the pipe's buffer is far smaller than the output.
     drop(child.stdout.take());
     let output = child.wait_with_output().unwrap();
     assert!(output.stderr.is_empty());

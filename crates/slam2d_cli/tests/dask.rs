@@ -1,4 +1,4 @@
-//! The example that spreads a sweep over a Dask cluster.
+//! The example that distributes a sweep over a Dask cluster.
 
 use std::path::Path;
 use std::process::Command;
@@ -13,7 +13,7 @@ fn a_cluster_of_two_workers_comes_to_the_same_figures_though_one_is_killed() {
     if !has_dask {
         measuring::skip::skip(
             "the sweep on a Dask cluster",
-            "python3 has no dask; pip install 'dask[distributed]', or name one that has by PYTHON",
+            "python3 has no dask; pip install 'dask[distributed]', or set PYTHON to an interpreter that has it",
         );
         return;
     }

@@ -1,4 +1,4 @@
-//! The doctor's screen, and what a run leaves beside its map.
+//! The doctor's report, and the output of a run besides its map.
 
 use std::fs;
 
@@ -9,7 +9,7 @@ use crate::logs::{corridor, text};
 use crate::support::{assert_refused, json, slam2d};
 
 #[test]
-fn the_doctor_tells_each_part_of_a_recording_with_a_sign() {
+fn the_doctor_reports_each_part_of_a_recording_with_a_symbol() {
     let folder = TempDir::new().unwrap();
     let log = corridor(&folder, 40);
     let output = slam2d(&["doctor", text(&log)]);
@@ -19,9 +19,9 @@ fn the_doctor_tells_each_part_of_a_recording_with_a_sign() {
     for part in ["sensor", "odometry", "mounting", "clocks"] {
         assert!(screen.contains(&format!(" {part} ")), "{screen}");
     }
-    // The corridor's wheels measure a tenth too much.
+    // The corridor's odometry is a tenth too long.
     assert!(
-        screen.contains("odometry measures 1.10 m for each metre"),
+        screen.contains("odometry measures 1.10 m per metre"),
         "{screen}"
     );
     let told = json(&["doctor", text(&log), "--json"]);

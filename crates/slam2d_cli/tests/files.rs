@@ -1,4 +1,4 @@
-//! Files in and out: recordings of ROS, conversions, maps and reports.
+//! Input and output files: ROS recordings, conversions, maps and reports.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ fn runs(arguments: &[&str]) -> String {
 }
 
 #[test]
-fn what_is_in_a_recording_of_ros_is_told() {
+fn the_content_of_a_ros_recording_is_summarized() {
     for name in ["zstd.mcap", "lz4.bag"] {
         let info = json(&["info", &recording(name), "--json"]);
         assert_eq!(info["scans"], 24, "{name}");
@@ -67,7 +67,7 @@ fn a_run_leaves_trajectory_graph_map_and_report() {
     assert_eq!(variance(0), Some(0.0));
     assert!(variance(1).unwrap() > 0.0);
     let report = file("report.html");
-    assert!(report.contains("24 scans became") && report.contains("class=\"wall\" d=\"M"));
+    assert!(report.contains("24 scans gave") && report.contains("class=\"wall\" d=\"M"));
 
     let map = in_folder(&folder, "map.yaml");
     runs(&["map", &out, "-o", &map]);
@@ -104,11 +104,11 @@ fn a_run_leaves_trajectory_graph_map_and_report() {
         ),
         (
             vec!["map", &out, "-o", "map.png"],
-            "map.png has to end in .yaml",
+            "map.png must end in .yaml",
         ),
         (
             vec!["map", &out, "-o", &map, "--mode", "scale", "--image", "pgm"],
-            "take --image png",
+            "use --image png",
         ),
         (
             vec!["map", &out, "-o", &map, "--resolution", "0"],
@@ -186,7 +186,7 @@ fn a_graph_goes_through_toro_and_json_and_solves_to_the_same() {
 }
 
 #[test]
-fn what_makes_no_sense_names_what_does() {
+fn impossible_conversions_list_the_possible_ones() {
     let folder = TempDir::new().unwrap();
     let write = |name: &str, bytes: &[u8]| -> PathBuf {
         let path = folder.path().join(name);
@@ -201,14 +201,14 @@ fn what_makes_no_sense_names_what_does() {
         (
             text(&graph),
             "y.clf",
-            "x.g2o cannot become y.clf; a pose graph becomes .g2o",
+            "x.g2o cannot be converted to y.clf; convert a pose graph to .g2o",
         ),
         (
             &*recording("zstd.mcap"),
             "y.bag",
-            "a log becomes .clf, .jsonl, or .tum",
+            "convert a log to .clf, .jsonl, or .tum",
         ),
-        ("x.pdf", "y.clf", "name a log (.clf .log .mcap .bag .jsonl)"),
+        ("x.pdf", "y.clf", "use a log (.clf .log .mcap .bag .jsonl)"),
         (
             text(&empty),
             &out,
@@ -217,15 +217,12 @@ fn what_makes_no_sense_names_what_does() {
         (
             text(&half),
             &out,
-            "half.bag holds no scan that can be used: byte 15: a record's header was expected",
+            "half.bag has no usable scan: byte 15: expected a record's header",
         ),
     ] {
         assert_refused(&["convert", input, output], said);
     }
-    assert!(
-        !Path::new(&out).exists(),
-        "nothing is written where nothing is read"
-    );
+    assert!(!Path::new(&out).exists(), "no output without input");
 }
 
 #[test]
@@ -266,23 +263,23 @@ fn a_log_is_never_written_over_by_what_it_becomes() {
     let log = in_folder(&folder, "a.jsonl");
     runs(&["convert", &recording("plain.mcap"), &log]);
     let before = fs::read(&log).unwrap();
-    assert_refused(
-        &["convert", &log, &log],
-        "is what is read and what is written",
-    );
+    assert_refused(&["convert", &log, &log], "is both input and output");
     let roundabout = in_folder(&folder, "./a.jsonl");
-    assert_refused(&["convert", &log, &roundabout], "write another file");
+    assert_refused(
+        &["convert", &log, &roundabout],
+        "choose another output file",
+    );
     assert_eq!(fs::read(&log).unwrap(), before);
-    // What cannot be read to its end leaves the output as it was, and no part of it.
+    // An input that cannot be read completely leaves the output unchanged, without temporary files.
     let bad = in_folder(&folder, "bad.log");
     fs::write(&bad, "hello\n").unwrap();
-    assert_refused(&["convert", &bad, &log], "is no CARMEN log");
+    assert_refused(&["convert", &bad, &log], "is not a CARMEN log");
     assert_eq!(fs::read(&log).unwrap(), before);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
 }
 
 #[test]
-fn what_cannot_be_written_is_told_before_the_work() {
+fn unwritable_outputs_are_rejected_before_the_work() {
     let folder = TempDir::new().unwrap();
     let log = recording("plain.mcap");
     let taken = in_folder(&folder, "taken");
@@ -295,9 +292,9 @@ fn what_cannot_be_written_is_told_before_the_work() {
     runs(&["run", &log, "-o", &run]);
     let nowhere = in_folder(&folder, "nowhere/poses.tum");
     assert_refused(&["localize", &run, &log, "-o", &nowhere], "No such file");
-    // Nothing is left of the asking.
+    // The checks leave no files.
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
-    // The folder of a run is its session.
+    // The folder of a run stands for its session.
     let graph = in_folder(&folder, "graph.g2o");
     runs(&["convert", &run, &graph]);
     let own = Path::new(&run).join("graph.g2o");
@@ -310,7 +307,7 @@ fn what_cannot_be_written_is_told_before_the_work() {
 }
 
 #[test]
-fn a_log_in_which_no_beam_tells_anything_is_refused() {
+fn a_log_without_returns_is_rejected() {
     let folder = TempDir::new().unwrap();
     let log = in_folder(&folder, "blind.jsonl");
     runs(&["convert", &recording("plain.mcap"), &log]);

@@ -1,4 +1,4 @@
-//! Recorded logs on the command line: what is said of them, and the errors of a run.
+//! Recorded logs on the command line: their summary, and the errors of a run.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,8 +8,7 @@ use robot_io::settings::SETTINGS;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A log of a robot that drives along x in a hall 6 m wide, 0.1 m a scan, with wheels that measure a
-/// tenth too much.
+/// A log of a robot that drives along x in a hall 6 m wide, 0.1 m per scan, with odometry that is a tenth too long.
 pub fn corridor(folder: &TempDir, scans: usize) -> PathBuf {
     let mut text = String::new();
     for scan in 0..scans {
@@ -41,7 +40,7 @@ pub fn text(path: &Path) -> &str {
 fn a_log_is_mapped_and_graded_against_relations() {
     let folder = TempDir::new().unwrap();
     let log = corridor(&folder, 40);
-    // From the first scan to the last 3.9 m were driven.
+    // The robot drove 3.9 m from the first scan to the last.
     let relations = write(&folder, "relations", "100 139 3.9 0 0 0 0 0\n");
     let (log, relations) = (text(&log), text(&relations));
     let out = folder.path().join("out/deep");
@@ -63,7 +62,7 @@ fn a_log_is_mapped_and_graded_against_relations() {
         assert!(ms("median_ms") > 0.0 && ms("median_ms") <= ms("worst_ms"));
     }
     let error_m = run["relations"]["trans"]["mean"].as_f64().unwrap();
-    // The wheels alone are off by 0.39 m; the wall at the end tells better.
+    // Odometry alone is off by 0.39 m; the wall at the end corrects it.
     assert!(error_m < 0.1, "{error_m}");
     let report = fs::read_to_string(out.join("report.txt")).unwrap();
     assert!(report.starts_with("40 scans, "), "{report}");
@@ -74,7 +73,7 @@ fn a_log_is_mapped_and_graded_against_relations() {
     let trajectory = out.join("trajectory.tum");
     let trajectory = text(&trajectory);
     let graded = json(&["evaluate", trajectory, "--relations", relations, "--json"]);
-    // The file holds headings as quaternions, so the last digit of an angle is rounded once more.
+    // The file stores headings as quaternions, which rounds the last digit of an angle.
     assert_eq!(graded["n"], run["relations"]["n"]);
     for (part, figures) in graded.as_object().unwrap() {
         for (figure, value) in figures.as_object().into_iter().flatten() {
@@ -105,7 +104,7 @@ fn a_log_is_mapped_and_graded_against_relations() {
 }
 
 #[test]
-fn windows_that_were_searched_in_vain_have_neither_a_fit_nor_a_gate() {
+fn failed_window_searches_have_neither_score_nor_chi2() {
     let folder = TempDir::new().unwrap();
     let log = folder.path().join("alike.log");
     let log = text(&log);
@@ -125,14 +124,14 @@ fn windows_that_were_searched_in_vain_have_neither_a_fit_nor_a_gate() {
         .iter()
         .filter(|link| {
             let reason = link["reason"].as_str().unwrap_or_default();
-            reason.starts_with("no place within ")
+            reason.starts_with("no pose within ")
         })
         .collect();
     assert!(!in_vain.is_empty());
     for link in in_vain {
         assert!(link["score"].is_null() && link["chi2"].is_null(), "{link}");
     }
-    // Loops that fit have both, and the links of the final graph as well.
+    // Accepted loops have both, and so do the links of the final graph.
     let links = run["quality"]["links"].as_array().unwrap();
     assert!(links.len() > 100, "{}", links.len());
     for link in links {
@@ -160,7 +159,7 @@ fn without_odometry_the_scans_alone_are_followed() {
 }
 
 #[test]
-fn wheels_that_never_move_are_told() {
+fn odometry_that_never_moves_is_reported() {
     let folder = TempDir::new().unwrap();
     let whole = fs::read_to_string(corridor(&folder, 40)).unwrap();
     let still: Vec<String> = whole
@@ -186,7 +185,7 @@ fn wheels_that_never_move_are_told() {
 }
 
 #[test]
-fn what_is_in_a_log_is_told() {
+fn the_content_of_a_log_is_summarized() {
     let folder = TempDir::new().unwrap();
     let info = json(&["info", text(&corridor(&folder, 5)), "--json"]);
     assert_eq!(
@@ -198,7 +197,7 @@ fn what_is_in_a_log_is_told() {
 }
 
 #[test]
-fn broken_lines_are_told_and_the_rest_is_mapped() {
+fn malformed_lines_are_reported_and_the_rest_is_mapped() {
     let folder = TempDir::new().unwrap();
     let whole = fs::read_to_string(corridor(&folder, 6)).unwrap();
     let mut lines: Vec<&str> = whole.lines().collect();
@@ -210,10 +209,10 @@ fn broken_lines_are_told_and_the_rest_is_mapped() {
     assert!(output.status.success());
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(
-        said.contains("one line was left out; the first is line 3: "),
+        said.contains("one line was skipped; the first is line 3: "),
         "{said}"
     );
-    assert!(said.contains("the last line, 6, is half written"), "{said}");
+    assert!(said.contains("the last line, 6, is incomplete"), "{said}");
     let run: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(run["scans"], 4);
 }
@@ -233,13 +232,13 @@ fn files_that_cannot_be_used_end_in_one_line() {
         (vec!["run", "/absent"], "/absent: "),
         (
             vec!["run", text(&in_folder)],
-            "is a folder without a recording of ROS 2; give a log",
+            "is a folder without a ROS 2 recording; pass a log",
         ),
         (vec!["run", text(&empty)], "is empty; give a recorded log"),
-        (vec!["info", text(&prose)], "is no CARMEN log; give one"),
+        (vec!["info", text(&prose)], "is not a CARMEN log; give one"),
         (
             vec!["run", log, "--relations", text(&prose)],
-            "line 1: t1 has to be a finite number",
+            "line 1: t1 must be a finite number",
         ),
         (
             vec!["run", log, "--relations", text(&far)],
@@ -247,18 +246,18 @@ fn files_that_cannot_be_used_end_in_one_line() {
         ),
         (
             vec!["evaluate", text(&tum)],
-            "give --relations FILE or --truth FILE",
+            "use --relations FILE or --truth FILE",
         ),
         (
             vec!["evaluate", log, "--truth", text(&tum)],
-            "stamp has to be a finite number",
+            "stamp must be a finite number",
         ),
     ] {
         assert_refused(&arguments, said);
     }
 }
 
-/// The corridor again, with so many scans on each place: a slower robot, and more bytes.
+/// The corridor with several scans at each pose: a slower robot, and more bytes.
 fn slow_corridor(folder: &TempDir, times: usize) -> PathBuf {
     let path = corridor(folder, 60);
     let text = fs::read_to_string(&path).unwrap();
@@ -275,7 +274,7 @@ fn slow_corridor(folder: &TempDir, times: usize) -> PathBuf {
 }
 
 #[test]
-fn the_memory_of_a_run_grows_with_the_way_and_not_with_the_bytes() {
+fn memory_grows_with_the_path_and_not_with_the_log() {
     let folder = TempDir::new().unwrap();
     let run = |times: usize| {
         let log = slow_corridor(&folder, times);
@@ -287,12 +286,12 @@ fn the_memory_of_a_run_grows_with_the_way_and_not_with_the_bytes() {
     let ((Some(small), small_mb), (Some(large), large_mb)) = (run(2), run(200)) else {
         measuring::skip::skip(
             "memory of a run",
-            "the system does not tell the memory of a process",
+            "the system does not report the memory of a process",
         );
         return;
     };
     assert!(large_mb - small_mb > 7.0, "{large_mb} MB");
-    // A scan keeps its place, which is a tenth of its bytes; 2 MB are what an allocator rounds by.
+    // A scan keeps its pose, which is a tenth of its bytes; 2 MB is an allocator's rounding.
     let growth = large - small;
     assert!(
         growth < 0.2 * (large_mb - small_mb) + 2.0,
@@ -337,7 +336,7 @@ fn a_parameter_is_run_at_half_and_at_twice_its_value_and_the_table_goes_into_a_p
     let refusals = [
         (
             [&measure[..], &["--only", "keyframes"]].concat(),
-            "no parameter has a name that begins with",
+            "no parameter name starts with",
         ),
         (
             vec![

@@ -1,4 +1,4 @@
-//! The command as a reader calls it: one binary, one module for each kind of call.
+//! Tests of the command line: one binary, one module for each kind of call.
 
 mod commands;
 mod dask;

@@ -1,4 +1,4 @@
-//! `slam2d optimize`, run as a reader runs it.
+//! Tests of `slam2d optimize`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -47,7 +47,7 @@ impl Graph {
         json(&arguments)
     }
 
-    /// Asserts that the graph is refused in one line, and that the output stays as it was.
+    /// Asserts that the graph is rejected in one line, and that the output is unchanged.
     #[track_caller]
     fn assert_refused(&self, options: &[&str], said: &str) {
         let output = self.output();
@@ -55,7 +55,7 @@ impl Graph {
         let to = ["optimize", self.input(), "-o", output.to_str().unwrap()];
         assert_refused(&[&to, options].concat(), said);
         assert_eq!(fs::read(&output).unwrap(), b"old");
-        // No part of a file is left either.
+        // No temporary file is left either.
         assert_eq!(fs::read_dir(self.folder.path()).unwrap().count(), 2);
     }
 }
@@ -74,9 +74,9 @@ fn the_written_graph_has_the_reported_chi2() {
     let written = fs::read(output).unwrap();
     let problem = G2oFile::parse(&written).unwrap().problem;
     let chi2 = number(&summary, "chi2");
-    // Numbers are written with all their digits: the sum has the same bits.
+    // Numbers are written with all their digits, so the sum has the same bits.
     assert_eq!(problem.chi2(), chi2);
-    // The headings add up to 0.0292 rad too much, at best over four edges of weight 100: 0.0213.
+    // The headings add up to 0.0292 rad too much, which costs at least 0.0213 over four edges of weight 100.
     assert!(chi2 > 0.0213 && chi2 < 0.1);
     assert!(chi2 < 0.01 * number(&summary, "chi2_initial"));
 }
@@ -112,18 +112,18 @@ fn json_has_the_keys_that_are_promised() {
 }
 
 #[test]
-fn what_was_tried_is_told_with_its_cost() {
+fn starts_are_listed_with_their_costs() {
     let summary = Graph::new(SQUARE).solve(&[]);
     let tried = summary["tried"].as_array().unwrap();
     let starts: Vec<&Value> = tried.iter().map(|trial| &trial["init"]).collect();
-    // The better of two guesses is followed, and told after the other.
+    // The better of two initial guesses is followed, and listed last.
     assert!(starts == ["file", "spanning-tree"] || starts == ["spanning-tree", "file"]);
     assert_eq!(starts[1], &summary["init"]);
     assert!(number(&tried[1], "cost_initial") <= number(&tried[0], "cost_initial"));
     assert_eq!(number(&tried[1], "cost"), number(&summary, "cost"));
     let iterations: f64 = tried.iter().map(|trial| number(trial, "iterations")).sum();
     assert_eq!(iterations, number(&summary, "total_iterations"));
-    assert!(tried[0]["stop"].as_str().unwrap().contains("not followed"));
+    assert!(tried[0]["stop"].as_str().unwrap().contains("not continued"));
 }
 
 #[test]
@@ -136,13 +136,13 @@ fn every_method_and_start_reaches_the_same_optimum() {
         (["--init", "file"], Some("file")),
         (["--init", "spanning-tree"], Some("spanning-tree")),
         (["--init", "chordal"], Some("chordal")),
-        // The kernels leave these residuals alone: their plain part.
+        // The residuals are within the quadratic part of the kernels.
         (["--kernel", "huber:10"], None),
         (["--kernel", "dcs:10"], None),
         (["--repeat", "4"], None),
     ] {
         let summary = graph.solve(&options);
-        // 1e-8: the share of χ² at which a solve stops, of a χ² far below 1.
+        // 1e-8: the relative decrease at which a solve stops, of a χ² far below 1.
         let difference = (number(&summary, "chi2") - best).abs();
         assert!(difference < 1e-8, "{options:?}: {difference:e}");
         if let Some(init) = init {
@@ -153,13 +153,13 @@ fn every_method_and_start_reaches_the_same_optimum() {
 
 #[test]
 fn a_kernel_prints_the_cost_that_it_lowered() {
-    // A fifth edge that says that vertex 2 is where vertex 0 is.
+    // A fifth edge that states that vertex 2 coincides with vertex 0.
     let graph = Graph::new(format!("{SQUARE}EDGE_SE2 0 2 0 0 0 50 0 0 50 0 100\n"));
     let plain = graph.solve(&[]);
     for (kernel, most) in [("dcs:1", 3.2), ("huber:1", f64::INFINITY)] {
         let robust = graph.solve(&["--kernel", kernel]);
         let (cost, chi2) = (number(&robust, "cost"), number(&robust, "chi2"));
-        // DCS never counts one measurement more than 3 φ; the others are within 0.1.
+        // DCS counts no measurement with more than 3 φ; the others are within 0.1.
         assert!(
             cost < most && cost < 0.1 * chi2,
             "{kernel}: {cost} of {chi2}"
@@ -170,12 +170,12 @@ fn a_kernel_prints_the_cost_that_it_lowered() {
         assert!(text.contains(&format!("cost          {cost:.6}")), "{text}");
     }
     let text = String::from_utf8(slam2d(&["optimize", graph.input()]).stdout).unwrap();
-    // Each start that was tried has a cost; the row of the result is the kernel's.
+    // Each start that was tried has a cost; the row of the result belongs to the kernel.
     assert!(!text.lines().any(|line| line.starts_with("cost")), "{text}");
 }
 
 #[test]
-fn what_a_graph_lacks_is_made_up_for_and_told() {
+fn missing_parts_of_a_graph_are_added_and_reported() {
     let edges: String = SQUARE
         .lines()
         .filter(|line| line.starts_with("EDGE"))
@@ -184,11 +184,11 @@ fn what_a_graph_lacks_is_made_up_for_and_told() {
     for (text, said) in [
         (
             format!("{SQUARE}VERTEX_SE2 9 0 0 0\n"),
-            "the graph has 2 parts that no chain of edges ties together, 1 of them a single vertex",
+            "the graph has 2 connected components, 1 of them a single vertex",
         ),
         (
             edges,
-            "the file has no vertex; 4 poses follow from a tree of its edges",
+            "the file has no vertices; 4 poses computed from a spanning tree of its edges",
         ),
         (
             format!("{SQUARE}EDGE_PRIOR_SE2 0 5 5 0 1 0 0 1 0 1\n"),
@@ -196,7 +196,7 @@ fn what_a_graph_lacks_is_made_up_for_and_told() {
         ),
         (
             format!("{SQUARE}VERTEX_XY 9 1 1\n"),
-            "1 × VERTEX_XY kept as it is, not part of the problem",
+            "1 × VERTEX_XY kept unchanged, not part of the problem",
         ),
     ] {
         let graph = Graph::new(text);
@@ -207,7 +207,7 @@ fn what_a_graph_lacks_is_made_up_for_and_told() {
     let in_space = "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n";
     Graph::new(in_space).assert_refused(
         &[],
-        "in.g2o: line 1 is a VERTEX_SE3:QUAT: a graph in three dimensions",
+        "in.g2o: line 1 is a VERTEX_SE3:QUAT: the graph is three-dimensional",
     );
 }
 
@@ -244,7 +244,7 @@ fn graphs_that_cannot_be_solved_are_refused_in_one_line() {
 }
 
 #[test]
-fn a_note_says_what_was_kept_and_standard_output_is_whole() {
+fn kept_records_are_reported_and_standard_output_is_complete() {
     let tags = "VERTEX_XY 7 1 1\nODD\u{7}TAG 1\nODD\u{7}TAG 2\n";
     let graph = Graph::new(format!("{SQUARE}{tags}"));
     let output = graph.output();
@@ -253,8 +253,8 @@ fn a_note_says_what_was_kept_and_standard_output_is_whole() {
     let notes = String::from_utf8(printed.stderr).unwrap();
     assert_eq!(
         notes,
-        "2 × ODD\\u{7}TAG kept as it is, not part of the problem\n\
-         1 × VERTEX_XY kept as it is, not part of the problem\n"
+        "2 × ODD\\u{7}TAG kept unchanged, not part of the problem\n\
+         1 × VERTEX_XY kept unchanged, not part of the problem\n"
     );
     assert!(fs::read_to_string(output).unwrap().ends_with(tags));
 }
@@ -263,7 +263,7 @@ fn a_note_says_what_was_kept_and_standard_output_is_whole() {
 fn an_edge_whose_cost_overflows_is_named() {
     let far = SQUARE.replace("VERTEX_SE2 2 1 1.1", "VERTEX_SE2 2 1e200 1.1");
     Graph::new(far).assert_refused(&[], "in.g2o: line 6: eᵀΩe of this edge is too large");
-    // Each edge by itself is a number, the sum is not: the largest is named.
+    // Each edge alone has a finite cost, but the sum overflows: the largest is named.
     let heavy = SQUARE.replace(
         "EDGE_SE2 2 3 1 0 1.5707963 50 0 0 50",
         "EDGE_SE2 2 3 1 10 1.5707963 1.5e306 0 0 1.5e306",
@@ -276,8 +276,8 @@ fn an_edge_whose_cost_overflows_is_named() {
 }
 
 #[test]
-fn a_vertex_that_nothing_determines_is_named_by_id_and_line() {
-    // Both edges of vertex 70 measure along one direction only, with weights beyond any ridge.
+fn an_unobservable_vertex_is_named_by_id_and_line() {
+    // Both edges of vertex 70 measure along one direction only, with weights beyond any regularization.
     let text = "\
 VERTEX_SE2 50 0 0 0
 VERTEX_SE2 60 1 0 0
@@ -314,7 +314,7 @@ mod unix {
         let folder = tempfile::tempdir().unwrap();
         let (target, link) = (folder.path().join("target"), folder.path().join("link"));
         symlink("target", &link).unwrap();
-        // The first time the target is not there yet.
+        // The first time, the target does not exist yet.
         for _ in 0..2 {
             let whole = written_to(&link);
             assert!(link.is_symlink());
@@ -362,7 +362,7 @@ mod unix {
     }
 }
 
-/// A recorded graph; the recordings carry no licence and are not part of the project.
+/// A recorded graph; the recordings have no licence and are not part of the project.
 fn recorded(name: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../../shared/data/graphs")
@@ -380,7 +380,7 @@ fn a_kernel_costs_no_more_on_mit_than_at_the_plain_optimum() {
     let plain = json(&["optimize", path, "--json"]);
     for kernel in ["dcs:5", "dcs:1", "huber:1"] {
         let robust = json(&["optimize", path, "--kernel", kernel, "--json"]);
-        // A kernel never counts more than the squared norm.
+        // A kernel never exceeds the squared norm.
         let cost = number(&robust, "cost");
         assert!(cost <= number(&plain, "chi2"), "{kernel}: {cost}");
     }

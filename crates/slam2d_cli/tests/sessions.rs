@@ -1,4 +1,4 @@
-//! Saved sessions on the command line: gone on with, looked into, mapped and converted.
+//! Saved sessions on the command line: continued, summarized, mapped and converted.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -73,12 +73,12 @@ fn a_run_in_two_parts_is_the_run_in_one() {
             "--continue",
             &lap.file("second/session.slam2d"),
         ],
-        "no scan is after the session's last one",
+        "no scan is later than the session's last one",
     );
 }
 
 #[test]
-fn a_session_is_told_mapped_and_converted() {
+fn a_session_is_summarized_mapped_and_converted() {
     let lap = Lap::new();
     let run = lap.run("whole.jsonl", "out", &[]);
     let session = lap.file("out/session.slam2d");
@@ -87,7 +87,7 @@ fn a_session_is_told_mapped_and_converted() {
     assert_eq!(info["keyframes"], run["keyframes"]);
     assert_eq!(info["scans"], run["scans"]);
     assert_eq!(info["refined"], true);
-    // The window of the front end is kept exactly: sixteen scans of at most 120 points.
+    // The window of the front end is stored exactly: sixteen scans of at most 120 points.
     let (bytes, keyframes) = (info["bytes"].as_u64(), info["keyframes"].as_u64());
     assert!(bytes.unwrap() < 3000 * keyframes.unwrap() + 16 * 120 * 32);
     let (map, of_folder) = (lap.file("map.yaml"), lap.file("folder.yaml"));
@@ -102,7 +102,7 @@ fn a_session_is_told_mapped_and_converted() {
         pgm.iter().filter(|pixel| **pixel == 0).count() as f64
     };
     let share = occupied("map.pgm") / occupied("folder.pgm");
-    // Thinned scans show the walls that all beams show.
+    // Filtered scans show the same walls as all beams.
     assert!((0.6..1.6).contains(&share), "{share}");
     let (g2o, tum) = (lap.file("out.g2o"), lap.file("out.tum"));
     assert!(slam2d(&["convert", &session, &g2o]).status.success());
@@ -115,7 +115,7 @@ fn a_session_is_told_mapped_and_converted() {
     assert_eq!(lines(Path::new(&tum)).len() as u64, keyframes);
     assert_refused(
         &["convert", &session, "x.clf"],
-        "a session becomes .g2o, .graph, .toro or .json, or .tum",
+        "convert a session to .g2o, .graph, .toro or .json, or .tum",
     );
 }
 
@@ -141,18 +141,18 @@ fn sessions_that_cannot_be_used_end_in_one_line() {
             write("empty.slam2d", b""),
             "empty.slam2d is empty; give a session",
         ),
-        (write("foreign.slam2d", b"P5 foreign"), "is no session"),
+        (write("foreign.slam2d", b"P5 foreign"), "is not a session"),
         (
             write("cut.slam2d", &good[..good.len() - 9]),
             "copy it again",
         ),
         (
             write("damaged.slam2d", &damaged),
-            "is damaged: its checksum does not fit",
+            "is damaged: its checksum does not match",
         ),
         (write("newer.slam2d", &newer), "is a session of version 9"),
         (lap.file("absent.slam2d"), "absent.slam2d: "),
-        (lap.file("empty_folder"), "holds no session.slam2d"),
+        (lap.file("empty_folder"), "has no session.slam2d"),
         (lap.file("huge.slam2d"), "larger than 512 MB"),
     ] {
         assert_refused(&["run", &log, "--continue", &file], said);
@@ -184,8 +184,8 @@ fn a_log_is_found_on_the_map_of_a_session() {
         );
         assert!(2 * localized > count("scans"), "{init:?}: {localized}");
         assert_eq!(lines(Path::new(&found)).len() as u64, localized);
-        // The log is the one that the map was made of. 0.1: between keyframes a scan stands where the front
-        // end put it, and that slides along the corridor by up to 0.2 m.
+        // The map was made from the same log. 0.1: scans between keyframes keep the pose of the front end, which slides
+        // along the corridor by up to 0.2 m.
         let ate = &run["truth"]["ate"];
         assert!(ate["median"].as_f64().unwrap() < 0.05, "{ate}");
         assert!(ate["rmse"].as_f64().unwrap() < 0.1, "{ate}");
@@ -203,9 +203,9 @@ fn a_log_is_found_on_the_map_of_a_session() {
     for (arguments, said) in [
         (
             vec!["localize", &folder, &log, "--init", "1,2"],
-            "neither x,y,deg nor anywhere",
+            "expected x,y,deg or anywhere",
         ),
-        (vec!["localize", &log, &log], "is no session"),
+        (vec!["localize", &log, &log], "is not a session"),
         (vec!["localize", &folder, "/absent"], "/absent: "),
     ] {
         assert_refused(&arguments, said);
@@ -216,7 +216,7 @@ fn a_log_is_found_on_the_map_of_a_session() {
 fn the_log_of_another_building_is_found_nowhere() {
     let folder = TempDir::new().unwrap();
     let file = |name: &str| folder.path().join(name).display().to_string();
-    // Two of the same kind: corridors as wide and as long, with other doors and furniture.
+    // Two of the same kind: corridors of equal width and length, with different doors and furniture.
     for seed in ["301", "302"] {
         let log = file(&format!("{seed}.log"));
         let drawn = slam2d(&[
@@ -247,7 +247,7 @@ fn the_log_of_another_building_is_found_nowhere() {
 }
 
 #[test]
-fn lap_after_lap_is_told_in_lines_and_left_as_a_session() {
+fn repeated_laps_print_lines_and_write_a_session() {
     let folder = TempDir::new().unwrap();
     let session = folder.path().join("laps.slam2d").display().to_string();
     let run = json(&["lap", "--laps", "2", "--session", &session, "--json"]);
@@ -266,11 +266,11 @@ fn lap_after_lap_is_told_in_lines_and_left_as_a_session() {
         ),
         (
             vec!["lap", "--laps", "2", "--wardrobe", "1", "--world", "ring"],
-            "--wardrobe moves one through the Apartment",
+            "--wardrobe applies to the Apartment only",
         ),
         (
             vec!["lap", "--laps", "2", "--wardrobe", "3"],
-            "--laps 2 does not drive; take one up to 2",
+            "is beyond --laps 2; use a lap up to 2",
         ),
         (
             vec!["lap", "--laps", "2", "--front-end", "local-map"],

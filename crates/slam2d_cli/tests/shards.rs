@@ -1,4 +1,4 @@
-//! A sweep in parts, and put together again.
+//! Sharded sweeps and their merge.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use crate::support::{assert_refused, slam2d};
 
 const SWEEP: [&str; 5] = ["sweep", "--seeds", "1..=6", "--noise", "0.25,1"];
 
-/// The arguments of shard `part`, whose rows go to `rows`.
+/// The arguments of shard `part`, whose rows are stored in `rows`.
 fn of_shard<'a>(part: &'a str, rows: &'a Path) -> Vec<&'a str> {
     let rows = rows.to_str().unwrap();
     [&SWEEP[..], &["--shard", part, "--rows", rows]].concat()
@@ -31,7 +31,7 @@ fn shards_put_together_print_what_one_process_prints_to_the_last_digit() {
     });
     let [first, second] = rows.each_ref().map(|rows| rows.to_str().unwrap());
     let whole = said(&[&SWEEP[..], &["--json"]].concat());
-    // The order of the files is nothing.
+    // The order of the files does not matter.
     assert_eq!(said(&["sweep", "--merge", second, first, "--json"]), whole);
     assert_eq!(said(&["sweep", "--merge", first, second]), said(&SWEEP));
     assert_refused(
@@ -41,7 +41,7 @@ fn shards_put_together_print_what_one_process_prints_to_the_last_digit() {
 }
 
 #[test]
-fn a_sweep_that_was_killed_in_the_middle_of_a_row_goes_on_where_it_was() {
+fn a_sweep_killed_within_a_row_resumes() {
     let folder = tempfile::tempdir().unwrap();
     let rows = folder.path().join("rows.jsonl");
     let kept_in = ["--rows", rows.to_str().unwrap(), "--json"];
@@ -49,12 +49,12 @@ fn a_sweep_that_was_killed_in_the_middle_of_a_row_goes_on_where_it_was() {
     let text = fs::read_to_string(&rows).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines.len(), 13);
-    // The header, three rows, and a half.
+    // The header, three rows, and a partial row.
     let kept = lines[..4].join("\n") + "\n";
     fs::write(&rows, kept.clone() + &lines[4][..30]).unwrap();
     let told = said(&of_shard("1/1", &rows));
     assert!(
-        told.starts_with("12 laps, 3 of them from before: "),
+        told.starts_with("12 laps, 3 of them from an earlier run: "),
         "{told}"
     );
     let again = fs::read_to_string(&rows).unwrap();
@@ -104,12 +104,12 @@ fn rows_that_do_not_belong_together_are_refused_in_one_sentence() {
     fs::write(&bent, text.replacen("\"loops\":", "\"loops\":1", 1)).unwrap();
     assert_refused(
         &["sweep", "--merge", path, bent_path],
-        "bent.jsonl: line 2: seed 1 at noise ×1 ended otherwise before",
+        "bent.jsonl: line 2: seed 1 at noise ×1 differs from an earlier row",
     );
     fs::write(&bent, "x,y\n1,2\n").unwrap();
     assert_refused(
         &["sweep", "--merge", bent_path],
-        "line 1: the header of a sweep was expected",
+        "line 1: expected the header of a sweep",
     );
     assert_refused(&["sweep", "--merge", "no-such-file"], "no-such-file");
     assert_refused(

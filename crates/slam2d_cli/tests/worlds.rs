@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::support::{assert_refused, json};
 
-/// A bare room of 6 m × 5 m with a pillar, and a way through it.
+/// An empty room of 6 m × 5 m with a pillar, and a path through it.
 const ROOM: &str = r#"{
     "walls_m": [[0, 0, 6, 0], [6, 0, 6, 5], [6, 5, 0, 5], [0, 5, 0, 0], [2, 2, 2.4, 2], [2.4, 2, 2.4, 2.6]],
     "start": {"x_m": 1, "y_m": 1, "heading_deg": 0},
@@ -40,7 +40,7 @@ fn the_ring_and_a_world_of_ones_own_are_driven() {
     fs::write(&path, ROOM).unwrap();
     let room = json(&["lap", "--world", path.to_str().unwrap(), "--json"]);
     assert!(room["keyframe_end_error"].as_f64().unwrap() < 0.8);
-    // Loops are closed there, so the information of the edges shows in χ².
+    // Loops are closed in this world, so the information of the edges affects χ².
     let chapter = [&on_the_ring[..], &["--information", "chapter"]].concat();
     assert_ne!(json(&chapter)["chi2"], ring["chi2"]);
 }
@@ -132,6 +132,6 @@ fn a_world_that_cannot_be_driven_is_one_sentence() {
     assert_refused(&["lap", "--matcher", "best"], "best");
     assert_refused(
         &["lap", "--world", "moon"],
-        "not apartment, ring, twins, corridor, hall or a file",
+        "expected apartment, ring, twins, corridor, hall or a .json file",
     );
 }

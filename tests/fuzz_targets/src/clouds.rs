@@ -1,4 +1,4 @@
-//! Clouds as CSV: what `slam2d register` reads, and the registration that follows.
+//! Point clouds as CSV: the input of `slam2d register`, and the registration of it.
 
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{IcpConfig, IcpVariant};
@@ -6,10 +6,10 @@ use pr_geom::SE2;
 
 use crate::registration::register;
 
-/// Larger clouds are read, but not registered: the target is about the reader.
+/// Larger clouds are read, but not registered: this target tests the reader.
 const MAX_REGISTERED: usize = 24;
 
-/// What is refused names a line. What is read has finite points and normals of length 1.
+/// An error names a line. A cloud that is read has finite points and normals of length 1.
 pub fn fuzz(text: &[u8]) {
     let lines = text.split(|&byte| byte == b'\n').count();
     let cloud = match PointCloud::from_csv(text) {

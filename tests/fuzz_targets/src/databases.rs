@@ -1,14 +1,14 @@
-//! Recordings of ROS 2 in SQLite: any bytes behind a header that is in order.
+//! ROS 2 recordings in SQLite: arbitrary bytes after a valid header.
 
 use robot_io::log::LogOptions;
 
 use crate::logs;
 
-/// Bytes of the header, and of a page: the smallest that SQLite has, so that trees come soon.
+/// Bytes of the header, and of a page: the smallest of SQLite, which gives trees early.
 const HEADER: usize = 100;
 const PAGE: u16 = 512;
 
-/// Read, not mapped: the target `logs` does that. The header is made valid, which no fuzzer would find.
+/// Reads without mapping, which the target `logs` does. The header is made valid, because no fuzzer would find it.
 pub fn fuzz(bytes: &[u8]) {
     if bytes.len() < HEADER {
         return;

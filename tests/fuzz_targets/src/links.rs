@@ -1,13 +1,13 @@
-//! Links and attributes: one text for one parameter of one widget.
+//! Links and attributes: a text for a parameter of a widget.
 //!
-//! The first byte names the widget, the second the parameter, the rest is the text.
+//! The first byte selects the widget, the second the parameter, the rest is the text.
 
 use kit::param::{ParamKind, ParamSpec};
 use kit::values::Values;
 
 use widgets::registry::SPECS;
 
-/// A text is taken or refused. What is taken lies in the range and reads back to the same bits.
+/// A text is accepted or rejected. An accepted value is in its range and survives a round trip to the same bits.
 pub fn fuzz(data: &[u8]) {
     let [widget, param, text @ ..] = data else {
         return;
@@ -23,7 +23,7 @@ pub fn fuzz(data: &[u8]) {
             assert!(values.set_text(spec.id, param.id, text).is_ok());
             assert_eq!(values.to_text(param.id), text.trim());
         }
-        Ok(value) => taken(spec.id, param, value, &mut Values::defaults(spec.params)),
+        Ok(value) => accepted(spec.id, param, value, &mut Values::defaults(spec.params)),
         Err(refusal) => {
             let sentence = refusal.to_string();
             assert!(sentence.contains(param.id), "{sentence}");
@@ -33,7 +33,7 @@ pub fn fuzz(data: &[u8]) {
     }
 }
 
-fn taken(widget: &'static str, param: &ParamSpec, value: f64, values: &mut Values) {
+fn accepted(widget: &'static str, param: &ParamSpec, value: f64, values: &mut Values) {
     let (min, max) = param.range();
     assert!((min..=max).contains(&value), "{} at {value}", param.id);
     if !matches!(param.kind, ParamKind::Slider { .. }) {

@@ -1,4 +1,4 @@
-//! Bytes as a session's file: with the lengths and the checksum that would stop every other change.
+//! Wraps bytes as a session file with valid lengths and checksum, without which every mutation would be rejected.
 //!
 //! `docs/sessions.md` describes the file.
 
@@ -7,15 +7,15 @@ use ch16_slam2d::slam::RobotConfig;
 use robot_io::session::{MAGIC, VERSION};
 use robot_io::settings::Setting;
 
-/// The sections in their order.
+/// The sections in order.
 const SECTIONS: [&[u8; 4]; 10] = [
     b"CONF", b"SENS", b"STAT", b"NODE", b"EDGE", b"HELD", b"SCAN", b"MAPD", b"WAYS", b"FRNT",
 ];
 
-/// A pose: three numbers of 64 bits.
+/// A pose: three 64-bit floats.
 const START_BYTES: usize = 24;
 
-/// A file around these sections.
+/// A file with these sections.
 pub fn sealed(body: &[u8]) -> Vec<u8> {
     let mut file = MAGIC.to_vec();
     file.extend_from_slice(&VERSION.to_le_bytes());
@@ -31,7 +31,7 @@ pub fn sealed(body: &[u8]) -> Vec<u8> {
     file
 }
 
-/// The sections of `text`, which follow each other by their letters alone, with their lengths. Lines
+/// Adds lengths to the sections of `text`, which are separated only by their letters. Lines
 /// `NAME VALUE` of the first section change the default parameters.
 pub fn with_lengths(mut text: &[u8]) -> Vec<u8> {
     let mut body = Vec::new();
@@ -52,7 +52,7 @@ pub fn with_lengths(mut text: &[u8]) -> Vec<u8> {
     body
 }
 
-/// The start at the origin, and the default parameters with those that the lines change.
+/// The initial pose at the origin, and the default parameters with the changes of the lines.
 fn parameters(lines: &[u8]) -> Vec<u8> {
     let mut config = RobotConfig::default();
     for line in String::from_utf8_lossy(lines).lines() {
@@ -77,7 +77,7 @@ mod tests {
 
     use super::*;
 
-    /// What [`sealed`] and [`with_lengths`] put around the sections of a file.
+    /// Removes what [`sealed`] and [`with_lengths`] add to the sections of a file.
     fn taken_apart(file: &[u8]) -> Vec<u8> {
         let mut rest = &file[20..file.len() - 8];
         let mut text = Vec::new();
@@ -85,7 +85,7 @@ mod tests {
             let length = u64::from_le_bytes(rest[4..12].try_into().unwrap()) as usize;
             let (content, after) = rest[12..].split_at(length);
             text.extend_from_slice(&tag[..]);
-            // The scanner of the test has the default parameters but for one.
+            // The test's scanner has default parameters except for one.
             if tag == b"CONF" {
                 text.extend_from_slice(b"scan_normal_radius_m 0.7\n");
             } else {
@@ -114,7 +114,7 @@ mod tests {
         run.finish();
         let session = run.session().unwrap();
         let file = sealed(&with_lengths(&taken_apart(&session.to_bytes())));
-        let again = robot_io::session::Session::of_bytes(&file, "x").unwrap();
+        let again = robot_io::session::Session::from_bytes(&file, "x").unwrap();
         assert_eq!(again, session);
     }
 }

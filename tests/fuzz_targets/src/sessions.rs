@@ -1,6 +1,6 @@
-//! Saved sessions: loaded, written back, gone on from, mapped, and localized on.
+//! Saved sessions: loaded, written, continued, mapped, and used for localization.
 //!
-//! The first byte says how much of the file is put right, see [`crate::sealed`]; the rest is the file,
+//! The first byte selects how much of the file is repaired, see [`crate::sealed`]; the rest is the file
 //! or its sections.
 
 use std::f64::consts::TAU;
@@ -10,7 +10,7 @@ use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 use robot_io::localize::LocalizeRun;
 use robot_io::log::LogFrame;
-use robot_io::map_image::map_of_session;
+use robot_io::map_image::build_session_map;
 use robot_io::run::{LogRun, OdometryUse};
 use robot_io::session::Session;
 use robot_io::settings::SETTINGS;
@@ -19,16 +19,16 @@ use crate::runs::{assert_finite, assert_loads, drive};
 use crate::sealed::{sealed, with_lengths};
 use crate::sentences::{NAME, assert_refusal, assert_sentence};
 
-/// Larger sessions are loaded and written, but not gone on from: the target is about the file.
+/// Larger sessions are loaded and written, but not continued: this target tests the file format.
 const MAX_KEYFRAMES: usize = 6;
-/// Nor are those with more points of a scan.
+/// Sessions with more points in a scan are not continued either.
 const MAX_POINTS: usize = 64;
-/// Nor are those with larger numbers in their parameters: iterations, say, take the time they are given.
+/// Sessions with larger parameters are not continued either: iterations, for example, would take too long.
 const MAX_SETTING: f64 = 100.0;
-/// Side of a map's cells, m.
+/// Cell size of a map, m.
 const CELL_M: f64 = 0.5;
 
-/// A file is refused in one sentence, or writes back to what loads to the same, and can be used.
+/// A file is rejected in one sentence, or it survives a round trip and can be used.
 pub fn fuzz(data: &[u8]) {
     let Some((&how, text)) = data.split_first() else {
         return;
@@ -39,19 +39,19 @@ pub fn fuzz(data: &[u8]) {
         1 => sealed(text),
         _ => sealed(&with_lengths(text)),
     };
-    let session = match Session::of_bytes(&file, NAME) {
+    let session = match Session::from_bytes(&file, NAME) {
         Ok(session) => session,
         Err(refusal) => return assert_refusal(&refusal.to_string()),
     };
     let written = session.to_bytes();
-    let again = Session::of_bytes(&written, NAME).expect("what was written can be loaded");
+    let again = Session::from_bytes(&written, NAME).expect("what was written can be loaded");
     assert!(again.to_bytes() == written);
-    // Debug prints every bit of a number, and of what is none.
+    // Debug prints every bit of a number, and also NaN.
     assert_eq!(format!("{again:?}"), format!("{session:?}"));
     if is_small(&session) {
-        go_on(&session);
+        continue_run(&session);
         localize(&session);
-        look_at(&session);
+        reopen(&session);
     }
 }
 
@@ -67,7 +67,7 @@ fn is_small(session: &Session) -> bool {
         && values.all(|value| value <= MAX_SETTING)
 }
 
-/// The next scans: a round room, and the wheels drive on.
+/// Further scans: a round room, with odometry that moves on.
 fn frames(session: &Session) -> impl Iterator<Item = LogFrame> + '_ {
     (1..=2).map(|step| LogFrame {
         stamp_s: session.driven.last_stamp_s + 0.25 * f64::from(step),
@@ -80,12 +80,12 @@ fn frames(session: &Session) -> impl Iterator<Item = LogFrame> + '_ {
     })
 }
 
-fn go_on(session: &Session) {
+fn continue_run(session: &Session) {
     match LogRun::resume(session, OdometryUse::Log) {
-        // Numbers at the end of what can be loaded may grow beyond it.
+        // Numbers at the limit of what can be loaded may grow beyond it.
         Ok(mut run) => {
             let saved = drive(&mut run, frames(session)).expect("a run goes on");
-            if let Err(refusal) = Session::of_bytes(&saved, NAME) {
+            if let Err(refusal) = Session::from_bytes(&saved, NAME) {
                 assert_refusal(&refusal.to_string());
             }
         }
@@ -107,12 +107,12 @@ fn localize(session: &Session) {
     }
 }
 
-fn look_at(session: &Session) {
+fn reopen(session: &Session) {
     match LogRun::reopen(session) {
         Ok(mut run) => assert_loads(&drive(&mut run, []).expect("it has keyframes")),
         Err(refusal) => assert_sentence(&refusal.to_string()),
     }
-    match map_of_session(session, CELL_M) {
+    match build_session_map(session, CELL_M) {
         Ok(map) => assert_eq!(map.counts().iter().sum::<usize>(), map.width * map.height),
         Err(refusal) => assert_sentence(&refusal.to_string()),
     }

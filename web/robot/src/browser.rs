@@ -1,4 +1,4 @@
-//! What the worker's JavaScript sees: a file in, orders in, updates out.
+//! Interface of the worker to JavaScript: files and orders in, updates out.
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
@@ -13,10 +13,10 @@ use crate::given::{Choices, Given, GivenFile};
 use crate::sample;
 use crate::update::{Stage, Update};
 
-/// So much of a file is asked for at once, bytes.
+/// Bytes of a file that are read at a time.
 const PIECE_BYTES: usize = 1 << 18;
 
-/// A file that JavaScript reads: `read(which, from, to)` gives the bytes of that part.
+/// A file that JavaScript reads: `read(which, from, to)` returns the bytes of that range.
 struct JsFile {
     read: Function,
     which: f64,
@@ -30,14 +30,14 @@ impl Read for JsFile {
         if end <= self.at {
             return Ok(0);
         }
-        // Sizes of files are whole numbers far below 2⁵³.
+        // File sizes are integers far below 2⁵³.
         let (from, to) = (
             JsValue::from_f64(self.at as f64),
             JsValue::from_f64(end as f64),
         );
         let which = JsValue::from_f64(self.which);
         let read = self.read.call3(&JsValue::NULL, &which, &from, &to);
-        let bytes = read.map_err(|_| io::Error::other("the browser cannot read it any more"))?;
+        let bytes = read.map_err(|_| io::Error::other("the browser can no longer read it"))?;
         let bytes = Uint8Array::new(&bytes);
         let count = (bytes.length() as usize).min(into.len());
         bytes.subarray(0, count as u32).copy_to(&mut into[..count]);
@@ -53,13 +53,18 @@ impl Seek for JsFile {
             SeekFrom::End(by) => self.size.checked_add_signed(by),
             SeekFrom::Current(by) => self.at.checked_add_signed(by),
         };
-        let before = || io::Error::new(io::ErrorKind::InvalidInput, "a place before the file");
+        let before = || {
+            io::Error::new(
+                io::ErrorKind::InvalidInput,
+                "a position before the start of the file",
+            )
+        };
         self.at = at.ok_or_else(before)?;
         Ok(self.at)
     }
 }
 
-/// A log on its way to a map.
+/// A log that is being mapped.
 #[wasm_bindgen]
 pub struct Robot {
     engine: Engine<'static>,
@@ -67,11 +72,11 @@ pub struct Robot {
 
 #[wasm_bindgen]
 impl Robot {
-    /// Opens files that came together: `read(which, from, to)` gives bytes of one of them as a `Uint8Array`, and
-    /// `chosen` holds options, a line each: `scan-topic /front`.
+    /// Opens files that were given together: `read(which, from, to)` returns bytes of one of them as a `Uint8Array`,
+    /// and `chosen` has one option per line: `scan-topic /front`.
     ///
     /// # Errors
-    /// One sentence where they cannot be mapped.
+    /// If they cannot be mapped; the message is one sentence.
     #[wasm_bindgen(constructor)]
     pub fn new(
         names: Vec<String>,
@@ -85,11 +90,11 @@ impl Robot {
         Ok(Self { engine })
     }
 
-    /// Looks for the robot of another log on the map; `start` is `[x, y, θ]`, m and rad, or empty where
-    /// it may be anywhere.
+    /// Localizes another log on the map; `start` is `[x, y, θ]`, m and rad, or empty if the initial pose
+    /// is unknown.
     ///
     /// # Errors
-    /// One sentence where that cannot be done.
+    /// If that is not possible; the message is one sentence.
     pub fn locate(
         &mut self,
         names: Vec<String>,
@@ -107,46 +112,46 @@ impl Robot {
         begun.map_err(|said| JsError::new(&said))
     }
 
-    /// Does the next piece of work; false where nothing is left to do.
+    /// Does the next piece of work; returns false if there is none.
     pub fn step(&mut self) -> bool {
         self.engine.step()
     }
 
-    /// Whether all of the file's work is done, or nothing came of it.
+    /// Whether all work on the file is done, or has failed.
     #[wasm_bindgen(js_name = isOver)]
     pub fn is_over(&self) -> bool {
         matches!(self.engine.stage(), Stage::Done | Stage::Failed)
     }
 
-    /// Does what the reader asks.
+    /// Executes an order of the user.
     pub fn order(&mut self, order: &str) {
         self.engine.order(order);
     }
 
-    /// What changed since the last call: objects of kind, text, numbers, bytes.
+    /// Changes since the last call: objects with kind, text, numbers and bytes.
     pub fn updates(&mut self) -> Array {
         self.engine.updates().iter().map(to_js).collect()
     }
 
-    /// Takes the file of a reference.
+    /// Reads a reference file.
     ///
     /// # Errors
-    /// One sentence where it is none.
+    /// If it is not a reference; the message is one sentence.
     pub fn reference(&mut self, bytes: &[u8], name: &str) -> Result<(), JsError> {
         let taken = self.engine.take_reference(bytes, name);
         taken.map_err(|said| JsError::new(&said))
     }
 
-    /// The bytes of a file to save.
+    /// The content of a file to save.
     ///
     /// # Errors
-    /// One sentence where there is nothing to write.
+    /// If there is nothing to write; the message is one sentence.
     pub fn file(&mut self, name: &str) -> Result<Vec<u8>, JsError> {
         self.engine.file(name).map_err(|said| JsError::new(&said))
     }
 }
 
-/// The log that files make up; each is read once more for each pass over it.
+/// The log that the files make up; each file is read again in each pass.
 fn given(names: Vec<String>, sizes: &[f64], read: &Function) -> Result<Given<'static>, String> {
     let files = names.into_iter().zip(sizes).enumerate();
     let files = files.map(|(which, (name, &size))| {
@@ -172,7 +177,7 @@ fn given(names: Vec<String>, sizes: &[f64], read: &Function) -> Result<Given<'st
 fn to_js(update: &Update) -> JsValue {
     let object = Object::new();
     let set = |name: &str, value: &JsValue| {
-        // A fresh object takes every property.
+        // A new object accepts every property.
         let _ = Reflect::set(&object, &JsValue::from_str(name), value);
     };
     set("kind", &JsValue::from_str(update.kind));

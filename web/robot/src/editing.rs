@@ -1,4 +1,4 @@
-//! A graph made anew of what stays and what the reader decided.
+//! Rebuilds a graph from its odometry and the user's decisions.
 
 use std::collections::BTreeMap;
 
@@ -7,20 +7,20 @@ use pr_geom::SE2;
 
 use crate::links::Link;
 
-/// What the reader may change of a graph, and how it is solved.
+/// Solver settings after a manual change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solving {
     /// Most iterations.
     pub iterations: usize,
-    /// A step that moves no node by as much ends it, m and rad added.
+    /// Stops when a step moves no node by more, m and rad added.
     pub tolerance: f64,
     /// Width of the robust kernel, in standard deviations of an edge.
     pub huber: f64,
 }
 
-/// The graph with its odometry, these links and these pins; poses as they were.
+/// The graph with its odometry, these links and these pins, at the previous poses.
 ///
-/// `fixed` says which nodes held the gauge before any pin.
+/// `fixed` states which nodes were fixed before any pin.
 #[must_use]
 pub fn rebuilt(
     base: &PoseGraph,
@@ -61,7 +61,7 @@ pub fn rebuilt(
     graph
 }
 
-/// Solves; false where it could not be, and then the poses are those before.
+/// Optimizes the graph; returns false and keeps the previous poses if that fails.
 pub fn solve(graph: &mut PoseGraph, how: &Solving) -> bool {
     let report = graph.optimize_robust(how.iterations, how.tolerance, how.huber);
     !matches!(report.stop, pr_optim::StopReason::Failed { .. })

@@ -1,13 +1,13 @@
-//! A log on its way to a map, one piece of work at a time, and the orders of its reader.
+//! Maps a log one piece of work at a time, and executes the user's orders.
 //!
-//! [`Engine::step`] reads a scan, links a keyframe or paints a few scans, and says whether there is
-//! more; [`Engine::updates`] tells what changed. The file is read as far as a step needs it, so that its
-//! size costs no memory. Nothing here asks a clock: who calls decides how long a slice is.
+//! [`Engine::step`] reads a scan, links a keyframe or paints a few scans, and returns whether there is
+//! more work; [`Engine::updates`] returns what changed. The file is read on demand, so its
+//! size costs no memory. The engine reads no clock: the caller decides how long a time slice is.
 
 mod checking;
 mod examining;
 mod orders;
-mod telling;
+mod updates;
 
 use std::collections::BTreeMap;
 use std::io::{self, BufRead, Read};
@@ -31,12 +31,12 @@ use crate::update::{Stage, Update};
 use crate::whereabouts::Whereabouts;
 use examining::Examination;
 
-/// What is under way.
+/// Current work.
 enum Work<'a> {
-    /// The doctor looks through all of the log before it is mapped.
+    /// The doctor checks the whole log before it is mapped.
     Examining(Box<Examination<'a>>),
     Reading(Box<dyn LogReader + 'a>),
-    /// No scan follows: the last loops are closed.
+    /// No scan follows: the last loops are tested.
     Finishing,
     Solving(Box<GraphSolving>),
     Checking,
@@ -44,9 +44,9 @@ enum Work<'a> {
     Failed(String),
 }
 
-/// Which parts changed since they were told.
+/// Parts that changed since the last update.
 #[derive(Clone, Copy, Debug, Default)]
-struct News {
+struct Changes {
     file: bool,
     keyframes: bool,
     loops: bool,
@@ -54,23 +54,23 @@ struct News {
     grade: bool,
 }
 
-/// A log under way.
+/// A log with its map.
 pub struct Engine<'a> {
     name: String,
     size_bytes: u64,
     work: Work<'a>,
     run: LogRun,
     recorder: RunRecorder,
-    /// The graph of a file that has no scans.
+    /// The graph of a file without scans.
     graph: Option<PoseGraph>,
-    /// Share of each keyframe's scan that fits; NaN where none was registered.
+    /// Inlier share of each keyframe's scan; NaN if it was not registered.
     fits: Vec<f64>,
-    /// σ of each keyframe, m, once it was computed.
+    /// Standard deviation of each keyframe, m, once it is computed.
     sigmas_m: Vec<f64>,
-    /// Which nodes held the gauge before any pin.
+    /// Nodes that were fixed before any pin.
     fixed: Vec<bool>,
     links: Vec<Link>,
-    /// Whether they stand in the order of doubt, by which the reader names them.
+    /// Whether the loops are in their final order, in which orders refer to them.
     is_ranked: bool,
     pins: BTreeMap<usize, SE2>,
     picture: MapPicture,
@@ -78,35 +78,35 @@ pub struct Engine<'a> {
     doubts: Vec<String>,
     look_into: Vec<usize>,
     reference: Option<(String, Reference)>,
-    /// The picture of the map that was saved last, which `map.yaml` names.
+    /// The last saved picture of the map, to which `map.yaml` refers.
     image: &'static str,
     /// Another log on this map.
     whereabouts: Option<Whereabouts<'a>>,
     has_scans: bool,
-    /// Scans of a session that was opened.
+    /// Number of scans of an opened session.
     scans_before: usize,
-    news: News,
-    /// Updates that wait to be taken, answers among them.
+    changes: Changes,
+    /// Pending updates, including answers.
     waiting: Vec<Update>,
 }
 
 impl<'a> Engine<'a> {
-    /// Opens what was given, with the options that were chosen.
+    /// Opens the given files with the chosen options.
     ///
     /// # Errors
-    /// One sentence where it is nothing that can be mapped, solved or looked at.
+    /// If they cannot be mapped, optimized or viewed; the message is one sentence.
     pub fn open(given: Given<'a>, choices: &Choices) -> Result<Self, String> {
         let name = given.name.clone();
         let (name, size_bytes) = (name.as_str(), given.size_bytes);
         let Some(bytes) = given.parts.first() else {
             return Err("no file was given".to_owned());
         };
-        let told = |problem: io::Error| match bytes.is_packed() {
-            Ok(true) => format!("{name} does not unpack: {problem}; copy it once more"),
+        let describe = |problem: io::Error| match bytes.is_packed() {
+            Ok(true) => format!("{name} cannot be decompressed: {problem}; copy it again"),
             _ => format!("{name} cannot be read: {problem}; it may have moved or changed"),
         };
-        let mut source = bytes.stream().map_err(told)?;
-        let start = source.fill_buf().map_err(told)?;
+        let mut source = bytes.stream().map_err(describe)?;
+        let start = source.fill_buf().map_err(describe)?;
         let lower = name.to_ascii_lowercase();
         if Session::begins(start) || lower.ends_with(".slam2d") {
             if size_bytes > session::MOST_BYTES {
@@ -116,7 +116,7 @@ impl<'a> Engine<'a> {
                 return Err(too_large.to_string());
             }
             let session = Session::read(source, name).map_err(|problem| problem.to_string())?;
-            return Self::of_session(&session, name, size_bytes);
+            return Self::from_session(&session, name, size_bytes);
         }
         let is_graph = [".g2o", ".graph", ".toro"]
             .iter()
@@ -139,12 +139,12 @@ impl<'a> Engine<'a> {
         let run = LogRun::new(choices.odometry);
         Ok(Self {
             run,
-            ..Self::beginning(work, name, size_bytes)
+            ..Self::with_work(work, name, size_bytes)
         })
     }
 
-    /// A session is a map that stands already.
-    fn of_session(session: &Session, name: &str, size_bytes: u64) -> Result<Self, String> {
+    /// Opens a session, which already has a map.
+    fn from_session(session: &Session, name: &str, size_bytes: u64) -> Result<Self, String> {
         let run = LogRun::reopen(session).map_err(|problem| format!("{name}: {problem}"))?;
         let keyframes = session.driven.keyframes.len();
         if keyframes == 0 {
@@ -158,13 +158,13 @@ impl<'a> Engine<'a> {
             fits: vec![f64::NAN; keyframes],
             has_scans: true,
             scans_before: session.driven.frames,
-            ..Self::beginning(Work::Idle, name, size_bytes)
+            ..Self::with_work(Work::Idle, name, size_bytes)
         };
         engine.begin_editing(loops_of(&session.graph()));
         Ok(engine)
     }
 
-    fn beginning(work: Work<'a>, name: &str, size_bytes: u64) -> Self {
+    fn with_work(work: Work<'a>, name: &str, size_bytes: u64) -> Self {
         Self {
             name: name.to_owned(),
             size_bytes,
@@ -187,15 +187,15 @@ impl<'a> Engine<'a> {
             look_into: Vec::new(),
             reference: None,
             image: files::MAP_IMAGES[0],
-            news: News {
+            changes: Changes {
                 file: true,
-                ..News::default()
+                ..Changes::default()
             },
             waiting: Vec::new(),
         }
     }
 
-    /// Where it is.
+    /// The current stage.
     #[must_use]
     pub fn stage(&self) -> Stage {
         match self.work {
@@ -208,7 +208,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Does the next piece of work; false where nothing is left to do until an order comes.
+    /// Does the next piece of work; returns false if there is none until the next order.
     pub fn step(&mut self) -> bool {
         match core::mem::replace(&mut self.work, Work::Idle) {
             Work::Examining(examination) => self.examine(examination),
@@ -216,7 +216,7 @@ impl<'a> Engine<'a> {
             Work::Finishing => self.close_last_loops(),
             Work::Solving(solving) => self.solve(solving),
             Work::Checking => self.check(),
-            Work::Idle => return self.paint() || self.look_around(),
+            Work::Idle => return self.paint() || self.localize_next(),
             Work::Failed(problem) => {
                 self.work = Work::Failed(problem);
                 return false;
@@ -231,17 +231,17 @@ impl<'a> Engine<'a> {
                 let is_first = self.run.scans() == 0;
                 if let Some(report) = self.run.step(frame.clone()) {
                     if is_first {
-                        self.tell_offers(&reader.notes().offers);
+                        self.send_offers(&reader.notes().offers);
                     }
                     self.recorder.take(&frame, &report);
                     if report.new_keyframe.is_some() {
                         let matched = report.registration.map(|found| found.matched);
                         let fit = matched.and_then(|matched| matched.score);
                         self.fits.push(fit.unwrap_or(f64::NAN));
-                        self.news.keyframes = true;
+                        self.changes.keyframes = true;
                     }
                     if !report.loop_attempts.is_empty() {
-                        self.news.loops = true;
+                        self.changes.loops = true;
                     }
                     if report.closed_loop().is_some() {
                         self.picture.follow(poses_of(&self.run));
@@ -255,14 +255,14 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// No scan follows: what is there is linked, or the reader is told why there is nothing.
+    /// Ends the log: links what was read, or reports why there are no scans.
     fn end_of_log(&mut self, reader: &dyn LogReader, problem: Option<String>) {
         let notes = reader.notes();
-        self.tell_offers(&notes.offers);
+        self.send_offers(&notes.offers);
         self.remarks.clone_from(&notes.about);
         let said = notes.sentences(&self.name);
-        // A map of a part of the file must not look like one of all of it.
-        let is_cut = notes.half_written.is_some() || notes.ended_early.is_some();
+        // A map of a part of the file must not look complete.
+        let is_cut = notes.truncated.is_some() || notes.ended_early.is_some();
         let missing = problem.as_ref().or(said.first().filter(|_| is_cut));
         let missing = missing.map_or(String::new(), |missing| format!("{missing}."));
         self.remarks.extend(said);
@@ -299,7 +299,7 @@ impl<'a> Engine<'a> {
     fn solve(&mut self, mut solving: Box<GraphSolving>) {
         let goes_on = solving.step();
         let graph = solving.graph();
-        self.news.keyframes = true;
+        self.changes.keyframes = true;
         if goes_on {
             self.graph = Some(graph);
             self.work = Work::Solving(solving);
@@ -310,20 +310,20 @@ impl<'a> Engine<'a> {
         self.begin_editing(links);
     }
 
-    /// The graph stands, and from now on the reader may change it.
+    /// Allows the user to edit the graph from now on.
     fn begin_editing(&mut self, links: Vec<Link>) {
         self.links = links;
         self.fixed = self.graph().map_or_else(Vec::new, |graph| {
             graph.nodes().map(|(_, node)| node.fixed).collect()
         });
-        self.changed();
+        self.graph_changed();
     }
 
-    /// The graph changed: all that follows from it is computed anew, and told.
-    fn changed(&mut self) {
-        self.news.keyframes = true;
-        self.news.loops = true;
-        self.news.grade = true;
+    /// Recomputes and reports what depends on the graph.
+    fn graph_changed(&mut self) {
+        self.changes.keyframes = true;
+        self.changes.loops = true;
+        self.changes.grade = true;
         if self.has_scans {
             self.picture.follow(poses_of(&self.run));
         }
@@ -333,14 +333,14 @@ impl<'a> Engine<'a> {
         self.work = Work::Checking;
     }
 
-    /// Paints the next scans; false where all are painted.
+    /// Paints the next scans; returns false if all are painted.
     fn paint(&mut self) -> bool {
         let frames = self.recorder.keyframes();
         self.picture.step(frames, poses_of(&self.run))
     }
 
-    /// Looks for the robot of another log; false where there is none, or no scan of it is left.
-    fn look_around(&mut self) -> bool {
+    /// Localizes the next scan of another log; returns false if there is none.
+    fn localize_next(&mut self) -> bool {
         self.whereabouts.as_mut().is_some_and(Whereabouts::step)
     }
 
@@ -349,7 +349,7 @@ impl<'a> Engine<'a> {
         self.graph.as_ref().or_else(of_run)
     }
 
-    /// The keyframes with their times; nodes of a graph from a file are a second apart.
+    /// The keyframes with their stamps; nodes of a graph file are a second apart.
     fn keyframes(&self) -> Trajectory {
         let poses = self.graph().map_or(&[][..], |graph| graph.poses());
         let keyframes = self.run.slam().map_or(&[][..], |slam| slam.keyframes());
@@ -361,7 +361,7 @@ impl<'a> Engine<'a> {
         Trajectory::new(stamped.collect())
     }
 
-    /// Where every scan was taken; the nodes where there are no scans.
+    /// The pose of every scan; the nodes if there are no scans.
     fn trajectory(&self) -> Trajectory {
         if self.has_scans {
             self.run.trajectory()
@@ -375,12 +375,12 @@ fn poses_of(run: &LogRun) -> &[SE2] {
     run.slam().map_or(&[], |slam| slam.graph().poses())
 }
 
-/// The loops that were tried, or those that the reader left in the graph.
+/// The loops that were tested, or those that the user left in the graph.
 fn links_of(run: &LogRun) -> Vec<Link> {
     if run.links().is_empty() {
         let tried = run.loops().iter();
         return tried
-            .map(|tried| Link::registered(&tried.verification, run.holds(tried)))
+            .map(|tried| Link::registered(&tried.verification, run.has_loop(tried)))
             .collect();
     }
     let links = run.links().iter();

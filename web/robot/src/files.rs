@@ -1,4 +1,4 @@
-//! What the reader saves, by the writers of `robot_io`.
+//! Files that the user saves, by the writers of `robot_io`.
 
 use std::io;
 
@@ -8,12 +8,12 @@ use robot_io::map_image::{MapImage, MapMode};
 use robot_io::session::FILE_NAME;
 use robot_io::trajectory::Trajectory;
 
-/// Side of the saved map's cells, m: what Nav2's maps have.
+/// Cell size of the saved map, m: Nav2's default.
 pub const MAP_CELL_M: f64 = 0.05;
-/// Side of the report's cells, m.
+/// Cell size of the report's map, m.
 pub const REPORT_CELL_M: f64 = 0.1;
 
-/// Every file that can be saved.
+/// All files that can be saved.
 pub const NAMES: [&str; 8] = [
     "map.pgm",
     "map.png",
@@ -25,18 +25,18 @@ pub const NAMES: [&str; 8] = [
     "where.tum",
 ];
 
-/// The pictures of the map; the first is what `map.yaml` names before any was saved.
+/// The pictures of the map; `map.yaml` refers to the first before any was saved.
 pub const MAP_IMAGES: [&str; 2] = ["map.pgm", "map.png"];
 
-/// What goes wrong where memory takes what is written: nothing that a writer could tell.
+/// Describes a write error; writing to memory normally has none.
 fn in_words(problem: &io::Error) -> String {
     format!("the file cannot be written: {problem}")
 }
 
-/// The map's image, or the text that names `image`.
+/// The map's image, or the YAML file that refers to `image`.
 ///
 /// # Errors
-/// Where it cannot be written.
+/// If it cannot be written.
 pub fn map_file(map: &MapImage, name: &str, image: &str) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let written = match name {
@@ -48,10 +48,10 @@ pub fn map_file(map: &MapImage, name: &str, image: &str) -> Result<Vec<u8>, Stri
     Ok(bytes)
 }
 
-/// TUM lines.
+/// The trajectory in the TUM format.
 ///
 /// # Errors
-/// Where they cannot be written.
+/// If it cannot be written.
 pub fn trajectory_file(trajectory: &Trajectory) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let written = trajectory.write_tum(&mut bytes);
@@ -59,8 +59,8 @@ pub fn trajectory_file(trajectory: &Trajectory) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// The graph for g2o.
+/// The graph in the g2o format.
 #[must_use]
 pub fn graph_file(graph: &PoseGraph) -> Vec<u8> {
-    GraphFile::of_graph(graph).to_g2o().into_bytes()
+    GraphFile::from_pose_graph(graph).to_g2o().into_bytes()
 }

@@ -1,4 +1,4 @@
-//! What the reader gives: files that came together, and what was chosen for them.
+//! The user's input: files that were given together, and the options for them.
 
 use std::io::Read as _;
 
@@ -11,32 +11,32 @@ use robot_io::remark::NO_ODOMETRY;
 use robot_io::rosbag2;
 use robot_io::run::OdometryUse;
 
-/// A description of a recording is a page or two, bytes.
+/// Largest metadata file, bytes.
 const MOST_METADATA: u64 = 1 << 20;
 
-/// A file.
+/// A given file.
 pub struct GivenFile<'a> {
-    /// Its name, without a folder.
+    /// Name without a folder.
     pub name: String,
-    /// Its size.
+    /// Size, bytes.
     pub size_bytes: u64,
-    /// Its bytes.
+    /// Content.
     pub bytes: LogBytes<'a>,
 }
 
-/// One log: a file, or the files of a recording in their order.
+/// One log: a file, or the files of a recording in order.
 #[derive(Clone)]
 pub struct Given<'a> {
-    /// What it is called.
+    /// Display name.
     pub name: String,
-    /// Size of all its files.
+    /// Total size of all files.
     pub size_bytes: u64,
-    /// The bytes of each.
+    /// Content of each file.
     pub parts: Vec<LogBytes<'a>>,
 }
 
 impl<'a> Given<'a> {
-    /// The log that one file is.
+    /// A log of a single file.
     pub fn one(name: &str, size_bytes: u64, bytes: impl Into<LogBytes<'a>>) -> Self {
         Self {
             name: name.to_owned(),
@@ -45,11 +45,11 @@ impl<'a> Given<'a> {
         }
     }
 
-    /// The log that files make up which came together: of a folder of rosbag2 those that its metadata lists, else
+    /// Makes a log of files that were given together: those that the metadata of a rosbag2 folder lists, else
     /// all recordings by name.
     ///
     /// # Errors
-    /// One sentence if a file is missing or cannot be read.
+    /// If a file is missing or cannot be read; the message is one sentence.
     pub fn new(files: Vec<GivenFile<'a>>) -> Result<Self, String> {
         let names: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
         let described = names.iter().position(|name| name == rosbag2::METADATA);
@@ -64,12 +64,12 @@ impl<'a> Given<'a> {
         }
         let mut order = rosbag2::in_order(metadata.as_deref(), &names).map_err(|absent| {
             format!(
-                "{} names {absent}, which did not come with it; give all files of the folder together",
+                "{} lists {absent}, which is missing; open all files of the folder together",
                 rosbag2::METADATA
             )
         })?;
         if order.is_empty() {
-            // No recording of ROS 2: the reader of logs says what it makes of them.
+            // Not a ROS 2 recording: the log reader decides what it is.
             order = (0..files.len()).collect();
         }
         let first = order.first().map_or("", |&first| names[first].as_str());
@@ -87,20 +87,20 @@ impl<'a> Given<'a> {
     }
 }
 
-/// What the reader chose for a log.
+/// Options that the user chose for a log.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Choices {
-    /// Topics, frames and the place of the laser.
+    /// Topics, frames and mounting of the laser.
     pub log: LogOptions,
     /// Whether odometry is used.
     pub odometry: OdometryUse,
 }
 
 impl Choices {
-    /// Reads options as on the command line, one a line and without the dashes: `scan-topic /front`.
+    /// Parses command line options, one per line and without the dashes: `scan-topic /front`.
     ///
     /// # Errors
-    /// One sentence if a line is no option or has a value that does not fit.
+    /// If a line is not an option or has an invalid value; the message is one sentence.
     pub fn read(lines: &str) -> Result<Self, String> {
         let mut choices = Self::default();
         for line in lines.lines() {
@@ -113,21 +113,24 @@ impl Choices {
             } else if format!("--{name}") == NO_ODOMETRY {
                 choices.odometry = OdometryUse::None;
             } else {
-                return Err(format!("there is no option {name} for a log"));
+                return Err(format!("a log has no option {name}"));
             }
         }
         Ok(choices)
     }
 }
 
-/// A reader of what was given, whose first scans are compared with its odometry.
+/// Opens the log, and compares its first scans with its odometry.
 ///
 /// # Errors
-/// One sentence if it is no log.
+/// If it is not a log; the message is one sentence.
 pub fn compared<'a>(given: &Given<'a>, choices: &Choices) -> Result<ComparedReader<'a>, String> {
     let parts = given.parts.clone();
     let reader = LogFormat::open_parts(parts, &given.name, &choices.log);
     let reader = reader.map_err(|problem| problem.to_string())?;
-    let is_alone = choices.odometry == OdometryUse::None;
-    Ok(ComparedReader::new(reader, choices.log.laser.is_some()).for_scans_alone(is_alone))
+    let ignores_odometry = choices.odometry == OdometryUse::None;
+    Ok(
+        ComparedReader::new(reader, choices.log.laser.is_some())
+            .ignoring_odometry(ignores_odometry),
+    )
 }

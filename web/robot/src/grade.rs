@@ -1,9 +1,9 @@
-//! A trajectory against a reference that the reader gives: relations, or the truth.
+//! Evaluates a trajectory against the user's reference: relations or true poses.
 //!
-//! The update `grade` has ten numbers: 1 for relations or 2 for the truth, how many were compared, then
-//! mean, standard deviation, median and 95 % of the translation's error (m), and the same of the
-//! rotation's (degrees). Against the truth the trajectory is moved onto it first, and the first number of
-//! each four is the root of the mean square.
+//! The update `grade` has ten numbers: 1 for relations or 2 for true poses, the number compared, then
+//! mean, standard deviation, median and 95th percentile of the translation error (m), and the same of the
+//! rotation error (degrees). With true poses, the trajectory is aligned first, and the first number of
+//! each four is the RMSE.
 
 use pr_geom::math;
 use robot_io::evaluate::{Alignment, Spread, onto_truth, relation_errors, truth_errors};
@@ -12,12 +12,12 @@ use robot_io::trajectory::{StampedPose, Trajectory};
 
 use crate::update::Update;
 
-/// A true pose may lie so far in time from a keyframe, s.
+/// Largest time between a true pose and a keyframe, s.
 const SLACK_S: f64 = 0.1;
-/// How far a quaternion's length may be from 1 to be one.
+/// Tolerance of a unit quaternion's length.
 const UNIT_SLACK: f64 = 1e-3;
 
-/// What a trajectory is compared with.
+/// Reference of the evaluation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reference {
     /// Relations between two times.
@@ -27,10 +27,10 @@ pub enum Reference {
 }
 
 impl Reference {
-    /// Reads either; the name decides, and else whether the last four numbers are a quaternion.
+    /// Reads either, by the file name, or else by whether the last four numbers are a unit quaternion.
     ///
     /// # Errors
-    /// One sentence with the line that is not what it has to be.
+    /// If a line is malformed; the message is one sentence.
     pub fn read(bytes: &[u8], name: &str) -> Result<Self, String> {
         let ends = |end: &str| name.to_ascii_lowercase().ends_with(end);
         let is_truth = ends(".tum") || (!ends(".relations") && has_quaternions(bytes));
@@ -42,10 +42,10 @@ impl Reference {
         read.map_err(|problem| problem.to_string())
     }
 
-    /// The errors in numbers and words, and the error of each keyframe, m.
+    /// The errors as numbers and text, and the error of each keyframe, m.
     ///
     /// # Errors
-    /// One sentence where the two have no times in common.
+    /// If the two have no common times; the message is one sentence.
     pub fn grade(
         &self,
         trajectory: &Trajectory,
@@ -57,12 +57,12 @@ impl Reference {
                 let report = relation_errors(trajectory, relations).report();
                 if report.n == 0 {
                     return Err(format!(
-                        "{name}: none of its {} relations lies within the times of the trajectory; give both the same clock",
+                        "{name}: none of its {} relations lies within the times of the trajectory; use the same clock for both",
                         relations.len()
                     ));
                 }
                 let words = format!(
-                    "{} relations: {:.3} m on average, half below {:.3} m; {:.2}° on average",
+                    "{} relations: mean {:.3} m, median {:.3} m; mean {:.2}°",
                     report.n, report.trans.mean, report.trans.median, report.rot_deg.mean
                 );
                 let numbers = [numbers_of(&report.trans), numbers_of(&report.rot_deg)];
@@ -75,7 +75,7 @@ impl Reference {
                 let onto = onto_truth(trajectory, truth, Alignment::Se2).map_err(said)?;
                 let (ate, turn) = (report.ate, report.rpe.rot_deg);
                 let words = format!(
-                    "{} poses: {:.3} m rms off the truth, {:.3} m at most",
+                    "{} poses: RMSE {:.3} m, at most {:.3} m off the truth",
                     report.n, ate.rmse, ate.max
                 );
                 let numbers = [
@@ -114,7 +114,7 @@ fn numbers_of(spread: &Spread) -> [f64; 4] {
     [spread.mean, spread.std, spread.median, spread.p95]
 }
 
-/// The largest error of the relations that end at a keyframe or at the scans after it.
+/// The largest error of the relations that end at a keyframe or its following scans.
 fn errors_by_relation(
     trajectory: &Trajectory,
     relations: &[Relation],
@@ -129,14 +129,14 @@ fn errors_by_relation(
         let poses = keyframes.poses();
         let after = poses.partition_point(|pose| pose.stamp_s <= relation.second_s);
         if let Some(slot) = errors.get_mut(after.saturating_sub(1)) {
-            // A NaN gives way to any number.
+            // `max` ignores NaN.
             *slot = slot.max(error_m);
         }
     }
     errors
 }
 
-/// Whether the last four numbers of the first line have the length 1.
+/// Whether the last four numbers of the first line have length 1.
 fn has_quaternions(bytes: &[u8]) -> bool {
     let lines = bytes.split(|&byte| byte == b'\n').take(1000);
     let mut lines = lines.filter_map(|line| core::str::from_utf8(line).ok());

@@ -1,4 +1,4 @@
-//! A pose graph from a file: g2o, TORO or JSON, solved step by step.
+//! A pose graph file, g2o, TORO or JSON, optimized step by step.
 
 use ch16_slam2d::graph::{EdgeKind, PoseGraph};
 use pr_optim::g2o::G2oFile;
@@ -8,12 +8,12 @@ use robot_io::quality::GATE_CHI2;
 
 use crate::links::{Link, Verdict};
 
-/// Larger graphs as text are not read, bytes.
+/// Larger text graphs are not read, bytes.
 pub const MOST_BYTES: u64 = 1 << 28;
-/// First damping of the solver, relative to the diagonal.
+/// Initial damping of the solver, relative to the diagonal.
 const DAMPING: f64 = 1e-4;
 
-/// A graph under way to its minimum.
+/// A graph that is being optimized.
 pub struct GraphSolving {
     problem: Problem,
     optimizer: Optimizer,
@@ -21,15 +21,15 @@ pub struct GraphSolving {
 }
 
 impl GraphSolving {
-    /// Reads a graph; `name` is what errors call it.
+    /// Reads a graph; errors contain `name`.
     ///
     /// # Errors
-    /// One sentence with the line that is not what it has to be.
+    /// If a line is malformed; the message is one sentence.
     pub fn read(bytes: &[u8], name: &str) -> Result<Self, String> {
         let graph = GraphFile::read(bytes, name).map_err(|problem| problem.to_string())?;
         if graph.nodes.is_empty() {
             return Err(format!(
-                "{name} holds no pose; a graph has lines of VERTEX_SE2 and EDGE_SE2"
+                "{name} has no poses; a graph has lines of VERTEX_SE2 and EDGE_SE2"
             ));
         }
         let mut problem = G2oFile::parse(graph.to_g2o())
@@ -52,20 +52,20 @@ impl GraphSolving {
         })
     }
 
-    /// One step; false once it has ended.
+    /// Does one step; returns false once it has ended.
     pub fn step(&mut self) -> bool {
         self.optimizer
             .advance(&mut self.problem, &mut self.steps)
             .is_none()
     }
 
-    /// Steps so far.
+    /// Number of steps so far.
     #[must_use]
     pub fn steps(&self) -> usize {
         self.steps.len()
     }
 
-    /// The graph, as one that can be edited: edges between neighbours are odometry, all else loops.
+    /// The graph for editing: edges between consecutive nodes are odometry, all others are loops.
     #[must_use]
     pub fn graph(&self) -> PoseGraph {
         let mut graph = PoseGraph::new();
@@ -94,7 +94,7 @@ impl GraphSolving {
     }
 }
 
-/// The same problem with its first pose held.
+/// The same problem with its first pose fixed.
 fn with_first_fixed(problem: &Problem) -> Problem {
     let mut held = Problem::new();
     for (node, pose) in problem.poses().iter().enumerate() {
@@ -126,7 +126,7 @@ pub fn loops_of(graph: &PoseGraph) -> Vec<Link> {
             chi2: Some(graph.edge_chi2(view.id)),
             gate_chi2: GATE_CHI2,
             reason: String::new(),
-            verdict: Verdict::Closed,
+            verdict: Verdict::Accepted,
         })
         .collect()
 }

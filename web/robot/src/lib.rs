@@ -1,13 +1,12 @@
-//! The worker of w16.10: a robot's log, mapped piece by piece beside the page.
+//! The worker of w16.10, which maps a robot's log piece by piece in the background of the page.
 //!
-//! A module of its own, without egui, which is fetched when a reader opens a log. [`engine`] reads the
-//! file as it is asked for, drives the estimator and answers orders; what changed goes to the widget as
-//! [`update`]s, plain numbers and text. [`given`] is what the reader gives it. [`links`] are the loops with their evidence and verdict,
-//! [`editing`] makes a graph of them, [`picture`] paints the map, [`grade`] compares with a reference,
-//! [`whereabouts`] looks for the robot of another log on the map, [`files`] writes what the reader saves,
-//! and [`sample`] holds the logs that stand on the page.
+//! The module has no egui and is fetched when a user opens a log. [`engine`] reads the file on demand, runs the
+//! estimator and executes orders; changes go to the widget as [`update`]s of numbers and text. [`given`] is the user's
+//! input. [`links`] are the loops with evidence and verdict, [`editing`] builds a graph from them, [`picture`] paints
+//! the map, [`grade`] evaluates against a reference, [`whereabouts`] localizes another log on the map, [`files`] writes
+//! what the user saves, and [`sample`] generates the sample logs of the page.
 //!
-//! All of it is plain Rust and tested natively; the browser half hands a file in and updates out.
+//! All modules but the browser interface are plain Rust and tested natively.
 
 pub mod editing;
 pub mod engine;

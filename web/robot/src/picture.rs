@@ -1,4 +1,4 @@
-//! The map as a picture, painted a few scans at a time, and anew where the graph has moved.
+//! The map as a picture, painted a few scans at a time, and repainted after the graph has moved.
 
 use pr_geom::{SE2, math};
 use robot_io::log::LogFrame;
@@ -6,25 +6,25 @@ use robot_io::map_image::MapBuilder;
 
 use crate::update::Update;
 
-/// Side of the finest cells, m.
+/// Size of the finest cells, m.
 const FINEST_M: f64 = 0.05;
-/// A picture of more cells is painted with coarser ones.
+/// A picture with more cells gets coarser ones.
 const MOST_CELLS: usize = 1_000_000;
-/// A scan that stands farther off than this share of a cell is painted anew.
+/// The map is repainted if a scan has moved by more than this share of a cell.
 const MOVED_CELLS: f64 = 0.5;
 /// The same for its heading, rad.
 const TURNED_RAD: f64 = 0.01;
-/// So many scans are painted at once.
+/// Scans painted per step.
 const SCANS_AT_ONCE: usize = 8;
 
-/// The picture.
+/// The picture of the map.
 #[derive(Clone, Debug)]
 pub struct MapPicture {
     cell_m: f64,
     map: MapBuilder,
-    /// Where each scan stood when it was painted.
+    /// Poses of the scans when they were painted.
     painted: Vec<SE2>,
-    /// Something changed since the last [`MapPicture::update`].
+    /// Whether it changed since the last [`MapPicture::update`].
     is_new: bool,
 }
 
@@ -40,7 +40,7 @@ impl Default for MapPicture {
 }
 
 impl MapPicture {
-    /// Begins anew where poses have moved since they were painted.
+    /// Restarts if poses have moved since they were painted.
     pub fn follow(&mut self, poses: &[SE2]) {
         let has_moved = self.painted.iter().zip(poses).any(|(old, new)| {
             let shift_m = math::norm2(old.x() - new.x(), old.y() - new.y());
@@ -57,7 +57,7 @@ impl MapPicture {
         self.painted.clear();
     }
 
-    /// Paints the next scans; false where all are painted.
+    /// Paints the next scans; returns false if all are painted.
     pub fn step(&mut self, frames: &[LogFrame], poses: &[SE2]) -> bool {
         let next = self.painted.len();
         let todo = frames.iter().zip(poses).skip(next).take(SCANS_AT_ONCE);
@@ -75,7 +75,7 @@ impl MapPicture {
         true
     }
 
-    /// The picture, where it is whole and another one than before.
+    /// The picture, if it is complete and changed.
     pub fn update(&mut self, scans: usize) -> Option<Update> {
         if !self.is_new || self.painted.len() < scans {
             return None;
@@ -103,7 +103,7 @@ impl MapPicture {
     }
 }
 
-/// 0 where nothing is known, else 1 for free to 255 for occupied.
+/// 0 if unknown, else 1 for free to 255 for occupied.
 fn shade(log_odds: f64) -> u8 {
     if log_odds == 0.0 {
         return 0;

@@ -1,5 +1,5 @@
-//! The sample: the simulator's ring, twice around, as a log of CARMEN, and the truth of it; and another
-//! day in the ring, where the robot is switched on half way and knows nothing of the first.
+//! Sample logs: two rounds of the simulator's ring as a CARMEN log with its true trajectory; and a log of another
+//! day in the ring that starts half way.
 
 use core::ops::RangeInclusive;
 
@@ -10,12 +10,12 @@ use robot_io::carmen::write_carmen;
 use robot_io::log::LogFrame;
 use robot_io::trajectory::{StampedPose, Trajectory};
 
-/// Its noise: wheels twice as bad as the chapter's.
+/// Noise factor: twice the chapter's odometry noise.
 const NOISE_FACTOR: f64 = 2.0;
 
 /// Seed of the other day.
 const OTHER_SEED: u32 = 11;
-/// The robot of the other day is switched on after this share of the way, and off after that one.
+/// Part of the path that is in the log of the other day.
 const OTHER_PART: [f64; 2] = [0.55, 0.85];
 
 fn drive(config: &DriveConfig) -> Drive {
@@ -26,7 +26,7 @@ fn drive(config: &DriveConfig) -> Drive {
     Drive::simulate(&config.on_course(&Course::ring()))
 }
 
-/// To the millimetre, as a sensor tells it.
+/// Rounds to the resolution of a sensor.
 fn rounded(value: f64, digits: i32) -> f64 {
     let scale = f64::from(10_i32.pow(digits.unsigned_abs()));
     (value * scale).round() / scale
@@ -59,17 +59,17 @@ pub fn another_day() -> Vec<u8> {
     log_of(&drive, first..=last)
 }
 
-/// Lines of CARMEN; the wheels count from where the robot is switched on.
+/// CARMEN lines; odometry starts at zero where the log starts.
 fn log_of(drive: &Drive, ticks: RangeInclusive<usize>) -> Vec<u8> {
     let mut log = Vec::new();
-    let mut wheels = SE2::identity();
+    let mut odometry = SE2::identity();
     let first = *ticks.start();
     for tick in ticks {
         let frame = drive.frame(tick);
         if tick > first {
-            wheels = wheels * frame.odometry.unwrap_or(SE2::identity());
+            odometry = odometry * frame.odometry.unwrap_or(SE2::identity());
         }
-        let [x, y, theta] = wheels.to_array().map(|value| rounded(value, 5));
+        let [x, y, theta] = odometry.to_array().map(|value| rounded(value, 5));
         let mut scan = frame.scan;
         for range_m in &mut scan.ranges_m {
             *range_m = rounded(*range_m, 3);

@@ -1,45 +1,45 @@
-//! What changed since the widget was last told: a kind, a text, numbers and bytes.
+//! Updates for the widget: a kind, a text, numbers and bytes.
 //!
 //! | kind | numbers | text, bytes |
 //! |---|---|---|
 //! | `file` | size in bytes, whether there are scans | its name |
-//! | `stage` | [`Stage`] as a number, share done, scans, loops tried, loops closed | what failed |
+//! | `stage` | [`Stage`] as a number, share done, scans, loops tested, loops accepted | the error |
 //! | `keyframes` | stamp (s), x, y (m), θ (rad), fit, σ (m) of each | |
 //! | `map` | columns, rows, least x, least y, cell (m) | a byte a cell from the least y: 0 unknown, 1 free … 255 occupied |
-//! | `loops` | ten for each, see [`links`](crate::links) | a line each: why it was turned away |
-//! | `doubts` | keyframes to look into | a sentence a line |
-//! | `diagnosis` | | the doctor's screen as `slam2d doctor --json` prints it |
-//! | `remarks` | | what the log's owner should know, a sentence a line |
+//! | `loops` | ten for each, see [`links`](crate::links) | one line each: why it was rejected |
+//! | `doubts` | keyframes to check | one sentence per line |
+//! | `diagnosis` | | the doctor's report as `slam2d doctor --json` prints it |
+//! | `remarks` | | messages on the log, one sentence per line |
 //! | `scan` | keyframe, then x and y of every point in the body's frame, m | |
-//! | `grade` | see [`grade`](crate::grade) | in words |
-//! | `errors` | error of each keyframe, m; NaN where there is none | |
-//! | `offers` | | an option a line: its name, what is taken, what could be, with tabs between them |
-//! | `where` | see [`whereabouts`](crate::whereabouts) | the other log's name, then a sentence a line |
-//! | `answer` | | what became of the last order |
+//! | `grade` | see [`grade`](crate::grade) | as text |
+//! | `errors` | error of each keyframe, m; NaN if unknown | |
+//! | `offers` | | one option per line: name, current choice, possible choices, separated by tabs |
+//! | `where` | see [`whereabouts`](crate::whereabouts) | the other log's name, then one sentence per line |
+//! | `answer` | | result of the last order |
 
-/// How far the engine is.
+/// Stage of the engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// The file is read, scan by scan.
     Reading = 1,
-    /// No scan follows: the last loops are closed.
+    /// No scan follows: the last loops are tested.
     Finishing = 2,
-    /// A graph from a file is solved.
+    /// A graph file is optimized.
     Solving = 3,
     /// The covariances are computed.
     Checking = 4,
-    /// The map stands.
+    /// The map is complete.
     Done = 5,
-    /// Nothing could be done with the file.
+    /// The file cannot be used.
     Failed = 6,
 }
 
-/// One change.
+/// One update.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Update {
-    /// Which part changed.
+    /// The part that changed.
     pub kind: &'static str,
-    /// Words.
+    /// Text.
     pub text: String,
     /// Numbers.
     pub numbers: Vec<f64>,
@@ -48,7 +48,7 @@ pub struct Update {
 }
 
 impl Update {
-    /// A change that is numbers alone.
+    /// An update with numbers only.
     #[must_use]
     pub fn numbers(kind: &'static str, numbers: Vec<f64>) -> Self {
         Self {
@@ -59,7 +59,7 @@ impl Update {
         }
     }
 
-    /// A change that is words alone.
+    /// An update with text only.
     #[must_use]
     pub fn text(kind: &'static str, text: impl Into<String>) -> Self {
         Self {

@@ -1,8 +1,8 @@
-//! “Where am I?”: the robot of another log on the map as it stands, scan by scan.
+//! “Where am I?”: localizes another log on the current map, scan by scan.
 //!
-//! The update `where` tells all of it: seven numbers on the whole ([`HEAD`]), then ten for each scan
-//! ([`PLACE`]); its text is the log's name, and below it what the owner should know, a sentence a line.
-//! Places hang on the keyframes next to them, so that they go along where the reader moves those.
+//! The update `where` contains seven numbers on the whole log ([`HEAD`]), then ten for each scan
+//! ([`PLACE`]); its text is the log's name, followed by messages, one sentence per line.
+//! Poses are stored relative to their nearest keyframes, and so move with them when the user edits the map.
 
 use ch16_slam2d::localize::{LocalizeReport, StartPose, Verdict};
 use ch16_slam2d::metrics::position_error_m;
@@ -17,36 +17,36 @@ use robot_io::trajectory::{StampedPose, Trajectory};
 use crate::given::{Choices, Given, compared};
 use crate::update::Update;
 
-/// Share done, whether it is over, and the scans of each verdict: found, tracking, doubtful, lost; then
-/// the first scan that is localized, counted from 0, NaN where none is.
+/// Share done, whether it is over, and the number of scans by verdict: found, tracking, doubtful, lost; then
+/// the first localized scan, counted from 0, or NaN.
 pub const HEAD: usize = 7;
-/// Number of the scan, stamp (s), x, y (m), θ (rad), verdict, share that fits, then the half axes of the
-/// 1σ ellipse, long and short (m), and the heading of the long one (rad); NaN where there is none.
+/// Scan number, stamp (s), x, y (m), θ (rad), verdict, score, then the half axes of the
+/// 1σ ellipse, long and short (m), and the heading of the long one (rad); NaN if unknown.
 pub const PLACE: usize = 10;
-/// Of a longer log every second scan is told, or every third.
-const MOST_TOLD: usize = 20_000;
-/// It is told again once there are so many times as many scans.
-const TOLD_AGAIN: f64 = 1.02;
+/// Most scans in an update: of a longer log every n-th scan is sent.
+const MOST_SENT: usize = 20_000;
+/// An update is sent once the number of scans has grown by this factor.
+const RESEND_GROWTH: f64 = 1.02;
 
-/// A place that hangs on a keyframe of the map.
+/// A pose relative to a keyframe of the map.
 #[derive(Clone, Copy, Debug)]
-struct Hung {
+struct AnchoredPose {
     keyframe: usize,
     keyframe_from_body: SE2,
 }
 
-/// Another log on its way through the map.
+/// Localization of another log on the map.
 pub struct Whereabouts<'a> {
     name: String,
     size_bytes: u64,
     reader: Box<dyn LogReader + 'a>,
     run: LocalizeRun,
-    /// Where the keyframes stood when it began.
+    /// Poses of the keyframes at the start.
     map: Vec<SE2>,
-    places: Vec<Option<Hung>>,
+    poses: Vec<Option<AnchoredPose>>,
     is_over: bool,
     problem: Option<String>,
-    told: usize,
+    sent: usize,
     is_new: bool,
 }
 
@@ -54,7 +54,7 @@ impl<'a> Whereabouts<'a> {
     /// Opens a log; `session` is the map.
     ///
     /// # Errors
-    /// One sentence where the file is no log, or the session no map.
+    /// If the file is not a log, or the session has no map; the message is one sentence.
     pub fn open(
         given: Given<'a>,
         choices: &Choices,
@@ -70,15 +70,15 @@ impl<'a> Whereabouts<'a> {
             reader: Box::new(reader),
             run,
             map: session.poses(),
-            places: Vec::new(),
+            poses: Vec::new(),
             is_over: false,
             problem: None,
-            told: 0,
+            sent: 0,
             is_new: true,
         })
     }
 
-    /// Looks for the robot in the next scan; false once there is none.
+    /// Localizes the next scan; returns false once there is none.
     pub fn step(&mut self) -> bool {
         if self.is_over {
             return false;
@@ -86,10 +86,10 @@ impl<'a> Whereabouts<'a> {
         match self.reader.next_frame() {
             Ok(Some(frame)) => {
                 if let Some(report) = self.run.step(frame) {
-                    self.places.push(hung(&self.map, report));
+                    self.poses.push(anchored(&self.map, report));
                 }
-                let enough = TOLD_AGAIN * self.told as f64;
-                self.is_new |= self.places.len() as f64 > enough;
+                let enough = RESEND_GROWTH * self.sent as f64;
+                self.is_new |= self.poses.len() as f64 > enough;
             }
             Ok(None) => self.end(),
             Err(problem) => {
@@ -100,11 +100,11 @@ impl<'a> Whereabouts<'a> {
         true
     }
 
-    /// No scan follows, because there is none or because nobody asks for more.
+    /// Ends the log, because no scan follows or the user stopped it.
     pub fn end(&mut self) {
         self.is_over = true;
         self.is_new = true;
-        if self.places.is_empty() && self.problem.is_none() {
+        if self.poses.is_empty() && self.problem.is_none() {
             let name = &self.name;
             self.problem = Some(match self.run.refused() {
                 Some(why) => format!("{name}: no scan could be used: {why}"),
@@ -113,38 +113,38 @@ impl<'a> Whereabouts<'a> {
         }
     }
 
-    /// Whether no scan follows.
+    /// Whether the log has ended.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.is_over
     }
 
-    /// Says that the map has moved, and all places with it.
+    /// Marks all poses as changed, because the map has moved.
     pub fn moved(&mut self) {
         self.is_new = true;
     }
 
-    /// The poses that are localized, on the map as it is now.
+    /// The localized poses on the current map.
     #[must_use]
     pub fn trajectory(&self, map: &[SE2]) -> Trajectory {
-        let placed = self.run.reports().iter().zip(&self.places);
-        let localized = placed.filter(|(report, _)| report.verdict.is_localized());
-        let poses = localized.filter_map(|(report, place)| {
+        let posed = self.run.reports().iter().zip(&self.poses);
+        let localized = posed.filter(|(report, _)| report.verdict.is_localized());
+        let poses = localized.filter_map(|(report, anchored)| {
             Some(StampedPose {
                 stamp_s: report.stamp_s,
-                pose: place.and_then(|place| on(map, place))?,
+                pose: anchored.and_then(|anchored| world_pose(map, anchored))?,
             })
         });
         Trajectory::new(poses.collect())
     }
 
-    /// What is known, where it is news.
+    /// The update, if there is anything new.
     pub fn update(&mut self, map: &[SE2]) -> Option<Update> {
         if !core::mem::take(&mut self.is_new) {
             return None;
         }
         let reports = self.run.reports();
-        self.told = reports.len();
+        self.sent = reports.len();
         let count = |verdict| {
             let of_it = reports.iter().filter(|report| report.verdict == verdict);
             of_it.count() as f64
@@ -161,11 +161,11 @@ impl<'a> Whereabouts<'a> {
             count(Verdict::Lost),
             first.map_or(f64::NAN, |first| first as f64),
         ];
-        let stride = reports.len().div_ceil(MOST_TOLD).max(1);
-        let placed = reports.iter().zip(&self.places).enumerate();
-        for (number, (report, place)) in placed.step_by(stride) {
-            let pose = place.and_then(|place| on(map, place));
-            numbers.extend(place_numbers(number, report, pose));
+        let stride = reports.len().div_ceil(MOST_SENT).max(1);
+        let posed = reports.iter().zip(&self.poses).enumerate();
+        for (number, (report, anchored)) in posed.step_by(stride) {
+            let pose = anchored.and_then(|anchored| world_pose(map, anchored));
+            numbers.extend(pose_numbers(number, report, pose));
         }
         let mut lines = vec![self.name.clone()];
         lines.extend(self.problem.clone());
@@ -193,22 +193,22 @@ impl<'a> Whereabouts<'a> {
     }
 }
 
-/// A place on the keyframe next to it.
-fn hung(map: &[SE2], report: &LocalizeReport) -> Option<Hung> {
+/// The pose relative to the nearest keyframe.
+fn anchored(map: &[SE2], report: &LocalizeReport) -> Option<AnchoredPose> {
     let pose = report.pose?;
     let distances = map.iter().map(|at| position_error_m(at, &pose)).enumerate();
     let (keyframe, _) = distances.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(Hung {
+    Some(AnchoredPose {
         keyframe,
         keyframe_from_body: map[keyframe].between(&pose),
     })
 }
 
-fn on(map: &[SE2], place: Hung) -> Option<SE2> {
-    Some(*map.get(place.keyframe)? * place.keyframe_from_body)
+fn world_pose(map: &[SE2], anchored: AnchoredPose) -> Option<SE2> {
+    Some(*map.get(anchored.keyframe)? * anchored.keyframe_from_body)
 }
 
-fn place_numbers(number: usize, report: &LocalizeReport, pose: Option<SE2>) -> [f64; PLACE] {
+fn pose_numbers(number: usize, report: &LocalizeReport, pose: Option<SE2>) -> [f64; PLACE] {
     let [x, y, theta] = pose.map_or([f64::NAN; 3], |pose| pose.to_array());
     let ellipse = report.covariance.map(|known| {
         let known = KeyframeQuality {

@@ -1,4 +1,4 @@
-//! The sample through the engine, and what a reader asks of it.
+//! Runs the sample through the engine, and executes a user's orders.
 
 use std::sync::OnceLock;
 
@@ -30,13 +30,13 @@ pub fn finished(bytes: &[u8]) -> Engine<'_> {
     engine
 }
 
-/// Refuses the first loop of the list; what is told then.
+/// Removes the first loop of the list; returns the updates.
 pub fn refuse_first(engine: &mut Engine<'_>) -> Vec<Update> {
     engine.order("turn 0");
     while engine.step() {}
     let updates = engine.updates();
     let said = &of(&updates, "answer").text;
-    assert!(said.contains("is out of the graph"), "{said}");
+    assert!(said.contains("was removed from the graph"), "{said}");
     updates
 }
 
@@ -64,13 +64,13 @@ fn the_sample_becomes_a_map_with_loops_and_its_grade() {
     let loops = &of(&updates, "loops").numbers;
     assert!(loops.chunks(10).any(|found| found[8] == 0.0), "none closed");
     let grade = of(&updates, "grade");
-    // The sensor sees to the centimetre and the ring is 40 m long: off by more would be lost.
+    // The sensor has a resolution of a centimetre and the ring is 40 m long: a larger error would mean divergence.
     assert!(grade.numbers[2] < 0.1, "{}", grade.text);
     assert_eq!(of(&updates, "errors").numbers.len(), keyframes);
 }
 
-/// A loop as it is told: newer and older keyframe, χ² and its gate, and the verdict.
-fn told_loops(updates: &[Update]) -> Vec<([usize; 2], f64, f64, f64)> {
+/// Loops of an update: newer and older keyframe, χ² and its gate, and the verdict.
+fn sent_loops(updates: &[Update]) -> Vec<([usize; 2], f64, f64, f64)> {
     let loops = of(updates, "loops").numbers.chunks(10);
     loops
         .map(|told| {
@@ -84,7 +84,7 @@ fn told_loops(updates: &[Update]) -> Vec<([usize; 2], f64, f64, f64)> {
 fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
     let (log, _) = files();
     let mut engine = finished(log);
-    let told = told_loops(&engine.updates());
+    let told = sent_loops(&engine.updates());
     let closed: Vec<_> = told.iter().filter(|told| told.3 == 0.0).collect();
     assert!(closed.len() > 5);
     assert!(
@@ -92,7 +92,7 @@ fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
         "{told:?}"
     );
 
-    // The same by the command's way through the file.
+    // The same log through the command's reader.
     let mut reader = LogFormat::open(&log[..], "ring.log", &LogOptions::default()).unwrap();
     let mut run = LogRun::new(OdometryUse::Log);
     while let Some(frame) = reader.next_frame().unwrap() {
@@ -105,8 +105,8 @@ fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
         let found = closed.iter().find(|told| told.0 == [link.from, link.to]);
         assert_eq!(found.map(|told| Some(told.1)), Some(link.chi2), "{link:?}");
     }
-    // A loop keeps its number while it is refused, though it is not the most doubtful any more.
-    let after = told_loops(&refuse_first(&mut engine));
+    // A loop keeps its number while it is removed, even if it is no longer the most doubtful.
+    let after = sent_loops(&refuse_first(&mut engine));
     let ends =
         |told: &[([usize; 2], f64, f64, f64)]| told.iter().map(|told| told.0).collect::<Vec<_>>();
     assert_eq!(ends(&after), ends(&told));
@@ -135,7 +135,7 @@ fn a_loop_that_is_refused_leaves_the_graph_and_comes_back() {
     assert_eq!(edges(&mut engine), all);
     let back = engine.updates();
     let [old, new] = [&before, &back].map(|updates| &of(updates, "keyframes").numbers);
-    // 1e-3 m: the solver ends where a step is small, from another start.
+    // 1e-3 m: the solver stops at small steps, from another start.
     let off = |k: &usize| (old[*k] - new[*k]).abs() > 1e-3;
     let places = (0..old.len()).filter(|k| [1, 2].contains(&(k % 6)));
     assert_eq!(places.filter(off).count(), 0);
@@ -162,7 +162,7 @@ fn a_keyframe_that_is_dragged_stays_there_until_it_is_let_go() {
     };
     let are_doubted = |updates: &[Update]| {
         let doubts = &of(updates, "doubts").text;
-        doubts.contains("the way from keyframe")
+        doubts.contains("the path from keyframe")
     };
     assert!(
         are_doubted(&checked(&mut engine)),
@@ -171,12 +171,12 @@ fn a_keyframe_that_is_dragged_stays_there_until_it_is_let_go() {
     engine.order("unpin");
     let back = checked(&mut engine);
     assert!(!are_doubted(&back));
-    // 0.01 m: back at the same minimum, within the solver's last step.
+    // 0.01 m: the same minimum, within the solver's last step.
     assert!((of(&back, "keyframes").numbers[6 * 20 + 1] - x).abs() < 0.01);
 }
 
 #[test]
-fn a_loop_is_added_where_two_scans_fit_and_told_why_not_where_they_do_not() {
+fn a_loop_is_added_if_two_scans_fit_and_otherwise_rejected_with_a_reason() {
     let (log, _) = files();
     let mut engine = finished(log);
     let updates = engine.updates();
@@ -199,7 +199,7 @@ fn a_loop_is_added_where_two_scans_fit_and_told_why_not_where_they_do_not() {
 fn a_reading_that_is_stopped_keeps_what_was_read() {
     let (log, truth) = files();
     let mut engine = open(log, "ring.log").unwrap();
-    // The doctor has seen all of it before its first scan is mapped.
+    // The doctor's pass is complete before the first scan is mapped.
     let scans = |engine: &mut Engine<'_>| of(&engine.updates(), "stage").numbers[2];
     while scans(&mut engine) < 60.0 {
         engine.step();
@@ -248,12 +248,12 @@ fn every_file_that_can_be_saved_is_what_its_name_says() {
     }
     assert!(engine.file("../x").is_err());
     for name in slam_robot::files::NAMES {
-        // No other log was looked for.
+        // No other log was localized.
         assert_eq!(engine.file(name).is_ok(), name != "where.tum", "{name}");
     }
 }
 
-/// A file that was moved or changed by another program while it was read.
+/// A file that another program moved or changed while it was read.
 struct Torn<'a> {
     bytes: &'a [u8],
 }
@@ -330,10 +330,10 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
     assert_eq!(engine.stage(), Stage::Done);
     let updates = engine.updates();
     let said = &of(&updates, "remarks").text;
-    assert!(said.contains("half written"), "{said}");
+    assert!(said.contains("incomplete"), "{said}");
     let said = &of(&updates, "answer").text;
     assert!(
-        said.contains("half written"),
+        said.contains("incomplete"),
         "it is no map of all of it: {said}"
     );
 
@@ -345,7 +345,7 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
         open(b"\x1f\x8b\x08", "x.gz")
             .err()
             .unwrap()
-            .contains("does not unpack")
+            .contains("cannot be decompressed")
     );
     assert!(
         open(b"VERTEX_SE2 0 0\n", "x.g2o")
@@ -368,7 +368,7 @@ fn files_that_are_no_logs_are_answered_in_one_sentence() {
         while engine.step() {}
         assert_eq!(engine.stage(), Stage::Failed);
         let said = of(&engine.updates(), "stage").text.clone();
-        assert!(said.starts_with("photo.png is no CARMEN log"), "{said}");
+        assert!(said.starts_with("photo.png is not a CARMEN log"), "{said}");
         engine.order("turn 0");
         assert!(of(&engine.updates(), "answer").text.contains("no graph"));
         assert!(engine.file("graph.g2o").is_err());

@@ -1,4 +1,4 @@
-//! Files that come together, the options for them, and the doctor's screen of them.
+//! Files that were given together, their options, and the doctor's report on them.
 
 use robot_io::log_bytes::LogBytes;
 use robot_io::run::OdometryUse;
@@ -38,10 +38,10 @@ fn the_files_of_a_folder_are_one_recording_in_the_order_of_its_metadata() {
         .err()
         .unwrap();
     assert!(
-        missing.starts_with("metadata.yaml names b_2.db3"),
+        missing.starts_with("metadata.yaml lists b_2.db3"),
         "{missing}"
     );
-    // Alone it is for the reader of logs to refuse.
+    // Alone, it is left to the log reader to reject it.
     assert_eq!(
         Given::new(vec![file("metadata.yaml", listed)])
             .unwrap()
@@ -63,7 +63,7 @@ fn options_are_those_of_the_command() {
     assert_eq!(Choices::read(""), Ok(Choices::default()));
 }
 
-/// All that is told of a log, in its order.
+/// All updates of a log, in order.
 fn told(mut engine: Engine<'_>) -> Vec<Update> {
     let mut updates = engine.updates();
     while engine.step() {
@@ -95,7 +95,7 @@ fn the_doctor_s_screen_comes_before_the_first_keyframe_and_once() {
 }
 
 #[test]
-fn a_laser_that_was_turned_is_told_with_the_options_that_answer_it() {
+fn a_turned_laser_is_reported_with_the_options_that_correct_it() {
     let (log, _) = files();
     let choices = Choices::read("laser 0,0,180").unwrap();
     let turned = Engine::open(given(log, "ring.log"), &choices).unwrap();

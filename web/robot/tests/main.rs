@@ -1,4 +1,4 @@
-//! What the worker promises, without any browser.
+//! Native tests of the worker, without a browser.
 
 mod engine;
 mod given;

@@ -1,4 +1,4 @@
-//! Sessions out and in, another log on the map, and recordings with several topics.
+//! Sessions saved and opened, another log on the map, and recordings with several topics.
 
 use ch16_slam2d::localize::StartPose;
 use pr_geom::SE2;
@@ -110,8 +110,8 @@ fn a_session_is_edited_further_and_what_was_changed_is_saved_with_it() {
     let mut third = opened(&pinned);
     let updates = third.updates();
     assert_eq!(of(&updates, "keyframes").numbers[121], keyframes[121] + 0.5);
-    // What goes on from it goes on from the scans, not from what was pinned.
-    let session = Session::of_bytes(&pinned, "pinned").unwrap();
+    // A continued run starts from the scans, not from what was pinned.
+    let session = Session::from_bytes(&pinned, "pinned").unwrap();
     assert!(LogRun::resume(&session, OdometryUse::Log).is_ok());
 }
 
@@ -131,7 +131,7 @@ fn sessions_that_are_broken_are_answered_in_one_sentence() {
         ),
         (&newer, "is a session of version 9"),
         (&spoilt, "is damaged"),
-        (b"hello", "is no session"),
+        (b"hello", "is not a session"),
     ] {
         let told = open(bytes, "monday.slam2d").err().unwrap();
         assert!(told.starts_with("monday.slam2d "), "{told}");
@@ -143,7 +143,7 @@ fn sessions_that_are_broken_are_answered_in_one_sentence() {
         &Choices::default(),
     );
     assert!(huge.err().unwrap().contains("larger than 512 MB"));
-    // By its first bytes alone it is told from a log.
+    // A session is recognized by its first bytes alone.
     assert!(open(&session, "monday.log").is_ok());
 }
 
@@ -177,8 +177,8 @@ fn the_robot_of_another_day_is_found_on_the_map_and_followed() {
     let way = Trajectory::read_tum(&written[..], "where.tum").unwrap();
     assert_eq!(way.poses().len() as f64, head[2] + head[3]);
 
-    // The same as on the command line, which takes the session from the file.
-    let session = Session::of_bytes(&session, "monday").unwrap();
+    // The same as on the command line, which reads the session from the file.
+    let session = Session::from_bytes(&session, "monday").unwrap();
     let mut run =
         robot_io::localize::LocalizeRun::new(&session, OdometryUse::Log, StartPose::Anywhere)
             .unwrap();
@@ -188,7 +188,7 @@ fn the_robot_of_another_day_is_found_on_the_map_and_followed() {
     }
     for (report, place) in run.reports().iter().zip(places.chunks(PLACE)) {
         let [x, y, theta] = report.pose.map_or([f64::NAN; 3], |pose| pose.to_array());
-        // 1e-9: a pose that hung on a keyframe meanwhile.
+        // 1e-9: the pose was stored relative to a keyframe.
         let is_same = |a: f64, b: f64| (a - b).abs() < 1e-9 || a.is_nan() && b.is_nan();
         assert!(is_same(place[2], x) && is_same(place[3], y) && is_same(place[4], theta));
     }
@@ -201,10 +201,10 @@ fn a_start_that_is_given_is_where_the_robot_is_looked_for() {
     let mut engine = opened(&session);
     let told = look(&mut engine, &day, StartPose::Anywhere);
     let places: Vec<&[f64]> = told.numbers[HEAD..].chunks(PLACE).collect();
-    // The best place of the whole map at the first scan, localized or not.
+    // The best pose of the whole map at the first scan, localized or not.
     let found = places.iter().find(|place| place[2].is_finite()).unwrap();
     let at = SE2::new(found[2], found[3], found[4]);
-    // Three metres beside it nobody is found at the first scan; there one is.
+    // A wrong initial guess by three metres does not localize the first scan; the right one does.
     let near = look(&mut engine, &day[..], StartPose::Near(at));
     let first = |told: &Update| told.numbers[6];
     let far = SE2::new(at.x() + 30.0, at.y() + 30.0, at.theta());
@@ -219,7 +219,7 @@ fn a_start_that_is_given_is_where_the_robot_is_looked_for() {
 }
 
 #[test]
-fn the_places_go_along_where_the_reader_moves_the_map() {
+fn poses_move_with_the_map() {
     let day = sample::another_day();
     let session = saved();
     let mut engine = opened(&session);
@@ -238,13 +238,13 @@ fn the_places_go_along_where_the_reader_moves_the_map() {
         .chunks(PLACE)
         .zip(back[HEAD..].chunks(PLACE))
     {
-        // 1e-3 m: the solver ends where a step is small, from another start.
+        // 1e-3 m: the solver stops at small steps, from another start.
         assert!(old[2].is_nan() || (old[2] - new[2]).abs() < 1e-3);
     }
 }
 
 #[test]
-fn what_is_no_log_is_answered_and_leaves_the_map_and_the_place_before_it() {
+fn files_that_are_not_logs_are_reported_and_change_nothing() {
     let day = sample::another_day();
     let session = saved();
     let mut engine = opened(&session);
@@ -253,7 +253,11 @@ fn what_is_no_log_is_answered_and_leaves_the_map_and_the_place_before_it() {
     let mut tried =
         |bytes: &'static [u8]| engine.locate(given(bytes, "x.log"), &choices, StartPose::Anywhere);
     assert!(tried(b"").unwrap_err().contains("is empty"));
-    assert!(tried(b"\x1f\x8b").unwrap_err().contains("does not unpack"));
+    assert!(
+        tried(b"\x1f\x8b")
+            .unwrap_err()
+            .contains("cannot be decompressed")
+    );
     assert!(tried(b"SLAM2D\r\n").is_err());
     assert!(engine.file("where.tum").is_ok());
     let begun = engine.locate(given(b"hello\n", "x.log"), &choices, StartPose::Anywhere);

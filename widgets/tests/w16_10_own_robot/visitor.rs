@@ -171,7 +171,7 @@ fn looking_is_held_and_goes_on_by_play() {
 #[test]
 fn a_log_with_nothing_to_look_for_is_answered_and_wrong_numbers_change_nothing() {
     let mut robot = mapped();
-    let text = "x.log\nx.log is no CARMEN log";
+    let text = "x.log\nx.log is not a CARMEN log";
     tell(
         &mut robot,
         "where",
@@ -182,7 +182,7 @@ fn a_log_with_nothing_to_look_for_is_answered_and_wrong_numbers_change_nothing()
         robot
             .outcome()
             .sentence
-            .contains(" x.log is no CARMEN log.")
+            .contains(" x.log is not a CARMEN log.")
     );
     assert_eq!(robot.outcome().verdict, "loops contradict");
     let before = format!("{:?}", robot.robot());

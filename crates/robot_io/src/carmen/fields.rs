@@ -1,11 +1,11 @@
-//! The fields of a line, by their names.
+//! Typed fields of a CARMEN line.
 
 use ch16_slam2d::scan::LaserScan;
 use pr_geom::SE2;
 
 use crate::lines::{finite, printable};
 use crate::log::LogFrame;
-use crate::place::{checked, checked_stamp_s};
+use crate::plausible::{plausible_pose, plausible_stamp_s};
 
 /// More beams than any planar laser has.
 const MOST_BEAMS: usize = 100_000;
@@ -23,7 +23,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// The next word; nothing at the end.
+    /// The next word; empty at the end.
     pub fn word(&mut self) -> &'a str {
         self.words.next().unwrap_or_default()
     }
@@ -36,21 +36,21 @@ impl<'a> Fields<'a> {
     /// The next three words as a pose.
     pub fn pose(&mut self, names: [&str; 3]) -> Result<SE2, String> {
         let [x, y, theta] = names;
-        checked(SE2::new(
+        plausible_pose(SE2::new(
             self.number(x)?,
             self.number(y)?,
             self.number(theta)?,
         ))
     }
 
-    /// A number of things, and as many words that are numbers; not a number is one, of no return.
+    /// A count followed by that many numbers; NaN is allowed and is no return.
     pub fn list(&mut self, name: &str) -> Result<Vec<f64>, String> {
         let text = self.word();
         let count = match text.parse::<usize>() {
             Ok(count) if count <= MOST_BEAMS => count,
             _ => {
                 return Err(format!(
-                    "the number of {name} has to be a whole number up to {MOST_BEAMS}, and is ‘{}’",
+                    "the number of {name} must be an integer up to {MOST_BEAMS}, not ‘{}’",
                     printable(text)
                 ));
             }
@@ -59,13 +59,11 @@ impl<'a> Fields<'a> {
         for index in 0..count {
             let text = self.word();
             if text.is_empty() {
-                return Err(format!(
-                    "{count} {name} were announced, and {index} stand there"
-                ));
+                return Err(format!("expected {count} {name}, found {index}"));
             }
             let value = text.parse::<f64>().map_err(|_| {
                 format!(
-                    "number {} of the {name} has to be a number, and is ‘{}’",
+                    "number {} of the {name} must be a number, not ‘{}’",
                     index + 1,
                     printable(text)
                 )
@@ -75,12 +73,12 @@ impl<'a> Fields<'a> {
         Ok(values)
     }
 
-    /// `ipc_time host logger_time`: the first that is set, else the number of the frame.
+    /// `ipc_time host logger_time`: the first time that is set, else the number of the frame.
     pub fn stamp_s(&mut self, frames: usize) -> Result<f64, String> {
         let ipc_s = self.number("ipc_time")?;
         self.word();
         let logger_s = self.number("logger_time")?;
-        checked_stamp_s(if ipc_s > 0.0 {
+        plausible_stamp_s(if ipc_s > 0.0 {
             ipc_s
         } else if logger_s > 0.0 {
             logger_s
@@ -90,8 +88,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// The time and the pose of an ODOM line; where the log has no times, that of the scan after it, of which
-/// `scans` came before.
+/// Time and pose of an ODOM line. If the log has no times, the time is `scans`, that of the next scan.
 pub fn odometry_message(fields: &mut Fields<'_>, scans: usize) -> Result<(f64, SE2), String> {
     let pose = fields.pose(["x", "y", "theta"])?;
     for name in ["tv", "rv", "accel"] {
@@ -100,7 +97,7 @@ pub fn odometry_message(fields: &mut Fields<'_>, scans: usize) -> Result<(f64, S
     Ok((fields.stamp_s(scans)?, pose))
 }
 
-/// A ROBOTLASER1 line, or a RAWLASER1 line, which has no poses.
+/// Reads a ROBOTLASER1 line, or a RAWLASER1 line, which has no poses.
 pub fn laser_message(
     fields: &mut Fields<'_>,
     has_poses: bool,
@@ -116,7 +113,7 @@ pub fn laser_message(
     let ranges_m = fields.list("readings")?;
     fields.list("remissions")?;
     if ranges_m.is_empty() {
-        return Err("a scan has to have readings, and has none".to_owned());
+        return Err("a scan must have readings, and this one has none".to_owned());
     }
     let steps = (ranges_m.len() - 1).max(1) as f64;
     let angle_step_rad = if angle_step_rad == 0.0 {
@@ -125,7 +122,7 @@ pub fn laser_message(
         angle_step_rad
     };
     if angle_step_rad == 0.0 {
-        return Err("angular_resolution has to be an angle other than 0".to_owned());
+        return Err("angular_resolution must not be 0".to_owned());
     }
     let mut scan = LaserScan {
         first_angle_rad,

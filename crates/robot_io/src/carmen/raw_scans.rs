@@ -1,53 +1,51 @@
-//! Raw scans that wait for the odometry around their time.
+//! Raw scans that wait for odometry at their stamps.
 
 use std::collections::VecDeque;
 
 use pr_geom::SE2;
 
 use crate::log::LogFrame;
-use crate::wheel_poses::WheelPoses;
+use crate::odometry_poses::OdometryPoses;
 
-/// A scan waits for so many others at most; then its odometry is the last one known.
+/// Most scans that wait; beyond it, a scan takes the last known odometry.
 const MOST_WAITING: usize = 64;
 
-/// Scans without a pose, and the last poses of the wheels: a scan may be logged after wheels that are
-/// later than it.
+/// Scans without a pose, and the latest odometry poses: a scan may be logged after odometry that is newer than it.
 #[derive(Debug, Default)]
 pub struct RawScans {
     waiting: VecDeque<LogFrame>,
-    wheels: WheelPoses,
+    odometry: OdometryPoses,
 }
 
 impl RawScans {
-    /// Takes a scan.
     pub fn push(&mut self, frame: LogFrame) {
         self.waiting.push_back(frame);
     }
 
-    /// Takes a pose of the wheels.
+    /// Takes an odometry pose.
     pub fn take_odometry(&mut self, stamp_s: f64, pose: SE2) {
-        self.wheels.push(stamp_s, pose);
+        self.odometry.push(stamp_s, pose);
     }
 
-    /// Scans that wait.
+    /// Number of waiting scans.
     pub fn waiting(&self) -> usize {
         self.waiting.len()
     }
 
-    /// Forgets the scans that wait.
+    /// Drops the waiting scans.
     pub fn forget(&mut self) {
         self.waiting.clear();
     }
 
-    /// The oldest scan, once odometry of its time is known, or none will come.
+    /// The oldest scan, once odometry covers its stamp or no more will come.
     pub fn pop(&mut self, is_done: bool) -> Option<LogFrame> {
         let stamp_s = self.waiting.front()?.stamp_s;
-        let is_covered = self.wheels.reaches(stamp_s);
+        let is_covered = self.odometry.reaches(stamp_s);
         if !is_covered && !is_done && self.waiting.len() <= MOST_WAITING {
             return None;
         }
         let mut frame = self.waiting.pop_front()?;
-        frame.odometry = self.wheels.at(frame.stamp_s);
+        frame.odometry = self.odometry.at(frame.stamp_s);
         Some(frame)
     }
 }

@@ -1,4 +1,4 @@
-//! The front laser of FLASER lines: its geometry is not on the line.
+//! The front laser of FLASER lines, whose geometry is not on the line.
 
 use std::collections::VecDeque;
 
@@ -7,22 +7,22 @@ use pr_geom::{SE2, math};
 
 use super::fields::Fields;
 use crate::log::LogFrame;
-use crate::place::is_length;
+use crate::plausible::is_plausible_length;
 
-/// Farther readings of the lasers that wrote these logs saw nothing, m.
+/// Longer readings of the lasers that wrote these logs are no returns, m.
 const FARTHEST_M: f64 = 80.0;
-/// A SICK LMS in its millimetres says by readings from here to 8.191 m that it saw nothing.
+/// Readings from here to 8.191 m are codes for “no return” of a SICK LMS in millimetre mode.
 const CODES_M: [f64; 2] = [8.183, 8.1915];
-/// A laser that stands farther from the robot's centre is another map's pose, m.
+/// A larger offset from the robot's centre is not a mounting but a pose of another map, m.
 const FARTHEST_MOUNT_M: f64 = 1.5;
-/// A front laser stands on the axis of its robot, and another one where every line says it does, to m and rad.
+/// Tolerances, m and rad: of a front laser from the robot's axis, and between the mountings of all lines.
 const MOUNT_OFF_AXIS: [f64; 2] = [0.02, 0.01];
-/// After this way and turn of the robot a pose on a map has moved against the wheels', m and rad.
-const TELLING_WAY: [f64; 2] = [0.3, 0.3];
-/// So many scans wait for that at most.
-const MOST_HELD: usize = 512;
+/// Path length and turn after which a map pose has visibly drifted from odometry, m and rad.
+const MOUNT_TEST_MOTION: [f64; 2] = [0.3, 0.3];
+/// Most scans that wait for the mounting.
+const MOST_WAITING: usize = 512;
 
-/// What PARAM lines and the first scan say of the front laser.
+/// Geometry of the front laser by PARAM lines and the first scans.
 #[derive(Clone, Debug, Default)]
 pub struct FrontLaser {
     range_max_m: Option<f64>,
@@ -32,22 +32,25 @@ pub struct FrontLaser {
     sideways_m: Option<f64>,
     turned_rad: Option<f64>,
     mount: Option<SE2>,
-    held: VecDeque<Held>,
+    waiting: VecDeque<WaitingScan>,
 }
 
-/// A scan that waits for the mounting, with what its own line says of it.
+/// A scan that waits for the mounting, with the relative pose of its own line.
 #[derive(Clone, Debug)]
-struct Held {
+struct WaitingScan {
     frame: LogFrame,
     odometry: SE2,
     mount: SE2,
 }
 
 impl FrontLaser {
-    /// Takes a PARAM line; names that say nothing of the front laser are left.
+    /// Takes a PARAM line; ignores names that do not concern the front laser.
     pub fn take_parameter(&mut self, fields: &mut Fields<'_>) {
         let name = fields.word();
-        let value = fields.number(name).ok().filter(|value| is_length(*value));
+        let value = fields
+            .number(name)
+            .ok()
+            .filter(|value| is_plausible_length(*value));
         let Some(value) = value else {
             return;
         };
@@ -70,16 +73,16 @@ impl FrontLaser {
 
     /// Takes a FLASER line; its frame comes out of [`pop`](Self::pop).
     ///
-    /// Beams stand from −90° counter-clockwise in steps of 180°/n where n is even, 180°/(n − 1) where
-    /// it is odd, unless PARAM lines give field of view and step for this number of beams.
+    /// Beams start at −90° and go counter-clockwise in steps of 180°/n if n is even and 180°/(n − 1) if it is odd,
+    /// unless PARAM lines state the field of view and step for this number of beams.
     pub fn take(&mut self, fields: &mut Fields<'_>, frames: usize) -> Result<(), String> {
         let ranges_m = fields.list("readings")?;
         if ranges_m.len() < 2 {
-            return Err("a scan has to have two readings at least".to_owned());
+            return Err("a scan must have at least two readings".to_owned());
         }
         let laser = fields.pose(["laser_x", "laser_y", "laser_theta"])?;
         let odometry = fields.pose(["odom_x", "odom_y", "odom_theta"])?;
-        let stamp_s = fields.stamp_s(frames + self.held.len())?;
+        let stamp_s = fields.stamp_s(frames + self.waiting.len())?;
         let (first_angle_rad, angle_step_rad) = self.beams(ranges_m.len());
         let scan = LaserScan {
             first_angle_rad,
@@ -113,34 +116,33 @@ impl FrontLaser {
         (-half_circle / 2.0, half_circle / steps as f64)
     }
 
-    /// Where PARAM lines say that the laser sits.
-    pub fn told_mount(&self) -> Option<SE2> {
-        let told = [self.forward_m, self.sideways_m, self.turned_rad];
-        told.iter().any(Option::is_some).then(|| {
-            let [x, y, theta] = told.map(Option::unwrap_or_default);
+    /// The mounting that PARAM lines state.
+    pub fn stated_mount(&self) -> Option<SE2> {
+        let stated = [self.forward_m, self.sideways_m, self.turned_rad];
+        stated.iter().any(Option::is_some).then(|| {
+            let [x, y, theta] = stated.map(Option::unwrap_or_default);
             SE2::new(x, y, theta)
         })
     }
 
-    /// The oldest scan that waits, once the mounting is known or no line follows.
+    /// The oldest waiting scan, once the mounting is known or no line follows.
     pub fn pop(&mut self, is_done: bool) -> Option<LogFrame> {
-        if self.mount.is_none() && is_done && !self.held.is_empty() {
+        if self.mount.is_none() && is_done && !self.waiting.is_empty() {
             self.choose_mount();
         }
         let mount = self.mount?;
-        let mut frame = self.held.pop_front()?.frame;
+        let mut frame = self.waiting.pop_front()?.frame;
         frame.scan.body_from_sensor = mount;
         Some(frame)
     }
 
-    /// Takes a scan with the two poses of its line, and looks whether they tell the mounting: PARAM
-    /// lines do, and so does a first line whose poses agree to a mounting on the robot's axis. Else
-    /// the two have to agree to one and the same while the robot drives and turns: a log that was
-    /// corrected has the map's pose in place of the laser's.
+    /// Takes a scan with the two poses of its line and determines the mounting if they allow it. PARAM lines decide,
+    /// and so does a first line whose relative pose lies on the robot's axis. Otherwise the relative pose must stay
+    /// constant while the robot drives and turns: a corrected log has a map pose in place of the laser's.
     fn hold(&mut self, frame: LogFrame, odometry: &SE2, laser: &SE2) {
         let mount = odometry.between(laser);
         let odometry = *odometry;
-        self.held.push_back(Held {
+        self.waiting.push_back(WaitingScan {
             frame,
             odometry,
             mount,
@@ -148,51 +150,54 @@ impl FrontLaser {
         if self.mount.is_some() {
             return;
         }
-        if let Some(told) = self.told_mount() {
-            self.mount = Some(told);
-        } else if self.held.len() == 1 {
+        if let Some(stated) = self.stated_mount() {
+            self.mount = Some(stated);
+        } else if self.waiting.len() == 1 {
             let [off_m, off_rad] = MOUNT_OFF_AXIS;
             let is_mount = mount.y().abs() <= off_m
                 && mount.theta().abs() <= off_rad
                 && (0.0..=FARTHEST_MOUNT_M).contains(&mount.x());
             self.mount = is_mount.then_some(mount);
-        } else if !self.is_one_mount() || self.has_told() || self.held.len() >= MOST_HELD {
+        } else if !self.is_one_mount()
+            || self.has_moved_enough()
+            || self.waiting.len() >= MOST_WAITING
+        {
             self.choose_mount();
         }
     }
 
-    /// Whether the robot has driven and turned far enough to tell a mounting from a map's pose.
-    fn has_told(&self) -> bool {
-        let (Some(first), Some(last)) = (self.held.front(), self.held.back()) else {
+    /// Whether the robot has driven and turned far enough to distinguish a mounting from a map pose.
+    fn has_moved_enough(&self) -> bool {
+        let (Some(first), Some(last)) = (self.waiting.front(), self.waiting.back()) else {
             return false;
         };
-        let way = first.odometry.between(&last.odometry);
-        let [path_length_m, turn_rad] = TELLING_WAY;
-        math::norm2(way.x(), way.y()) >= path_length_m && way.theta().abs() >= turn_rad
+        let motion = first.odometry.between(&last.odometry);
+        let [path_length_m, turn_rad] = MOUNT_TEST_MOTION;
+        math::norm2(motion.x(), motion.y()) >= path_length_m && motion.theta().abs() >= turn_rad
     }
 
-    /// Whether all lines that wait agree on one place of the laser on the robot.
+    /// Whether all waiting lines agree on one mounting.
     fn is_one_mount(&self) -> bool {
-        let Some(first) = self.held.front() else {
+        let Some(first) = self.waiting.front() else {
             return false;
         };
-        let is_same = |held: &Held| {
-            let off = first.mount.between(&held.mount);
+        let is_same = |other: &WaitingScan| {
+            let off = first.mount.between(&other.mount);
             let [off_m, off_rad] = MOUNT_OFF_AXIS;
             math::norm2(off.x(), off.y()) <= off_m && off.theta().abs() <= off_rad
         };
         math::norm2(first.mount.x(), first.mount.y()) <= FARTHEST_MOUNT_M
-            && self.held.iter().all(is_same)
+            && self.waiting.iter().all(is_same)
     }
 
     fn choose_mount(&mut self) {
         let is_mount = self.is_one_mount();
-        let first = self.held.front().map(|held| held.mount);
+        let first = self.waiting.front().map(|scan| scan.mount);
         self.mount = first.filter(|_| is_mount).or(Some(SE2::identity()));
     }
 }
 
-/// The longest range that is one, by what the scan itself says.
+/// The longest valid range, inferred from the scan.
 fn farthest_m(ranges_m: &[f64]) -> f64 {
     let farthest_m = ranges_m.iter().copied().fold(0.0, f64::max);
     let [first_m, last_m] = CODES_M;

@@ -1,4 +1,4 @@
-//! What a log says, and what a broken one is answered.
+//! Content of logs, and errors of damaged ones.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -6,7 +6,7 @@ use super::*;
 use crate::log::{LogError, LogReader};
 use pr_geom::{SE2, Vector3};
 
-/// All frames of a text, and what was noted.
+/// Reads all frames and notes of a text.
 fn read(text: impl AsRef<[u8]>) -> Result<(Vec<LogFrame>, LogNotes), LogError> {
     let mut reader = CarmenReader::new(text.as_ref(), "x.clf");
     let mut frames = Vec::new();
@@ -29,7 +29,7 @@ fn a_flaser_line_is_a_scan_with_odometry() {
     assert_eq!(frame.scan.angle_step_rad, PI / 4.0);
     assert!(!frame.scan.is_return(81.83) && frame.scan.is_return(4.0));
     assert_eq!(notes.records["FLASER"], 1);
-    assert_eq!((notes.broken, notes.half_written), (0, None));
+    assert_eq!((notes.broken, notes.truncated), (0, None));
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn a_raw_scan_takes_the_odometry_of_its_time() {
         .iter()
         .map(|f| f.odometry.map(|pose| pose.x()))
         .collect();
-    // A second after the last odometry nothing is known of the wheels.
+    // A second after the last odometry pose there is no odometry.
     assert_eq!(xs, [Some(0.5), None]);
 }
 
@@ -86,13 +86,13 @@ fn a_raw_scan_takes_the_odometry_of_its_time() {
 fn a_raw_scan_that_is_logged_late_takes_the_odometry_of_its_own_time() {
     let odom = |x: f64, t: f64| format!("ODOM {x} 0 0 0 0 0 {t} h {t}\n");
     let raw = "RAWLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 1.5 h 4.2\n".to_owned();
-    let wheels = [
+    let odometry = [
         odom(0.0, 1.0),
         odom(1.0, 2.0),
         odom(3.0, 3.0),
         odom(6.0, 4.0),
     ];
-    let (frames, _) = read([wheels.concat(), raw].concat()).unwrap();
+    let (frames, _) = read([odometry.concat(), raw].concat()).unwrap();
     assert_eq!(frames[0].odometry.unwrap().x(), 0.5);
 }
 
@@ -114,7 +114,7 @@ fn parameters_say_where_the_laser_of_raw_scans_sits() {
     assert_eq!(frames[0].scan.body_from_sensor, SE2::new(0.22, 0.0, 0.0));
 }
 
-/// Lines of a robot on an arc, without times, with another pose in place of the laser's.
+/// Lines of a robot on an arc, without times; `in_place` maps odometry to the laser's pose.
 fn on_an_arc(in_place: impl Fn(SE2) -> SE2) -> String {
     let line = |step: u32| {
         let odometry = SE2::exp(&(Vector3::new(0.1, 0.0, 0.05) * f64::from(step)));
@@ -143,7 +143,7 @@ fn a_laser_that_looks_back_or_aside_sits_where_every_line_says() {
 }
 
 #[test]
-fn a_pose_on_a_map_in_place_of_the_lasers_is_no_mounting() {
+fn a_map_pose_in_place_of_the_lasers_is_not_a_mounting() {
     for map_from_odometry in [SE2::new(0.4, 0.2, 0.1), SE2::new(0.1, 0.3, 0.0)] {
         let (frames, _) = read(on_an_arc(|odometry| map_from_odometry * odometry)).unwrap();
         assert_eq!(frames.len(), 20);
@@ -154,7 +154,7 @@ fn a_pose_on_a_map_in_place_of_the_lasers_is_no_mounting() {
 
 #[test]
 fn raw_scans_without_any_odometry_are_all_read() {
-    // More than wait for odometry at a time.
+    // More than may wait for odometry at a time.
     let raw = |t: usize| format!("RAWLASER1 0 -1.5 3.0 1.5 30 0.01 0 3 1 2 3 0 {t} h {t}\n");
     let (frames, _) = read((1..=200).map(raw).collect::<String>()).unwrap();
     assert_eq!(frames.len(), 200);
@@ -184,7 +184,7 @@ fn a_log_without_times_counts_its_scans() {
 }
 
 #[test]
-fn a_broken_line_in_the_middle_is_told_and_the_rest_is_read() {
+fn a_malformed_line_is_reported_and_the_rest_is_read() {
     let broken = "FLASER 4 1 2 x 4 1 2 0.5 1 2 0.5 100 host 7\n";
     let nan = "FLASER 2 1 2 0 0 0 nan 0 0 100 host 7\n";
     let text = format!("{FLASER}{broken}{nan}FLASER 900 1 2 3\n\u{0}\u{1}\n{FLASER}");
@@ -194,13 +194,13 @@ fn a_broken_line_in_the_middle_is_told_and_the_rest_is_read() {
     assert_eq!(
         sentences,
         [
-            "x.clf: 4 lines were left out; the first is line 2: number 3 of the readings has to be a number, and is ‘x’"
+            "x.clf: 4 lines were skipped; the first is line 2: number 3 of the readings must be a number, not ‘x’"
         ]
     );
 }
 
 #[test]
-fn a_half_written_last_line_is_no_broken_line() {
+fn a_truncated_last_line_is_no_broken_line() {
     let text = format!("{FLASER}FLASER 4 1 2 3");
     let (frames, notes) = read(text).unwrap();
     assert_eq!((frames.len(), notes.broken), (1, 0));
@@ -209,7 +209,7 @@ fn a_half_written_last_line_is_no_broken_line() {
     };
     assert_eq!(
         sentence,
-        "x.clf: the last line, 2, is half written and was left out: 4 readings were announced, and 3 stand there"
+        "x.clf: the last line, 2, is incomplete and was skipped: expected 4 readings, found 3"
     );
 }
 
@@ -219,27 +219,27 @@ fn what_holds_no_scan_is_refused_in_one_sentence() {
         ("", "x.clf is empty; give a recorded log"),
         (
             "Dear reader,\nthis is no log.\n",
-            "x.clf is no CARMEN log; give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1",
+            "x.clf is not a CARMEN log; give one with lines that start with FLASER, ROBOTLASER1 or RAWLASER1",
         ),
         (
             "ODOM 0 0 0 0 0 0 1 h 1\n",
-            "x.clf holds no scan that can be used: no line starts with FLASER, ROBOTLASER1 or RAWLASER1; record the laser as well",
+            "x.clf has no usable scan: no line starts with FLASER, ROBOTLASER1 or RAWLASER1; record the laser as well",
         ),
         (
             "PARAM a 1 1 h 1\nFLASER 2 1 2 nan 0 0 0 0 0 1 h 1\n",
-            "x.clf holds no scan that can be used: line 2: laser_x has to be a finite number, and is ‘nan’",
+            "x.clf has no usable scan: line 2: laser_x must be a finite number, not ‘nan’",
         ),
         (
             "FLASER 2 1",
-            "x.clf holds no scan that can be used: line 1: 2 readings were announced, and 1 stand there",
+            "x.clf has no usable scan: line 1: expected 2 readings, found 1",
         ),
         (
             "FLASER 1 1.5 0 0 0 0 0 0 1 h 1\n",
-            "x.clf holds no scan that can be used: line 1: a scan has to have two readings at least",
+            "x.clf has no usable scan: line 1: a scan must have at least two readings",
         ),
         (
             "FLASER 2 1 2 0 0 0 1e300 0 0 1 h 1\n",
-            "x.clf holds no scan that can be used: line 1: a pose has to lie within 41000 km of its origin, and is 1e300 m, 0e0 m",
+            "x.clf has no usable scan: line 1: a pose must lie within 41000 km of its origin, and is at 1e300 m, 0e0 m",
         ),
     ] {
         let error = read(text).unwrap_err().to_string();
@@ -249,5 +249,5 @@ fn what_holds_no_scan_is_refused_in_one_sentence() {
         .map(|k| (k.wrapping_mul(k) % 251) as u8)
         .collect();
     let error = read(noise).unwrap_err().to_string();
-    assert!(error.starts_with("x.clf is no CARMEN log"), "{error}");
+    assert!(error.starts_with("x.clf is not a CARMEN log"), "{error}");
 }

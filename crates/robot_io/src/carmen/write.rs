@@ -1,4 +1,4 @@
-//! Frames as lines of CARMEN, so that other programs can read them.
+//! Writes frames as lines of CARMEN.
 
 use std::io::{self, Write};
 
@@ -6,16 +6,16 @@ use pr_geom::SE2;
 
 use crate::log::LogFrame;
 
-/// Ranges of CARMEN end here where nothing says where they do, m.
+/// Longest range that is written if the sensor states none, m.
 const FARTHEST_M: f64 = 80.0;
 
-/// Writes a frame: ROBOTLASER1 where the wheels' pose is known, else RAWLASER1.
+/// Writes a frame as ROBOTLASER1 if it has odometry, else as RAWLASER1.
 ///
-/// A scan's shortest range and the time between its beams have no field; a range that is no number
-/// becomes 0, which is no point either.
+/// The format has no field for the shortest range or the time between beams. A range that is not a number becomes 0,
+/// which is no return either.
 ///
 /// # Errors
-/// Where `target` cannot take it.
+/// If `target` fails.
 pub fn write_carmen(frame: &LogFrame, mut target: impl Write) -> io::Result<()> {
     let scan = &frame.scan;
     let kind = match frame.odometry {
@@ -37,13 +37,13 @@ pub fn write_carmen(frame: &LogFrame, mut target: impl Write) -> io::Result<()> 
         scan.ranges_m.len()
     )?;
     for &range_m in &scan.ranges_m {
-        // Beyond the longest range stays beyond it; CARMEN has no shortest range.
-        let told_m = match scan.is_return(range_m) {
+        // A range beyond the limit stays beyond it; CARMEN has no shortest range.
+        let written_m = match scan.is_return(range_m) {
             true => range_m,
             false if range_m >= scan.range_max_m => range_max_m,
             false => 0.0,
         };
-        write!(target, " {told_m}")?;
+        write!(target, " {written_m}")?;
     }
     write!(target, " 0")?;
     if let Some(robot) = frame.odometry {
@@ -90,9 +90,9 @@ mod tests {
             assert_eq!((back.stamp_s, back.odometry), (stamp_s, frame.odometry));
             assert_eq!(back.scan.ranges_m, [0.0, 0.0, 3.25, 8.0]);
             assert!(back.scan.same_beams(&frame.scan));
-            let [mount, told] = [&back.scan, &frame.scan].map(|scan| scan.body_from_sensor);
-            // 1e-12: the mounting goes through the robot's pose and back.
-            assert!(mount.between(&told).log().norm() < 1e-12);
+            let [mount, expected] = [&back.scan, &frame.scan].map(|scan| scan.body_from_sensor);
+            // 1e-12: the mounting is composed with the robot's pose and its inverse.
+            assert!(mount.between(&expected).log().norm() < 1e-12);
         }
         assert_eq!(reader.next_frame().unwrap(), None);
     }

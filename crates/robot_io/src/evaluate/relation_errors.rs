@@ -11,7 +11,7 @@ use super::Spread;
 use crate::relations::Relation;
 use crate::trajectory::Trajectory;
 
-/// Relations may lie so far beyond the ends of a trajectory, s: stamps are printed with less.
+/// A relation may lie this far beyond the ends of a trajectory, s: stamps are printed with fewer digits.
 const SLACK_S: f64 = 0.5;
 
 /// The errors of all relations.
@@ -21,14 +21,14 @@ pub struct RelationErrors {
     pub translations_m: Vec<f64>,
     /// |E.θ| of each relation, degrees.
     pub rotations_deg: Vec<f64>,
-    /// Relations whose times lie outside of the trajectory; they are not counted.
+    /// Relations whose times lie outside of the trajectory; they are not included.
     pub outside: usize,
 }
 
-/// The errors in a few numbers.
+/// Statistics of the errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RelationReport {
-    /// Relations that were counted.
+    /// Number of relations included.
     pub n: usize,
     /// ‖E.t‖, m.
     pub trans: Spread,
@@ -65,7 +65,7 @@ pub fn relation_errors(trajectory: &Trajectory, relations: &[Relation]) -> Relat
 }
 
 impl RelationErrors {
-    /// The errors in a few numbers.
+    /// Statistics of the errors.
     #[must_use]
     pub fn report(&self) -> RelationReport {
         let squares = |errors: &[f64]| errors.iter().map(|e| e * e).collect::<Vec<_>>();

@@ -1,23 +1,23 @@
-//! A list of errors in a few numbers.
+//! Statistics of a list of errors.
 
 use pr_geom::{math, sort_numbers};
 use serde::Serialize;
 
-/// Mean, spread and percentiles of some errors.
+/// Mean, standard deviation and percentiles of a list of errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// Mean.
     pub mean: f64,
-    /// Standard deviation, of the errors themselves: divided by n.
+    /// Standard deviation of the population: divided by n.
     pub std: f64,
-    /// Half of the errors are below.
+    /// 50th percentile.
     pub median: f64,
-    /// 95 % of the errors are below.
+    /// 95th percentile.
     pub p95: f64,
 }
 
 impl Spread {
-    /// The numbers of some errors; zero of none.
+    /// Computes the statistics; all zero if the list is empty.
     #[must_use]
     pub fn from_values(errors: &[f64]) -> Self {
         let mut sorted = errors.to_vec();
@@ -32,7 +32,7 @@ impl Spread {
     }
 }
 
-/// The numbers that evo prints of some errors.
+/// The statistics that evo prints.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseErrors {
     /// Root of the mean square.
@@ -52,7 +52,7 @@ pub struct PoseErrors {
 }
 
 impl PoseErrors {
-    /// The numbers of some errors; zero of none.
+    /// Computes the statistics; all zero if the list is empty.
     #[must_use]
     pub fn from_errors(errors: &[f64]) -> Self {
         let mut sorted = errors.to_vec();
@@ -81,15 +81,15 @@ fn mean_and_std(errors: &[f64]) -> (f64, f64) {
     (mean, math::sqrt(squares / count))
 }
 
-/// On the line between the two errors around the share.
+/// Interpolates linearly between the two errors around the percentile.
 fn percentile(sorted: &[f64], share: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else {
         return 0.0;
     };
-    let place = share * last as f64;
-    let below = place as usize;
+    let rank = share * last as f64;
+    let below = rank as usize;
     let above = (below + 1).min(last);
-    sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
+    sorted[below] + (rank - below as f64) * (sorted[above] - sorted[below])
 }
 
 #[cfg(test)]

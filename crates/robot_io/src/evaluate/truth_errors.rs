@@ -1,8 +1,8 @@
 //! Errors against true poses: ATE and RPE, as evo computes them.
 //!
 //! Sturm, Engelhard, Endres, Burgard, Cremers, "A benchmark for the evaluation of RGB-D SLAM
-//! systems", 2012. The same stamps, pairs and statistics as `evo_ape tum` and `evo_rpe tum`
-//! (Grupp, "evo: Python package for the evaluation of odometry and SLAM", 2017) with their defaults.
+//! systems", 2012. Association, alignment and statistics follow `evo_ape tum` and `evo_rpe tum` with their defaults
+//! (Grupp, "evo: Python package for the evaluation of odometry and SLAM", 2017).
 
 use pr_geom::{SE2, math};
 use serde::Serialize;
@@ -11,31 +11,31 @@ use thiserror::Error;
 use super::PoseErrors;
 use crate::trajectory::Trajectory;
 
-/// Stamps that are closer belong together, s: evo's default.
+/// Largest difference between associated stamps, s: evo's default.
 const MAX_DIFFERENCE_S: f64 = 0.01;
 
-/// Whether the estimate is moved onto the truth before it is compared.
+/// Whether the estimate is aligned with the truth before the comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Alignment {
-    /// Both are in the same frame.
+    /// None: both are in the same frame.
     #[default]
     None,
-    /// By the rigid motion of the plane with the least squares (Umeyama 1991).
+    /// Least-squares rigid motion in the plane (Umeyama 1991).
     ///
-    /// evo aligns in space. It turns the plane over where the mirror image fits better, as it may with a few
-    /// poses or a way that is nearly straight, and it refuses poses on one line. Neither happens here.
+    /// evo aligns in 3-D. It flips the plane if the mirror image fits better, which happens with few poses or a nearly
+    /// straight path, and it refuses collinear poses. This planar alignment does neither.
     Se2,
 }
 
 /// Why a trajectory cannot be compared with the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum TruthProblem {
-    /// Their stamps lie apart.
+    /// Too few stamps match.
     #[error(
-        "{matched} stamps of the trajectory lie within {MAX_DIFFERENCE_S} s of the truth's, and two are needed; give both the same clock"
+        "{matched} stamps of the trajectory lie within {MAX_DIFFERENCE_S} s of the truth's, but two are needed; use the same clock for both"
     )]
     NoCommonStamps {
-        /// How many do.
+        /// Number of stamps that match.
         matched: usize,
     },
 }
@@ -49,21 +49,21 @@ pub struct RelativeErrors {
     pub rot_deg: PoseErrors,
 }
 
-/// The errors against the truth.
+/// Errors against the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TruthReport {
-    /// Poses that were compared.
+    /// Number of poses compared.
     pub n: usize,
-    /// Absolute errors of the position, m.
+    /// Absolute position errors, m.
     pub ate: PoseErrors,
-    /// Errors of the motion from each compared pose to the next.
+    /// Errors of the relative pose between consecutive compared poses.
     pub rpe: RelativeErrors,
 }
 
 /// Compares a trajectory with the truth.
 ///
 /// # Errors
-/// Where fewer than two poses have a partner.
+/// If fewer than two poses can be associated.
 pub fn truth_errors(
     estimate: &Trajectory,
     truth: &Trajectory,
@@ -102,10 +102,10 @@ pub fn truth_errors(
     })
 }
 
-/// The motion that brings a trajectory onto the truth before it is compared.
+/// The alignment of a trajectory with the truth.
 ///
 /// # Errors
-/// Where fewer than two poses have a partner.
+/// If fewer than two poses can be associated.
 pub fn onto_truth(
     estimate: &Trajectory,
     truth: &Trajectory,
@@ -114,7 +114,7 @@ pub fn onto_truth(
     Ok(pairs_and_motion(estimate, truth, alignment)?.1)
 }
 
-/// Estimates with their truths, and what brings the ones onto the others.
+/// Associated pairs (estimate, truth) and their alignment.
 fn pairs_and_motion(
     estimate: &Trajectory,
     truth: &Trajectory,
@@ -133,7 +133,7 @@ fn pairs_and_motion(
     Ok((pairs, onto_truth))
 }
 
-/// Estimates with their truths: each pose of the shorter one with the nearest of the longer.
+/// Pairs (estimate, truth): each pose of the shorter trajectory with the nearest in time of the longer one.
 fn associate(estimate: &Trajectory, truth: &Trajectory) -> Vec<(SE2, SE2)> {
     let estimate_is_longer = estimate.poses().len() > truth.poses().len();
     let (short, long) = if estimate_is_longer {
@@ -162,7 +162,7 @@ fn associate(estimate: &Trajectory, truth: &Trajectory) -> Vec<(SE2, SE2)> {
     pairs
 }
 
-/// The motion that brings the estimates' positions closest to the truths'.
+/// The rigid motion that aligns the estimated positions with the true ones.
 fn umeyama(pairs: &[(SE2, SE2)]) -> SE2 {
     let count = pairs.len() as f64;
     let sum = |of: fn(&(SE2, SE2)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
@@ -199,7 +199,7 @@ mod tests {
         let moved = arc(40, SE2::new(3.0, 4.0, 0.0));
         let as_is = truth_errors(&moved, &truth, Alignment::None).unwrap();
         assert!((as_is.ate.mean - 5.0).abs() < 1e-12 && as_is.ate.std < 1e-12);
-        // A motion seen from the body does not depend on the frame.
+        // A relative pose does not depend on the frame.
         assert!(as_is.rpe.trans.max < 1e-12);
         let turned = arc(40, SE2::new(3.0, 4.0, 2.0));
         let aligned = truth_errors(&turned, &truth, Alignment::Se2).unwrap();

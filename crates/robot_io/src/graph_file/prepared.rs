@@ -1,9 +1,9 @@
-//! A graph's text as one that the solver takes: every record of g2o's planar kind, every part held.
+//! Converts a graph's text to what the solver takes: planar g2o records only, with every component fixed.
 //!
-//! - Records of TORO become records of g2o. Some programs write `EDGE2` with the information in g2o's order: read
-//!   in TORO's order it would be indefinite.
+//! - Records of TORO become records of g2o. Some programs write `EDGE2` with the information in g2o's order, which
+//!   would be indefinite if read in TORO's order.
 //! - A file without vertices gets them from a spanning tree of its edges.
-//! - Each part that no chain of edges ties to another is held at its first vertex.
+//! - Each connected component without a fixed vertex gets its first vertex fixed.
 //! - `EDGE_PRIOR_SE2 id x y θ I…` becomes an edge from a fixed vertex at the origin.
 
 use std::borrow::Cow;
@@ -15,22 +15,22 @@ use pr_geom::SE2;
 use crate::counted::counted;
 use crate::lines::finite;
 
-/// A graph's text for the solver.
+/// A graph's text for the solver, with what was changed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Prepared<'a> {
-    /// The text; first the lines of the file, with vertices that were missing behind them.
+    /// The text: the lines of the file, followed by the vertices that were missing.
     pub text: Cow<'a, [u8]>,
-    /// Lines that are the graph's; those behind them hold it in its place.
+    /// Number of lines that belong to the graph; the lines after them fix the gauge.
     pub lines: usize,
-    /// Vertices behind those lines.
+    /// Vertices added after those lines.
     pub helpers: usize,
-    /// Priors that became edges.
+    /// Priors converted to edges.
     pub priors: usize,
-    /// What was done, a sentence each.
-    pub said: Vec<String>,
+    /// What was changed, one sentence each.
+    pub remarks: Vec<String>,
 }
 
-/// A record with its kind.
+/// An edge of the graph.
 #[derive(Clone, Copy)]
 struct Edge {
     from: i64,
@@ -38,13 +38,13 @@ struct Edge {
     motion: SE2,
 }
 
-/// Makes a graph's text ready.
+/// Converts a graph's text for the solver.
 ///
 /// # Errors
-/// What the file is, if it is no planar graph.
+/// If the file is not a planar graph; the message names what it is.
 pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
     let text = super::toro::as_g2o(bytes);
-    let mut said: Vec<String> = text.said.into_iter().collect();
+    let mut remarks: Vec<String> = text.remark.into_iter().collect();
     let text = text.text;
     let mut ids: Vec<i64> = Vec::new();
     let mut edges: Vec<Edge> = Vec::new();
@@ -89,15 +89,15 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
         && let Some((line, kind)) = in_space
     {
         return Err(format!(
-            "line {line} is a {kind}: a graph in three dimensions, and only planar ones are solved; write it with VERTEX_SE2 and EDGE_SE2"
+            "line {line} is a {kind}: the graph is three-dimensional, but only planar graphs are supported; write it with VERTEX_SE2 and EDGE_SE2"
         ));
     }
     let mut lines = text.split_inclusive(|&byte| byte == b'\n').count();
     let mut added = String::new();
     if ids.is_empty() && !edges.is_empty() {
         let tree = spanning_tree(&edges);
-        said.push(format!(
-            "the file has no vertex; {} follow from a tree of its edges",
+        remarks.push(format!(
+            "the file has no vertices; {} computed from a spanning tree of its edges",
             counted(tree.len(), "pose")
         ));
         for (id, pose) in &tree {
@@ -117,7 +117,7 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
         for (of, rest) in &priors {
             helpers.push_str(&format!("EDGE_SE2 {id} {of} {rest}\n"));
         }
-        said.push(format!(
+        remarks.push(format!(
             "{} taken as measurements",
             counted(priors.len(), "prior")
         ));
@@ -138,9 +138,9 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
     }
     if parts.len() > 1 {
         let single = parts.iter().filter(|part| part.len() == 1).count();
-        said.push(format!(
-            "the graph has {} that no chain of edges ties together, {single} of them a single vertex; each is solved by itself and held at its first vertex",
-            counted(parts.len(), "part")
+        remarks.push(format!(
+            "the graph has {}, {single} of them a single vertex; each is solved separately with its first vertex fixed",
+            counted(parts.len(), "connected component")
         ));
     }
     let text = if added.is_empty() && helpers.is_empty() {
@@ -159,12 +159,12 @@ pub fn prepared(bytes: &[u8]) -> Result<Prepared<'_>, String> {
         lines,
         helpers: usize::from(helper.is_some()),
         priors: priors.len(),
-        said,
+        remarks,
     })
 }
 
 impl Prepared<'_> {
-    /// The graph's own lines of a text that was written from this one.
+    /// The lines of the original graph within a text that was written from this one.
     #[must_use]
     pub fn own_lines<'b>(&self, written: &'b [u8]) -> &'b [u8] {
         let mut left = self.lines;
@@ -176,7 +176,7 @@ impl Prepared<'_> {
     }
 }
 
-/// Which vertices each vertex has an edge to, with the motion there.
+/// Adjacent vertices of each vertex, with the relative pose.
 fn neighbours(edges: &[Edge]) -> BTreeMap<i64, Vec<(i64, SE2)>> {
     let mut near: BTreeMap<i64, Vec<(i64, SE2)>> = BTreeMap::new();
     for edge in edges {
@@ -190,7 +190,7 @@ fn neighbours(edges: &[Edge]) -> BTreeMap<i64, Vec<(i64, SE2)>> {
     near
 }
 
-/// A pose for each vertex that an edge names: from the lowest number on, the fewest edges first.
+/// A pose for each vertex of an edge, by breadth-first search from the lowest id.
 fn spanning_tree(edges: &[Edge]) -> BTreeMap<i64, SE2> {
     let near = neighbours(edges);
     let mut poses: BTreeMap<i64, SE2> = BTreeMap::new();
@@ -213,7 +213,7 @@ fn spanning_tree(edges: &[Edge]) -> BTreeMap<i64, SE2> {
     poses
 }
 
-/// Vertices that chains of edges tie together, each part in the order of the file.
+/// Connected components, each in the order of the file.
 fn parts(ids: &[i64], edges: &[Edge]) -> Vec<Vec<i64>> {
     let near = neighbours(edges);
     let mut part_of: BTreeMap<i64, usize> = BTreeMap::new();
@@ -246,22 +246,23 @@ mod tests {
 
     use super::*;
 
-    fn said(text: &str) -> (G2oFile, String, Vec<u8>) {
+    fn prepare(text: &str) -> (G2oFile, String, Vec<u8>) {
         let prepared = prepared(text.as_bytes()).unwrap();
         let file = G2oFile::parse(&prepared.text).unwrap();
         let own = prepared.own_lines(&file.to_bytes()).to_vec();
-        (file, prepared.said.join("; "), own)
+        (file, prepared.remarks.join("; "), own)
     }
 
     #[test]
     fn edges_alone_make_the_vertices_and_parts_stand_by_themselves() {
         let edges = "EDGE_SE2 0 1 1 0 1.5707963 100 0 0 100 0 400\nEDGE_SE2 1 2 1 0 1.5707963 100 0 0 100 0 400\n";
-        let (file, told, own) = said(&format!("{edges}EDGE_SE2 8 9 1 0 0 1 0 0 1 0 1"));
+        let (file, remarks, own) = prepare(&format!("{edges}EDGE_SE2 8 9 1 0 0 1 0 0 1 0 1"));
         assert_eq!(file.problem.node_count(), 5);
         assert!(file.problem.chi2() < 1e-12);
         assert!(
-            told.contains("5 poses follow from a tree") && told.contains("2 parts"),
-            "{told}"
+            remarks.contains("5 poses computed from a spanning tree")
+                && remarks.contains("2 parts"),
+            "{remarks}"
         );
         let own = String::from_utf8(own).unwrap();
         assert!(
@@ -274,11 +275,11 @@ mod tests {
     fn a_prior_pulls_its_vertex_and_stays_a_prior_in_the_file() {
         let text = "VERTEX_SE2 4 0 0 0\nVERTEX_SE2 5 1 0 0\nEDGE_SE2 4 5 1 0 0 1 0 0 1 0 1\n\
                     EDGE_PRIOR_SE2 4 2 0 0 100 0 0 100 0 100\n";
-        let (file, told, own) = said(text);
+        let (file, remarks, own) = prepare(text);
         assert_eq!(file.problem.factors().len(), 2);
         assert!((file.problem.chi2() - 400.0).abs() < 1e-9);
         assert_eq!(
-            (told.as_str(), own.as_slice()),
+            (remarks.as_str(), own.as_slice()),
             ("1 prior taken as measurements", text.as_bytes())
         );
     }
@@ -286,6 +287,6 @@ mod tests {
     #[test]
     fn a_graph_in_space_is_named() {
         let problem = prepared(b"VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n").unwrap_err();
-        assert!(problem.starts_with("line 1 is a VERTEX_SE3:QUAT: a graph in three dimensions"));
+        assert!(problem.starts_with("line 1 is a VERTEX_SE3:QUAT: the graph is three-dimensional"));
     }
 }

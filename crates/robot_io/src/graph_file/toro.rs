@@ -1,18 +1,18 @@
-//! Records of TORO as records of g2o.
+//! Converts records of TORO to records of g2o.
 
 use std::borrow::Cow;
 
 use nalgebra::Matrix3;
 
-/// Text in g2o's records, and what was peculiar about it.
+/// Text in g2o's records, with a remark on its order.
 pub struct AsG2o<'a> {
     /// The text.
     pub text: Cow<'a, [u8]>,
-    /// What was peculiar.
-    pub said: Option<String>,
+    /// Remark if the information was in an unexpected order.
+    pub remark: Option<String>,
 }
 
-/// A graph's text with every record of TORO as one of g2o, line by line; other text as it is.
+/// Converts every TORO record of a text to g2o, line by line; other lines are unchanged.
 #[must_use]
 pub fn as_g2o(bytes: &[u8]) -> AsG2o<'_> {
     let is_toro = |line: &[u8]| {
@@ -30,7 +30,7 @@ pub fn as_g2o(bytes: &[u8]) -> AsG2o<'_> {
     if toro().next().is_none() && !lines().any(is_toro) {
         return AsG2o {
             text: Cow::Borrowed(bytes),
-            said: None,
+            remark: None,
         };
     }
     let is_g2o_order = toro().any(|line| !is_information(line, TORO_ORDER))
@@ -47,17 +47,17 @@ pub fn as_g2o(bytes: &[u8]) -> AsG2o<'_> {
     }
     AsG2o {
         text: Cow::Owned(text),
-        said: is_g2o_order.then(|| {
-            "its EDGE2 have the information in g2o's order, as in TORO's it would be indefinite; it is taken so".to_owned()
+        remark: is_g2o_order.then(|| {
+            "its EDGE2 records have the information in g2o's order, because it would be indefinite in TORO's order; they are read in g2o's order".to_owned()
         }),
     }
 }
 
-/// Where xx, xy, xθ, yy, yθ, θθ stand in a record of each format.
+/// Positions of xx, xy, xθ, yy, yθ, θθ in a record of each format.
 const TORO_ORDER: [usize; 6] = [0, 1, 4, 2, 5, 3];
 const G2O_ORDER: [usize; 6] = [0, 1, 2, 3, 4, 5];
 
-/// Whether the information of an edge has no negative eigenvalue in this order; true of what is no edge.
+/// Whether the information is positive semidefinite in this order; true if the line is not an edge.
 fn is_information(line: &str, order: [usize; 6]) -> bool {
     let words: Vec<&str> = line.split_ascii_whitespace().collect();
     if words.first() != Some(&"EDGE2") || words.len() != 12 {
@@ -76,7 +76,7 @@ fn is_information(line: &str, order: [usize; 6]) -> bool {
     eigenvalues.iter().all(|&value| value >= -1e-9 * size)
 }
 
-/// A record of TORO as one of g2o; the wrong number of fields stays wrong.
+/// A TORO record as a g2o record; a wrong number of fields is passed on.
 fn toro_line(line: &str, is_g2o_order: bool) -> String {
     let words: Vec<&str> = line.split_whitespace().collect();
     match words[..] {
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_order_of_the_information_is_told_by_what_is_definite() {
+    fn the_order_of_the_information_is_the_definite_one() {
         let converted =
             |edge: &str| String::from_utf8(as_g2o(edge.as_bytes()).text.into_owned()).unwrap();
         let expected = "EDGE_SE2 0 1 1 0 0 10 1 2 20 3 30\n";
@@ -105,7 +105,7 @@ mod tests {
         );
         assert!(
             as_g2o(b"EDGE2 0 1 1 0 0 100 0 0 100 0 400\n")
-                .said
+                .remark
                 .is_some()
         );
     }

@@ -1,10 +1,10 @@
-//! Images and texts of small maps.
+//! Images and YAML files of small maps.
 
 use core::f64::consts::TAU;
 
 use super::*;
 
-/// A robot in a room of 4 m × 3 m whose lower left corner is at (1, 2), seen five times.
+/// A robot in a room of 4 m × 3 m whose lower left corner is at (1, 2), scanned five times.
 fn room() -> MapImage {
     let mut map = MapBuilder::new(0.1);
     let step = TAU / 720.0;
@@ -27,7 +27,7 @@ fn room() -> MapImage {
     map.finish().unwrap()
 }
 
-/// The pixel that Nav2 takes for a place.
+/// The pixel that Nav2 reads at a position.
 fn pixel(map: &MapImage, pgm: &[u8], x: f64, y: f64) -> u8 {
     let column = ((x - map.origin_m[0]) / map.cell_m).floor() as usize;
     let row = ((y - map.origin_m[1]) / map.cell_m).floor() as usize;
@@ -78,7 +78,7 @@ fn unknown_is_transparent_in_scale_and_every_pixel_reads_back() {
     for (pixel, &log_odds) in pixels.chunks(2).zip(&map.log_odds) {
         assert_eq!(pixel[1] == 0, log_odds == 0.0);
         if log_odds != 0.0 {
-            // What Nav2 makes of it, by lightness: within half a step of 255.
+            // Probability that Nav2 computes from lightness: within half a step of 255.
             let p = 1.0 - f64::from(pixel[0]) / 255.0;
             let expected = 1.0 / (1.0 + math::exp(-log_odds));
             assert!((p - expected).abs() < 0.007, "{p} {expected}");
@@ -98,21 +98,21 @@ fn the_yaml_names_what_the_map_server_needs() {
              occupied_thresh: 0.65\nfree_thresh: 0.196\n"
         )
     );
-    // Unknown is 205: neither above the one nor below the other.
+    // Unknown is 205, between the two thresholds.
     let unknown = 1.0 - 205.0 / 255.0;
     assert!(unknown > FREE_PIXEL && unknown < OCCUPIED);
 }
 
 #[test]
-fn a_map_of_nothing_is_refused() {
+fn an_empty_map_is_rejected() {
     let mut map = MapBuilder::new(0.05);
     map.add(&SE2::identity(), &LaserScan::default()).unwrap();
     assert_eq!(map.finish(), Err(MapError::Nothing));
 }
 
 #[test]
-fn beams_that_saw_nothing_mark_free_space_by_option() {
-    // A hall without end: a wall behind the robot, nothing before it within 5 m.
+fn beams_without_a_return_mark_free_space_by_option() {
+    // An open hall: a wall behind the robot, nothing in front within 5 m.
     let scan = LaserScan {
         first_angle_rad: -TAU / 2.0,
         angle_step_rad: TAU / 360.0,
@@ -134,6 +134,6 @@ fn beams_that_saw_nothing_mark_free_space_by_option() {
     let half_disk = 0.5 * TAU / 2.0 * 50.0 * 50.0;
     let gained = (more - free) as f64;
     assert!((gained / half_disk - 1.0).abs() < 0.1, "{gained}");
-    // The map reaches to the limit, and nothing stands there.
+    // The map extends to the limit, and no cell is occupied there.
     assert!(more > 3 * free);
 }

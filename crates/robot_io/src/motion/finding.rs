@@ -1,4 +1,4 @@
-//! What the comparison of scans and odometry finds.
+//! Findings of the comparison of scans and odometry.
 
 use core::f64::consts::{PI, TAU};
 
@@ -12,97 +12,97 @@ use crate::laser_mount::LaserMount;
 use crate::remark::{NO_ODOMETRY, Part, Remark};
 use crate::stamps::median;
 
-/// Fewer stretches show nothing.
+/// Fewer segments are not evaluated.
 const LEAST_STRETCHES: usize = 8;
-/// Less path or less turning shows nothing, m and rad.
+/// A shorter path or less turning is not evaluated, m and rad.
 const LEAST_M: f64 = 2.0;
 const LEAST_RAD: f64 = 1.5;
-/// Turns whose correlation is at least this large agree, or are opposite.
+/// Turns with at least this absolute correlation agree, or are opposite.
 const AGREE: f64 = 0.8;
-/// So well have displacements to agree on one direction for a finding, and for a small one.
+/// Directional concentration of the displacements needed for a turned mounting, and for a small correction.
 const ONE_DIRECTION: f64 = 0.85;
-/// A laser that looks elsewhere by more is not where it is said to be, rad: 25°.
+/// A laser whose direction differs by more is turned, rad: 25°.
 const ELSEWHERE_RAD: f64 = 25.0 * PI / 180.0;
-/// Odometry whose scale is farther from 1 is told.
+/// A scale that differs from 1 by more is reported.
 const SCALE_OFF: f64 = 0.08;
-/// Lengths that programs measure in, in metres, and their names.
+/// Units of length, in metres, and their names.
 const UNITS: [(f64, &str); 4] = [
     (1e-3, "millimetres"),
     (1e-2, "centimetres"),
     (0.3048, "feet"),
     (0.0254, "inches"),
 ];
-/// A unit is believed this near to its size.
+/// Relative tolerance of a unit.
 const UNIT_OFF: f64 = 0.12;
-/// Odometry that covers less than this share of the scans' path stands still.
+/// Odometry that covers less than this share of the path by scans stands still.
 const STILL: f64 = 0.03;
 
-/// One thing that is wrong, and its mend.
+/// A fault with its correction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
-    /// Turns are opposite: the scans are a mirror image.
+    /// Turns are opposite: the scans are mirrored.
     Mirrored {
         /// Correlation of the turns.
         correlation: f64,
     },
-    /// The laser looks elsewhere than it is said to.
+    /// The laser faces another direction than stated.
     Turned {
-        /// By how much, rad.
+        /// Difference, rad.
         by_rad: f64,
     },
-    /// Odometry has another unit of length.
+    /// Odometry is not in metres.
     Unit {
-        /// What it is multiplied by to be metres.
+        /// Factor that converts it to metres.
         metres: f64,
-        /// Its name.
+        /// Name of the unit.
         name: &'static str,
     },
-    /// Odometry measures too long or too short.
+    /// Odometry overestimates or underestimates lengths.
     Scale {
-        /// Its length for a metre by scans.
+        /// Its length per metre by scans.
         ratio: f64,
     },
-    /// Odometry does not move while scans do.
+    /// Odometry stands still while scans move.
     Still {
-        /// Path by scans, m.
+        /// Path length by scans, m.
         moved_m: f64,
     },
-    /// Turns agree with no hypothesis.
+    /// Turns do not correlate.
     Unlike {
         /// Correlation of the turns.
         correlation: f64,
     },
 }
 
-/// Scans against odometry, in numbers.
+/// Comparison of scans and odometry.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Motion {
-    /// Stretches of the path that were compared.
+    /// Number of segments compared.
     pub stretches: usize,
-    /// Path by scans over them, m.
+    /// Path length by scans, m.
     pub moved_m: f64,
-    /// Turns by scans over them, rad.
+    /// Sum of absolute turns by scans, rad.
     pub turned_rad: f64,
-    /// Correlation of the turns; none where too little was turned.
+    /// Correlation of the turns; `None` if the robot turned too little.
     pub correlation: Option<f64>,
-    /// Where the laser looks, by scans and odometry, against where it is said to look, rad.
+    /// Direction of the laser by scans and odometry, relative to the stated one, rad.
     pub direction_rad: Option<f64>,
-    /// How well the displacements agree on that direction, from 0 to 1.
+    /// Concentration of the displacements' directions, from 0 to 1.
     pub agreement: f64,
-    /// Length by odometry for a metre by scans.
+    /// Length by odometry per metre by scans.
     pub scale: Option<f64>,
-    /// Turn by odometry for a turn by scans.
+    /// Turn by odometry per turn by scans.
     pub turn_scale: Option<f64>,
-    /// Median distance between both after a metre, m.
+    /// Median distance between both per metre, m.
     pub drift_m_per_m: Option<f64>,
-    /// How late odometry is against the scans, s; none if it is not, or the turns do not show it.
+    /// Lag of odometry behind the scans, s; `None` if there is none or the turns do not show it.
     pub lag_s: Option<f64>,
     #[serde(skip)]
     findings: Vec<Finding>,
 }
 
 impl Motion {
-    /// What stretches show of a laser that is said to sit so.
+    /// Evaluates segments for a laser with this stated mounting.
     pub(super) fn from_stretches(stretches: &[Stretch], mount: SE2) -> Self {
         let mut motion = Self {
             stretches: stretches.len(),
@@ -157,7 +157,7 @@ impl Motion {
         motion
     }
 
-    /// Direction and scale of the displacements.
+    /// Estimates direction and scale of the displacements.
     fn compare_displacements(&mut self, stretches: &[Stretch], mount: SE2, mirror: f64) {
         let ratios = stretches.iter().filter_map(|stretch| {
             let by_scans = length(&stretch.sensor);
@@ -174,7 +174,7 @@ impl Motion {
         let pairs: Vec<(Complex<f64>, Complex<f64>)> = stretches
             .iter()
             .map(|stretch| {
-                // The sensor moves as the body does, and about it where it turns.
+                // Motion of the sensor: that of the body plus the lever arm's rotation.
                 let [x, y, theta] = stretch.body.to_array();
                 let (sin, cos) = math::sin_cos(theta);
                 let (px, py) = (mount.x(), mount.y());
@@ -226,12 +226,12 @@ impl Motion {
         }
     }
 
-    /// Compares when both turn.
+    /// Compares the times at which both turn.
     pub(super) fn compare_turns(&mut self, headings: &[Heading]) {
         self.lag_s = lag_s(headings).filter(|_| !self.is_still());
     }
 
-    /// Leaves the findings about the laser alone.
+    /// Keeps only the findings about the laser.
     pub(super) fn keep_mounting(&mut self) {
         self.lag_s = None;
         let is_of_laser = |finding: &Finding| {
@@ -240,13 +240,13 @@ impl Motion {
         self.findings.retain(is_of_laser);
     }
 
-    /// What is wrong.
+    /// The faults found.
     #[must_use]
     pub fn findings(&self) -> &[Finding] {
         &self.findings
     }
 
-    /// Where the laser sits by the findings, if it was said to sit at `mount`; none where that holds.
+    /// The mounting by the findings, given the stated `mount`; `None` if that is right.
     #[must_use]
     pub fn mended_mount(&self, mount: LaserMount) -> Option<LaserMount> {
         let mut mended = mount;
@@ -255,7 +255,7 @@ impl Motion {
                 Finding::Mirrored { .. } => mended.is_flipped = !mended.is_flipped,
                 Finding::Turned { by_rad } => {
                     let [x, y, theta] = mended.body_from_sensor.to_array();
-                    // A laser is mounted at a right angle, or at an angle that this cannot tell exactly.
+                    // Lasers are mounted at right angles, or at an angle that this cannot estimate exactly.
                     let looks = wrap_angle(theta + by_rad);
                     let quarter = (looks / (TAU / 4.0)).round() * (TAU / 4.0);
                     let is_square = wrap_angle(looks - quarter).abs() < 12.0 * PI / 180.0;
@@ -268,7 +268,7 @@ impl Motion {
         (mended != mount).then_some(mended)
     }
 
-    /// What odometry is multiplied by, and whether it is left out.
+    /// The factor for odometry's unit, and whether odometry is dropped.
     #[must_use]
     pub fn metres(&self) -> Option<f64> {
         self.findings.iter().find_map(|finding| match finding {
@@ -285,8 +285,7 @@ impl Motion {
             .any(|finding| matches!(finding, Finding::Still { .. }))
     }
 
-    /// The findings, a sentence each; `mount` is where the laser was said to sit, and `is_mended` whether it is
-    /// taken to sit where they say.
+    /// The findings, one remark each; `mount` is the stated mounting, and `is_mended` whether it was corrected.
     #[must_use]
     pub fn remarks(&self, mount: LaserMount, is_mended: bool) -> Vec<Remark> {
         let option = self
@@ -296,18 +295,18 @@ impl Motion {
         let (of_mount, mount_options) = if is_mended {
             let own = mount.option();
             let said = format!(
-                "it is taken so; keep that with {option}, or the recording's own with {own}"
+                "it was corrected; keep the correction with {option}, or the recording's mounting with {own}"
             );
             (said, vec![option, own])
         } else {
-            (format!("mend it with {option}"), vec![option])
+            (format!("correct it with {option}"), vec![option])
         };
         let sentence = |finding: &Finding| match finding {
             Finding::Mirrored { correlation } => format!(
-                "the scans are a mirror image: they turn against odometry (correlation {correlation:.2}), so the laser hangs upside down or its driver lists the beams clockwise; {of_mount}"
+                "the scans are mirrored: they turn opposite to odometry (correlation {correlation:.2}), so the laser is mounted upside down or its driver lists the beams clockwise; {of_mount}"
             ),
             Finding::Turned { by_rad } => format!(
-                "the laser looks {:.0}° away from where it is said to look ({}), as scans and odometry show; {of_mount}",
+                "the laser faces {:.0}° away from its stated direction ({}), as the comparison of scans and odometry shows; {of_mount}",
                 by_rad.to_degrees().abs(),
                 if by_rad.abs() > 0.8 * PI {
                     "backward"
@@ -318,18 +317,18 @@ impl Motion {
                 },
             ),
             Finding::Unit { name, metres } => format!(
-                "odometry is in {name}: it moves {:.0} for each metre by scans; it is divided. Publish metres",
+                "odometry is in {name}: it moves {:.0} per metre by scans; it was converted. Publish metres",
                 1.0 / metres
             ),
             Finding::Scale { ratio } => format!(
-                "odometry measures {:.2} m for each metre by scans; check the radius of the wheels, or go by scans alone with --no-odometry",
+                "odometry measures {:.2} m per metre by scans; check the wheel radius, or use scans alone with --no-odometry",
                 ratio
             ),
             Finding::Still { moved_m } => format!(
-                "odometry stands still while the scans move by {moved_m:.1} m; it is left out, and scans go alone. Check its topic"
+                "odometry stands still while the scans move by {moved_m:.1} m; it is ignored and scans are matched alone. Check its topic"
             ),
             Finding::Unlike { correlation } => format!(
-                "scans matched alone and odometry turn differently (correlation {correlation:.2}): the scans see too little to be matched alone, or the odometry is not this robot's; compare with a map by --no-odometry"
+                "the turns of scans matched alone and of odometry differ (correlation {correlation:.2}): the scans have too few features to be matched alone, or the odometry is not this robot's; compare with a map made with --no-odometry"
             ),
         };
         let remark = |finding: &Finding| {
@@ -355,7 +354,7 @@ impl Motion {
         let late = self.lag_s.map(|lag_s| {
             let way = if lag_s > 0.0 { "late" } else { "early" };
             let text = format!(
-                "odometry is {:.2} s {way} against the scans, as the turns of both show; it is moved by that. Set both clocks by NTP, and stamp each message when it is measured",
+                "odometry is {:.2} s {way} relative to the scans, by the turns of both; it was shifted by that. Synchronize both clocks by NTP, and stamp each message when it is measured",
                 lag_s.abs()
             );
             Remark::mended(Part::Clocks, text)

@@ -1,39 +1,39 @@
-//! How late odometry is against the scans, by the turns of both.
+//! Estimates the lag of odometry behind the scans from the turns of both.
 //!
-//! Over a few scans the sensor turns by Δθ, as scans matched alone show. Odometry that is late by τ has turned by
-//! θ(t₂ + τ) − θ(t₁ + τ) then. The lag is the τ at which both correlate best; it counts only if it is surely better
-//! than none, and if either half of the scans shows the same. Headings by odometry are known at the times of scans alone:
-//! between these they are means, which are less noisy and so correlate a little better. A lag has to be most of the time
-//! between two scans.
+//! Over a few scans the sensor turns by Δθ, by scans matched alone. Odometry that is late by τ has turned by
+//! θ(t₂ + τ) − θ(t₁ + τ) then. The lag is the τ that maximizes the correlation. It counts only if it is clearly better
+//! than zero, and if either half of the scans confirms it. Headings by odometry are known only at the stamps of scans.
+//! Interpolated headings are means, which are less noisy and correlate slightly better, so a lag must be a large part
+//! of the time between two scans.
 
 use pr_geom::{math, wrap_angle};
 
 use crate::stamps::median;
 
-/// Fewer scans, or less turning (rad), show no lag.
+/// With fewer scans or less turning (rad) no lag is estimated.
 const LEAST_SCANS: usize = 40;
 const LEAST_RAD: f64 = 1.5;
-/// Lags are looked for up to this one, s: clocks that are farther apart are told by the recording's time.
+/// Largest lag searched, s: larger clock offsets are found by the recording's time.
 const LARGEST_S: f64 = 1.0;
-/// From one lag to the next, s.
+/// Search step, s.
 const STEP_S: f64 = 0.02;
-/// Smaller lags are those of any driver, s; and so is less than this share of the time between two scans.
+/// Smaller lags are usual for a driver, s; so is less than this share of the time between two scans.
 const LEAST_S: f64 = 0.1;
 const LEAST_PERIODS: f64 = 0.6;
-/// Turns are compared over so many scans: over more, noise tells less and a lag as well.
+/// Number of scans over which turns are compared: over more, noise matters less, but so does a lag.
 const SPAN: usize = 3;
-/// Turns agree at a lag from this correlation on.
+/// Least correlation at the lag.
 const AGREE: f64 = 0.9;
-/// What is missing to a correlation of 1 has to be less than this share of what is missing without a lag.
+/// 1 − correlation must be less than this share of its value without a lag.
 const BETTER: f64 = 0.65;
-/// So far apart may the lags of either half be, s; or this share of the time between two scans.
+/// Largest difference between the lags of the two halves, s; or as a share of the time between two scans.
 const SAME_S: f64 = 0.1;
 const SAME_PERIODS: f64 = 0.3;
 
-/// A heading by scans and one by odometry, rad, at the time of a scan, s.
+/// Headings by scans and by odometry, rad, at the stamp of a scan, s.
 #[derive(Clone, Copy, Debug)]
 pub struct Heading {
-    /// Time of the scan.
+    /// Stamp of the scan.
     pub stamp_s: f64,
     /// By scans matched alone.
     pub by_scans: f64,
@@ -41,7 +41,7 @@ pub struct Heading {
     pub by_odometry: f64,
 }
 
-/// How late odometry is, s; none if that is too little, or the turns do not show it.
+/// Returns the lag of odometry, s; `None` if it is too small, or the turns do not show it.
 pub fn lag_s(headings: &[Heading]) -> Option<f64> {
     if headings.len() < LEAST_SCANS {
         return None;
@@ -73,7 +73,7 @@ pub fn lag_s(headings: &[Heading]) -> Option<f64> {
     agree.then_some(lag_s)
 }
 
-/// Headings that go on beyond half a turn.
+/// Unwrapped headings.
 struct Turns {
     stamps_s: Vec<f64>,
     by_scans: Vec<f64>,
@@ -102,7 +102,7 @@ impl Turns {
         }
     }
 
-    /// The lag of these spans of scans at which the turns correlate best, s, and their correlation.
+    /// The lag (s) that maximizes the correlation of the turns over these pairs of scans, and that correlation.
     fn best(&self, pairs: std::ops::Range<usize>) -> Option<(f64, f64)> {
         let most = (LARGEST_S / STEP_S).round() as i32;
         let lags = (-most..=most).map(|step| f64::from(step) * STEP_S);
@@ -110,7 +110,7 @@ impl Turns {
         tried.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// How well the turns of these spans of scans correlate if odometry is late by so much; mirror images, too.
+    /// Absolute correlation of the turns over these pairs of scans if odometry is late by `lag_s`.
     fn correlation(&self, pairs: std::ops::Range<usize>, lag_s: f64) -> Option<f64> {
         let (mut both, mut of_scans, mut of_odometry, mut turned) = (0.0, 0.0, 0.0, 0.0);
         for k in pairs {
@@ -128,7 +128,7 @@ impl Turns {
         (turned >= LEAST_RAD / 2.0 && size > 0.0).then(|| (both / size).abs())
     }
 
-    /// The heading by odometry at a time.
+    /// Interpolated heading by odometry.
     fn heading(&self, at_s: f64) -> Option<f64> {
         let after = self.stamps_s.partition_point(|&stamp_s| stamp_s < at_s);
         let (from, to) = (after.checked_sub(1)?, after);
@@ -142,7 +142,7 @@ impl Turns {
 mod tests {
     use super::*;
 
-    /// A robot that weaves, with odometry that is late by so much.
+    /// A weaving robot whose odometry is late by `late_s`.
     fn weaving(late_s: f64, mirror: f64) -> Vec<Heading> {
         let heading = |at_s: f64| math::sin_cos(0.9 * at_s).0 + 0.5 * math::sin_cos(2.3 * at_s).0;
         let stamps = (0..200).map(|k| 0.1 * f64::from(k));
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lag_of_a_driver_noise_and_straight_ways_are_none() {
+    fn usual_delays_noise_and_straight_paths_give_no_lag() {
         assert_eq!(lag_s(&weaving(0.04, 1.0)), None);
         assert_eq!(lag_s(&weaving(1.4, 1.0)), None);
         assert_eq!(lag_s(&weaving(0.4, 1.0)[..30]), None);
@@ -174,7 +174,7 @@ mod tests {
             .iter_mut()
             .for_each(|heading| heading.by_scans *= 0.01);
         assert_eq!(lag_s(&straight), None);
-        // Either half has a lag of its own: a clock that drifts, or chance.
+        // The halves have different lags: a clock that drifts, or chance.
         let (first, second) = (weaving(0.5, 1.0), weaving(-0.5, 1.0));
         let apart: Vec<Heading> = first[..100].iter().chain(&second[100..]).copied().collect();
         assert_eq!(lag_s(&apart), None);

@@ -1,4 +1,4 @@
-//! A log whose first scans were compared with its odometry.
+//! Compares the first scans of a log with its odometry and corrects what is wrong.
 
 use std::collections::VecDeque;
 
@@ -7,29 +7,29 @@ use pr_geom::SE2;
 use super::{Comparison, Motion};
 use crate::laser_mount::{LaserMount, flip};
 use crate::log::{LogError, LogFrame, LogNotes, LogReader};
+use crate::odometry_poses::OdometryPoses;
 use crate::remark::Remark;
-use crate::wheel_poses::WheelPoses;
 
-/// So many scans are compared at most, with so many beams together: they are in memory.
+/// Most scans that are compared, and most beams together: they are kept in memory.
 const MOST_SCANS: usize = 2000;
 const MOST_BEAMS: usize = 1 << 21;
-/// So many scans wait for odometry that is late at most: more than any sensor takes in a second.
+/// Most scans that wait for late odometry: more than any sensor takes in a second.
 const MOST_LATE: usize = 200;
 
-/// A mounting that was mended.
-struct Mended {
-    /// Where the laser was said to sit.
-    said: SE2,
-    /// Where it does.
+/// A corrected mounting.
+struct CorrectedMount {
+    /// The stated mounting.
+    stated: SE2,
+    /// The corrected one.
     mount: LaserMount,
-    /// Whether its beams are listed the other way round than was said.
+    /// Whether the order of the beams is reversed.
     is_turned_over: bool,
 }
 
-/// Odometry whose stamps are late by so much: each scan waits for the odometry of its time.
+/// Odometry with late stamps: each scan waits for the odometry of its time.
 struct Late {
     by_s: f64,
-    wheels: WheelPoses,
+    odometry: OdometryPoses,
     waiting: VecDeque<LogFrame>,
     is_over: bool,
 }
@@ -38,21 +38,21 @@ impl Late {
     fn by(by_s: f64) -> Self {
         Self {
             by_s,
-            wheels: WheelPoses::default(),
+            odometry: OdometryPoses::default(),
             waiting: VecDeque::new(),
             is_over: false,
         }
     }
 
-    /// The next frame whose odometry has come, with that.
+    /// The next frame for which odometry has arrived.
     fn next(&mut self) -> Option<LogFrame> {
         let at_s = self.waiting.front()?.stamp_s + self.by_s;
         let is_full = self.waiting.len() > MOST_LATE;
-        if !self.is_over && !is_full && !self.wheels.reaches(at_s) {
+        if !self.is_over && !is_full && !self.odometry.reaches(at_s) {
             return None;
         }
         let mut frame = self.waiting.pop_front()?;
-        frame.odometry = self.wheels.at(at_s);
+        frame.odometry = self.odometry.at(at_s);
         Some(frame)
     }
 
@@ -62,39 +62,39 @@ impl Late {
             return;
         };
         if let Some(pose) = frame.odometry {
-            self.wheels.push(frame.stamp_s, pose);
+            self.odometry.push(frame.stamp_s, pose);
         }
         self.waiting.push_back(frame);
     }
 }
 
-/// Reads a log, compares its first scans with its odometry, and mends what is surely wrong.
+/// Reads a log, compares its first scans with its odometry, and corrects what is clearly wrong.
 pub struct ComparedReader<'a> {
     inner: Box<dyn LogReader + 'a>,
-    /// Whether the mounting was set by hand, and stays.
-    is_told: bool,
-    /// Whether the run goes by scans alone.
-    is_alone: bool,
+    /// Whether the mounting was set by the user and must not change.
+    is_mount_fixed: bool,
+    /// Whether the run ignores odometry.
+    ignores_odometry: bool,
     waiting: VecDeque<LogFrame>,
-    /// What a comparison found before.
+    /// Result of an earlier comparison.
     known: Option<Motion>,
     motion: Option<Motion>,
-    mount: Option<Mended>,
+    mount: Option<CorrectedMount>,
     metres: f64,
     is_still: bool,
     late: Option<Late>,
     notes: LogNotes,
-    said: Vec<Remark>,
+    remarks: Vec<Remark>,
 }
 
 impl<'a> ComparedReader<'a> {
-    /// A reader of the frames of `inner`; `is_told` says that the mounting was set by hand, and stays.
+    /// Wraps `inner`; `is_mount_fixed` states that the mounting was set by the user and must not change.
     #[must_use]
-    pub fn new(inner: Box<dyn LogReader + 'a>, is_told: bool) -> Self {
+    pub fn new(inner: Box<dyn LogReader + 'a>, is_mount_fixed: bool) -> Self {
         Self {
             inner,
-            is_told,
-            is_alone: false,
+            is_mount_fixed,
+            ignores_odometry: false,
             waiting: VecDeque::new(),
             known: None,
             motion: None,
@@ -103,25 +103,25 @@ impl<'a> ComparedReader<'a> {
             is_still: false,
             late: None,
             notes: LogNotes::default(),
-            said: Vec::new(),
+            remarks: Vec::new(),
         }
     }
 
-    /// The same reader for a run by scans alone: what is wrong with odometry is not told.
+    /// Suppresses findings about odometry, for a run that ignores it.
     #[must_use]
-    pub fn for_scans_alone(mut self, is_so: bool) -> Self {
-        self.is_alone = is_so;
+    pub fn ignoring_odometry(mut self, ignores_odometry: bool) -> Self {
+        self.ignores_odometry = ignores_odometry;
         self
     }
 
-    /// The same reader of a log that was compared before: what was found then holds.
+    /// Reuses the result of an earlier comparison of the same log.
     #[must_use]
-    pub fn knowing(mut self, motion: Motion) -> Self {
+    pub fn with_motion(mut self, motion: Motion) -> Self {
         self.known = Some(motion);
         self
     }
 
-    /// What the comparison found; none before the first frame.
+    /// The result of the comparison; `None` before the first frame.
     #[must_use]
     pub fn motion(&self) -> Option<&Motion> {
         self.motion.as_ref()
@@ -137,7 +137,7 @@ impl<'a> ComparedReader<'a> {
                 Ok(Some(frame)) => frame,
                 Ok(None) => break,
                 Err(error) if self.waiting.is_empty() => return Err(error),
-                // It comes again once these frames are taken.
+                // The error recurs once these frames are consumed.
                 Err(_) => break,
             };
             beams += frame.scan.ranges_m.len().max(1);
@@ -154,31 +154,31 @@ impl<'a> ComparedReader<'a> {
                 break;
             }
         }
-        let said = self
+        let stated = self
             .waiting
             .front()
             .map(|first| first.scan.body_from_sensor);
         let found = self.known.take().or_else(|| {
             let compared = comparison.filter(|_| has_odometry)?;
-            let mut motion = Motion::from_stretches(&compared.stretches, said?);
+            let mut motion = Motion::from_stretches(&compared.stretches, stated?);
             motion.compare_turns(&compared.headings);
-            if self.is_alone {
+            if self.ignores_odometry {
                 motion.keep_mounting();
             }
             Some(motion)
         });
         let motion = found.unwrap_or_default();
-        if let Some(said) = said {
-            let told = self.inner.notes().laser;
-            let mount = told.unwrap_or(LaserMount {
-                body_from_sensor: said,
+        if let Some(stated) = stated {
+            let recorded = self.inner.notes().laser;
+            let mount = recorded.unwrap_or(LaserMount {
+                body_from_sensor: stated,
                 is_flipped: false,
             });
-            self.said = motion.remarks(mount, !self.is_told);
-            if !self.is_told {
+            self.remarks = motion.remarks(mount, !self.is_mount_fixed);
+            if !self.is_mount_fixed {
                 let mended = motion.mended_mount(mount);
-                self.mount = mended.map(|mended| Mended {
-                    said,
+                self.mount = mended.map(|mended| CorrectedMount {
+                    stated,
                     mount: mended,
                     is_turned_over: mended.is_flipped != mount.is_flipped,
                 });
@@ -193,7 +193,7 @@ impl<'a> ComparedReader<'a> {
 
     fn mended(&self, mut frame: LogFrame) -> LogFrame {
         if let Some(mended) = &self.mount
-            && frame.scan.body_from_sensor == mended.said
+            && frame.scan.body_from_sensor == mended.stated
         {
             if mended.is_turned_over {
                 flip(&mut frame.scan);
@@ -211,7 +211,7 @@ impl<'a> ComparedReader<'a> {
         frame
     }
 
-    /// The next frame, but for its time.
+    /// The next frame, before odometry's lag is corrected.
     fn next_mended(&mut self) -> Result<Option<LogFrame>, LogError> {
         if let Some(frame) = self.waiting.pop_front() {
             return Ok(Some(self.mended(frame)));
@@ -223,7 +223,7 @@ impl<'a> ComparedReader<'a> {
 
     fn take_notes(&mut self) {
         self.notes.clone_from(self.inner.notes());
-        self.notes.warnings.extend(self.said.iter().cloned());
+        self.notes.warnings.extend(self.remarks.iter().cloned());
         if let Some(mended) = &self.mount {
             self.notes.laser = Some(mended.mount);
         }

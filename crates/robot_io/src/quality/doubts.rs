@@ -1,63 +1,67 @@
-//! What should be looked at: keyframes that are poorly known, loops and ways that the rest speaks against,
-//! scans that hardly fit.
+//! Doubts about a map: uncertain keyframes, loops and path segments that the rest contradicts, and scans with a poor
+//! fit.
 
 use ch16_slam2d::slam::Slam;
 use pr_geom::{math, sort_numbers};
 
-use super::{GATE_CHI2, KeyframeQuality, LinkQuality, Quality, RefutedWay};
+use super::{GATE_CHI2, KeyframeQuality, LinkQuality, Quality, RefutedPath};
 use crate::evidence::{PoorFit, TriedLoop};
 
-/// Keyframes that are known so many times worse than the median one are doubted.
-const UNSURE_TIMES: f64 = 3.0;
-/// Better known keyframes are not doubted, m.
-const UNSURE_M: f64 = 0.1;
-/// The map does not hold a loop that it is so far from, m and degrees: as far as a false one is.
-const DISPUTED: (f64, f64) = (0.3, 5.0);
-/// Most doubts of one kind that are spelled out.
+/// Keyframes are doubted if their standard deviation exceeds the median one by this factor.
+const UNCERTAIN_FACTOR: f64 = 3.0;
+/// Keyframes with a smaller standard deviation are not doubted, m.
+const LEAST_UNCERTAIN_M: f64 = 0.1;
+/// The map violates a loop that it differs from by more, m and degrees: as much as from a false loop.
+const VIOLATION: (f64, f64) = (0.3, 5.0);
+/// Most doubts of one kind that are listed.
 const MOST_DOUBTS: usize = 10;
 
-/// A loop that was closed once and that the map does not hold.
+/// A loop that was accepted once and that the map violates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Disputed {
+pub(super) struct ViolatedLoop {
     /// The newer keyframe.
     from: usize,
     /// The older keyframe.
     to: usize,
-    /// Distance between the place by the loop and that by the map, m.
+    /// Distance between the relative pose by the loop and by the map, m.
     off_m: f64,
     /// Angle between both, degrees.
     off_deg: f64,
 }
 
-/// The loops that were closed while scans came in, and that the graph ended up far from: it took them back,
-/// or others outweigh them.
-pub(super) fn disputed(slam: &Slam, tried: &[TriedLoop]) -> Vec<Disputed> {
+/// Loops that were accepted while scans came in and that the final graph violates: they were removed, or others
+/// outweigh them.
+pub(super) fn violated(slam: &Slam, tried: &[TriedLoop]) -> Vec<ViolatedLoop> {
     let poses = slam.graph().poses();
     let closed = tried.iter().filter(|tried| tried.accepted);
     let all = closed.filter_map(|TriedLoop { verification, .. }| {
         let (to, from) = (verification.candidate.node, verification.from_node);
         let by_map = poses.get(to)?.between(poses.get(from)?);
         let off = verification.registered.between(&by_map);
-        Some(Disputed {
+        Some(ViolatedLoop {
             from,
             to,
             off_m: math::norm2(off.x(), off.y()),
             off_deg: off.theta().abs().to_degrees(),
         })
     });
-    all.filter(|it| it.off_m > DISPUTED.0 || it.off_deg > DISPUTED.1)
+    all.filter(|it| it.off_m > VIOLATION.0 || it.off_deg > VIOLATION.1)
         .collect()
 }
 
-/// A sentence each, the worst of a kind first, and at most ten of a kind.
-pub(super) fn sentences(quality: &Quality, disputed: &[Disputed], poor: &[PoorFit]) -> Vec<String> {
+/// One sentence per doubt, the worst of a kind first, at most ten of a kind.
+pub(super) fn sentences(
+    quality: &Quality,
+    violated: &[ViolatedLoop],
+    poor: &[PoorFit],
+) -> Vec<String> {
     let mut doubts = Vec::new();
     for kind in [
-        unsure(&quality.keyframes),
-        contradicting(&quality.links),
-        refuted(&quality.refuted_ways),
-        not_held(disputed),
-        hardly_fitting(poor),
+        uncertain_keyframes(&quality.keyframes),
+        contradicted_loops(&quality.links),
+        contradicted_paths(&quality.refuted_paths),
+        violated_loops(violated),
+        poor_fits(poor),
     ] {
         let more = kind.len().saturating_sub(MOST_DOUBTS);
         doubts.extend(kind.into_iter().take(MOST_DOUBTS));
@@ -68,25 +72,25 @@ pub(super) fn sentences(quality: &Quality, disputed: &[Disputed], poor: &[PoorFi
     doubts
 }
 
-fn unsure(keyframes: &[KeyframeQuality]) -> Vec<String> {
+fn uncertain_keyframes(keyframes: &[KeyframeQuality]) -> Vec<String> {
     let mut sorted: Vec<f64> = keyframes.iter().map(KeyframeQuality::sigma_m).collect();
     sort_numbers(&mut sorted);
     let median_m = sorted.get(sorted.len() / 2).copied().unwrap_or_default();
-    let limit_m = (UNSURE_TIMES * median_m).max(UNSURE_M);
-    let is_unsure = |number: &usize| keyframes[*number].sigma_m() > limit_m;
-    let unsure: Vec<usize> = (0..keyframes.len()).filter(is_unsure).collect();
-    let runs = unsure.chunk_by(|a, b| b - a == 1).map(|run| {
+    let limit_m = (UNCERTAIN_FACTOR * median_m).max(LEAST_UNCERTAIN_M);
+    let is_uncertain = |number: &usize| keyframes[*number].sigma_m() > limit_m;
+    let uncertain: Vec<usize> = (0..keyframes.len()).filter(is_uncertain).collect();
+    let runs = uncertain.chunk_by(|a, b| b - a == 1).map(|run| {
         let (first, last) = (run[0], run[run.len() - 1]);
         let worst_m = run.iter().map(|k| keyframes[*k].sigma_m());
         let worst_m = worst_m.fold(0.0, f64::max);
         format!(
-            "keyframes {first} to {last} are known to {worst_m:.2} m only, the median one to {median_m:.2} m"
+            "keyframes {first} to {last} have a standard deviation of up to {worst_m:.2} m; the median is {median_m:.2} m"
         )
     });
     runs.collect()
 }
 
-fn contradicting(links: &[LinkQuality]) -> Vec<String> {
+fn contradicted_loops(links: &[LinkQuality]) -> Vec<String> {
     let beyond = |link: &LinkQuality| link.chi2.filter(|chi2| *chi2 > link.gate_chi2);
     let links = links.iter();
     let mut found: Vec<_> = links
@@ -102,35 +106,35 @@ fn contradicting(links: &[LinkQuality]) -> Vec<String> {
     found.collect()
 }
 
-fn refuted(ways: &[RefutedWay]) -> Vec<String> {
-    let mut ways = ways.to_vec();
-    ways.sort_by(|a, b| b.chi2.total_cmp(&a.chi2));
-    let ways = ways.iter().map(|RefutedWay { from, to, chi2 }| {
+fn contradicted_paths(paths: &[RefutedPath]) -> Vec<String> {
+    let mut paths = paths.to_vec();
+    paths.sort_by(|a, b| b.chi2.total_cmp(&a.chi2));
+    let paths = paths.iter().map(|RefutedPath { from, to, chi2 }| {
         format!(
-            "the way from keyframe {from} to {to} contradicts the rest of the graph: chi-squared {chi2:.1} above {GATE_CHI2:.1}"
+            "the path from keyframe {from} to {to} contradicts the rest of the graph: chi-squared {chi2:.1} above {GATE_CHI2:.1}"
         )
     });
-    ways.collect()
+    paths.collect()
 }
 
-fn not_held(disputed: &[Disputed]) -> Vec<String> {
-    let mut disputed = disputed.to_vec();
-    disputed.sort_by(|a, b| b.off_m.total_cmp(&a.off_m));
-    let disputed = disputed.iter().map(|disputed| {
-        let Disputed { from, to, off_m, off_deg } = disputed;
+fn violated_loops(violated: &[ViolatedLoop]) -> Vec<String> {
+    let mut violated = violated.to_vec();
+    violated.sort_by(|a, b| b.off_m.total_cmp(&a.off_m));
+    let violated = violated.iter().map(|violated| {
+        let ViolatedLoop { from, to, off_m, off_deg } = violated;
         format!(
-            "the loop from keyframe {from} to {to} was closed, and the map does not hold it: it is off by {off_m:.2} m and {off_deg:.0}°"
+            "the loop from keyframe {from} to {to} was accepted, but the map violates it by {off_m:.2} m and {off_deg:.0}°"
         )
     });
-    disputed.collect()
+    violated.collect()
 }
 
-fn hardly_fitting(poor: &[PoorFit]) -> Vec<String> {
+fn poor_fits(poor: &[PoorFit]) -> Vec<String> {
     let mut poor = poor.to_vec();
     poor.sort_by(|a, b| a.score.total_cmp(&b.score));
     let poor = poor.iter().map(|poor| {
         let (stamp_s, share) = (poor.stamp_s, 100.0 * poor.score);
-        format!("of the scan at {stamp_s:.3} s only {share:.0} % fits the map")
+        format!("only {share:.0} % of the scan at {stamp_s:.3} s fits the map")
     });
     poor.collect()
 }
@@ -141,7 +145,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_scan_that_hardly_fits_and_loops_and_ways_that_contradict_are_doubted() {
+    fn poor_fits_and_contradicted_loops_and_paths_are_doubted() {
         let keyframe = |sigma_m: f64| KeyframeQuality {
             stamp_s: 0.0,
             pose: [0.0; 3],
@@ -163,14 +167,14 @@ mod tests {
             accepted: true,
             reason: None,
         };
-        let way = |from, to, chi2| RefutedWay { from, to, chi2 };
+        let path = |from, to, chi2| RefutedPath { from, to, chi2 };
         let quality = Quality {
             keyframes: [0.02, 0.02, 0.02, 0.4, 0.5].map(keyframe).to_vec(),
             links: vec![link(3.0), link(40.0)],
-            refuted_ways: vec![way(4, 5, 20.0), way(7, 11, 84.44)],
+            refuted_paths: vec![path(4, 5, 20.0), path(7, 11, 84.44)],
             ..Quality::default()
         };
-        let taken_back = |from, off_m| Disputed {
+        let removed = |from, off_m| ViolatedLoop {
             from,
             to: 4,
             off_m,
@@ -180,17 +184,17 @@ mod tests {
             stamp_s: 12.5,
             score: 0.31,
         };
-        let disputed = [taken_back(31, 0.5), taken_back(30, 2.345)];
+        let violated = [removed(31, 0.5), removed(30, 2.345)];
         assert_eq!(
-            sentences(&quality, &disputed, &[poor]),
+            sentences(&quality, &violated, &[poor]),
             [
-                "keyframes 3 to 4 are known to 0.50 m only, the median one to 0.02 m",
+                "keyframes 3 to 4 have a standard deviation of up to 0.50 m; the median is 0.02 m",
                 "the loop from keyframe 9 to 2 contradicts the rest of the graph: chi-squared 40.0 above 16.3",
-                "the way from keyframe 7 to 11 contradicts the rest of the graph: chi-squared 84.4 above 16.3",
-                "the way from keyframe 4 to 5 contradicts the rest of the graph: chi-squared 20.0 above 16.3",
-                "the loop from keyframe 30 to 4 was closed, and the map does not hold it: it is off by 2.35 m and 90°",
-                "the loop from keyframe 31 to 4 was closed, and the map does not hold it: it is off by 0.50 m and 90°",
-                "of the scan at 12.500 s only 31 % fits the map",
+                "the path from keyframe 7 to 11 contradicts the rest of the graph: chi-squared 84.4 above 16.3",
+                "the path from keyframe 4 to 5 contradicts the rest of the graph: chi-squared 20.0 above 16.3",
+                "the loop from keyframe 30 to 4 was accepted, but the map violates it by 2.35 m and 90°",
+                "the loop from keyframe 31 to 4 was accepted, but the map violates it by 0.50 m and 90°",
+                "only 31 % of the scan at 12.500 s fits the map",
             ]
         );
     }

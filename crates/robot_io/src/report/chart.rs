@@ -1,4 +1,4 @@
-//! A value over time as an SVG.
+//! Charts of a value over time as SVG.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ const LEFT: f64 = 60.0;
 const BOTTOM: f64 = 24.0;
 const TOP: f64 = 22.0;
 
-/// A curve of `[time in s, value]`, from 0 up, with upright lines at `marks` (s).
+/// A curve of `[time in s, value]` from 0, with vertical lines at `marks` (s).
 pub fn over_time(title: &str, points: &[[f64; 2]], marks: &[f64]) -> String {
     let last_s = points.last().map_or(1.0, |point| point[0]);
     let end_s = if last_s > 0.0 { last_s } else { 1.0 };
@@ -57,7 +57,7 @@ pub fn over_time(title: &str, points: &[[f64; 2]], marks: &[f64]) -> String {
     svg
 }
 
-/// Three digits or so.
+/// Formats with about three digits.
 fn short(value: f64) -> String {
     match value {
         _ if value >= 100.0 => format!("{value:.0}"),

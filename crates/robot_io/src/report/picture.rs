@@ -1,34 +1,34 @@
-//! Map, way, loops and uncertainty as one SVG, in metres.
+//! Map, path, loops and uncertainty as one SVG, in metres.
 
 use std::fmt::Write as _;
 
 use crate::map_image::MapImage;
 use crate::quality::Quality;
 
-/// So many ellipses are drawn at most: more hide the way.
+/// Most ellipses that are drawn: more hide the path.
 const MOST_ELLIPSES: usize = 60;
 
 /// The picture; walls are the map's occupied cells.
 pub fn map(quality: &Quality, map: Option<&MapImage>) -> String {
     let (low, high) = bounds(quality, map);
     let [width, height] = [high[0] - low[0], high[1] - low[1]];
-    // A picture of 900 pixels: lines of a pixel and a half.
+    // For a picture of 900 pixels, with lines 1.5 pixels wide.
     let pixel_m = width.max(height) / 900.0;
     let mut svg = format!(
         "<svg class=\"map\" viewBox=\"{:.3} {:.3} {width:.3} {height:.3}\" role=\"img\" \
-         aria-label=\"Map with the robot's way\">\n<g transform=\"scale(1,-1)\">\n",
+         aria-label=\"Map with the robot's path\">\n<g transform=\"scale(1,-1)\">\n",
         low[0], -high[1]
     );
     if let Some(map) = map {
         let _ = writeln!(svg, "<path class=\"wall\" d=\"{}\"/>", walls(map));
     }
-    let place = |keyframe: usize| {
+    let position = |keyframe: usize| {
         let [x, y, _] = quality.keyframes.get(keyframe)?.pose;
         Some((x, y))
     };
     let refused = quality.tried.iter().filter(|tried| !tried.accepted);
     for tried in refused.chain(&quality.links) {
-        let (Some((ax, ay)), Some((bx, by))) = (place(tried.from), place(tried.to)) else {
+        let (Some((ax, ay)), Some((bx, by))) = (position(tried.from), position(tried.to)) else {
             continue;
         };
         let class = if tried.accepted { "good" } else { "bad" };
@@ -73,7 +73,7 @@ pub fn map(quality: &Quality, map: Option<&MapImage>) -> String {
     svg
 }
 
-/// Corners of all that is drawn, with a margin, m.
+/// Bounding box of everything drawn, with a margin, m.
 fn bounds(quality: &Quality, map: Option<&MapImage>) -> ([f64; 2], [f64; 2]) {
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];

@@ -1,14 +1,13 @@
-//! Bags of ROS 1, version 2.0: records of a header with named fields and data, some of which are chunks
-//! of records.
+//! ROS 1 bags, version 2.0: records with a header of named fields and data; some are chunks of records.
 //!
 //! Source: "Bag format, version 2.0", wiki.ros.org/Bags/Format/2.0. The crate `rosbag` maps files
-//! into memory and needs C, so that it cannot work in a browser; the format is small.
+//! into memory and needs C, which a browser cannot do; the format is small.
 
 mod records;
 
 use std::io::BufRead;
 
-use super::container::{Announced, Container, ContainerError, MOST_BYTES, Recorded};
+use super::container::{Container, ContainerError, DeclaredTopics, MOST_BYTES, Recorded};
 use super::decompress::Packing;
 use super::file_bytes::FileBytes;
 pub use records::Connections;
@@ -21,13 +20,13 @@ pub struct BagFile<R> {
     file: FileBytes<R>,
     is_started: bool,
     connections: Connections,
-    /// Records of the chunk under way, from `chunk_at` on.
+    /// Records of the current chunk, from `chunk_at` on.
     chunk: Vec<u8>,
     chunk_at: usize,
 }
 
 impl<R: BufRead> BagFile<R> {
-    /// A reader at the file's start.
+    /// Creates a reader at the file's start.
     pub fn new(source: R) -> Self {
         Self {
             file: FileBytes::new(source),
@@ -38,13 +37,13 @@ impl<R: BufRead> BagFile<R> {
         }
     }
 
-    /// The same reader, which knows topics that are announced later.
-    pub fn knowing(mut self, connections: Connections) -> Self {
+    /// Sets topics that are declared later in the file.
+    pub fn with_topics(mut self, connections: Connections) -> Self {
         self.connections = connections;
         self
     }
 
-    /// A length and as many bytes, which are added to `taken`; false where they cannot be.
+    /// Appends a length and that many bytes to `taken`; returns false if they are incomplete or too long.
     fn with_length(&mut self, what: &str, taken: &mut Vec<u8>) -> Result<bool, ContainerError> {
         let length = self.file.up_to(4, "a length")?;
         taken.extend_from_slice(&length);
@@ -60,32 +59,32 @@ impl<R: BufRead> BagFile<R> {
         Ok(bytes.len() as u64 == length)
     }
 
-    /// Takes the next record of the file; answers with its message where it is one.
+    /// Reads the next record of the file; returns its message if it is one.
     fn next_record(&mut self) -> Result<Option<Recorded>, ContainerError> {
         let mut taken = Vec::new();
         if !self.with_length("a record's header", &mut taken)? {
-            return self.go_on(&taken, true, "a record's header was expected".to_owned());
+            return self.resync(&taken, true, "expected a record's header".to_owned());
         }
         let header_end = taken.len();
         let header = taken[4..].to_vec();
         let fields =
             match Fields::parse(&header).and_then(|fields| fields.op().map(|op| (op, fields))) {
                 Ok(fields) => fields,
-                Err(problem) => return self.go_on(&taken, false, problem),
+                Err(problem) => return self.resync(&taken, false, problem),
             };
         let (op, fields) = fields;
         if !self.with_length("a record's data", &mut taken)? {
-            return self.go_on(&taken, true, "a record's data was expected".to_owned());
+            return self.resync(&taken, true, "expected a record's data".to_owned());
         }
         let data = &taken[header_end + 4..];
-        // An index with another length than its count reaches over what follows it.
+        // A wrong length of an index would swallow the records after it.
         if op == op::INDEX
             && fields
                 .u32("count")
                 .is_ok_and(|count| count as usize * op::INDEX_ENTRY != data.len())
         {
-            let problem = "the length of an index is not that of its entries".to_owned();
-            return self.go_on(&taken, false, problem);
+            let problem = "the length of an index does not match its count".to_owned();
+            return self.resync(&taken, false, problem);
         }
         let read = match op {
             op::CHUNK => unpacked(&fields, data.to_vec()).map(|chunk| {
@@ -93,25 +92,25 @@ impl<R: BufRead> BagFile<R> {
                 self.chunk_at = 0;
                 None
             }),
-            // Version 2.0 keeps messages in chunks; some writers do not.
+            // Version 2.0 stores messages in chunks; some writers do not.
             _ => self.connections.take(&fields, data),
         };
         match read {
-            Err(problem) if self.holds()? => Err(ContainerError::Skipped(problem)),
-            Err(problem) => self.go_on(&taken, false, problem),
+            Err(problem) if self.is_at_record()? => Err(ContainerError::Skipped(problem)),
+            Err(problem) => self.resync(&taken, false, problem),
             Ok(message) => Ok(message),
         }
     }
 
     /// Whether a record or the end of the file follows.
-    fn holds(&mut self) -> Result<bool, ContainerError> {
+    fn is_at_record(&mut self) -> Result<bool, ContainerError> {
         let next = self.file.up_to(LONGEST_START as u64, "a record")?;
         self.file.put_back(&next);
         Ok(next.is_empty() || begins(&next))
     }
 
-    /// Goes on at the next record behind the first byte of what was taken.
-    fn go_on(
+    /// Resynchronizes at the next record after the first byte of `taken`.
+    fn resync(
         &mut self,
         taken: &[u8],
         is_cut_off: bool,
@@ -128,13 +127,13 @@ impl<R: BufRead> BagFile<R> {
         }
     }
 
-    /// Takes the next record of the chunk.
+    /// Reads the next record of the chunk.
     fn next_of_chunk(&mut self) -> Result<Option<Recorded>, String> {
         let mut rest = &self.chunk[self.chunk_at..];
-        // Whatever is wrong, the next call finds the end of the chunk.
+        // After an error, the next call is at the end of the chunk.
         self.chunk_at = self.chunk.len();
-        let header = piece(&mut rest, "a record's header inside of a chunk")?;
-        let data = piece(&mut rest, "a record's data inside of a chunk")?;
+        let header = piece(&mut rest, "a record's header inside a chunk")?;
+        let data = piece(&mut rest, "a record's data inside a chunk")?;
         self.chunk_at = self.chunk.len() - rest.len();
         self.connections.take(&Fields::parse(header)?, data)
     }
@@ -145,7 +144,7 @@ impl<R: BufRead> Container for BagFile<R> {
         if !self.is_started {
             if self.file.take(MAGIC.len() as u64, "‘#ROSBAG V2.0’")? != MAGIC {
                 return Err(ContainerError::Broken(
-                    "‘#ROSBAG V2.0’ was expected; convert an older bag with rosbag fix".to_owned(),
+                    "expected ‘#ROSBAG V2.0’; convert an older bag with rosbag fix".to_owned(),
                 ));
             }
             self.is_started = true;
@@ -168,16 +167,16 @@ impl<R: BufRead> Container for BagFile<R> {
         self.file.offset()
     }
 
-    fn announced(&self) -> Option<Announced> {
+    fn declared_topics(&self) -> Option<DeclaredTopics> {
         let connections = self
             .connections
             .has_orphans()
             .then(|| self.connections.clone());
-        connections.map(Announced::Bag)
+        connections.map(DeclaredTopics::Bag)
     }
 }
 
-/// The records of a chunk with this header.
+/// Decompresses a chunk with this header.
 fn unpacked(fields: &Fields<'_>, data: Vec<u8>) -> Result<Vec<u8>, String> {
     let size = (fields.u32("size")? as usize).min(MOST_BYTES);
     match fields.name("compression")?.as_str() {
@@ -185,7 +184,7 @@ fn unpacked(fields: &Fields<'_>, data: Vec<u8>) -> Result<Vec<u8>, String> {
         "lz4" => Packing::Lz4.unpack(&data, size),
         "bz2" => Packing::Bzip2.unpack(&data, size),
         other => Err(format!(
-            "a chunk packed by bz2, lz4 or none was expected, and it is packed by ‘{}’",
+            "expected a chunk compressed by bz2, lz4 or none, found ‘{}’",
             crate::lines::printable(other)
         )),
     }

@@ -1,18 +1,18 @@
-//! Points of several sensors, or of a band of heights, as one scan about the body's origin.
+//! Merges points of several sensors, or of a height band, into one scan at the body's origin.
 
 use core::f64::consts::{PI, TAU};
 
 use ch16_slam2d::scan::LaserScan;
 use pr_geom::math;
 
-/// Beams of a merged scan lie so many times nearer to each other than those of its sensors: a point moves
-/// by an eighth of their step at most.
+/// Beams of a merged scan are denser than those of its sensors by this factor: a point moves by at most an eighth of
+/// their step.
 const FINER: f64 = 4.0;
-/// More beams say nothing more.
+/// More beams add no information.
 const MOST_BEAMS: f64 = 7200.0;
 
-/// The nearest point in each direction from the body's origin; `step_rad` is the angle between beams of the
-/// finest sensor.
+/// Keeps the nearest point in each direction from the body's origin; `step_rad` is the beam spacing of the finest
+/// sensor.
 pub fn binned(points: impl Iterator<Item = (f64, f64)>, step_rad: f64) -> LaserScan {
     let beams = math::min((FINER * TAU / step_rad.abs()).round(), MOST_BEAMS).max(1.0);
     let step = TAU / beams;

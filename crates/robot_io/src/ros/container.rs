@@ -1,4 +1,4 @@
-//! What a file of recorded messages yields, whatever its format.
+//! Interface of a file of recorded messages, for all formats.
 
 use std::io;
 
@@ -6,77 +6,77 @@ use super::bag_file::Connections;
 use super::mcap_file::Records;
 use super::wire::Wire;
 
-/// Longer records, and chunks that unpack to more, are no recording of a robot's laser.
+/// Longer records, and chunks that decompress to more, are not from a robot's laser.
 pub const MOST_BYTES: usize = 1 << 28;
 
-/// One message as it was recorded.
+/// A recorded message.
 #[derive(Clone, Debug)]
 pub struct Recorded {
-    /// Where it was published.
+    /// Topic.
     pub topic: String,
-    /// Its type as `package/Name`.
+    /// Type as `package/Name`.
     pub kind: String,
-    /// How its fields are written.
+    /// Serialization of its fields.
     pub wire: Wire,
-    /// Its bytes.
+    /// Serialized bytes.
     pub bytes: Vec<u8>,
-    /// When it was recorded, s.
+    /// Time of recording, s.
     pub recorded_s: f64,
 }
 
-/// Why a container ends early.
+/// An error of a container.
 #[derive(Debug)]
 pub enum ContainerError {
-    /// The system could not give its bytes.
+    /// The bytes could not be read.
     Io(io::Error),
-    /// The file ends in the middle of a record.
+    /// The file ends within a record.
     CutOff(String),
-    /// A record is not what it has to be.
+    /// A record is malformed, and the rest cannot be read.
     Broken(String),
-    /// The same, and the next call goes on behind it.
+    /// A record is malformed, and reading continues after it.
     Skipped(String),
 }
 
 impl ContainerError {
     /// Whether messages may follow.
-    pub fn goes_on(&self) -> bool {
+    pub fn is_recoverable(&self) -> bool {
         matches!(self, Self::Skipped(_))
     }
 }
 
-/// The topics of a file by their numbers, which may be announced again at its end.
+/// Topics of a file by id, which may be declared again at its end.
 #[derive(Clone, Debug)]
-pub enum Announced {
-    /// Of an MCAP file.
+pub enum DeclaredTopics {
+    /// Topics of an MCAP file.
     Mcap(Records),
-    /// Of a bag.
+    /// Topics of a bag.
     Bag(Connections),
 }
 
-/// Messages in the order of the file.
+/// A reader of messages in the order of the file.
 pub trait Container {
-    /// The next message; none at the end.
+    /// Returns the next message; `None` at the end.
     ///
     /// # Errors
-    /// Where a part or the rest cannot be read. Nothing comes after an error but
+    /// If a part or the rest cannot be read. No message follows an error other than
     /// [`ContainerError::Skipped`].
     fn next_message(&mut self) -> Result<Option<Recorded>, ContainerError>;
 
-    /// Bytes read so far: where an error is.
+    /// Bytes read so far: the position of an error.
     fn offset(&self) -> u64;
 
-    /// The topics that are known now, if messages were lost because their topic was not known before.
-    fn announced(&self) -> Option<Announced> {
+    /// The topics known by now, if messages were lost because their topic was declared later.
+    fn declared_topics(&self) -> Option<DeclaredTopics> {
         None
     }
 
-    /// What stands in the file in place of messages of ROS; none where it has such messages or nothing.
+    /// What the file contains instead of ROS messages; `None` if it has ROS messages or none at all.
     fn instead(&self) -> Option<String> {
         None
     }
 }
 
-/// `package/Name` of a type: ROS 2 writes `package/msg/Name`.
+/// `package/Name` of a type; ROS 2 writes `package/msg/Name`.
 pub fn kind_of(name: &str) -> String {
     name.replace("/msg/", "/")
 }

@@ -1,4 +1,4 @@
-//! The scans of one topic in the order of their stamps, read from the file as they are needed.
+//! Yields the scans of one topic in the order of their stamps, read from the file on demand.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -13,17 +13,17 @@ use super::point_cloud::{cloud_points, point_cloud};
 use super::survey::{SCANS, is_repeated, named, reader};
 use crate::log::{FilePosition, LogNotes};
 
-/// A scan waits for so many others at most that stand after it in the file and before it in time.
+/// Most scans that wait for an earlier one which comes later in the file.
 const MOST_WAITING: usize = 1024;
-/// Angle between the beams of a cloud that is cut to a band of heights, rad: half a degree.
+/// Beam spacing of a cloud that is cut to a height band, rad: half a degree.
 const CLOUD_STEP_RAD: f64 = 0.0087;
 
-/// A scan and its time.
+/// A scan with its stamp.
 #[derive(Clone, Debug)]
 pub struct StampedScan {
-    /// When it was measured, s.
+    /// Stamp, s.
     pub stamp_s: f64,
-    /// The scan where its laser sits.
+    /// The scan with its mounting.
     pub scan: LaserScan,
 }
 
@@ -55,19 +55,19 @@ pub struct ScanCursor<'a> {
     container: Box<dyn Container + 'a>,
     scans: PlannedScans,
     heights_m: Option<(f64, f64)>,
-    /// Earliest stamp of any message after this one, by the number of the message, s.
+    /// Earliest stamp of all later messages, by message number, s.
     earliest_after_s: Vec<f64>,
     read: usize,
     /// Checksum of the last message.
     last_sum: Option<u32>,
     waiting: BinaryHeap<Waiting>,
     is_done: bool,
-    /// What is wrong with the fields of the first scan that has a fault, a sentence each.
-    said: Vec<String>,
+    /// Problems in the fields of the first faulty scan, one sentence each.
+    remarks: Vec<String>,
 }
 
 impl<'a> ScanCursor<'a> {
-    /// A cursor at the first scan.
+    /// Creates a cursor at the first scan.
     pub fn new(
         container: Box<dyn Container + 'a>,
         scans: PlannedScans,
@@ -94,11 +94,11 @@ impl<'a> ScanCursor<'a> {
             last_sum: None,
             waiting: BinaryHeap::new(),
             is_done: false,
-            said: Vec::new(),
+            remarks: Vec::new(),
         }
     }
 
-    /// The topic with the times of its scans.
+    /// The topic with the stamps of its scans.
     pub fn scans(&self) -> &PlannedScans {
         &self.scans
     }
@@ -108,12 +108,12 @@ impl<'a> ScanCursor<'a> {
         self.container.offset()
     }
 
-    /// What is wrong with the fields of scans so far.
-    pub fn said(&self) -> &[String] {
-        &self.said
+    /// Problems in the fields of scans so far.
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
     }
 
-    /// The next scan in the order of time; none at the end, which a survey has told of.
+    /// Returns the next scan in the order of time; `None` at the end.
     pub fn next(&mut self, notes: &mut LogNotes) -> Option<StampedScan> {
         loop {
             let bound_s = match self.read.checked_sub(1) {
@@ -133,8 +133,8 @@ impl<'a> ScanCursor<'a> {
             }
             match self.container.next_message() {
                 Ok(Some(message)) => self.take(&message, notes),
-                // What damage there is, the survey has told.
-                Err(error) if error.goes_on() => {}
+                // The survey has reported the damage already.
+                Err(error) if error.is_recoverable() => {}
                 Ok(None) | Err(_) => self.is_done = true,
             }
         }
@@ -157,8 +157,8 @@ impl<'a> ScanCursor<'a> {
                 }
             }
             Err(problem) => {
-                let place = FilePosition::Byte(self.container.offset());
-                notes.leave_out(place, named(message, problem));
+                let position = FilePosition::Byte(self.container.offset());
+                notes.skip(position, named(message, problem));
             }
         }
     }
@@ -177,7 +177,7 @@ impl<'a> ScanCursor<'a> {
                 ));
             }
             let (_, mut scan) = point_cloud(&mut fields)?;
-            self.scans.mount.place(&mut scan);
+            self.scans.mount.apply(&mut scan);
             return Ok(scan);
         }
         let read = if message.kind == SCANS[0] {
@@ -185,17 +185,17 @@ impl<'a> ScanCursor<'a> {
         } else {
             multi_echo_scan
         };
-        let (_, told) = read(&mut fields).map_err(|problem| problem.to_string())?;
-        let (mut scan, said) = told.checked(self.scans.period_s)?;
+        let (_, parsed) = read(&mut fields).map_err(|problem| problem.to_string())?;
+        let (mut scan, remarks) = parsed.checked(self.scans.period_s)?;
         scan.validate().map_err(|problem| problem.to_string())?;
-        if self.said.is_empty() {
+        if self.remarks.is_empty() {
             let topic = &self.scans.topic;
-            self.said = said
+            self.remarks = remarks
                 .iter()
-                .map(|said| format!("scans of {topic}: {said}"))
+                .map(|problem| format!("scans of {topic}: {problem}"))
                 .collect();
         }
-        self.scans.mount.place(&mut scan);
+        self.scans.mount.apply(&mut scan);
         Ok(scan)
     }
 }

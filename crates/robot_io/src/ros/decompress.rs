@@ -1,14 +1,14 @@
-//! Compressed chunks, unpacked whole: lz4, zstd and bzip2, each without C.
+//! Decompresses chunks by lz4, zstd and bzip2, without C code.
 
 use std::io::Read;
 
 use lz4_flex::frame::FrameDecoder;
 use ruzstd::decoding::StreamingDecoder;
 
-/// How a chunk is packed.
+/// Compression of a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Packing {
-    /// LZ4's frames.
+    /// LZ4 frames.
     Lz4,
     /// Zstandard.
     Zstd,
@@ -17,7 +17,7 @@ pub enum Packing {
 }
 
 impl Packing {
-    /// The name that files give it.
+    /// Name in files.
     fn name(self) -> &'static str {
         match self {
             Self::Lz4 => "lz4",
@@ -26,33 +26,36 @@ impl Packing {
         }
     }
 
-    /// The whole content of `packed`, up to `most` bytes.
+    /// Decompresses `packed`, up to `most` bytes.
     ///
     /// # Errors
-    /// What is wrong with it, in a few words.
+    /// If it is damaged or too large.
     pub fn unpack(self, packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
         let mut content = Vec::new();
-        let told = |problem: &dyn std::fmt::Display| {
-            format!("a chunk does not unpack as {}: {problem}", self.name())
+        let describe = |problem: &dyn std::fmt::Display| {
+            format!(
+                "a chunk cannot be decompressed as {}: {problem}",
+                self.name()
+            )
         };
         let most_and_one = most as u64 + 1;
         match self {
             Self::Lz4 => FrameDecoder::new(packed)
                 .take(most_and_one)
                 .read_to_end(&mut content)
-                .map_err(|problem| told(&problem))?,
+                .map_err(|problem| describe(&problem))?,
             Self::Zstd => StreamingDecoder::new(packed)
-                .map_err(|problem| told(&problem))?
+                .map_err(|problem| describe(&problem))?
                 .take(most_and_one)
                 .read_to_end(&mut content)
-                .map_err(|problem| told(&problem))?,
+                .map_err(|problem| describe(&problem))?,
             Self::Bzip2 => bzip2_rs::DecoderReader::new(packed)
                 .take(most_and_one)
                 .read_to_end(&mut content)
-                .map_err(|problem| told(&problem))?,
+                .map_err(|problem| describe(&problem))?,
         };
         if content.len() > most {
-            return Err(format!("a chunk unpacks to more than {most} bytes"));
+            return Err(format!("a chunk decompresses to more than {most} bytes"));
         }
         Ok(content)
     }

@@ -1,4 +1,4 @@
-//! The files of a recording: opened for each pass, one after the other.
+//! The files of a recording, opened in order for each pass.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -6,7 +6,7 @@ use std::io::BufRead;
 use std::rc::Rc;
 
 use super::bag_file::BagFile;
-use super::container::{Announced, Container, ContainerError, MOST_BYTES, Recorded};
+use super::container::{Container, ContainerError, DeclaredTopics, MOST_BYTES, Recorded};
 use super::decompress::Packing;
 use super::mcap_file::McapFile;
 use super::sqlite_file::SqliteFile;
@@ -14,76 +14,84 @@ use super::wire::Wire;
 use crate::log_bytes::LogBytes;
 use crate::log_format::LogFormat;
 
-/// The first bytes of what zstd has packed; CDR begins with a zero.
+/// First bytes of zstd data; CDR begins with a zero.
 const ZSTD: &[u8] = b"\x28\xb5\x2f\xfd";
 
-/// Files of one recording, in their order.
+/// Files of one recording, in order.
 #[derive(Clone)]
 pub struct RosFiles<'a> {
     parts: Vec<LogBytes<'a>>,
-    /// Topics of a part that are announced only behind damage.
-    announced: Rc<RefCell<BTreeMap<usize, Announced>>>,
+    /// Topics of a file that are declared only after damage.
+    declared_topics: Rc<RefCell<BTreeMap<usize, DeclaredTopics>>>,
 }
 
 impl<'a> RosFiles<'a> {
-    /// The files of a recording.
+    /// Creates from the files of a recording.
     pub fn new(parts: Vec<LogBytes<'a>>) -> Self {
         Self {
             parts,
-            announced: Rc::default(),
+            declared_topics: Rc::default(),
         }
     }
 
-    /// Their messages from the first on.
+    /// Iterates over their messages from the start.
     pub fn messages(&self) -> Messages<'a> {
         Messages {
             files: self.clone(),
             opened: 0,
-            learned: false,
+            has_late_topics: false,
             current: None,
             before: 0,
         }
     }
 }
 
-/// The messages of several files, one file after the other.
+/// The messages of several files in sequence.
 pub struct Messages<'a> {
     files: RosFiles<'a>,
     opened: usize,
-    /// Whether topics were met behind messages that were lost for want of them.
-    learned: bool,
+    /// Whether topics were found after messages that were lost without them.
+    has_late_topics: bool,
     current: Option<Box<dyn Container + 'a>>,
     /// Bytes of the files before.
     before: u64,
 }
 
 impl Messages<'_> {
-    /// Whether another pass finds messages that this one lost for want of their topic.
-    pub fn has_learned(&self) -> bool {
-        self.learned
+    /// Whether another pass can read messages that this one lost because their topic was unknown.
+    pub fn has_late_topics(&self) -> bool {
+        self.has_late_topics
     }
 
-    /// Keeps what the file under way has announced too late.
-    fn learn(&mut self) {
-        let announced = self
+    /// Stores topics that the current file declared too late.
+    fn keep_late_topics(&mut self) {
+        let declared_topics = self
             .current
             .as_ref()
-            .and_then(|current| current.announced());
-        if let Some(announced) = announced {
+            .and_then(|current| current.declared_topics());
+        if let Some(declared_topics) = declared_topics {
             let part = self.opened - 1;
-            self.files.announced.borrow_mut().insert(part, announced);
-            self.learned = true;
+            self.files
+                .declared_topics
+                .borrow_mut()
+                .insert(part, declared_topics);
+            self.has_late_topics = true;
         }
     }
 
-    /// Opens the next file, where there is one.
+    /// Opens the next file, if there is one.
     fn open_next(&mut self) -> Result<(), ContainerError> {
-        self.learn();
+        self.keep_late_topics();
         self.before = self.offset();
         let Some(part) = self.files.parts.get(self.opened) else {
             return Ok(());
         };
-        let known = self.files.announced.borrow().get(&self.opened).cloned();
+        let known = self
+            .files
+            .declared_topics
+            .borrow()
+            .get(&self.opened)
+            .cloned();
         self.opened += 1;
         let mut source = part.stream().map_err(ContainerError::Io)?;
         let start = source.fill_buf().map_err(ContainerError::Io)?;
@@ -94,11 +102,11 @@ impl Messages<'_> {
                 Box::new(SqliteFile::new(source))
             }
             LogFormat::RosBag => Box::new(match known {
-                Some(Announced::Bag(known)) => BagFile::new(source).knowing(known),
+                Some(DeclaredTopics::Bag(known)) => BagFile::new(source).with_topics(known),
                 _ => BagFile::new(source),
             }),
             _ => Box::new(match known {
-                Some(Announced::Mcap(known)) => McapFile::new(source).knowing(known),
+                Some(DeclaredTopics::Mcap(known)) => McapFile::new(source).with_topics(known),
                 _ => McapFile::new(source),
             }),
         });
@@ -113,7 +121,7 @@ impl Container for Messages<'_> {
                 match current.next_message() {
                     Ok(Some(message)) => return unpacked(message).map(Some),
                     Ok(None) => {}
-                    // A file that breaks off does not end those after it.
+                    // A truncated file does not end those after it.
                     Err(ContainerError::CutOff(problem) | ContainerError::Broken(problem))
                         if self.opened < self.files.parts.len() =>
                     {
@@ -124,7 +132,7 @@ impl Container for Messages<'_> {
                 }
             }
             if self.opened >= self.files.parts.len() {
-                self.learn();
+                self.keep_late_topics();
                 return Ok(None);
             }
             self.open_next()?;
@@ -141,7 +149,7 @@ impl Container for Messages<'_> {
     }
 }
 
-/// A message that rosbag2 has packed by itself, unpacked.
+/// Decompresses a message that rosbag2 compressed individually.
 fn unpacked(mut message: Recorded) -> Result<Recorded, ContainerError> {
     if message.wire == Wire::Cdr && message.bytes.starts_with(ZSTD) {
         let unpacked = Packing::Zstd.unpack(&message.bytes, MOST_BYTES);

@@ -1,23 +1,23 @@
-//! The bytes of a file, counted as they are read.
+//! Bytes of a file, with a count of those read.
 
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Read};
 
 use super::container::{ContainerError, MOST_BYTES};
 
-/// So much is read at a time while the next record is looked for.
+/// Bytes read at a time while searching for the next record.
 const PIECE: usize = 1 << 16;
 
-/// Bytes in their order, and how many there were.
+/// Sequential bytes with push-back.
 pub struct FileBytes<R> {
     source: R,
-    /// Bytes that were put back, which come before those of the source.
+    /// Bytes that were put back, which precede those of the source.
     back: VecDeque<u8>,
     offset: u64,
 }
 
 impl<R: BufRead> FileBytes<R> {
-    /// The bytes from a file's start on.
+    /// Creates at a file's start.
     pub fn new(source: R) -> Self {
         Self {
             source,
@@ -40,7 +40,7 @@ impl<R: BufRead> FileBytes<R> {
         Ok(left.is_empty())
     }
 
-    /// `count` bytes.
+    /// Reads `count` bytes.
     pub fn take(&mut self, count: u64, what: &str) -> Result<Vec<u8>, ContainerError> {
         let bytes = self.up_to(count, what)?;
         if (bytes.len() as u64) < count {
@@ -49,12 +49,11 @@ impl<R: BufRead> FileBytes<R> {
         Ok(bytes)
     }
 
-    /// `count` bytes, or those that are left. They are read in pieces as they come: a length that is a
-    /// lie costs no memory.
+    /// Reads up to `count` bytes. They are read in pieces, so a wrong length costs no memory.
     pub fn up_to(&mut self, count: u64, what: &str) -> Result<Vec<u8>, ContainerError> {
         if count > MOST_BYTES as u64 {
             return Err(ContainerError::Broken(format!(
-                "{what} of {MOST_BYTES} bytes at most was expected, and it has {count}"
+                "expected {what} of at most {MOST_BYTES} bytes, found {count}"
             )));
         }
         let held = self.back.len().min(count as usize);
@@ -66,7 +65,7 @@ impl<R: BufRead> FileBytes<R> {
         Ok(bytes)
     }
 
-    /// Goes over `count` bytes, which may be more than fit into memory.
+    /// Skips `count` bytes, which may exceed memory.
     pub fn skip(&mut self, count: u64, what: &str) -> Result<(), ContainerError> {
         let held = self
             .back
@@ -85,7 +84,7 @@ impl<R: BufRead> FileBytes<R> {
 }
 
 impl<R: BufRead> FileBytes<R> {
-    /// Puts bytes back that were taken last: they are read again.
+    /// Puts back the last bytes, to be read again.
     pub fn put_back(&mut self, bytes: &[u8]) {
         self.offset -= bytes.len() as u64;
         for &byte in bytes.iter().rev() {
@@ -93,8 +92,8 @@ impl<R: BufRead> FileBytes<R> {
         }
     }
 
-    /// Goes on to where `begins` finds the start of a record in the bytes from there on, of which it sees
-    /// `window` at least unless the file ends. Returns whether there is one.
+    /// Advances to the next record start that `begins` recognizes in a window of at least `window` bytes, less only at
+    /// the end of the file. Returns whether there is one.
     pub fn seek(
         &mut self,
         window: usize,
@@ -115,7 +114,5 @@ impl<R: BufRead> FileBytes<R> {
 }
 
 fn cut_off(what: &str, count: u64, there: u64) -> ContainerError {
-    ContainerError::CutOff(format!(
-        "{what} of {count} bytes was expected, and {there} are there"
-    ))
+    ContainerError::CutOff(format!("expected {what} of {count} bytes, found {there}"))
 }

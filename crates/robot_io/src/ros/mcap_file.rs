@@ -1,19 +1,19 @@
-//! MCAP: records, of which some are chunks of records.
+//! MCAP files: records, some of which are chunks of records.
 //!
-//! Source: "MCAP format specification", version 0, mcap.dev/spec. The crate `mcap` believes the length of
-//! a record inside of a chunk, which costs memory or overflows; the format is small.
+//! Source: "MCAP format specification", version 0, mcap.dev/spec. The crate `mcap` trusts the length of
+//! a record inside a chunk, which costs memory or overflows; the format is small.
 
 mod chunk;
 mod records;
 
 use std::io::BufRead;
 
-use super::container::{Announced, Container, ContainerError, MOST_BYTES, Recorded};
+use super::container::{Container, ContainerError, DeclaredTopics, MOST_BYTES, Recorded};
 use super::file_bytes::FileBytes;
 pub use records::Records;
 use records::{HEAD_BYTES, head, op};
 
-/// A file begins and ends with it.
+/// First and last bytes of a file.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
 /// Messages of an MCAP file, in the order of the file.
@@ -22,15 +22,15 @@ pub struct McapFile<R> {
     is_started: bool,
     is_done: bool,
     records: Records,
-    /// Records of the chunk under way, from `chunk_at` on.
+    /// Records of the current chunk, from `chunk_at` on.
     chunk: Vec<u8>,
     chunk_at: usize,
-    /// Whether the file ends in it.
+    /// Whether the file ends within it.
     is_cut_off: bool,
 }
 
 impl<R: BufRead> McapFile<R> {
-    /// A reader at the file's start.
+    /// Creates a reader at the file's start.
     pub fn new(source: R) -> Self {
         Self {
             file: FileBytes::new(source),
@@ -43,8 +43,8 @@ impl<R: BufRead> McapFile<R> {
         }
     }
 
-    /// The same reader, which knows topics that are announced later.
-    pub fn knowing(mut self, records: Records) -> Self {
+    /// Sets topics that are declared later in the file.
+    pub fn with_topics(mut self, records: Records) -> Self {
         self.records = records;
         self
     }
@@ -53,32 +53,27 @@ impl<R: BufRead> McapFile<R> {
         if self.file.take(MAGIC.len() as u64, "MCAP's magic")? == MAGIC {
             return Ok(());
         }
-        Err(ContainerError::Broken(
-            "MCAP's magic was expected".to_owned(),
-        ))
+        Err(ContainerError::Broken("expected MCAP's magic".to_owned()))
     }
 
-    /// Takes the next record of the file; answers with its message where it is one that can be read.
+    /// Reads the next record of the file; returns its message if it is a readable one.
     fn next_record(&mut self) -> Result<Option<Recorded>, ContainerError> {
         let head_bytes = self.file.take(HEAD_BYTES as u64, "a record's head")?;
         let (op, length) = head(&head_bytes).expect("as many bytes as were taken");
         if op == op::ATTACHMENT {
-            // It may be larger than memory.
+            // It may exceed memory.
             return self.file.skip(length, "an attachment").map(|()| None);
         }
         let body = match self.file.up_to(length, "a record") {
             Ok(body) => body,
-            Err(ContainerError::Broken(problem)) => return self.go_on(&head_bytes, &[], problem),
+            Err(ContainerError::Broken(problem)) => return self.resync(&head_bytes, &[], problem),
             Err(other) => return Err(other),
         };
         let is_cut_off = (body.len() as u64) < length;
         if is_cut_off {
-            let problem = format!(
-                "a record of {length} bytes was expected, and {} are there",
-                body.len()
-            );
-            // A length that lies reaches over chunks that hold.
-            return match self.go_on(&head_bytes, &body, problem.clone()) {
+            let problem = format!("expected a record of {length} bytes, found {}", body.len());
+            // A wrong length may cover intact chunks.
+            return match self.resync(&head_bytes, &body, problem.clone()) {
                 Err(ContainerError::Broken(_)) if op == op::CHUNK => {
                     self.chunk = chunk::records(&body, true)?;
                     self.is_cut_off = true;
@@ -108,7 +103,7 @@ impl<R: BufRead> McapFile<R> {
                 self.magic().map(|()| None)
             }
             1..=15 | 128.. => Ok(None),
-            _ => self.go_on(
+            _ => self.resync(
                 &head_bytes,
                 &body,
                 format!("a record is of the unknown kind {op}"),
@@ -116,7 +111,7 @@ impl<R: BufRead> McapFile<R> {
         }
     }
 
-    /// After a chunk that cannot be read: its length holds if a record or the end follows it.
+    /// After an unreadable chunk: its length is right if a record or the end follows.
     fn after(&mut self, body: &[u8], problem: String) -> Result<Option<Recorded>, ContainerError> {
         let next = self.file.up_to(HEAD_BYTES as u64, "a record's head")?;
         self.file.put_back(&next);
@@ -125,11 +120,11 @@ impl<R: BufRead> McapFile<R> {
         if holds {
             return Err(ContainerError::Skipped(problem));
         }
-        self.go_on(&[], body, problem)
+        self.resync(&[], body, problem)
     }
 
-    /// Goes on at the next chunk behind the first byte of what was taken.
-    fn go_on(
+    /// Resynchronizes at the next chunk after the first byte of what was read.
+    fn resync(
         &mut self,
         head: &[u8],
         body: &[u8],
@@ -144,7 +139,7 @@ impl<R: BufRead> McapFile<R> {
         }
     }
 
-    /// Takes the next record of the chunk.
+    /// Reads the next record of the chunk.
     fn next_of_chunk(&mut self) -> Result<Option<Recorded>, ContainerError> {
         let rest = &self.chunk[self.chunk_at..];
         let body = head(rest).and_then(|(op, length)| {
@@ -154,7 +149,7 @@ impl<R: BufRead> McapFile<R> {
         });
         let Some((op, body)) = body else {
             self.chunk_at = self.chunk.len();
-            let problem = "the end of a record inside of a chunk was expected".to_owned();
+            let problem = "expected the end of a record inside a chunk".to_owned();
             return Err(match self.is_cut_off {
                 true => ContainerError::CutOff(problem),
                 false => ContainerError::Skipped(problem),
@@ -191,9 +186,9 @@ impl<R: BufRead> Container for McapFile<R> {
         self.file.offset()
     }
 
-    fn announced(&self) -> Option<Announced> {
+    fn declared_topics(&self) -> Option<DeclaredTopics> {
         let records = self.records.has_orphans().then(|| self.records.clone());
-        records.map(Announced::Mcap)
+        records.map(DeclaredTopics::Mcap)
     }
 
     fn instead(&self) -> Option<String> {
@@ -209,7 +204,7 @@ mod tests {
         [&[op][..], &(body.len() as u64).to_le_bytes(), body].concat()
     }
 
-    /// A file with one chunk that is not packed.
+    /// A file with one uncompressed chunk.
     fn file(records: &[u8], packed: u64) -> Vec<u8> {
         let size = (records.len() as u64).to_le_bytes();
         let head = [&[0; 16], &size[..], &[0; 8], &packed.to_le_bytes()].concat();
@@ -217,17 +212,18 @@ mod tests {
     }
 
     #[test]
-    fn a_length_inside_of_a_chunk_is_not_believed_beyond_the_chunk() {
+    fn a_length_inside_a_chunk_never_exceeds_the_chunk() {
         let whole = record(15, &[0; 4]);
         for length in [1, 200_000_000, u64::MAX] {
             let mut records = whole.clone();
             records.push(op::MESSAGE);
             records.extend_from_slice(&length.to_le_bytes());
             let bytes = file(&records, records.len() as u64);
-            // What follows the chunk is none of it.
+            // Bytes after the chunk must not be read.
             let bytes = [bytes, record(15, &[0; 40])].concat();
             let said = McapFile::new(&bytes[..]).next_message().unwrap_err();
-            let is_told = matches!(&said, ContainerError::Skipped(said) if said.contains("inside of a chunk"));
+            let is_told =
+                matches!(&said, ContainerError::Skipped(said) if said.contains("inside a chunk"));
             assert!(is_told, "{length}: {said:?}");
         }
         let lie = file(&whole, 1000);
@@ -236,9 +232,9 @@ mod tests {
     }
 
     #[test]
-    fn a_record_that_nobody_needs_may_be_longer_than_memory() {
+    fn an_unused_record_may_exceed_memory() {
         let bytes = [MAGIC, &[9], &(1_u64 << 40).to_le_bytes(), &[0; 100]].concat();
         let said = McapFile::new(&bytes[..]).next_message().unwrap_err();
-        assert!(matches!(said, ContainerError::CutOff(said) if said.contains("100 are there")));
+        assert!(matches!(said, ContainerError::CutOff(said) if said.contains("found 100")));
     }
 }

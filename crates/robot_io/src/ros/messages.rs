@@ -1,38 +1,38 @@
-//! The messages that a log is made of, from their bytes.
+//! Deserializes the messages of a log.
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 use super::scan_fields::ScanFields;
 use super::wire::{Wire, WireError, WireReader};
 
-/// Time and frame of a message.
+/// Stamp and frame of a message.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
-    /// When it was measured, s.
+    /// Stamp, s.
     pub stamp_s: f64,
-    /// In which frame.
+    /// Frame.
     pub frame: String,
 }
 
-/// `nav_msgs/Odometry`, as far as a planar robot needs it.
+/// `nav_msgs/Odometry`, reduced to what a planar robot needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OdometryMessage {
-    /// Time, and the frame of the odometry.
+    /// Stamp and odometry frame.
     pub header: Header,
-    /// The body's frame.
+    /// Body frame.
     pub child: String,
-    /// The body in the odometry's frame.
+    /// Pose of the body in the odometry frame.
     pub pose: Isometry3<f64>,
 }
 
 /// One transform of `tf2_msgs/TFMessage`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransformMessage {
-    /// Time, and the frame above.
+    /// Stamp and parent frame.
     pub header: Header,
-    /// The frame below.
+    /// Child frame.
     pub child: String,
-    /// The child in its parent.
+    /// Pose of the child in its parent.
     pub transform: Isometry3<f64>,
 }
 
@@ -43,7 +43,7 @@ pub fn header(fields: &mut WireReader<'_>) -> Result<Header, WireError> {
     }
     Ok(Header {
         stamp_s: fields.stamp_s()?,
-        // ROS 1 has names with a slash in front.
+        // ROS 1 frames have a leading slash.
         frame: fields.name("the frame")?.trim_start_matches('/').to_owned(),
     })
 }
@@ -67,7 +67,7 @@ pub fn multi_echo_scan(fields: &mut WireReader<'_>) -> Result<(Header, ScanField
     Ok((header, scan))
 }
 
-/// What both kinds of scans begin with.
+/// Fields before the ranges, shared by both kinds of scans.
 fn scan_without_ranges(fields: &mut WireReader<'_>) -> Result<(Header, ScanFields), WireError> {
     let header = header(fields)?;
     let scan = ScanFields {
@@ -125,7 +125,7 @@ fn pose(fields: &mut WireReader<'_>) -> Result<Isometry3<f64>, WireError> {
     let rotation = if quaternion.norm_squared() > 1e-12 {
         UnitQuaternion::new_normalize(quaternion)
     } else {
-        // Zeros: the rotation was never set.
+        // All zero: the rotation was never set.
         UnitQuaternion::identity()
     };
     Ok(Isometry3::from_parts(Translation3::new(x, y, z), rotation))

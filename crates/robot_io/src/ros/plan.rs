@@ -1,8 +1,8 @@
-//! Which scans and which odometry of a recording are taken, where the laser sits, and at which times.
+//! Selects scans and odometry of a recording, and determines mounting and stamps.
 
 mod mounts;
+mod odometry;
 mod offers;
-mod wheels;
 
 use nalgebra::Isometry3;
 
@@ -11,15 +11,15 @@ use crate::counted::counted;
 use crate::laser_mount::LaserMount;
 use crate::lines::listed;
 use crate::log::{LogNotes, LogOffer, LogOption, LogOptions};
+use crate::odometry_poses::OdometryPoses;
 use crate::remark::{Part, Remark};
 use crate::stamps::MendedStamps;
-use crate::wheel_poses::WheelPoses;
 
-/// A topic with fewer scans than this share of the richest one is not the robot's laser.
+/// A topic with fewer scans than this share of the largest one is not the robot's laser.
 const LEAST_SHARE: f64 = 0.1;
 /// Two lasers whose numbers of scans differ by more than this factor are not merged.
 const SAME_RATE: f64 = 1.5;
-/// So many other topics are named in a sentence.
+/// Most topics listed in a sentence.
 const MOST_NAMED: usize = 10;
 
 /// The topic of transforms.
@@ -28,39 +28,39 @@ pub const TRANSFORMS: &str = "/tf";
 /// A topic whose scans are read.
 #[derive(Clone, Debug)]
 pub struct PlannedScans {
-    /// Its name.
+    /// Topic.
     pub topic: String,
-    /// When each of its messages was measured, s; not a number where it cannot be read.
+    /// Stamp of each message, s; NaN if it is unreadable.
     pub stamps_s: Vec<f64>,
-    /// From one to the next, s.
+    /// Time between scans, s.
     pub period_s: f64,
-    /// Where the laser sits.
+    /// Mounting of the laser in the plane.
     pub mount: LaserMount,
-    /// The same with height and lean.
+    /// The mounting in 3-D.
     pub body_from_sensor: Isometry3<f64>,
 }
 
-/// What is taken from a recording.
+/// Selection from a recording.
 #[derive(Debug, Default)]
 pub struct Plan {
     /// The scans; those of further lasers are merged into those of the first.
     pub scans: Vec<PlannedScans>,
     /// The body's poses by odometry.
-    pub wheels: Option<WheelPoses>,
-    /// What options could choose.
+    pub odometry: Option<OdometryPoses>,
+    /// Choices for options.
     pub offers: Vec<LogOffer>,
-    /// An option that asks for what is not there.
+    /// An option that requests a name which does not exist.
     pub missing: Option<(LogOption, String)>,
-    /// What was chosen and found.
+    /// Choices made and what was found.
     pub about: Vec<String>,
-    /// What was missing or mended.
+    /// What was missing or corrected.
     pub warnings: Vec<Remark>,
-    /// Why no scan can be read.
+    /// Why there is no readable scan.
     without_scans: String,
 }
 
 impl Plan {
-    /// What is taken of a recording in which `survey` found what it holds.
+    /// Selects from a recording with the content that `survey` found.
     #[must_use]
     pub fn new(survey: &Survey, options: &LogOptions) -> Self {
         let mut plan = Self {
@@ -73,14 +73,18 @@ impl Plan {
             return plan;
         };
         let mut clocks = vec![MendedStamps::new(&stream.stamps_s, &stream.recorded_s)];
-        let wheels = wheels::chosen(survey, options, &stream.frame, &clocks[0]);
-        let ground = wheels.as_ref().map(|wheels| wheels.track.above.as_str());
+        let odometry = odometry::chosen(survey, options, &stream.frame, &clocks[0]);
+        let ground = odometry
+            .as_ref()
+            .map(|odometry| odometry.track.above.as_str());
         let told_body = options
             .body_frame
             .as_deref()
             .map(|body| body.trim_start_matches('/'));
         let body = told_body
-            .or(wheels.as_ref().map(|wheels| wheels.track.body.as_str()))
+            .or(odometry
+                .as_ref()
+                .map(|odometry| odometry.track.body.as_str()))
             .unwrap_or("base_link");
         let found = mounts::find(survey, body, &stream.frame, ground, options);
         let frame = if stream.frame.is_empty() {
@@ -90,10 +94,10 @@ impl Plan {
         };
         plan.about
             .push(format!("scans are those of {topic}, {frame}"));
-        if let Some(wheels) = &wheels {
+        if let Some(odometry) = &odometry {
             plan.about.push(format!(
                 "odometry is that of {}, from {} to {}",
-                wheels.topic, wheels.track.above, wheels.track.body
+                odometry.topic, odometry.track.above, odometry.track.body
             ));
         }
         plan.about.push(mounts::sentence(&found));
@@ -118,7 +122,7 @@ impl Plan {
         }
         if stream.repeated > 0 {
             let text = format!(
-                "{} of {topic} {} the one before once more and left out",
+                "{} of {topic} {} a duplicate of the one before and skipped",
                 counted(stream.repeated, "scan"),
                 if stream.repeated == 1 { "is" } else { "are" }
             );
@@ -126,26 +130,30 @@ impl Plan {
         }
         plan.name_other_scans(survey, options);
         for (scans, clock) in plan.scans.iter().zip(&clocks) {
-            let said = clock.remarks(&format!("scans of {}", scans.topic));
-            plan.warnings.extend(said);
+            let remarks = clock.remarks(&format!("scans of {}", scans.topic));
+            plan.warnings.extend(remarks);
         }
-        if let Some(wheels) = &wheels {
-            plan.warnings
-                .extend(wheels.clock.remarks(&format!("poses of {}", wheels.topic)));
-            plan.take_wheels(wheels, &clocks[0]);
-            plan.about.extend(wheels.others.clone());
+        if let Some(odometry) = &odometry {
+            plan.warnings.extend(
+                odometry
+                    .clock
+                    .remarks(&format!("poses of {}", odometry.topic)),
+            );
+            plan.align_clocks(odometry, &clocks[0]);
+            plan.about.extend(odometry.others.clone());
         }
         for (parent, child) in survey.transforms.edges().take(100) {
-            plan.about.push(format!("frame {child} hangs on {parent}"));
+            plan.about
+                .push(format!("frame {child} is a child of {parent}"));
         }
-        plan.offers = offers::list(survey, Some(topic), wheels.as_ref(), Some(&found.body));
-        plan.missing = offers::missing(survey, options, &plan.offers, wheels.as_ref());
+        plan.offers = offers::list(survey, Some(topic), odometry.as_ref(), Some(&found.body));
+        plan.missing = offers::missing(survey, options, &plan.offers, odometry.as_ref());
         plan
     }
 
-    /// Puts odometry and scans on one clock.
-    fn take_wheels(&mut self, wheels: &wheels::Wheels<'_>, clock: &MendedStamps) {
-        let aligned = wheels::aligned(wheels, clock);
+    /// Aligns the clocks of odometry and scans.
+    fn align_clocks(&mut self, odometry: &odometry::SelectedOdometry<'_>, clock: &MendedStamps) {
+        let aligned = odometry::aligned(odometry, clock);
         let by_s = aligned.scans_by_s;
         for scans in &mut self.scans {
             scans
@@ -153,7 +161,7 @@ impl Plan {
                 .iter_mut()
                 .for_each(|stamp_s| *stamp_s += by_s);
         }
-        self.warnings.extend(aligned.said);
+        self.warnings.extend(aligned.remarks);
         let poses = aligned.poses;
         let anchor = &self.scans[0].stamps_s;
         let known = anchor.iter().filter(|stamp_s| stamp_s.is_finite()).count();
@@ -172,14 +180,14 @@ impl Plan {
                 .filter(|&&stamp_s| stamp_s > last_s && poses.at(stamp_s).is_none());
             let (early, late) = (early.count(), late.count());
             self.warnings.push(Remark::mended(Part::Odometry, format!(
-                "{bare} of {known} scans have no odometry of their time ({early} before its first pose, {late} after its last, {} in gaps); they go by scans alone. Record odometry from the start to the end",
+                "{bare} of {known} scans have no odometry at their stamp ({early} before its first pose, {late} after its last, {} in gaps); they are matched without odometry. Record odometry from start to end",
                 bare - early - late
             )));
         }
-        self.wheels = Some(poses);
+        self.odometry = Some(poses);
     }
 
-    /// Names the topics with scans that are not read.
+    /// Lists topics with scans that are not read.
     fn name_other_scans(&mut self, survey: &Survey, options: &LogOptions) {
         if options.scan_topic.is_some() {
             return;
@@ -195,7 +203,7 @@ impl Plan {
             let options = others.iter().map(|topic| format!("--scan-topic {topic}"));
             let options: Vec<String> = options.collect();
             let text = format!(
-                "there are scans on {} as well, which are not read; choose with {}",
+                "there are also scans on {}, which are not read; choose with {}",
                 listed(others.into_iter()),
                 options[0]
             );
@@ -205,28 +213,28 @@ impl Plan {
         }
     }
 
-    /// Tells what was met and what was chosen.
-    pub fn tell(&self, survey_counts: &Survey, notes: &mut LogNotes) {
-        let counts = survey_counts.counts.iter();
+    /// Writes counts and choices to the notes.
+    pub fn write_notes(&self, survey: &Survey, notes: &mut LogNotes) {
+        let counts = survey.counts.iter();
         notes.records = counts
             .map(|((topic, kind), &count)| (format!("{topic} {kind}"), count))
             .collect();
         notes.about.clone_from(&self.about);
         notes.warnings.clone_from(&self.warnings);
         notes.offers.clone_from(&self.offers);
-        // Merged scans have no laser of their own.
+        // Merged scans have no single laser.
         notes.laser = match &self.scans[..] {
             [only] => Some(only.mount),
             _ => None,
         };
     }
 
-    /// What stands in the recording in place of scans.
+    /// What the recording contains instead of scans.
     pub fn without_scans(&self) -> &str {
         &self.without_scans
     }
 
-    /// What there is in place of what an option asks for.
+    /// The names that exist for an option.
     pub fn instead_of(&self, option: LogOption) -> String {
         let offer = self.offers.iter().find(|offer| offer.option == option);
         let names = offer.map_or(&[][..], |offer| &offer.names);
@@ -248,7 +256,7 @@ fn planned(topic: &str, clock: &MendedStamps, found: &mounts::Found) -> PlannedS
     }
 }
 
-/// The topics whose scans may be read, the first one first.
+/// The topics whose scans are read, the primary one first.
 fn chosen_scans<'a>(survey: &'a Survey, options: &LogOptions) -> Vec<(&'a str, &'a ScanStream)> {
     let usable = survey.scans.iter().filter(|(_, stream)| stream.is_usable);
     let mut usable: Vec<(&str, &ScanStream)> = usable
@@ -260,7 +268,7 @@ fn chosen_scans<'a>(survey: &'a Survey, options: &LogOptions) -> Vec<(&'a str, &
         let found: Option<Vec<_>> = all.map(find).collect();
         return found.unwrap_or_default();
     }
-    // Lasers before clouds, which may be those of a camera.
+    // Lasers before clouds, which may come from a camera.
     let is_cloud = |stream: &ScanStream| SCANS[stream.kind] == "sensor_msgs/PointCloud2";
     usable.sort_by_key(|(_, stream)| (is_cloud(stream), stream.order));
     let most = usable

@@ -1,10 +1,10 @@
-//! A cloud of one ring as a scan.
+//! Converts a point cloud of one ring to a scan.
 //!
-//! The points of a planar laser stand at multiples of one step. The step is the median one between
-//! points next to each other, made exact by the first and the last of them; each point goes to the
-//! beam nearest to it, the nearer one where two do. One beam that turns sweeps a cone about its axis, or a
-//! plane, however its frame leans: heights are a linear function of x, y and range. A cloud whose
-//! heights are not is one of several rings, whether or not it says so.
+//! The points of a planar laser are at multiples of one angular step. The step is the median one between
+//! neighbouring points, refined by the first and the last point. Each point is assigned to the nearest beam, and the
+//! closer one wins. A single rotating beam sweeps a cone about its axis, or a plane, whatever the tilt of its frame:
+//! heights are a linear function of x, y and range. If they are not, the cloud has several rings, whether or not it
+//! states them.
 
 use core::f64::consts::TAU;
 
@@ -17,14 +17,14 @@ use super::wire::{WireError, WireReader};
 
 /// More beams than any planar laser has.
 const MOST_BEAMS: f64 = 100_000.0;
-/// Points of one ring lie so near to their cone, as root of the mean square, m: rings a degree apart are
-/// farther from each other beyond 6 m.
+/// Largest RMS distance of the points of one ring from their cone, m: rings a degree apart are farther from each other
+/// beyond 6 m.
 const RING_M: f64 = 0.05;
 
 const SEVERAL_RINGS: &str =
-    "the cloud has several rings; give the heights to cut it by: --heights LOW,HIGH";
+    "the cloud has several rings; select a height band with --heights LOW,HIGH";
 
-/// Where a number stands in each point.
+/// Offset and type of a number in each point.
 #[derive(Clone, Copy, Debug)]
 struct Field {
     offset: usize,
@@ -32,7 +32,7 @@ struct Field {
 }
 
 impl Field {
-    /// The number; none for kinds that no coordinate has.
+    /// Reads the number; `None` for types that no coordinate has.
     fn of(self, point: &[u8], is_big: bool) -> Option<f64> {
         let bytes = |count: usize| {
             let mut bytes = point
@@ -54,25 +54,25 @@ impl Field {
     }
 }
 
-/// `sensor_msgs/PointCloud2` as a scan; the mounting is not in the message.
+/// Reads `sensor_msgs/PointCloud2` as a scan; the mounting is not in the message.
 ///
 /// # Errors
-/// Where the message ends early, or the cloud is not one ring.
+/// If the message is truncated, or the cloud is not one ring.
 pub fn point_cloud(fields: &mut WireReader<'_>) -> Result<(Header, LaserScan), String> {
     let (header, points) = ring(fields)?;
-    let scan = scan_of(points).ok_or("a cloud has to have two points at least")?;
+    let scan = scan_of(points).ok_or("a cloud must have at least two points")?;
     Ok((header, scan))
 }
 
-/// The points of `sensor_msgs/PointCloud2` in the sensor's frame, m.
+/// Reads the points of `sensor_msgs/PointCloud2` in the sensor's frame, m.
 ///
 /// # Errors
-/// Where the message ends early, or has no coordinates.
+/// If the message is truncated or has no coordinates.
 pub fn cloud_points(fields: &mut WireReader<'_>) -> Result<Vec<Point3<f64>>, String> {
     let cloud = Cloud::parse(fields)?;
     let z = cloud
         .z
-        .ok_or("a cloud has to have a field z to be cut by heights")?;
+        .ok_or("a cloud must have a field z for a height band")?;
     let points = cloud.data.chunks_exact(cloud.step).filter_map(|point| {
         let number = |field: Field| {
             field
@@ -84,7 +84,7 @@ pub fn cloud_points(fields: &mut WireReader<'_>) -> Result<Vec<Point3<f64>>, Str
     Ok(points.collect())
 }
 
-/// The message with the places of its coordinates.
+/// The message with the offsets of its coordinates.
 struct Cloud<'a> {
     header: Header,
     height: u32,
@@ -99,19 +99,19 @@ struct Cloud<'a> {
 
 impl<'a> Cloud<'a> {
     fn parse(fields: &mut WireReader<'a>) -> Result<Self, String> {
-        let told = |error: WireError| error.to_string();
-        let header = header(fields).map_err(told)?;
-        let height = fields.u32("height").map_err(told)?;
-        fields.u32("width").map_err(told)?;
-        let count = fields.count("fields", 10).map_err(told)?;
+        let in_words = |error: WireError| error.to_string();
+        let header = header(fields).map_err(in_words)?;
+        let height = fields.u32("height").map_err(in_words)?;
+        fields.u32("width").map_err(in_words)?;
+        let count = fields.count("fields", 10).map_err(in_words)?;
         let (mut x, mut y, mut z, mut ring) = (None, None, None, None);
         for _ in 0..count {
-            let name = fields.name("a field's name").map_err(told)?;
+            let name = fields.name("a field's name").map_err(in_words)?;
             let field = Field {
-                offset: fields.u32("a field's offset").map_err(told)? as usize,
-                kind: fields.u8("a field's type").map_err(told)?,
+                offset: fields.u32("a field's offset").map_err(in_words)? as usize,
+                kind: fields.u8("a field's type").map_err(in_words)?,
             };
-            fields.u32("a field's count").map_err(told)?;
+            fields.u32("a field's count").map_err(in_words)?;
             match name.as_str() {
                 "x" => x = Some(field),
                 "y" => y = Some(field),
@@ -120,15 +120,15 @@ impl<'a> Cloud<'a> {
                 _ => {}
             }
         }
-        let is_big = fields.u8("is_bigendian").map_err(told)? != 0;
-        let step = fields.u32("point_step").map_err(told)? as usize;
-        fields.u32("row_step").map_err(told)?;
-        let data = fields.bytes("the points").map_err(told)?;
+        let is_big = fields.u8("is_bigendian").map_err(in_words)? != 0;
+        let step = fields.u32("point_step").map_err(in_words)? as usize;
+        fields.u32("row_step").map_err(in_words)?;
+        let data = fields.bytes("the points").map_err(in_words)?;
         let (Some(x), Some(y)) = (x, y) else {
-            return Err("a cloud has to have fields x and y".to_owned());
+            return Err("a cloud must have fields x and y".to_owned());
         };
         if step == 0 {
-            return Err("a point has to have bytes, and has none".to_owned());
+            return Err("point_step must not be 0".to_owned());
         }
         Ok(Self {
             header,
@@ -159,7 +159,7 @@ fn ring(fields: &mut WireReader<'_>) -> Result<(Header, Vec<(f64, f64)>), String
     } = Cloud::parse(fields)?;
     if height > 1 {
         return Err(format!(
-            "the cloud has {height} rows; give the heights to cut it by: --heights LOW,HIGH"
+            "the cloud has {height} rows; select a height band with --heights LOW,HIGH"
         ));
     }
     let mut first_ring = None;
@@ -173,7 +173,7 @@ fn ring(fields: &mut WireReader<'_>) -> Result<(Header, Vec<(f64, f64)>), String
         }
         let number = |field: Field| {
             let value = field.of(point, is_big);
-            value.ok_or("x and y have to be numbers inside of a point")
+            value.ok_or("x and y must be numbers inside a point")
         };
         let (x, y) = (number(x)?, number(y)?);
         let range_m = math::norm2(x, y);
@@ -190,7 +190,7 @@ fn ring(fields: &mut WireReader<'_>) -> Result<(Header, Vec<(f64, f64)>), String
     Ok((header, points))
 }
 
-/// The cone or plane nearest to points: `z = a x + b y + c r + d`, by least squares.
+/// Least-squares cone or plane: `z = a x + b y + c r + d`.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cone {
     count: f64,
@@ -211,12 +211,12 @@ impl Cone {
         self.squares += z * z;
     }
 
-    /// Root of the mean square of the points' distances from it, upright, m; 0 of none.
+    /// RMS vertical distance of the points from it, m; 0 without points.
     fn error_m(&self) -> f64 {
         if self.count == 0.0 {
             return 0.0;
         }
-        // Points that say nothing of one of the four leave it at 0; 1e-9 of their number costs nothing.
+        // The ridge keeps unobservable coefficients at 0; 1e-9 of the number of points is negligible.
         let ridge = Matrix4::identity() * (1e-9 * self.count);
         let Some(factors) = (self.normal + ridge).cholesky() else {
             return 0.0;
@@ -258,10 +258,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn beams_that_saw_nothing_leave_gaps_and_not_a_wider_step() {
+    fn beams_without_a_return_leave_gaps_and_not_a_wider_step() {
         let bearing = |beam: usize| -2.0 + 0.01 * beam as f64;
         let seen = (0..300).filter(|beam| beam % 7 != 3 && !(100..130).contains(beam));
-        // In another order than the beams': clouds come as they come.
+        // Not in the order of the beams, as clouds may be.
         let points: Vec<(f64, f64)> = seen
             .rev()
             .map(|beam| (bearing(beam), 1.0 + beam as f64))
@@ -277,7 +277,7 @@ mod tests {
         }
     }
 
-    /// The error of a cloud of a rectangular room, seen at these elevations (rad) from a frame that leans.
+    /// The error of a cloud of a rectangular room, scanned at these elevations (rad) from a tilted frame.
     fn error_of_rings_m(elevations: &[f64]) -> f64 {
         let mut cone = Cone::default();
         for &elevation in elevations {
@@ -292,11 +292,11 @@ mod tests {
     }
 
     #[test]
-    fn rings_are_told_apart_by_their_heights_where_no_field_names_them() {
+    fn rings_are_distinguished_by_height_without_a_ring_field() {
         for one in [0.0, 0.2, -0.3] {
             assert!(error_of_rings_m(&[one]) < 1e-3, "{one}");
         }
-        // Two degrees apart, as of the usual scanners with sixteen rings.
+        // Two degrees apart, as with the usual sixteen-ring scanners.
         let step = 2_f64.to_radians();
         let rings: Vec<f64> = (0..16).map(|ring| step * (f64::from(ring) - 7.5)).collect();
         for several in [&rings[..], &rings[..2]] {

@@ -1,4 +1,4 @@
-//! Frames of a recording, whatever its container.
+//! Frames of a ROS recording, for all containers.
 
 use std::io::ErrorKind;
 
@@ -15,10 +15,10 @@ use crate::log::{BrokenRecord, FilePosition, LogError, LogFrame, LogNotes, LogOp
 use crate::log_bytes::LogBytes;
 use crate::remark::{Part, Remark};
 
-/// Scans of two lasers belong together if their stamps differ by less than this share of a period.
+/// Scans of two lasers are merged if their stamps differ by less than this share of a period.
 const TOGETHER: f64 = 0.6;
 
-/// Reads a recording: once to see what is in it, and once more for its scans.
+/// Reads a recording in two passes: a survey, and the scans.
 pub struct RosReader<'a> {
     files: RosFiles<'a>,
     name: String,
@@ -35,7 +35,7 @@ struct Reading<'a> {
     others: Vec<Companion<'a>>,
 }
 
-/// Another laser, and its scans nearest to that of the first.
+/// Another laser, and its scans nearest in time to those of the first.
 struct Companion<'a> {
     cursor: ScanCursor<'a>,
     last: Option<StampedScan>,
@@ -43,7 +43,7 @@ struct Companion<'a> {
 }
 
 impl<'a> RosReader<'a> {
-    /// A reader of the files of a recording; `name` is what errors call it.
+    /// Creates a reader of the files of a recording; errors contain `name`.
     #[must_use]
     pub fn new(files: Vec<LogBytes<'a>>, name: &str, options: &LogOptions) -> Self {
         Self {
@@ -56,7 +56,7 @@ impl<'a> RosReader<'a> {
         }
     }
 
-    /// Goes through all messages.
+    /// Surveys all messages.
     fn look_through(&mut self) -> Result<(Survey, Messages<'a>), LogError> {
         let mut survey = Survey::default();
         let mut messages = self.files.messages();
@@ -64,14 +64,14 @@ impl<'a> RosReader<'a> {
             match messages.next_message() {
                 Ok(Some(message)) => {
                     if let Err(problem) = survey.take(&message, &self.options) {
-                        let place = FilePosition::Byte(messages.offset());
-                        self.notes.leave_out(place, problem);
+                        let position = FilePosition::Byte(messages.offset());
+                        self.notes.skip(position, problem);
                     }
                 }
                 Ok(None) => break,
                 Err(error) => {
-                    let place = FilePosition::Byte(messages.offset());
-                    if !self.take_error(error, place)? {
+                    let position = FilePosition::Byte(messages.offset());
+                    if !self.take_error(error, position)? {
                         break;
                     }
                 }
@@ -80,17 +80,17 @@ impl<'a> RosReader<'a> {
         Ok((survey, messages))
     }
 
-    /// The first pass: what is in the recording, and what is taken of it.
+    /// Surveys the recording and selects from it.
     fn survey(&mut self) -> Result<Reading<'a>, LogError> {
         let (mut survey, mut messages) = self.look_through()?;
-        if messages.has_learned() {
-            // Damage took the names of topics; now that they are known, its neighbours can be read.
+        if messages.has_late_topics() {
+            // Damage hid topics; now that they are known, the messages around it can be read.
             self.notes = LogNotes::default();
             (survey, messages) = self.look_through()?;
         }
         self.notes.bytes = messages.offset();
         let plan = Plan::new(&survey, &self.options);
-        plan.tell(&survey, &mut self.notes);
+        plan.write_notes(&survey, &mut self.notes);
         if let Some((option, wanted)) = plan.missing.clone().filter(|_| !plan.scans.is_empty()) {
             return Err(LogError::Missing {
                 name: self.name.clone(),
@@ -105,7 +105,7 @@ impl<'a> RosReader<'a> {
         });
         let Some(anchor) = cursors.next() else {
             let instead = messages.instead();
-            return Err(self.nothing_found(instead.as_deref().unwrap_or(plan.without_scans())));
+            return Err(self.no_scans_error(instead.as_deref().unwrap_or(plan.without_scans())));
         };
         let others = cursors.map(|cursor| Companion {
             cursor,
@@ -120,11 +120,15 @@ impl<'a> RosReader<'a> {
         })
     }
 
-    /// Takes what is wrong with a container: an error of the system ends the reading, all else is a note.
-    /// Returns whether messages may follow.
-    fn take_error(&mut self, error: ContainerError, place: FilePosition) -> Result<bool, LogError> {
+    /// Handles an error of a container: a system error ends the reading, others become notes. Returns whether messages
+    /// may follow.
+    fn take_error(
+        &mut self,
+        error: ContainerError,
+        position: FilePosition,
+    ) -> Result<bool, LogError> {
         match error {
-            // Packed bytes that break off are no fault of the system.
+            // Truncated compressed data is not a system error.
             ContainerError::Io(source)
                 if matches!(
                     source.kind(),
@@ -132,38 +136,38 @@ impl<'a> RosReader<'a> {
                 ) =>
             {
                 let problem = source.to_string();
-                self.notes.half_written = Some(BrokenRecord { place, problem });
+                self.notes.truncated = Some(BrokenRecord { position, problem });
             }
             ContainerError::Io(source) => {
                 return Err(LogError::Io {
                     name: self.name.clone(),
-                    place,
+                    position,
                     source,
                 });
             }
             ContainerError::CutOff(problem) => {
-                self.notes.half_written = Some(BrokenRecord { place, problem });
+                self.notes.truncated = Some(BrokenRecord { position, problem });
             }
             ContainerError::Broken(problem) => {
-                self.notes.leave_out(place, problem);
+                self.notes.skip(position, problem);
                 let rest = "the rest of the file was not read".to_owned();
                 self.notes.ended_early = Some(rest);
             }
             ContainerError::Skipped(problem) => {
-                self.notes.leave_out(place, problem);
+                self.notes.skip(position, problem);
                 return Ok(true);
             }
         }
         Ok(false)
     }
 
-    fn nothing_found(&self, instead: &str) -> LogError {
+    fn no_scans_error(&self, instead: &str) -> LogError {
         let broken = self.notes.first_broken.as_ref();
-        let broken = broken.or(self.notes.half_written.as_ref());
+        let broken = broken.or(self.notes.truncated.as_ref());
         LogError::NoScans {
             name: self.name.clone(),
             detail: match broken {
-                Some(broken) => format!("{}: {}", broken.place, broken.problem),
+                Some(broken) => format!("{}: {}", broken.position, broken.problem),
                 None => instead.to_owned(),
             },
         }
@@ -179,15 +183,15 @@ impl LogReader for RosReader<'_> {
         let scan = reading.next(&mut self.notes);
         self.notes.bytes = reading.anchor.offset();
         if scan.is_none() || self.frames == 0 {
-            reading.tell_fields(&mut self.notes);
+            reading.write_field_remarks(&mut self.notes);
         }
         let without_scans = reading.plan.without_scans().to_owned();
         let odometry = |stamp_s| {
             reading
                 .plan
-                .wheels
+                .odometry
                 .as_ref()
-                .and_then(|wheels| wheels.at(stamp_s))
+                .and_then(|odometry| odometry.at(stamp_s))
         };
         let frame = scan.map(|scan| LogFrame {
             stamp_s: scan.stamp_s,
@@ -200,7 +204,7 @@ impl LogReader for RosReader<'_> {
                 self.frames += 1;
                 Ok(Some(frame))
             }
-            None if self.frames == 0 => Err(self.nothing_found(&without_scans)),
+            None if self.frames == 0 => Err(self.no_scans_error(&without_scans)),
             None => Ok(None),
         }
     }
@@ -211,15 +215,15 @@ impl LogReader for RosReader<'_> {
 }
 
 impl Reading<'_> {
-    /// The next scan of the first laser, with those of the others of its time.
+    /// The next scan of the first laser, merged with those of the others at its time.
     fn next(&mut self, notes: &mut LogNotes) -> Option<StampedScan> {
         let mut scan = self.anchor.next(notes)?;
         if self.others.is_empty() {
             return Some(scan);
         }
         let most_apart_s = TOGETHER * self.anchor.scans().period_s;
-        let wheels = self.plan.wheels.as_ref();
-        let of_anchor = wheels.and_then(|wheels| wheels.at(scan.stamp_s));
+        let odometry = self.plan.odometry.as_ref();
+        let of_anchor = odometry.and_then(|odometry| odometry.at(scan.stamp_s));
         let mut points = points_of(&scan.scan);
         let mut step_rad = scan.scan.angle_step_rad.abs();
         for other in &mut self.others {
@@ -229,8 +233,8 @@ impl Reading<'_> {
             if (near.stamp_s - scan.stamp_s).abs() > most_apart_s {
                 continue;
             }
-            // Where the body was when the other laser looked, seen from where it is now.
-            let of_other = wheels.and_then(|wheels| wheels.at(near.stamp_s));
+            // Pose of the body at the other laser's scan, relative to the current body.
+            let of_other = odometry.and_then(|odometry| odometry.at(near.stamp_s));
             let moved = of_anchor
                 .zip(of_other)
                 .map(|(now, then)| now.between(&then));
@@ -243,11 +247,11 @@ impl Reading<'_> {
         Some(scan)
     }
 
-    /// Adds what is wrong with the fields of scans.
-    fn tell_fields(&self, notes: &mut LogNotes) {
+    /// Adds problems in the fields of scans to the notes.
+    fn write_field_remarks(&self, notes: &mut LogNotes) {
         let cursors =
             std::iter::once(&self.anchor).chain(self.others.iter().map(|other| &other.cursor));
-        for sentence in cursors.flat_map(ScanCursor::said) {
+        for sentence in cursors.flat_map(ScanCursor::remarks) {
             let remark = Remark::mended(Part::Sensor, sentence.clone());
             if !notes.warnings.contains(&remark) {
                 notes.warnings.push(remark);
@@ -256,7 +260,7 @@ impl Reading<'_> {
     }
 }
 
-/// The points of a scan on the body.
+/// The points of a scan in the body frame.
 fn points_of(scan: &LaserScan) -> Vec<Point2<f64>> {
     let beams = scan.ranges_m.iter().enumerate();
     let seen = beams.filter(|&(_, &range_m)| scan.is_return(range_m));
@@ -269,7 +273,7 @@ fn points_of(scan: &LaserScan) -> Vec<Point2<f64>> {
 }
 
 impl Companion<'_> {
-    /// The scan nearest to this time, which never goes back.
+    /// The scan nearest to this time; never goes back.
     fn nearest(&mut self, stamp_s: f64, notes: &mut LogNotes) -> Option<&StampedScan> {
         while self
             .next

@@ -1,8 +1,8 @@
-//! The fields of a laser scan, checked against each other.
+//! Checks the fields of a laser scan against each other.
 //!
-//! A driver states the same thing more than once: the first and the last angle, the step between two beams and
-//! their number; the time of a beam and that of a scan; ranges and their limits. If they contradict each
-//! other, what two of them agree on is taken and a sentence reports it; else the scan is refused.
+//! A driver states redundant values: the first and the last angle, the step between two beams and their number; the
+//! time of a beam and that of a scan; ranges and their limits. If they are inconsistent, the value on which two of them
+//! agree is used and a sentence reports it; otherwise the scan is rejected.
 
 use core::f64::consts::{PI, TAU};
 
@@ -10,14 +10,14 @@ use ch16_slam2d::scan::LaserScan;
 
 use crate::stamps::median;
 
-/// A sweep is a turn at most, up to the rounding of four-byte numbers and one beam too many.
+/// A sweep is at most a turn, up to the rounding of 32-bit floats and one extra beam.
 const FULL_TURN: f64 = 1.02 * TAU;
-/// Longer ranges are not metres.
+/// Longer ranges are not in metres.
 const LONGEST_M: f64 = 400.0;
-/// So much longer than from one scan to the next may a sweep take: stamps jitter.
+/// A sweep may take this many scan periods: stamps jitter.
 const SWEEP_SLACK: f64 = 1.3;
 
-/// What `sensor_msgs/LaserScan` has in its fields.
+/// Fields of `sensor_msgs/LaserScan`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScanFields {
     /// Angle of the first beam, rad.
@@ -28,27 +28,27 @@ pub struct ScanFields {
     pub angle_increment: f64,
     /// Time from one beam to the next, s.
     pub time_increment: f64,
-    /// Time of a turn, s.
+    /// Time between scans, s.
     pub scan_time: f64,
-    /// Shorter ranges are no points, m.
+    /// Shorter ranges are no returns, m.
     pub range_min: f64,
-    /// Longer ones are none either, m.
+    /// Longer ranges are no returns, m.
     pub range_max: f64,
-    /// One range for each beam, m.
+    /// One range per beam, m.
     pub ranges_m: Vec<f64>,
 }
 
-/// A scan, and what was contradictory in its fields.
+/// A scan, and the inconsistencies of its fields.
 pub type Checked = (LaserScan, Vec<String>);
 
 impl ScanFields {
-    /// The scan of these fields; `period_s` is the time from one scan to the next, 0 if it is unknown.
+    /// Checks the fields; `period_s` is the time between scans, 0 if unknown.
     ///
     /// # Errors
-    /// Which fields contradict each other, if nothing can be taken from them.
+    /// If fields are inconsistent and cannot be corrected.
     pub fn checked(self, period_s: f64) -> Result<Checked, String> {
         if self.ranges_m.is_empty() {
-            return Err("a scan has to have ranges, and has none".to_owned());
+            return Err("a scan must have ranges, and this one has none".to_owned());
         }
         let mut said = Vec::new();
         let (first_angle_rad, angle_step_rad) = self.angles(&mut said)?;
@@ -58,7 +58,7 @@ impl ScanFields {
         if scale != 1.0 {
             ranges_m.iter_mut().for_each(|range_m| *range_m *= scale);
         }
-        // Nothing within the limit, by REP 117: as a reading at it, which other formats can write.
+        // No return within the limit, by REP 117: stored as a reading at the limit, which other formats can represent.
         if range_max_m.is_finite() {
             let is_beyond = |range_m: &&mut f64| **range_m == f64::INFINITY;
             ranges_m
@@ -97,12 +97,12 @@ impl ScanFields {
             };
             if !has_step {
                 return Err(format!(
-                    "angle_increment is {step}, and angle_min and angle_max do not give it; set it in the driver"
+                    "angle_increment is {step} and cannot be computed from angle_min and angle_max; set it in the driver"
                 ));
             }
             let (from, step) = if step.abs() * gaps > FULL_TURN {
                 said.push(
-                    "its angles are degrees; they are taken as such. Publish radians".to_owned(),
+                    "its angles are in degrees; they were converted. Publish radians".to_owned(),
                 );
                 (from.to_radians(), step.to_radians())
             } else {
@@ -113,12 +113,12 @@ impl ScanFields {
         let of_ends = (max - min) / gaps;
         if !has_step {
             said.push(format!(
-                "angle_increment is {step}; {:.4}° is taken, from angle_min, angle_max and {beams} beams",
+                "angle_increment is {step}; {:.4}° is used, from angle_min, angle_max and {beams} beams",
                 of_ends.to_degrees()
             ));
             return in_a_turn(min, of_ends, gaps);
         }
-        // The last angle is that of the last beam, or that of the one after it; degrees of either kind.
+        // The last angle is that of the last beam or of the one after it; either may be in degrees.
         let agrees = |ends: f64, step: f64| {
             (ends - step * gaps).abs() <= 1.5 * step.abs()
                 || (ends / (step * gaps) - 1.0).abs() < 0.01
@@ -127,24 +127,24 @@ impl ScanFields {
             if (step * gaps).abs() <= FULL_TURN {
                 return Ok((min, step));
             }
-            said.push("its angles are degrees; they are taken as such. Publish radians".to_owned());
+            said.push("its angles are in degrees; they were converted. Publish radians".to_owned());
             return in_a_turn(min.to_radians(), step.to_radians(), gaps);
         }
         if agrees(max - min, step.to_radians()) && (max - min).abs() <= FULL_TURN {
             said.push(format!(
-                "angle_increment is {step}, which is degrees; angle_min and angle_max are radians. Publish radians"
+                "angle_increment is {step}, in degrees; angle_min and angle_max are in radians. Publish radians"
             ));
             return Ok((min, step.to_radians()));
         }
         if agrees((max - min).to_radians(), step) && (step * gaps).abs() <= FULL_TURN {
             said.push(format!(
-                "angle_min {min} and angle_max {max} are degrees; angle_increment is radians. Publish radians"
+                "angle_min {min} and angle_max {max} are in degrees; angle_increment is in radians. Publish radians"
             ));
             return Ok((min.to_radians(), step));
         }
-        let told = |taken: &str| {
+        let contradiction = |taken: &str| {
             format!(
-                "angle_min {:.2}°, angle_max {:.2}° and {beams} beams give a step of {:.4}°, and angle_increment is {:.4}°; {taken}. Correct the driver",
+                "angle_min {:.2}°, angle_max {:.2}° and {beams} beams give a step of {:.4}°, but angle_increment is {:.4}°; {taken}. Correct the driver",
                 min.to_degrees(),
                 max.to_degrees(),
                 of_ends.to_degrees(),
@@ -152,19 +152,21 @@ impl ScanFields {
             )
         };
         if (max - min).abs() <= FULL_TURN {
-            said.push(told("the step of the two ends is taken"));
+            said.push(contradiction(
+                "the step from angle_min and angle_max is used",
+            ));
             return Ok((min, of_ends));
         }
         if (step * gaps).abs() <= FULL_TURN {
-            said.push(told(
-                "angle_increment is taken, as the ends are farther apart than a turn",
+            said.push(contradiction(
+                "angle_increment is used, because angle_min and angle_max differ by more than a turn",
             ));
             return Ok((min, step));
         }
-        Err(told("neither is a sweep of a turn or less"))
+        Err(contradiction("neither gives a sweep of at most a turn"))
     }
 
-    /// Time from one beam to the next, s; 0 if what is stated cannot be.
+    /// Time from one beam to the next, s; 0 if the stated value is implausible.
     fn beam_interval_s(&self, period_s: f64, said: &mut Vec<String>) -> f64 {
         let stated_s = self.time_increment;
         if !(stated_s.is_finite() && stated_s > 0.0) {
@@ -176,13 +178,13 @@ impl ScanFields {
         let longest_s = match (is_scan_time, period_s > 0.0) {
             (true, _) => SWEEP_SLACK * scan_time_s,
             (false, true) => SWEEP_SLACK * period_s,
-            // Slower lasers than one turn in two seconds are none.
+            // No laser is slower than one turn in two seconds.
             (false, false) => 2.0,
         };
         if stated_s * beams <= longest_s {
             return stated_s;
         }
-        // A unit is believed if the sweep then takes what the scans' period or their scan_time is.
+        // A unit is accepted if the sweep then takes the scans' period or their scan_time.
         let target_s = if is_scan_time { scan_time_s } else { period_s };
         let units = [
             ("nanoseconds", 1e-9),
@@ -194,24 +196,24 @@ impl ScanFields {
             target_s > 0.0 && (0.7 * target_s..=SWEEP_SLACK * target_s).contains(&sweep_s)
         });
         let stated = format!(
-            "time_increment is {stated_s} s, so that a sweep would take {:.1} s",
+            "time_increment is {stated_s} s, so a sweep would take {:.1} s",
             stated_s * beams
         );
         match unit {
             Some((name, unit)) => {
-                said.push(format!("{stated}; {name} are taken, which agree with the scans' period. Publish seconds"));
+                said.push(format!("{stated}; it is read as {name}, which agrees with the scans' period. Publish seconds"));
                 stated_s * unit
             }
             None => {
                 said.push(format!(
-                    "{stated}, but scans are {period_s:.2} s apart; each sweep is taken as one moment. Publish seconds"
+                    "{stated}, but scans are {period_s:.2} s apart; each sweep is treated as instantaneous. Publish seconds"
                 ));
                 0.0
             }
         }
     }
 
-    /// Limits of the range (m), and what every range is multiplied by.
+    /// Range limits (m), and the factor for all ranges.
     fn ranges(&self, said: &mut Vec<String>) -> (f64, f64, f64) {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         let returns = self
@@ -222,7 +224,7 @@ impl ScanFields {
         let typical = median(returns.collect()).unwrap_or(0.0);
         let scale = if typical > LONGEST_M {
             said.push(format!(
-                "its ranges are about {typical:.0}, which is millimetres; they are divided by 1000. Publish metres"
+                "its ranges are about {typical:.0}, in millimetres; they were divided by 1000. Publish metres"
             ));
             1e-3
         } else {
@@ -240,7 +242,7 @@ impl ScanFields {
         let range_max_m = if max > 0.0 { max } else { f64::INFINITY };
         if range_max_m <= range_min_m {
             said.push(format!(
-                "range_min is {min:.3} m and range_max {max:.3} m; the smaller one is taken for the shortest range. Correct the driver"
+                "range_min is {min:.3} m and range_max {max:.3} m; the smaller one is used as the shortest range. Correct the driver"
             ));
             return (range_max_m, range_min_m, scale);
         }
@@ -248,13 +250,13 @@ impl ScanFields {
     }
 }
 
-/// Angles that make a sweep.
+/// Checks that the angles cover at most a turn.
 fn in_a_turn(first: f64, step: f64, gaps: f64) -> Result<(f64, f64), String> {
     if (step * gaps).abs() <= FULL_TURN && first.abs() <= 4.0 * PI && step != 0.0 {
         Ok((first, step))
     } else {
         Err(format!(
-            "its beams cover {:.0}°, which is more than a turn; correct angle_min, angle_max and angle_increment in the driver",
+            "its beams cover {:.0}°, more than a turn; correct angle_min, angle_max and angle_increment in the driver",
             (step * gaps).abs().to_degrees()
         ))
     }

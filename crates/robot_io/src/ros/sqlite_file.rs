@@ -1,9 +1,9 @@
-//! Recordings of ROS 2 in SQLite (`.db3`), which rosbag2 wrote by default until 2023.
+//! ROS 2 recordings in SQLite (`.db3`), which rosbag2 wrote by default until 2023.
 //!
-//! Two tables are read: `topics` and `messages`. A few pages are in memory at a time, and nothing is written.
+//! Reads the tables `topics` and `messages`, with a few pages in memory. Never writes.
 //!
 //! Source: "Database File Format", sqlite.org/fileformat2.html, sections 1.3 to 1.6 and 2. The crates that read
-//! SQLite either need C or run a whole database; of the format this needs tables in the order of their rows.
+//! SQLite either need C or run a whole database; this needs only tables in row order.
 
 mod pages;
 mod record;
@@ -26,11 +26,11 @@ const MOST_TOPICS: usize = 10_000;
 struct Topic {
     name: String,
     kind: String,
-    /// Else the name of an encoding that is another system's.
+    /// The error is the name of an unsupported encoding.
     wire: Result<Wire, String>,
 }
 
-/// Where the columns of the messages stand.
+/// Column indices in the messages table.
 #[derive(Clone, Copy)]
 struct Columns {
     topic: usize,
@@ -38,7 +38,7 @@ struct Columns {
     data: usize,
 }
 
-/// Messages of a database, in the order of their rows.
+/// Messages of a database, in row order.
 pub struct SqliteFile<'a> {
     source: Option<Box<dyn SeekRead + 'a>>,
     pages: Option<Pages<'a>>,
@@ -50,7 +50,7 @@ pub struct SqliteFile<'a> {
 }
 
 impl<'a> SqliteFile<'a> {
-    /// A reader at the file's start.
+    /// Creates a reader at the file's start.
     pub fn new(source: Box<dyn SeekRead + 'a>) -> Self {
         Self {
             source: Some(source),
@@ -93,7 +93,7 @@ impl<'a> SqliteFile<'a> {
             tables.get(name).ok_or_else(|| {
                 let known = crate::lines::listed(tables.keys().take(20).map(|name| printable(name)));
                 ContainerError::Broken(format!(
-                    "a database with the tables topics and messages of rosbag2 was expected, and it has {known}; give a recording of ros2 bag record"
+                    "expected a database with rosbag2's tables topics and messages, found {known}; pass a recording of ros2 bag record"
                 ))
             })
         };
@@ -156,7 +156,7 @@ impl Container for SqliteFile<'_> {
             let (Some(topic), Some(time_ns), Some(Value::Blob(bytes))) = (topic, time_ns, data)
             else {
                 return Err(ContainerError::Skipped(format!(
-                    "row {} of messages has to name a topic, a time and data",
+                    "row {} of messages must have a topic, a time and data",
                     row.id
                 )));
             };
@@ -187,11 +187,11 @@ impl Container for SqliteFile<'_> {
         if let Some((topic, encoding)) = &self.other {
             let [topic, encoding] = [topic, encoding].map(|name| printable(name));
             return Some(format!(
-                "its messages are in the encoding ‘{encoding}’, such as those on {topic}; record with cdr"
+                "its messages have the encoding ‘{encoding}’, for example those on {topic}; record with cdr"
             ));
         }
         (!self.has_messages).then(|| {
-            "it has no message; if a file that ends in -wal lies beside it, let sqlite3 take it in with PRAGMA wal_checkpoint".to_owned()
+            "it has no messages; if there is a -wal file next to it, merge it with sqlite3 and PRAGMA wal_checkpoint".to_owned()
         })
     }
 }

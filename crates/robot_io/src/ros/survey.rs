@@ -1,7 +1,7 @@
-//! What is in a recording, from one pass over all of it.
+//! Content of a recording, collected in one pass.
 //!
-//! Of scans only times and frames are kept; of odometry and of transforms that may be odometry, all poses, up
-//! to a bound. So the pass costs little memory however long the recording is.
+//! Keeps the stamps and frames of scans, and all poses of odometry and of transforms that may be odometry, up to a
+//! bound. Memory is therefore small however long the recording is.
 
 use std::collections::BTreeMap;
 
@@ -13,69 +13,69 @@ use super::point_cloud::point_cloud;
 use super::transforms::{Transforms, is_ground, planar};
 use super::wire::WireReader;
 use crate::log::LogOptions;
-use crate::place::checked;
+use crate::plausible::plausible_pose;
 
-/// A recording of garbage has no end of topics.
+/// Garbage has an unbounded number of topics.
 const MOST_TOPICS: usize = 1000;
-/// So many poses of one source are kept; of more, every second one.
+/// Most poses kept of one source; beyond it, every second one is dropped.
 const MOST_POSES: usize = 1 << 18;
-/// So many transforms are followed as odometry.
+/// Most transforms that are recorded as possible odometry.
 const MOST_TRACKS: usize = 32;
-/// So many messages of a topic are decoded whole, to see whether they can be used.
+/// Number of messages of a topic that are fully decoded to check whether they are usable.
 const TRIED: usize = 3;
-/// Odometry that stays within this has not moved, m and rad.
+/// Odometry within this has not moved, m and rad.
 const STILL: f64 = 1e-3;
 
-/// Types of messages that are scans.
+/// Message types of scans.
 pub const SCANS: [&str; 3] = [
     "sensor_msgs/LaserScan",
     "sensor_msgs/MultiEchoLaserScan",
     "sensor_msgs/PointCloud2",
 ];
-/// The type of odometry.
+/// Message type of odometry.
 pub const ODOMETRY: &str = "nav_msgs/Odometry";
 
 /// The scans of a topic.
 #[derive(Clone, Debug, Default)]
 pub struct ScanStream {
-    /// Which of [`SCANS`] they are.
+    /// Index into [`SCANS`].
     pub kind: usize,
-    /// Place among the topics in the order of the file.
+    /// Rank among the topics in the order of the file.
     pub order: usize,
-    /// Stamp of each message, s; NaN where it cannot be read.
+    /// Stamp of each message, s; NaN if it is unreadable.
     pub stamps_s: Vec<f64>,
-    /// When each was recorded, s.
+    /// Time of recording of each message, s.
     pub recorded_s: Vec<f64>,
-    /// Messages that are the one before once more, which are left out.
+    /// Number of messages that duplicate the one before and are skipped.
     pub repeated: usize,
     /// Checksum of the last message.
     last_sum: Option<u32>,
-    /// The sensor's frame, as the first message names it.
+    /// The sensor's frame in the first message.
     pub frame: String,
-    /// Whether one that was tried can be used.
+    /// Whether any decoded message is usable.
     pub is_usable: bool,
-    /// Why the first one cannot be used.
+    /// Why the first message is unusable.
     pub problem: Option<String>,
 }
 
-/// Poses of a body by one source.
+/// Poses of a body from one source.
 #[derive(Clone, Debug, Default)]
 pub struct Track {
-    /// The frame that the poses are in.
+    /// Parent frame.
     pub above: String,
-    /// The frame that moves.
+    /// Moving frame.
     pub body: String,
-    /// Place among the tracks in the order of the file.
+    /// Rank among the tracks in the order of the file.
     pub order: usize,
     /// Stamp of each pose, s.
     pub stamps_s: Vec<f64>,
-    /// When each was recorded, s.
+    /// Time of recording of each pose, s.
     pub recorded_s: Vec<f64>,
     /// The poses.
     pub poses: Vec<SE2>,
-    /// Whether they differ.
+    /// Whether the poses differ.
     pub moves: bool,
-    /// Of so many messages one is kept.
+    /// Keeps every n-th message.
     every: usize,
     seen: usize,
 }
@@ -111,18 +111,18 @@ fn thin<T>(all: &mut Vec<T>) {
     });
 }
 
-/// What a pass over the recording found.
+/// Content of a recording.
 #[derive(Debug, Default)]
 pub struct Survey {
-    /// How many messages of each topic and type there are.
+    /// Number of messages by topic and type.
     pub counts: BTreeMap<(String, String), usize>,
     /// Scans by topic.
     pub scans: BTreeMap<String, ScanStream>,
     /// Odometry by topic.
     pub odometry: BTreeMap<String, Track>,
-    /// Transforms that may be odometry, by frame above and body.
+    /// Transforms that may be odometry, by parent frame and body.
     pub tracks: BTreeMap<(String, String), Track>,
-    /// The newest transforms.
+    /// The latest transforms.
     pub transforms: Transforms,
 }
 
@@ -130,7 +130,7 @@ impl Survey {
     /// Takes a message.
     ///
     /// # Errors
-    /// What is wrong with it; it is left out. Scans are judged when they are read.
+    /// If the message is malformed; it is skipped. Scans are checked when they are read.
     pub fn take(&mut self, message: &Recorded, options: &LogOptions) -> Result<(), String> {
         let key = (message.topic.clone(), message.kind.clone());
         if self.counts.len() < MOST_TOPICS || self.counts.contains_key(&key) {
@@ -147,27 +147,27 @@ impl Survey {
                 let all = reader(message)
                     .and_then(|mut fields| transforms(&mut fields).map_err(|e| e.to_string()))
                     .map_err(named)?;
-                for told in &all {
-                    let Ok(pose) = checked(planar(&told.transform)) else {
+                for transform in &all {
+                    let Ok(pose) = plausible_pose(planar(&transform.transform)) else {
                         continue;
                     };
-                    self.transforms.take(told);
-                    let parent = &told.header.frame;
+                    self.transforms.take(transform);
+                    let parent = &transform.header.frame;
                     let may_be_odometry = match &options.odometry_frame {
                         Some(frame) => frame.trim_start_matches('/') == parent,
                         None => is_ground(parent) && parent.contains("odom"),
                     };
-                    let key = (parent.clone(), told.child.clone());
+                    let key = (parent.clone(), transform.child.clone());
                     let has_room = self.tracks.len() < MOST_TRACKS;
                     if may_be_odometry && (has_room || self.tracks.contains_key(&key)) {
                         let order = self.tracks.len();
                         let track = self.tracks.entry(key).or_insert_with(|| Track {
                             above: parent.clone(),
-                            body: told.child.clone(),
+                            body: transform.child.clone(),
                             order,
                             ..Track::default()
                         });
-                        track.take(told.header.stamp_s, message.recorded_s, pose);
+                        track.take(transform.header.stamp_s, message.recorded_s, pose);
                     }
                 }
                 Ok(())
@@ -218,8 +218,8 @@ impl Survey {
 
     fn take_odometry(&mut self, message: &Recorded) -> Result<(), String> {
         let mut fields = reader(message)?;
-        let told = odometry(&mut fields).map_err(|problem| problem.to_string())?;
-        let pose = checked(planar(&told.pose))?;
+        let parsed = odometry(&mut fields).map_err(|problem| problem.to_string())?;
+        let pose = plausible_pose(planar(&parsed.pose))?;
         let order = self.odometry.len();
         if order >= MOST_TOPICS && !self.odometry.contains_key(&message.topic) {
             return Ok(());
@@ -228,27 +228,27 @@ impl Survey {
             .odometry
             .entry(message.topic.clone())
             .or_insert_with(|| Track {
-                above: told.header.frame.clone(),
-                body: if told.child.is_empty() {
+                above: parsed.header.frame.clone(),
+                body: if parsed.child.is_empty() {
                     "base_link".to_owned()
                 } else {
-                    told.child.clone()
+                    parsed.child.clone()
                 },
                 order,
                 ..Track::default()
             });
-        track.take(told.header.stamp_s, message.recorded_s, pose);
+        track.take(parsed.header.stamp_s, message.recorded_s, pose);
         Ok(())
     }
 }
 
-/// Whether a message is a scan that can be used.
+/// Decodes a scan as far as needed to check whether it is usable.
 fn scan_header(message: &Recorded, options: &LogOptions) -> Result<Header, String> {
     let mut fields = reader(message)?;
-    let told = |problem: super::wire::WireError| problem.to_string();
+    let in_words = |problem: super::wire::WireError| problem.to_string();
     match message.kind.as_str() {
         "sensor_msgs/PointCloud2" if options.heights_m.is_some() => {
-            header(&mut fields).map_err(told)
+            header(&mut fields).map_err(in_words)
         }
         "sensor_msgs/PointCloud2" => point_cloud(&mut fields).map(|(header, _)| header),
         kind => {
@@ -257,7 +257,7 @@ fn scan_header(message: &Recorded, options: &LogOptions) -> Result<Header, Strin
             } else {
                 multi_echo_scan
             };
-            let (header, scan) = read(&mut fields).map_err(told)?;
+            let (header, scan) = read(&mut fields).map_err(in_words)?;
             let (scan, _) = scan.checked(0.0)?;
             scan.validate().map_err(|problem| problem.to_string())?;
             Ok(header)
@@ -265,7 +265,7 @@ fn scan_header(message: &Recorded, options: &LogOptions) -> Result<Header, Strin
     }
 }
 
-/// Whether a message is the last one of its topic once more, as of bags that were merged with themselves.
+/// Whether a message duplicates the last one of its topic, as in bags that were merged with themselves.
 pub fn is_repeated(message: &Recorded, last_sum: &mut Option<u32>) -> bool {
     let sum = crc32fast::hash(&message.bytes);
     last_sum.replace(sum) == Some(sum)
@@ -276,7 +276,7 @@ pub fn reader(message: &Recorded) -> Result<WireReader<'_>, String> {
     WireReader::new(message.wire, &message.bytes).map_err(|problem| problem.to_string())
 }
 
-/// A problem with the topic and type of its message.
+/// Adds type and topic of the message to a problem.
 pub fn named(message: &Recorded, problem: String) -> String {
     format!("{} on {}: {problem}", message.kind, message.topic)
 }

@@ -1,4 +1,4 @@
-//! Recordings that other people's writers made of the simulator's lap, see `recordings/make.py`.
+//! Recordings of the simulator's lap made with other projects' writers, see `recordings/make.py`.
 
 use std::collections::BTreeSet;
 
@@ -18,7 +18,7 @@ const FIXTURES: [(&str, &[u8]); 10] = [
     ("bz2.bag", include_bytes!("../../recordings/bz2.bag")),
 ];
 
-/// The frames that the recordings were made of.
+/// The frames that the recordings contain.
 const FRAMES: &[u8] = include_bytes!("../../recordings/frames.jsonl");
 
 fn fixture(name: &str) -> &'static [u8] {
@@ -60,18 +60,18 @@ fn every_recording_holds_the_frames_of_the_simulator() {
     assert_eq!(simulated.len(), 24);
     for (name, bytes) in FIXTURES {
         let (frames, notes) = read(bytes, name).unwrap();
-        assert_eq!((notes.broken, &notes.half_written), (0, &None), "{name}");
+        assert_eq!((notes.broken, &notes.truncated), (0, &None), "{name}");
         assert!(notes.warnings.is_empty(), "{name}: {:?}", notes.warnings);
         assert_eq!(notes.bytes, bytes.len() as u64, "{name}");
         assert_eq!(frames.len(), simulated.len(), "{name}");
         for (frame, expected) in frames.iter().zip(&simulated) {
             // 1e-6 s: a time since 1970 in f64 is exact to 0.2 µs.
             assert_near(frame.stamp_s, expected.stamp_s, 1e-6, name);
-            let (odometry, wheels) = (frame.odometry.unwrap(), expected.odometry.unwrap());
-            // 1e-4: the wheels move 0.1 m in the 40 ms around a scan, in which 0.2 µs are lost.
-            assert_near(odometry.x(), wheels.x(), 1e-4, name);
-            assert_near(odometry.y(), wheels.y(), 1e-4, name);
-            assert_near(odometry.between(&wheels).theta(), 0.0, 1e-4, name);
+            let (odometry, expected_pose) = (frame.odometry.unwrap(), expected.odometry.unwrap());
+            // 1e-4: the robot moves 0.1 m in the 40 ms around a scan, in which 0.2 µs are lost.
+            assert_near(odometry.x(), expected_pose.x(), 1e-4, name);
+            assert_near(odometry.y(), expected_pose.y(), 1e-4, name);
+            assert_near(odometry.between(&expected_pose).theta(), 0.0, 1e-4, name);
             let mount = frame.scan.body_from_sensor;
             assert_eq!(mount.to_array(), [0.1, 0.0, 0.0], "{name}");
             if name != "cloud.mcap" {
@@ -81,7 +81,7 @@ fn every_recording_holds_the_frames_of_the_simulator() {
     }
 }
 
-/// Numbers of a scan have four bytes: 1e-6 of angles up to π and of ranges up to 6 m.
+/// Scans have 32-bit floats: 1e-6 for angles up to π and ranges up to 6 m.
 fn assert_same_beams(frame: &LogFrame, expected: &LogFrame, name: &str) {
     let (scan, other) = (&frame.scan, &expected.scan);
     assert_near(scan.first_angle_rad, other.first_angle_rad, 1e-6, name);
@@ -107,7 +107,7 @@ fn a_cloud_of_one_ring_has_the_points_of_its_scan() {
         let (found, told) = (points(cloud), points(expected));
         assert_eq!(found.len(), told.len());
         for (&(bearing, range_m), &(other, other_m)) in found.iter().zip(&told) {
-            // Coordinates have four bytes.
+            // Coordinates are 32-bit floats.
             assert_near(bearing, other, 1e-5, "bearing");
             assert_near(range_m, other_m, 1e-5, "range");
         }
@@ -115,7 +115,7 @@ fn a_cloud_of_one_ring_has_the_points_of_its_scan() {
 }
 
 #[test]
-fn what_was_chosen_and_what_there_is_are_told() {
+fn choices_and_alternatives_are_reported() {
     let (_, notes) = read(fixture("tf.mcap"), "tf.mcap").unwrap();
     assert_eq!(notes.records["/scan sensor_msgs/LaserScan"], 24);
     let about = notes.about.join("; ");
@@ -123,8 +123,8 @@ fn what_was_chosen_and_what_there_is_are_told() {
         about,
         "scans are those of /scan, in frame laser; \
          odometry is that of /tf, from odom to base_link; \
-         the laser sits at 0.100 m, 0.000 m, 0.00° on base_link; \
-         frame base_link hangs on odom; frame laser hangs on base_link"
+         the laser is at 0.100 m, 0.000 m, 0.00° on base_link; \
+         frame base_link is a child of odom; frame laser is a child of base_link"
     );
 }
 
@@ -137,7 +137,7 @@ fn topics_and_frames_can_be_chosen() {
     };
     let error = read_with(bytes, "x.mcap", &other).unwrap_err().to_string();
     assert!(
-        error.contains("x.mcap holds no scan that can be used: /rear is not one of /odom"),
+        error.contains("x.mcap has no usable scan: /rear is not one of /odom"),
         "{error}"
     );
     let elsewhere = LogOptions {
@@ -149,11 +149,11 @@ fn topics_and_frames_can_be_chosen() {
         error.to_string(),
         "x.mcap has no body-frame chassis; it has base_link, laser"
     );
-    let wheels = LogOptions {
+    let missing_topic = LogOptions {
         odometry_topic: Some("/tf".to_owned()),
         ..LogOptions::default()
     };
-    let error = read_with(bytes, "x.mcap", &wheels).unwrap_err();
+    let error = read_with(bytes, "x.mcap", &missing_topic).unwrap_err();
     assert_eq!(
         error.to_string(),
         "x.mcap has no odom-topic /tf; it has /odom"
@@ -167,7 +167,7 @@ fn topics_and_frames_can_be_chosen() {
 }
 
 #[test]
-fn a_recording_without_transforms_puts_the_laser_at_the_body_and_says_so() {
+fn without_transforms_the_laser_is_assumed_at_the_body_with_a_warning() {
     // The same bytes with another name for the laser's frame in the transforms.
     let mut bytes = fixture("plain.bag").to_vec();
     let name = b"base_link\x05\0\0\0laser";
@@ -183,13 +183,13 @@ fn a_recording_without_transforms_puts_the_laser_at_the_body_and_says_so() {
     assert_eq!(frames[0].scan.body_from_sensor.to_array(), [0.0; 3]);
     let said = notes.sentences("x.mcap").join(" ");
     assert!(
-        said.contains("no transform leads from base_link to laser"),
+        said.contains("there is no transform from base_link to laser"),
         "{said}"
     );
 }
 
 #[test]
-fn a_recording_of_another_system_is_told_by_its_encoding() {
+fn recordings_of_other_systems_are_rejected_by_their_encoding() {
     let record = |op: u8, fields: &[&[u8]]| {
         let body = fields.concat();
         [&[op][..], &(body.len() as u64).to_le_bytes(), &body].concat()
@@ -198,7 +198,7 @@ fn a_recording_of_another_system_is_told_by_its_encoding() {
     let magic = b"\x89MCAP0\r\n".to_vec();
     let kind = [text("foxglove.LaserScan"), text("jsonschema"), text("{}")].concat();
     let channel = [text("/scan"), text("json"), text("")].concat();
-    // Of the specification of MCAP: header, schema 1, channel 0 of it, a message, end of data, footer.
+    // By the MCAP specification: header, schema 1, its channel 0, a message, end of data, footer.
     let bytes = [
         magic.clone(),
         record(1, &[&text(""), &text("")]),
@@ -212,13 +212,13 @@ fn a_recording_of_another_system_is_told_by_its_encoding() {
     .concat();
     let error = read(&bytes, "x.mcap").unwrap_err().to_string();
     assert!(
-        error.contains("no messages of ROS, such as those on /scan in the encoding ‘json’"),
+        error.contains("no ROS messages but, for example, those on /scan with the encoding ‘json’"),
         "{error}"
     );
 }
 
 #[test]
-fn a_recording_that_is_cut_off_gives_what_is_there_and_says_where_it_ends() {
+fn a_truncated_recording_yields_its_frames_and_reports_its_end() {
     for (name, bytes) in FIXTURES {
         let mut counts = BTreeSet::new();
         for part in 1..40 {
@@ -227,10 +227,10 @@ fn a_recording_that_is_cut_off_gives_what_is_there_and_says_where_it_ends() {
                 Ok((frames, notes)) => {
                     counts.insert(frames.len());
                     let said = notes.sentences(name).join(" ");
-                    // A bag that ends between two records looks whole; a database lacks pages.
+                    // A bag that ends between two records looks complete; a database lacks pages.
                     let is_told = match name.rsplit('.').next() {
                         Some("bag") => true,
-                        Some("db3") => said.contains("left out"),
+                        Some("db3") => said.contains("skipped"),
                         _ => said.contains("cut off at byte"),
                     };
                     assert!(is_told, "{name}: {said}");
@@ -248,7 +248,7 @@ fn a_recording_that_is_cut_off_gives_what_is_there_and_says_where_it_ends() {
 }
 
 #[test]
-fn a_byte_that_is_wrong_never_ends_in_a_panic() {
+fn a_wrong_byte_never_panics() {
     for (name, bytes) in FIXTURES {
         let mut refused = 0;
         for spot in (0..bytes.len()).step_by(bytes.len() / 150) {

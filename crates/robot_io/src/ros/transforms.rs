@@ -1,4 +1,4 @@
-//! Which frame hangs on which, and where a laser sits on the body.
+//! Tree of coordinate frames, and the mounting of a laser on the body.
 
 use std::collections::BTreeMap;
 
@@ -8,33 +8,33 @@ use pr_geom::{SE2, math};
 use super::messages::TransformMessage;
 use crate::laser_mount::LaserMount;
 
-/// Longer chains of frames go in a circle.
+/// Longer chains of frames are cyclic.
 const LONGEST_CHAIN: usize = 64;
-/// More frames than any robot has: a recording of garbage has no end of names.
+/// More frames than any robot has: garbage has an unbounded number of names.
 const MOST_FRAMES: usize = 10_000;
-/// A laser whose axis leans farther than this does not scan the plane, as the cosine of 30°.
+/// A laser whose axis is tilted farther does not scan the plane, as the cosine of 30°.
 const LEAST_UPRIGHT: f64 = 0.866;
 
-/// A frame that is found farther from where it was first moves, m.
+/// A frame that moves by more from its first pose is not static, m.
 const MOVED_M: f64 = 0.01;
-/// The same of a turn, rad.
+/// The same for its rotation, rad.
 const MOVED_RAD: f64 = 0.01;
 
-/// Whether the name is one of what a robot moves in, by ROS's convention (REP 105).
+/// Whether the name is that of a world-fixed frame by ROS convention (REP 105).
 pub fn is_ground(frame: &str) -> bool {
     let name = frame.rsplit('/').next().unwrap_or(frame);
     name.contains("odom") || matches!(name, "map" | "world" | "earth")
 }
 
-/// The mounting of a laser in the plane.
+/// Projects the mounting of a laser onto the plane.
 ///
 /// # Errors
-/// Where the laser leans too far to scan the plane.
-pub fn mount_of(body_from_sensor: &Isometry3<f64>) -> Result<LaserMount, String> {
+/// If the laser is tilted too far to scan the plane.
+pub fn planar_mount(body_from_sensor: &Isometry3<f64>) -> Result<LaserMount, String> {
     let turn = body_from_sensor.rotation.to_rotation_matrix();
     let upright = turn.matrix()[(2, 2)];
     if upright.abs() < LEAST_UPRIGHT {
-        return Err("the laser leans by more than 30° and does not scan the plane".to_owned());
+        return Err("the laser is tilted by more than 30° and does not scan the plane".to_owned());
     }
     Ok(LaserMount {
         body_from_sensor: planar(body_from_sensor),
@@ -42,17 +42,17 @@ pub fn mount_of(body_from_sensor: &Isometry3<f64>) -> Result<LaserMount, String>
     })
 }
 
-/// A frame in the frame above it.
+/// Transform of a frame to its parent.
 #[derive(Clone, Debug)]
 struct Edge {
     parent: String,
-    /// The newest one.
+    /// The latest transform.
     transform: Isometry3<f64>,
     first: Isometry3<f64>,
     moves: bool,
 }
 
-/// The newest transform of each frame in the frame above it.
+/// The latest transform of each frame to its parent.
 #[derive(Clone, Debug, Default)]
 pub struct Transforms {
     above: BTreeMap<String, Edge>,
@@ -79,7 +79,7 @@ impl Transforms {
         }
     }
 
-    /// Whether any transform of a frame above `sensor` changes, up to `body`.
+    /// Whether any transform from `sensor` up to `body` changes.
     pub fn moves_on(&self, body: &str, sensor: &str) -> bool {
         let mut frame = sensor;
         for _ in 0..LONGEST_CHAIN {
@@ -94,7 +94,7 @@ impl Transforms {
         false
     }
 
-    /// The highest frame that `sensor` is fixed to; none if no frame is above it.
+    /// The highest frame that `sensor` is fixed to; `None` if it has no parent.
     pub fn root_of(&self, sensor: &str, ground: Option<&str>) -> Option<&str> {
         let mut root = None;
         let mut frame = sensor;
@@ -111,8 +111,8 @@ impl Transforms {
         root
     }
 
-    /// Where `sensor` is on `body`, by way of the nearest frame above both; none where they share none.
-    /// `ground` is the frame that the body moves in: what hangs on it is not fixed to the body.
+    /// Pose of `sensor` on `body`, through their lowest common ancestor; `None` if they have none.
+    /// `ground` is the frame that the body moves in; its children are not fixed to the body.
     pub fn body_from_sensor(
         &self,
         body: &str,
@@ -127,29 +127,29 @@ impl Transforms {
         })
     }
 
-    /// A frame and those above it, the nearest first, each with the place of the first one in it.
+    /// A frame and its ancestors, nearest first, each with the pose of the frame in it.
     fn chain<'a>(&'a self, frame: &'a str, ground: Option<&str>) -> Vec<(&'a str, Isometry3<f64>)> {
         let mut chain = vec![(frame, Isometry3::identity())];
-        let (mut frame, mut place) = chain[0];
+        let (mut frame, mut pose) = chain[0];
         while let Some(edge) = self.above.get(frame)
             && chain.len() < LONGEST_CHAIN
             && ground != Some(edge.parent.as_str())
         {
-            place = edge.transform * place;
+            pose = edge.transform * pose;
             frame = &edge.parent;
-            chain.push((frame, place));
+            chain.push((frame, pose));
         }
         chain
     }
 
-    /// Every frame with the frame above it, in the order of names.
+    /// Every (parent, child) pair in the order of names.
     pub fn edges(&self) -> impl Iterator<Item = (&str, &str)> {
         let edges = self.above.iter();
         edges.map(|(child, edge)| (edge.parent.as_str(), child.as_str()))
     }
 }
 
-/// A transform in the plane: position and yaw.
+/// Projects a transform onto the plane: position and yaw.
 pub fn planar(transform: &Isometry3<f64>) -> SE2 {
     let turn = transform.rotation.to_rotation_matrix();
     let turn = turn.matrix();
@@ -190,7 +190,7 @@ mod tests {
         frames.take(&message("base", "mast", 1.0, quarter));
         frames.take(&message("mast", "laser", 0.5, [1.0, 0.0, 0.0, 0.0]));
         let chain = frames.body_from_sensor("base", "laser", None).unwrap();
-        let mount = mount_of(&chain).unwrap();
+        let mount = planar_mount(&chain).unwrap();
         let [x, y, theta] = mount.body_from_sensor.to_array();
         // 1e-12: a dozen roundings of numbers about 1.
         assert!((x - 1.0).abs() < 1e-12 && (y - 0.5).abs() < 1e-12);
@@ -200,14 +200,14 @@ mod tests {
             angle_step_rad: 0.5,
             ..LaserScan::default()
         };
-        mount.place(&mut scan);
+        mount.apply(&mut scan);
         assert_eq!((scan.first_angle_rad, scan.angle_step_rad), (1.0, -0.5));
         assert_eq!(frames.body_from_sensor("base", "camera", None), None);
     }
 
     #[test]
     fn a_body_below_the_frame_that_the_laser_hangs_on_has_its_laser_all_the_same() {
-        // As where base_footprint hangs on base_link: the wheels move the one, the laser sits on the other.
+        // For example, base_footprint is a child of base_link: odometry moves the former, the laser is on the latter.
         let mut frames = Transforms::default();
         let straight = [0.0, 0.0, 0.0, 1.0];
         let quarter = [0.0, 0.0, FRAC_PI_2.sqrt(), FRAC_PI_2.sqrt()];
@@ -218,11 +218,11 @@ mod tests {
         let chain = frames
             .body_from_sensor("footprint", "laser", ground)
             .unwrap();
-        let [x, y, theta] = mount_of(&chain).unwrap().body_from_sensor.to_array();
-        // 0.75 m ahead on the link, which the footprint sees to its right; 1e-12: a dozen roundings.
+        let [x, y, theta] = planar_mount(&chain).unwrap().body_from_sensor.to_array();
+        // 0.75 m ahead on the link, to the right of the footprint; 1e-12: a dozen roundings.
         assert!(x.abs() < 1e-12 && (y + 0.75).abs() < 1e-12, "{x} {y}");
         assert!((theta + FRAC_PI_2).abs() < 1e-12);
-        // Another robot in the same odometry is no part of this one.
+        // Another robot in the same odometry frame is not part of this one.
         frames.take(&message("odom", "camera", 9.0, straight));
         assert_eq!(frames.body_from_sensor("footprint", "camera", ground), None);
     }
@@ -240,6 +240,6 @@ mod tests {
     fn a_laser_that_looks_at_the_floor_is_refused() {
         let forward = UnitQuaternion::from_euler_angles(0.0, PI / 4.0, 0.0);
         let leaning = Isometry3::from_parts(Translation3::identity(), forward);
-        assert!(mount_of(&leaning).unwrap_err().contains("leans"));
+        assert!(planar_mount(&leaning).unwrap_err().contains("leans"));
     }
 }

@@ -1,27 +1,27 @@
-//! The fields of a message, one after the other.
+//! Deserializes the fields of a message in order.
 //!
-//! ROS 1 writes them without gaps, the low byte first. ROS 2 writes CDR: four bytes say the order of
-//! bytes, and each number stands at a multiple of its size, counted from there.
+//! ROS 1 writes little-endian without padding. ROS 2 writes CDR: four bytes state the byte order, and each number is
+//! aligned to its size, counted from there.
 //! Source: OMG, "Extended and dynamic topic types for DDS", 1.3, section 7.4; "Common object request
 //! broker architecture", 3.3, section 9.3.1.
 
 use std::fmt;
 
-/// How the fields of a message are written.
+/// Serialization of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire {
-    /// ROS 1: without gaps.
+    /// ROS 1: without padding.
     Ros1,
-    /// ROS 2: CDR with its four bytes in front.
+    /// ROS 2: CDR with its four-byte header.
     Cdr,
 }
 
-/// What is wrong with a message, and at which of its bytes.
+/// A deserialization error and its position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WireError {
-    /// Byte of the message.
+    /// Byte offset in the message.
     pub at: usize,
-    /// What was expected there.
+    /// What was expected.
     pub expected: String,
 }
 
@@ -31,24 +31,24 @@ impl fmt::Display for WireError {
     }
 }
 
-/// Walks over the bytes of one message.
+/// Reads the bytes of one message.
 #[derive(Clone, Debug)]
 pub struct WireReader<'a> {
     bytes: &'a [u8],
     at: usize,
     wire: Wire,
     is_little: bool,
-    /// Where multiples are counted from.
+    /// Origin of alignment.
     origin: usize,
-    /// Numbers of eight bytes stand at multiples of this.
+    /// Alignment of eight-byte numbers.
     widest: usize,
 }
 
 impl<'a> WireReader<'a> {
-    /// A reader at the first field.
+    /// Creates a reader at the first field.
     ///
     /// # Errors
-    /// Where CDR's first four bytes are none that are known.
+    /// If the CDR header is not supported.
     pub fn new(wire: Wire, bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Self {
             bytes,
@@ -60,7 +60,7 @@ impl<'a> WireReader<'a> {
         };
         if wire == Wire::Cdr {
             let [first, kind, _, _] = reader.array("CDR's four bytes")?;
-            // Plain CDR and plain CDR 2; the low bit says the order of bytes.
+            // Plain CDR and plain CDR 2; the low bit states the byte order.
             if first != 0 || !matches!(kind, 0 | 1 | 6 | 7) {
                 return Err(WireError {
                     at: 0,
@@ -74,7 +74,7 @@ impl<'a> WireReader<'a> {
         Ok(reader)
     }
 
-    /// How this message is written.
+    /// Serialization of this message.
     pub fn wire(&self) -> Wire {
         self.wire
     }
@@ -119,37 +119,37 @@ impl<'a> WireReader<'a> {
         Ok(u8::from_le_bytes(self.number(what)?))
     }
 
-    /// The next whole number of two bytes.
+    /// The next 16-bit integer.
     pub fn u16(&mut self, what: &str) -> Result<u16, WireError> {
         Ok(u16::from_le_bytes(self.number(what)?))
     }
 
-    /// The next whole number.
+    /// The next 32-bit integer.
     pub fn u32(&mut self, what: &str) -> Result<u32, WireError> {
         Ok(u32::from_le_bytes(self.number(what)?))
     }
 
-    /// The next whole number of eight bytes.
+    /// The next 64-bit integer.
     pub fn u64(&mut self, what: &str) -> Result<u64, WireError> {
         Ok(u64::from_le_bytes(self.number(what)?))
     }
 
-    /// The next number of four bytes.
+    /// The next 32-bit float.
     pub fn f32(&mut self, what: &str) -> Result<f64, WireError> {
         Ok(f64::from(f32::from_le_bytes(self.number(what)?)))
     }
 
-    /// The next number of eight bytes.
+    /// The next 64-bit float.
     pub fn f64(&mut self, what: &str) -> Result<f64, WireError> {
         Ok(f64::from_le_bytes(self.number(what)?))
     }
 
-    /// The next text, as a name that can be printed; bytes that are no text become question marks.
+    /// The next text as a printable name; invalid bytes become question marks.
     pub fn name(&mut self, what: &str) -> Result<String, WireError> {
         let count = self.u32(what)? as usize;
         let bytes = self.take(count, what)?;
         let bytes = match self.wire {
-            // CDR counts the zero that ends a text.
+            // CDR includes the terminating zero.
             Wire::Cdr => bytes.strip_suffix(&[0]).unwrap_or(bytes),
             Wire::Ros1 => bytes,
         };
@@ -162,12 +162,12 @@ impl<'a> WireReader<'a> {
         self.take(count, what)
     }
 
-    /// All that is left.
+    /// All remaining bytes.
     pub fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at..]
     }
 
-    /// The length of a list whose things have `smallest` bytes at least.
+    /// Reads the length of a list whose items have at least `smallest` bytes.
     pub fn count(&mut self, what: &str, smallest: usize) -> Result<usize, WireError> {
         let at = self.at;
         let count = self.u32(what)? as usize;
@@ -181,7 +181,7 @@ impl<'a> WireReader<'a> {
         Ok(count)
     }
 
-    /// A list of numbers of four bytes.
+    /// A list of 32-bit floats.
     pub fn f32_list(&mut self, what: &str) -> Result<Vec<f64>, WireError> {
         let count = self.count(what, 4)?;
         (0..count).map(|_| self.f32(what)).collect()
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn numbers_of_cdr_stand_at_multiples_of_their_size_in_either_order() {
-        // OMG CORBA 3.3, 9.3.1: an octet, a gap of three, a long; a gap of four, a double.
+        // OMG CORBA 3.3, 9.3.1: an octet, three bytes of padding, a long; four bytes of padding, a double.
         let little = [
             0, 1, 0, 0, 7, 0, 0, 0, 2, 1, 0, 0, 0, 0, 0, 0, 0, 0, 248, 63,
         ];

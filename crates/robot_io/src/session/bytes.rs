@@ -1,20 +1,20 @@
-//! Numbers to bytes and back, little endian; nothing is believed beyond the bytes that are there.
+//! Serializes numbers in little-endian order; reading never trusts a length beyond the bytes that are present.
 
 use pr_geom::{Matrix3, SE2};
 
-/// Larger numbers are no measurement, and their products would be none at all.
+/// Larger numbers are not measurements, and their products would overflow.
 const LARGEST: f64 = 1e50;
 
-/// Where bytes are not what they have to be.
+/// A position at which bytes are invalid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Broken {
-    /// Bytes of the file before it.
+    /// Byte offset in the file.
     pub byte: usize,
     /// What was expected.
     pub expected: String,
 }
 
-/// Bytes under way.
+/// Serialized bytes.
 #[derive(Default)]
 pub struct Writer(Vec<u8>);
 
@@ -35,7 +35,7 @@ impl Writer {
         self.bytes(&value.to_le_bytes());
     }
 
-    /// A number of things; no session has so many that they do not fit.
+    /// A count; no session exceeds 32 bits.
     pub fn count(&mut self, value: usize) {
         self.u32(u32::try_from(value).expect("fewer than four billion"));
     }
@@ -61,7 +61,7 @@ impl Writer {
         }
     }
 
-    /// Whether there is a value, and the value.
+    /// Writes a flag and the value if there is one.
     pub fn maybe<T>(&mut self, value: Option<T>, write: impl FnOnce(&mut Self, T)) {
         self.u8(u8::from(value.is_some()));
         if let Some(value) = value {
@@ -69,7 +69,7 @@ impl Writer {
         }
     }
 
-    /// A section: four letters, the length of what follows, and that.
+    /// Writes a section: four letters, the length of the content, and the content.
     pub fn section(&mut self, tag: &[u8; 4], write: impl FnOnce(&mut Self)) {
         let mut inner = Self::default();
         write(&mut inner);
@@ -79,7 +79,7 @@ impl Writer {
     }
 }
 
-/// Bytes being read, up to the end of a section.
+/// Reads bytes up to the end of a section.
 pub struct Cursor<'a> {
     file: &'a [u8],
     at: usize,
@@ -104,7 +104,7 @@ impl<'a> Cursor<'a> {
     pub fn take(&mut self, count: usize) -> Result<&'a [u8], Broken> {
         if count > self.left() {
             let left = self.left();
-            return Err(self.broken(format!("{count} bytes were expected, and {left} are left")));
+            return Err(self.broken(format!("expected {count} bytes, {left} are left")));
         }
         let bytes = &self.file[self.at..self.at + count];
         self.at += count;
@@ -143,34 +143,34 @@ impl<'a> Cursor<'a> {
         Ok(f64::from_le_bytes(self.array()?))
     }
 
-    /// A number that can be calculated with.
+    /// Reads a finite number within bounds.
     pub fn number(&mut self) -> Result<f64, Broken> {
         let value = self.f64()?;
         if value.abs() <= LARGEST {
             return Ok(value);
         }
         Err(self.broken(format!(
-            "a number within ±{LARGEST:e} was expected, not {value:e}"
+            "expected a number within ±{LARGEST:e}, found {value:e}"
         )))
     }
 
-    /// A number of things that take at least `bytes_each`: no more than fit into what is left.
+    /// Reads a count of items of at least `bytes_each` bytes: no more than fit into what is left.
     pub fn count(&mut self, bytes_each: usize) -> Result<usize, Broken> {
         let count = self.u32()? as usize;
         if count.saturating_mul(bytes_each) > self.left() {
             let left = self.left();
             return Err(self.broken(format!(
-                "{count} things of {bytes_each} bytes or more were announced, and {left} bytes are left"
+                "expected {count} items of at least {bytes_each} bytes, {left} bytes are left"
             )));
         }
         Ok(count)
     }
 
-    /// A pose whose heading is within a half turn, as it is written.
+    /// Reads a pose with a heading within ±π.
     pub fn pose(&mut self) -> Result<SE2, Broken> {
         let [x, y, theta] = [self.number()?, self.number()?, self.number()?];
         if theta.abs() > core::f64::consts::PI {
-            return Err(self.broken(format!("a heading within ±π was expected, not {theta}")));
+            return Err(self.broken(format!("expected a heading within ±π, found {theta}")));
         }
         Ok(SE2::new(x, y, theta))
     }
@@ -189,7 +189,7 @@ impl<'a> Cursor<'a> {
         match self.u8()? {
             0 => Ok(false),
             1 => Ok(true),
-            other => Err(self.broken(format!("0 or 1 was expected, not {other}"))),
+            other => Err(self.broken(format!("expected 0 or 1, found {other}"))),
         }
     }
 
@@ -200,7 +200,7 @@ impl<'a> Cursor<'a> {
         self.flag()?.then(|| read(self)).transpose()
     }
 
-    /// The next section, which has to be this one and to be read to its end.
+    /// Reads the next section, which must have this name and be consumed completely.
     pub fn section<T>(
         &mut self,
         tag: &[u8; 4],
@@ -208,7 +208,7 @@ impl<'a> Cursor<'a> {
     ) -> Result<T, Broken> {
         let name = String::from_utf8_lossy(tag).into_owned();
         if self.array::<4>()? != *tag {
-            return Err(self.broken(format!("section {name} was expected")));
+            return Err(self.broken(format!("expected section {name}")));
         }
         let length = usize::try_from(self.u64()?).unwrap_or(usize::MAX);
         let start = self.at;
@@ -216,7 +216,7 @@ impl<'a> Cursor<'a> {
         let mut inner = Cursor::new(&self.file[..start + length], start);
         let value = read(&mut inner)?;
         if inner.left() > 0 {
-            return Err(inner.broken(format!("the end of section {name} was expected")));
+            return Err(inner.broken(format!("expected the end of section {name}")));
         }
         Ok(value)
     }

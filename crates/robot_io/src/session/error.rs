@@ -1,4 +1,4 @@
-//! Why a session cannot be used.
+//! Errors of reading a session.
 
 use std::io;
 
@@ -6,34 +6,34 @@ use thiserror::Error;
 
 use super::VERSION;
 
-/// Why a session cannot be used, in one sentence.
+/// Why a session cannot be used.
 #[derive(Debug, Error)]
 pub enum SessionError {
-    /// The system could not give its bytes.
+    /// The bytes could not be read.
     #[error("{name}: {source}")]
     Io {
         /// The file's name.
         name: String,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
-    /// There is nothing in it.
+    /// The file is empty.
     #[error("{name} is empty; give a session, as slam2d run LOG -o DIR writes one")]
     Empty {
         /// The file's name.
         name: String,
     },
-    /// It does not begin as a session does.
+    /// The file does not begin with the magic.
     #[error(
-        "{name} is no session: it does not begin with SLAM2D; give one that slam2d run LOG -o DIR wrote"
+        "{name} is not a session: it does not begin with SLAM2D; give one that slam2d run LOG -o DIR wrote"
     )]
     Foreign {
         /// The file's name.
         name: String,
     },
-    /// Another version of the format.
+    /// The version of the format is not supported.
     #[error(
-        "{name} is a session of version {version}, and this program reads version {VERSION}; use the program that wrote it, or run the log again"
+        "{name} is a session of version {version}, but this program reads version {VERSION}; use the program that wrote it, or run the log again"
     )]
     Version {
         /// The file's name.
@@ -41,54 +41,54 @@ pub enum SessionError {
         /// Its version.
         version: u32,
     },
-    /// Bytes are missing at its end.
+    /// The file is truncated.
     #[error("{name} ends at byte {has} of {needs}; copy it again, or run the log again")]
     CutOff {
         /// The file's name.
         name: String,
-        /// Bytes that are there.
+        /// Bytes present.
         has: usize,
-        /// Bytes that it says it has.
+        /// Bytes that the header states.
         needs: u64,
     },
-    /// Something follows it.
-    #[error("{name} goes on after its end at byte {end}; copy it again, or run the log again")]
+    /// Bytes follow the session.
+    #[error("{name} continues after its end at byte {end}; copy it again, or run the log again")]
     Longer {
         /// The file's name.
         name: String,
-        /// Where it should end.
+        /// Stated end.
         end: u64,
     },
-    /// No session is so large.
+    /// The file is larger than any session.
     #[error(
-        "{name} is larger than 512 MB, which no session is; give one that slam2d run LOG -o DIR wrote"
+        "{name} is larger than 512 MB, more than any session; give one that slam2d run LOG -o DIR wrote"
     )]
     TooLarge {
         /// The file's name.
         name: String,
     },
-    /// The checksum is another one.
-    #[error("{name} is damaged: its checksum does not fit; copy it again, or run the log again")]
+    /// The checksum does not match.
+    #[error("{name} is damaged: its checksum does not match; copy it again, or run the log again")]
     Damaged {
         /// The file's name.
         name: String,
     },
-    /// Bytes that nobody wrote, with a checksum that fits.
+    /// The content is invalid although the checksum matches.
     #[error("{name}: byte {byte}: {expected}; run the log again")]
     Content {
         /// The file's name.
         name: String,
-        /// Where.
+        /// Position.
         byte: usize,
-        /// What was expected, and what stands there.
+        /// What was expected and what was found.
         expected: String,
     },
-    /// Its parts do not fit together.
+    /// The parts are inconsistent.
     #[error("{name}: {problem}; run the log again")]
     Contradiction {
         /// The file's name.
         name: String,
-        /// What does not fit.
+        /// The inconsistency.
         problem: String,
     },
 }

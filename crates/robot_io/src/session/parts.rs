@@ -1,4 +1,4 @@
-//! The sections of the file, in their order.
+//! The sections of a session file, in order.
 
 use std::sync::Arc;
 
@@ -14,25 +14,25 @@ use pr_geom::{SE2, Vector3};
 use super::bytes::{Broken, Cursor, Writer};
 use super::{MappedGraph, Session, pending, scans};
 
-/// Most bytes of a keyframe's scan, on the mean: with its node, its pose on the map, eight places
-/// of scans and five edges it stays below 3,000.
+/// Mean bytes per keyframe's scan: with its node, its pose on the map, eight scan poses
+/// and five edges a keyframe stays below 3,000.
 pub const SCAN_BYTES: usize = 2110;
-/// Two ends, the kind, the measurement, the information.
+/// Two nodes, the kind, the measurement, the information.
 const EDGE_BYTES: usize = 105;
-/// Whether it is fixed, the pose, the frame, the stamp.
+/// Fixed flag, pose, frame, stamp.
 const NODE_BYTES: usize = 41;
-/// Three numbers of 64 bits.
+/// Three 64-bit floats.
 const POSE_BYTES: usize = 24;
 /// Stamp, keyframe, pose.
 const PLACE_BYTES: usize = 36;
-/// Frame and pose of a sweep, and the least that a scan takes.
+/// Frame and pose of a sweep, and the minimum of a scan.
 const SWEEP_BYTES: usize = 46;
 
 pub fn write(session: &Session, out: &mut Writer) {
     let Session {
         driven,
         mapped,
-        places,
+        scan_poses,
         sensor,
         last_odometry,
     } = session;
@@ -96,11 +96,11 @@ pub fn write(session: &Session, out: &mut Writer) {
         });
     });
     out.section(b"WAYS", |out| {
-        out.count(places.len());
-        for place in places {
-            out.f64(place.stamp_s);
-            out.count(place.keyframe);
-            out.pose(&place.keyframe_from_body);
+        out.count(scan_poses.len());
+        for scan in scan_poses {
+            out.f64(scan.stamp_s);
+            out.count(scan.keyframe);
+            out.pose(&scan.keyframe_from_body);
         }
     });
     let front = &driven.front_end;
@@ -131,7 +131,7 @@ fn write_edges(edges: &[EdgeView], out: &mut Writer) {
             EdgeKind::Loop => 1,
         });
         out.pose(&edge.measurement);
-        // All nine: the two triangles may differ in a last bit.
+        // All nine entries: the two triangles may differ in the last bit.
         out.matrix(&edge.information);
     }
 }
@@ -141,7 +141,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
         let start = from.pose()?;
         let json = from.take(from.left())?;
         let robot: RobotConfig = serde_json::from_slice(json)
-            .map_err(|problem| from.broken(format!("parameters were expected: {problem}")))?;
+            .map_err(|problem| from.broken(format!("expected parameters: {problem}")))?;
         let robot = crate::settings::checked(robot).map_err(|problem| from.broken(problem))?;
         Ok(SlamConfig {
             start,
@@ -153,7 +153,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
         Ok((from.maybe(read_sensor)?, from.maybe(Cursor::pose)?))
     })?;
     let counters = from.section(b"STAT", Counters::read)?;
-    let places = from.section(b"NODE", |from| {
+    let node_rows = from.section(b"NODE", |from| {
         let count = from.count(NODE_BYTES)?;
         (0..count)
             .map(|_| read_node(from))
@@ -168,7 +168,7 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
     })?;
     let keyframes = from.section(b"SCAN", |from| {
         let mut keyframes = Vec::new();
-        for (node, (_, frame, stamp_s)) in places.iter().enumerate() {
+        for (node, (_, frame, stamp_s)) in node_rows.iter().enumerate() {
             keyframes.push(Keyframe {
                 node,
                 frame: *frame,
@@ -188,16 +188,18 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
             })
         })
     })?;
-    let scan_places = from.section(b"WAYS", |from| {
+    let scan_poses = from.section(b"WAYS", |from| {
         let count = from.count(PLACE_BYTES)?;
-        let place = |_| {
+        let read_pose = |_| {
             Ok(ScanPose {
                 stamp_s: from.f64()?,
                 keyframe: from.u32()? as usize,
                 keyframe_from_body: from.pose()?,
             })
         };
-        (0..count).map(place).collect::<Result<Vec<_>, Broken>>()
+        (0..count)
+            .map(read_pose)
+            .collect::<Result<Vec<_>, Broken>>()
     })?;
     let front_end = from.section(b"FRNT", |from| {
         let estimate = from.pose()?;
@@ -230,14 +232,14 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
         })
     })?;
     if from.left() > 0 {
-        return Err(from.broken("the end of the file was expected"));
+        return Err(from.broken("expected the end of the file"));
     }
     Ok(Session {
         driven: SlamSnapshot {
             config,
             frames: counters.frames,
             last_stamp_s: counters.last_stamp_s,
-            nodes: places.into_iter().map(|(node, ..)| node).collect(),
+            nodes: node_rows.into_iter().map(|(node, ..)| node).collect(),
             optimized_edges: counters.optimized_edges,
             edges,
             keyframes,
@@ -247,13 +249,13 @@ pub fn read(from: &mut Cursor<'_>) -> Result<Session, Broken> {
             front_end,
         },
         mapped,
-        places: scan_places,
+        scan_poses,
         sensor,
         last_odometry,
     })
 }
 
-/// What the estimator counts.
+/// Counters of the estimator.
 struct Counters {
     frames: usize,
     last_stamp_s: f64,
@@ -305,7 +307,9 @@ fn read_edges(from: &mut Cursor<'_>) -> Result<Vec<EdgeView>, Broken> {
         let kind = match from.u8()? {
             0 => EdgeKind::Odometry,
             1 => EdgeKind::Loop,
-            other => return Err(from.broken(format!("an edge of kind 0 or 1, not {other}"))),
+            other => {
+                return Err(from.broken(format!("expected an edge of kind 0 or 1, found {other}")));
+            }
         };
         Ok(EdgeView {
             id: number.into(),

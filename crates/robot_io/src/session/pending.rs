@@ -1,11 +1,11 @@
-//! A loop that waits for others.
+//! A loop that waits for confirmation.
 
 use ch16_slam2d::loops::{GateTest, LoopCandidate, LoopVerification, PendingLoop};
 use pr_geom::Vector3;
 
 use super::bytes::{Broken, Cursor, Writer};
 
-/// The least that one takes.
+/// Least bytes of one.
 pub const BYTES: usize = 300;
 
 pub fn write(pending: &PendingLoop, out: &mut Writer) {
@@ -29,7 +29,7 @@ pub fn write(pending: &PendingLoop, out: &mut Writer) {
         gate_information,
         gate,
         information,
-        // Only a loop that passed all other tests waits.
+        // Only a loop that passed all other tests is pending.
         rejection: _,
     } = verification;
     let LoopCandidate {

@@ -1,4 +1,4 @@
-//! A thinned scan as rays again, for a map that also knows what is free.
+//! Converts a filtered scan back to rays, for a map with free space.
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -6,18 +6,18 @@ use ch16_slam2d::cloud::PointCloud;
 use ch16_slam2d::scan::LaserScan;
 use pr_geom::{math, sort_pairs};
 
-/// Points of a wall are at most so many cells of the thinned scan apart.
+/// Neighbouring points of a wall are at most this many cells apart.
 const NEIGHBOR_CELLS: f64 = 2.5;
-/// Step of the rays where the sensor's is not known, rad.
+/// Ray spacing if the sensor's is unknown, rad.
 const STEP_RAD: f64 = TAU / 720.0;
-/// Finer and coarser steps are nobody's, rad.
+/// Plausible ray spacings, rad.
 const STEPS_RAD: core::ops::Range<f64> = TAU / 7200.0..0.2;
 
-/// Rays of `sensor` to the points of `scan` (body frame), which was thinned to cells of `cell_m` (m).
+/// Rays of `sensor` to the points of `scan` (body frame), which was filtered to cells of `cell_m` (m).
 ///
-/// Between two points that stand side by side, at the bearings α and β and the ranges a and b, the ray
-/// at φ ends on the line through them: `a b sin(β − α) / (a sin(φ − α) + b sin(β − φ))`. A ray that
-/// meets no point says nothing: NaN.
+/// Between two neighbouring points at the bearings α and β and the ranges a and b, the ray
+/// at φ ends on the line through them: `a b sin(β − α) / (a sin(φ − α) + b sin(β − φ))`. A ray without
+/// a point is NaN.
 #[must_use]
 pub fn rays(scan: &PointCloud, sensor: &LaserScan, cell_m: f64) -> LaserScan {
     let step_rad = sensor.angle_step_rad.abs();

@@ -1,10 +1,10 @@
-//! Thinned scans in at most so many bytes.
+//! Filtered scans within a bound of bytes.
 //!
-//! Where they fit on the mean, all of them keep all bits. Elsewhere each is stored as exactly as its
-//! share of the bytes allows: with all bits, as 32-bit floats, or as 16-bit multiples of a power of
-//! two of a metre. A scan with more points than that is thinned until it fits. Normals are
-//! not stored where the scan's own points give them, which is so for every scan that
-//! [`ScanPreparer`](ch16_slam2d::scan::ScanPreparer) made. What is read back is stored the same way
+//! If the mean size fits the bound, all scans keep all bits. Otherwise each scan is stored as precisely as its share of
+//! the bytes allows: with all bits, as 32-bit floats, or as 16-bit multiples of a power of two of a metre. A scan with
+//! more points is downsampled until it fits. Normals are stored only if they cannot be computed from the scan's own
+//! points, which works for every scan of [`ScanPreparer`](ch16_slam2d::scan::ScanPreparer). A scan that was read is
+//! stored in the same form again.
 //! again.
 
 use std::borrow::Cow;
@@ -14,22 +14,22 @@ use pr_geom::{Point2, Vector2, math};
 
 use super::bytes::{Broken, Cursor, Writer};
 
-/// Bytes before the points: how they are stored, the shift, their number, the stamp.
+/// Bytes before the points: encoding, shift, count, stamp.
 const HEAD_BYTES: usize = 14;
 /// Finest step of a 16-bit coordinate: 2⁻¹² m.
 const FINEST_SHIFT: i8 = 12;
 /// Coarsest step: 2¹⁰ m.
 const COARSEST_SHIFT: i8 = -10;
-/// A normal of which nothing is known, among the 16-bit angles.
+/// Code of a missing normal among the 16-bit angles.
 const NO_NORMAL: u16 = u16::MAX;
-/// 16-bit angles divide the turn into so many.
+/// Number of 16-bit angles in a turn.
 const ANGLES: f64 = 65534.0;
-/// Coordinates beyond are no 32-bit float, m.
+/// Larger coordinates are not stored as 32-bit floats, m.
 const LARGEST_SINGLE_M: f64 = 1e30;
-/// By how much the cells grow when a scan does not fit.
+/// Growth of the cells while a scan does not fit.
 const THINNER: f64 = 1.25;
 
-/// How a coordinate is stored.
+/// Encoding of a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Precision {
     /// All bits.
@@ -65,7 +65,7 @@ impl Precision {
     }
 }
 
-/// A scan that fits into its share of the bytes, and how.
+/// A scan that fits into its share of the bytes, and its encoding.
 struct Fitted<'a> {
     scan: Cow<'a, PointCloud>,
     precision: Precision,
@@ -82,8 +82,7 @@ impl Fitted<'_> {
     }
 }
 
-/// Writes scans in at most `most_bytes` each, on the mean; normals follow from the points within
-/// `radius_m`.
+/// Writes scans with a mean of at most `most_bytes` each; normals are computed from the points within `radius_m`.
 pub fn write_all<'a>(
     scans: impl Iterator<Item = &'a PointCloud>,
     radius_m: f64,
@@ -103,7 +102,7 @@ pub fn write_all<'a>(
     }
 }
 
-/// Writes a scan with all bits, however many bytes it takes.
+/// Writes a scan with all bits, whatever its size.
 pub fn write_exactly(scan: &PointCloud, radius_m: f64, out: &mut Writer) {
     fit(scan, radius_m, usize::MAX).write(Precision::Exact, out);
 }
@@ -117,7 +116,7 @@ fn bytes(points: usize, precision: Precision, is_derived: bool) -> usize {
     HEAD_BYTES + points * (precision.point_bytes() + normal)
 }
 
-/// The scan at the best precision that fits, thinned where none does.
+/// Chooses the best precision that fits; downsamples the scan if none does.
 fn fit(scan: &PointCloud, radius_m: f64, most_bytes: usize) -> Fitted<'_> {
     let mut fitting = Cow::Borrowed(scan);
     let mut cell_m = radius_m.max(1e-3) / 16.0;
@@ -129,7 +128,7 @@ fn fit(scan: &PointCloud, radius_m: f64, most_bytes: usize) -> Fitted<'_> {
             .chain(fixed);
         let fits = |precision: &Precision| {
             bytes(fitting.len(), *precision, is_derived) <= most_bytes
-                && holds(*precision, &fitting)
+                && is_representable(*precision, &fitting)
         };
         if let Some(precision) = all.into_iter().find(fits) {
             return Fitted {
@@ -145,7 +144,7 @@ fn fit(scan: &PointCloud, radius_m: f64, most_bytes: usize) -> Fitted<'_> {
     }
 }
 
-/// The scan with the normals that its points give, whatever was seen before it.
+/// The scan with normals computed from its own points.
 fn derived(scan: &PointCloud, radius_m: f64) -> PointCloud {
     let mut with_normals = PointCloud::new(scan.iter().collect(), scan.stamp_s());
     with_normals.estimate_normals(radius_m);
@@ -156,7 +155,7 @@ fn coordinates(scan: &PointCloud) -> impl Iterator<Item = f64> + '_ {
     scan.xs().iter().chain(scan.ys()).copied()
 }
 
-fn holds(precision: Precision, scan: &PointCloud) -> bool {
+fn is_representable(precision: Precision, scan: &PointCloud) -> bool {
     match precision {
         Precision::Exact => true,
         Precision::Single => coordinates(scan).all(|value| value.abs() < LARGEST_SINGLE_M),
@@ -167,7 +166,7 @@ fn holds(precision: Precision, scan: &PointCloud) -> bool {
     }
 }
 
-/// Steps in a metre: a power of two.
+/// Steps per metre: a power of two.
 fn steps(shift: i8) -> f64 {
     let power = (1_u64 << shift.unsigned_abs()) as f64;
     if shift >= 0 { power } else { 1.0 / power }
@@ -223,10 +222,14 @@ pub fn read(from: &mut Cursor<'_>, radius_m: f64) -> Result<PointCloud, Broken> 
         2 if (COARSEST_SHIFT..=FINEST_SHIFT).contains(&shift) => {
             (Precision::Fixed(shift), code & 4 == 0)
         }
-        _ => return Err(from.broken(format!("no points are stored as {code} with shift {shift}"))),
+        _ => {
+            return Err(from.broken(format!(
+                "unknown encoding {code} of points with shift {shift}"
+            )));
+        }
     };
     if code > 7 {
-        return Err(from.broken(format!("no points are stored as {code}")));
+        return Err(from.broken(format!("unknown encoding {code} of points")));
     }
     let count = from.u32()? as usize;
     let stamp_s = from.f64()?;
@@ -235,7 +238,7 @@ pub fn read(from: &mut Cursor<'_>, radius_m: f64) -> Result<PointCloud, Broken> 
     if bytes > from.left() || !stamp_s.is_finite() {
         let left = from.left();
         return Err(from.broken(format!(
-            "a scan of {count} points in {bytes} bytes was announced, and {left} are left"
+            "expected a scan of {count} points in {bytes} bytes, {left} are left"
         )));
     }
     let mut points = Vec::with_capacity(count);
@@ -249,7 +252,7 @@ pub fn read(from: &mut Cursor<'_>, radius_m: f64) -> Result<PointCloud, Broken> 
         };
         let (x, y) = (value()?, value()?);
         if !x.is_finite() || !y.is_finite() {
-            return Err(from.broken("a point with finite coordinates was expected"));
+            return Err(from.broken("expected a point with finite coordinates"));
         }
         points.push(Point2::new(x, y));
     }
@@ -263,7 +266,7 @@ pub fn read(from: &mut Cursor<'_>, radius_m: f64) -> Result<PointCloud, Broken> 
             let normal = Vector2::new(from.f64()?, from.f64()?);
             let is_normal = normal.iter().all(|value| value.abs() <= 1.5);
             if !is_normal {
-                return Err(from.broken("a normal of length 1 was expected"));
+                return Err(from.broken("expected a normal of length 1"));
             }
             (normal != Vector2::zeros()).then_some(normal)
         } else {

@@ -12,7 +12,7 @@ use crate::log::LogFrame;
 use crate::run::{LogRun, OdometryUse};
 use crate::settings::{SETTINGS, Setting};
 
-/// A room of 8 m × 6 m seen from a circle in it; the wheels claim a little too much of each turn.
+/// A room of 8 m × 6 m seen from a circle in it; odometry overestimates each turn slightly.
 fn frame(step: usize, beams: usize) -> LogFrame {
     let way = |scale: f64| SE2::exp(&(Vector3::new(1.5, 0.0, scale) * (0.06 * step as f64)));
     let pose = SE2::new(4.0, 1.5, 0.0) * way(1.0);
@@ -64,7 +64,7 @@ fn what_is_saved_loads_to_the_same_and_is_saved_to_the_same_bytes() {
             let bytes = session.to_bytes();
             let mut loaded = Session::read(Bytes::new(&bytes), "x").unwrap();
             assert!(loaded.to_bytes() == bytes, "{beams} beams");
-            // Scans of more than 131 points are kept with fewer bits; nothing else is.
+            // Scans of more than 131 points are stored with fewer bits; everything else is exact.
             if beams > 120 {
                 let pairs = loaded.driven.keyframes.iter_mut();
                 for (a, b) in pairs.zip(&session.driven.keyframes) {
@@ -77,39 +77,39 @@ fn what_is_saved_loads_to_the_same_and_is_saved_to_the_same_bytes() {
 }
 
 #[test]
-fn a_run_that_goes_on_from_a_file_ends_in_the_bits_of_one_that_was_never_interrupted() {
+fn a_continued_run_equals_an_uninterrupted_one_bit_by_bit() {
     let mut whole = run(120, 0..150);
     let half = saved(&run(120, 0..80));
-    let session = Session::of_bytes(&half, "x").unwrap();
+    let session = Session::from_bytes(&half, "x").unwrap();
     let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
     go_on(&mut second, 120, 80..150);
     assert_eq!(saved(&second), saved(&whole));
-    // So it is once both have ended, and from there on again.
+    // The same holds after both have ended, and when they continue.
     whole.finish();
     second.finish();
     assert_eq!(saved(&second), saved(&whole));
-    let session = Session::of_bytes(&saved(&whole), "x").unwrap();
+    let session = Session::from_bytes(&saved(&whole), "x").unwrap();
     let mut third = LogRun::resume(&session, OdometryUse::Log).unwrap();
     go_on(&mut third, 120, 150..170);
     assert_eq!(saved(&third), saved(&run(120, 0..170)));
 }
 
 #[test]
-fn a_log_of_another_scanner_is_told() {
+fn a_log_of_another_scanner_is_reported() {
     let session = run(120, 0..80).session().unwrap();
     for (beams, told) in [(120, 0), (90, 1)] {
         let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
         go_on(&mut second, beams, 80..90);
         let sentences = second.sentences("log");
         assert_eq!(sentences.len(), told, "{sentences:?}");
-        let is_said = |said: &String| said.contains("stand 4.00° apart");
+        let is_said = |said: &String| said.contains("a step of 4.00°");
         assert!(sentences.iter().all(is_said), "{sentences:?}");
     }
 }
 
 #[test]
-fn loops_that_wait_are_saved_and_wait_on() {
-    // Never sure: every loop waits for others.
+fn pending_loops_are_saved_and_stay_pending() {
+    // A zero radius: every loop waits for confirmation.
     let settings = [
         ("loops.unconfirmed_gate_radius_m", 0.0),
         ("loops.min_margin", 0.0),
@@ -127,13 +127,13 @@ fn loops_that_wait_are_saved_and_wait_on() {
         run
     };
     let (half, mut whole) = (doubting(0..125), doubting(0..140));
-    let session = Session::of_bytes(&saved(&half), "x").unwrap();
+    let session = Session::from_bytes(&saved(&half), "x").unwrap();
     assert!(!session.driven.pending.is_empty());
     assert_eq!(session, half.session().unwrap());
     let mut second = LogRun::resume(&session, OdometryUse::Log).unwrap();
     go_on(&mut second, 120, 125..140);
     assert_eq!(saved(&second), saved(&whole));
-    // At the end the loops that wait are closed or dropped, in the same way.
+    // At the end, pending loops are accepted or dropped in the same way.
     whole.finish();
     second.finish();
     assert_eq!(saved(&second), saved(&whole));
@@ -150,13 +150,13 @@ fn a_keyframe_takes_three_kilobytes_at_most_whatever_the_sensor() {
         let scans_m = session.driven.keyframes.iter().map(|k| k.scan.len());
         let (points, keyframes) = (scans_m.max().unwrap(), session.driven.keyframes.len());
         let window = &session.driven.front_end.scans;
-        // The window is kept exactly, whatever the map's size.
+        // The window is stored exactly, whatever the map's size.
         let fixed = with_section(&session.to_bytes(), b"FRNT", |_| Vec::new());
         assert!(window.len() <= 16);
-        assert!(session.places.len() <= 8 * keyframes + 40);
+        assert!(session.scan_poses.len() <= 8 * keyframes + 40);
         let each = fixed.len() / keyframes;
         assert!(each <= 3000, "{beams} beams, {points} points: {each} bytes");
-        let loaded = Session::of_bytes(&session.to_bytes(), "x").unwrap();
+        let loaded = Session::from_bytes(&session.to_bytes(), "x").unwrap();
         for (stored, seen) in loaded
             .driven
             .keyframes
@@ -166,7 +166,7 @@ fn a_keyframe_takes_three_kilobytes_at_most_whatever_the_sensor() {
             if beams < 2880 {
                 assert_eq!(stored.scan.len(), seen.scan.len());
             }
-            // More points than fit are thinned, and not to nothing.
+            // More points than fit are downsampled, but not too much.
             assert!(stored.scan.len() > 2 * seen.scan.len() / 3);
             if stored.scan.len() == seen.scan.len() {
                 for (a, b) in stored.scan.iter().zip(seen.scan.iter()) {
@@ -214,7 +214,7 @@ fn scans_of_another_make_keep_their_normals_and_crowded_ones_are_thinned() {
     }
 }
 
-/// The file with other content in a section.
+/// Replaces the content of a section.
 fn with_section(bytes: &[u8], name: &[u8; 4], change: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
     let at = bytes.windows(4).position(|four| four == name).unwrap() + 4;
     let length = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
@@ -250,7 +250,7 @@ fn a_session_with_other_parameters_is_refused_by_their_name() {
             let json = core::str::from_utf8(json).unwrap().replace(from, to);
             [start, json.as_bytes()].concat()
         });
-        let error = Session::of_bytes(&other, "x").unwrap_err().to_string();
+        let error = Session::from_bytes(&other, "x").unwrap_err().to_string();
         assert!(error.contains(said), "{error}");
     }
 }
@@ -262,9 +262,9 @@ fn every_byte_counts_and_so_does_every_length() {
     for at in 0..bytes.len() {
         let mut damaged = bytes.clone();
         damaged[at] ^= 1 << (at % 8);
-        let error = Session::of_bytes(&damaged, "x").unwrap_err().to_string();
+        let error = Session::from_bytes(&damaged, "x").unwrap_err().to_string();
         assert!(is_a_sentence(&error), "{at}: {error}");
-        let error = Session::of_bytes(&bytes[..at], "x")
+        let error = Session::from_bytes(&bytes[..at], "x")
             .unwrap_err()
             .to_string();
         assert!(is_a_sentence(&error), "{at}: {error}");
@@ -277,7 +277,7 @@ fn is_a_sentence(error: &str) -> bool {
         && (error.contains("again") || error.contains("give ") || error.contains("use the program"))
 }
 
-/// The file with a checksum that fits to what stands in it.
+/// Recomputes the checksum.
 fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
     let end = bytes.len() - TAIL_BYTES;
     let sum = checksum(&bytes[..end]);
@@ -286,14 +286,14 @@ fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
 }
 
 #[test]
-fn bytes_that_nobody_wrote_are_a_sentence_or_a_session_that_can_be_used() {
+fn forged_bytes_give_an_error_or_a_usable_session() {
     let bytes = saved(&run(40, 0..12));
     let mut accepted = 0;
     for at in (HEAD_BYTES..bytes.len() - TAIL_BYTES).step_by(3) {
         for value in [0x00, 0x7f, 0xff] {
             let mut forged = bytes.clone();
             forged[at] = value;
-            match Session::of_bytes(&signed(forged), "x") {
+            match Session::from_bytes(&signed(forged), "x") {
                 Err(error) => assert!(is_a_sentence(&error.to_string()), "{at}: {error}"),
                 Ok(session) => {
                     accepted += 1;
@@ -313,18 +313,18 @@ fn a_map_may_have_lost_every_loop_that_was_driven() {
     let mapped = session.mapped.as_mut().unwrap();
     mapped.loops.clear();
     session.driven.optimized_edges = session.driven.edges.len();
-    let read = Session::of_bytes(&session.to_bytes(), "x").unwrap();
+    let read = Session::from_bytes(&session.to_bytes(), "x").unwrap();
     assert_eq!(read, session);
     assert_eq!(read.graph().optimized_edges(), read.graph().edge_count());
 }
 
 #[test]
-fn what_no_run_can_have_left_is_refused() {
+fn impossible_states_are_rejected() {
     let good = run(40, 0..12).session().unwrap();
     let refused = |change: &dyn Fn(&mut Session), said: &str| {
         let mut session = good.clone();
         change(&mut session);
-        let told = Session::of_bytes(&session.to_bytes(), "x").unwrap_err();
+        let told = Session::from_bytes(&session.to_bytes(), "x").unwrap_err();
         assert!(told.to_string().contains(said), "{told}");
     };
     let far = SE2::new(1e60, 0.0, 0.0);
@@ -340,17 +340,17 @@ fn what_no_run_can_have_left_is_refused() {
     refused(&|x| x.driven.keyframes[1].stamp_s = 0.0, "not in order");
     let last_s = good.driven.last_stamp_s;
     refused(
-        &|x| x.places.last_mut().unwrap().stamp_s = last_s + 1.0,
-        "places of scans are not in order",
+        &|x| x.scan_poses.last_mut().unwrap().stamp_s = last_s + 1.0,
+        "poses of scans are not in order",
     );
     refused(
-        &|x| x.places[0].keyframe = 1,
-        "places of scans are not in order",
+        &|x| x.scan_poses[0].keyframe = 1,
+        "poses of scans are not in order",
     );
 }
 
 #[test]
-fn what_is_no_session_is_told_from_what_was_one() {
+fn foreign_files_are_distinguished_from_damaged_sessions() {
     let bytes = saved(&run(40, 0..3));
     let mut newer = bytes.clone();
     newer[8] = 7;
@@ -360,19 +360,19 @@ fn what_is_no_session_is_told_from_what_was_one() {
     longer.push(0);
     for (file, said) in [
         (&b""[..], "x is empty; give a session"),
-        (b"FLASER 180", "x is no session"),
+        (b"FLASER 180", "x is not a session"),
         (b"SLAM2D\r\n", "x ends at byte 8 of 20"),
         (
             &newer,
-            "x is a session of version 7, and this program reads version 3",
+            "x is a session of version 7, but this program reads version 3",
         ),
         (
             &older,
-            "x is a session of version 1, and this program reads version 3",
+            "x is a session of version 1, but this program reads version 3",
         ),
-        (&longer, "x goes on after its end at byte"),
+        (&longer, "x continues after its end at byte"),
     ] {
-        let error = Session::of_bytes(file, "x").unwrap_err().to_string();
+        let error = Session::from_bytes(file, "x").unwrap_err().to_string();
         assert!(error.starts_with(said), "{error}");
     }
 }
@@ -382,9 +382,9 @@ fn every_parameter_is_written_and_read() {
     for setting in SETTINGS {
         let value = setting.value(&RobotConfig::default()) + 1.0;
         let mut run = LogRun::new(OdometryUse::Log).with_setting(setting, value);
-        // Few enough points to be kept to the bit.
+        // Few enough points to be stored exactly.
         run.step(frame(0, 120)).unwrap();
-        let session = Session::of_bytes(&saved(&run), "x").unwrap();
+        let session = Session::from_bytes(&saved(&run), "x").unwrap();
         let robot = session.driven.config.robot.unwrap();
         assert_eq!(setting.value(&robot), value, "{}", setting.name);
         assert!(session == run.session().unwrap(), "{}", setting.name);
@@ -416,8 +416,8 @@ fn rays_to_a_thinned_wall_end_on_it_and_leave_gaps_open() {
 }
 
 #[test]
-fn a_robot_that_waits_does_not_fill_the_file_with_places() {
-    let place = |number: usize, keyframe: usize| ScanPose {
+fn a_waiting_robot_does_not_fill_the_file_with_scan_poses() {
+    let scan_pose = |number: usize, keyframe: usize| ScanPose {
         stamp_s: number as f64,
         keyframe,
         keyframe_from_body: SE2::identity(),
@@ -427,12 +427,12 @@ fn a_robot_that_waits_does_not_fill_the_file_with_places() {
         100..105 => 1,
         _ => 2,
     };
-    let places: Vec<ScanPose> = (0..150).map(|k| place(k, keyframe(k))).collect();
-    let kept = places_kept(&places);
+    let scans: Vec<ScanPose> = (0..150).map(|k| scan_pose(k, keyframe(k))).collect();
+    let kept = selected_scan_poses(&scans);
     // Eight of the first keyframe, all of the second, and all of the last, which may get more.
     assert_eq!(kept.len(), 8 + 5 + 45);
-    assert_eq!((kept[0], kept[7].stamp_s), (places[0], 87.0));
-    assert_eq!(places_kept(&kept), kept);
+    assert_eq!((kept[0], kept[7].stamp_s), (scans[0], 87.0));
+    assert_eq!(selected_scan_poses(&kept), kept);
 }
 
 #[test]

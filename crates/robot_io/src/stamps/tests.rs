@@ -1,4 +1,4 @@
-//! Each fault of a stream's stamps, and the stamps that come of it.
+//! Each fault of a stream's stamps, and its correction.
 
 use super::*;
 
@@ -26,7 +26,7 @@ fn good_stamps_stay_as_they_are_through_a_pause_and_with_late_recording() {
         stamps[k] += 50.0;
         recorded[k] += 50.0;
     }
-    // The recorder was held up for a while.
+    // The recorder was delayed for a while.
     for recorded_s in &mut recorded[10..16] {
         *recorded_s += 3.0;
     }
@@ -40,7 +40,7 @@ fn good_stamps_stay_as_they_are_through_a_pause_and_with_late_recording() {
 }
 
 #[test]
-fn single_stamps_from_another_world_are_replaced() {
+fn single_outlier_stamps_are_replaced() {
     for off_s in [1e6, -1e6, 30.0, -3.0] {
         for at in [0, 1, 20, 58, 59] {
             let (good, recorded) = stream(60);
@@ -70,7 +70,7 @@ fn stamps_of_zero_are_those_of_the_recording() {
 }
 
 #[test]
-fn a_clock_that_steps_is_put_back() {
+fn clock_steps_are_removed() {
     for by_s in [-100.0, 3600.0, -1.5] {
         let (good, recorded) = stream(60);
         let mut stamps = good.clone();
@@ -80,7 +80,7 @@ fn a_clock_that_steps_is_put_back() {
         assert_eq!(mended.steps[0].at, 33);
         assert_near(&mended, &good, 1e-6);
     }
-    // Without the recording's time, only a step back shows.
+    // Without the time of recording, only a step back shows.
     let (good, _) = stream(60);
     let mut stamps = good.clone();
     stamps[33..]
@@ -91,7 +91,7 @@ fn a_clock_that_steps_is_put_back() {
 }
 
 #[test]
-fn neighbours_that_changed_places_keep_their_stamps() {
+fn swapped_neighbours_keep_their_stamps() {
     let (mut stamps, recorded) = stream(40);
     for pair in stamps.chunks_exact_mut(2) {
         pair.swap(0, 1);
@@ -109,7 +109,7 @@ fn coarse_stamps_are_spread_in_their_order() {
     let mended = MendedStamps::new(&stamps, &[f64::NAN; 40]);
     assert_eq!(mended.equal, 38);
     assert!(mended.stamps_s.windows(2).all(|two| two[0] < two[1]));
-    // Ten a second in whole seconds.
+    // Ten per second in whole seconds.
     let stamps: Vec<f64> = (0..40).map(|k| f64::from(100 + k / 10)).collect();
     let mended = MendedStamps::new(&stamps, &[f64::NAN; 40]);
     let expected: Vec<f64> = (0..30).map(|k| 100.0 + 0.1 * f64::from(k)).collect();

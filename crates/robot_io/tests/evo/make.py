@@ -1,11 +1,11 @@
-"""Writes the trajectories and the values of evo that the tests compare with.
+"""Writes the trajectories, and the values of evo that the tests compare with.
 
     slam2d lap --seed 7 --world ring --json > lap.json
     pip install evo==1.38.1
     python crates/robot_io/tests/evo/make.py lap.json
 
-The truth has every tick of the lap. The estimate lacks every seventh, and its clock is 4 ms late, so
-that stamps have to be matched.
+The truth has every tick of the lap. The estimate lacks every seventh, and its clock is 4 ms late,
+so stamps must be associated.
 """
 
 import json

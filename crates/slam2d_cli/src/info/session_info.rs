@@ -1,4 +1,4 @@
-//! What is in a session.
+//! Summary of a session.
 
 use std::path::Path;
 
@@ -21,7 +21,7 @@ struct SessionJson {
     points: usize,
     edges: usize,
     loops: usize,
-    /// Whether the map was linked once more after the last scan.
+    /// Whether the final pass over the map was done.
     refined: bool,
     path_length_m: f64,
     first_stamp_s: Option<f64>,
@@ -67,10 +67,10 @@ impl SessionJson {
     }
 }
 
-/// Reads a session and prints what is in it.
+/// Reads a session and prints its summary.
 ///
 /// # Errors
-/// Where it cannot be used.
+/// If it cannot be used.
 pub fn run(path: &Path, as_json: bool) -> Result<(), SessionFileError> {
     let (session, bytes) = read_session(path)?;
     let info = SessionJson::new(&session, bytes);
@@ -86,7 +86,7 @@ pub fn run(path: &Path, as_json: bool) -> Result<(), SessionFileError> {
     say!("scans            {}", info.scans);
     say!("keyframes        {}", info.keyframes);
     if let Some(each) = info.bytes_per_keyframe {
-        say!("bytes            {each:.0} for each keyframe");
+        say!("bytes            {each:.0} per keyframe");
     }
     say!(
         "edges            {}, {} of them loops",
@@ -105,9 +105,9 @@ pub fn run(path: &Path, as_json: bool) -> Result<(), SessionFileError> {
     say!(
         "map              {}",
         if info.refined {
-            "linked anew at its end"
+            "after the final pass"
         } else {
-            "as it was driven"
+            "as built during the run"
         }
     );
     Ok(())

@@ -1,4 +1,4 @@
-//! `slam2d lap --estimator ml|ml-cycles`: the ancestor on the frames of the lap.
+//! `slam2d lap --estimator ml|ml-cycles`: incremental mapping on the frames of the lap.
 
 use ch16_lab::incremental::{IncrementalKind, IncrementalTrace};
 use ch16_lab::lap::{Choice, Drive, LapConfig};
@@ -24,7 +24,7 @@ struct IncrementalJson {
     keyframe_rms: f64,
     map_disagreement: Option<f64>,
     digest: String,
-    /// What the particles said at every keyframe.
+    /// Test of the particles at every keyframe.
     tests: Vec<TestJson>,
     keyframe_poses: Vec<[f64; 3]>,
     keyframe_truth: Vec<[f64; 3]>,
@@ -32,7 +32,7 @@ struct IncrementalJson {
     per_tick: Vec<TickJson>,
 }
 
-/// A test of the particles; `from`, `off` and `max_shift` where a cycle was closed.
+/// A test of the particles; `from`, `off` and `max_shift` if a cycle was closed.
 #[derive(Serialize)]
 struct TestJson {
     node: usize,
@@ -52,7 +52,7 @@ struct TickJson {
     estimate: [f64; 3],
 }
 
-/// Runs the ancestor on the lap of `config` and prints it.
+/// Runs incremental mapping on the lap of `config` and prints the result.
 pub fn print(ancestor: IncrementalKind, config: &LapConfig, args: &LapArgs) {
     let drive = Drive::simulate(&config.drive);
     let trace = IncrementalTrace::run(ancestor, config, &drive);
@@ -144,7 +144,7 @@ fn print_text(trace: &IncrementalTrace, args: &LapArgs) {
     say!("keyframes, rms    {:.4} m", summary.keyframe_rms_m);
     match summary.map_disagreement_m {
         Some(value) => say!("map disagreement  {value:.4} m"),
-        None => say!("map disagreement  none: nothing was seen twice"),
+        None => say!("map disagreement  none: no area was scanned twice"),
     }
     for test in &trace.tests {
         if let Some(closure) = closure(test) {

@@ -1,4 +1,4 @@
-//! `slam2d lap --laps N`: lap after lap with one map that is kept up.
+//! `slam2d lap --laps N`: repeated laps with one lifelong map.
 
 use std::path::PathBuf;
 
@@ -15,20 +15,20 @@ use crate::numbers;
 use crate::optimize::write_whole;
 use crate::output::{print_json, say};
 
-/// Lap after lap.
+/// Arguments of repeated laps.
 #[derive(Args, Clone, Debug)]
 pub struct LapsArgs {
-    /// Drive so many laps one after the other, with the values for robots, and keep the map up.
+    /// Drive this many laps in sequence with the parameters for robots, and maintain one map.
     #[arg(long, value_name = "N", value_parser = numbers::laps,
           conflicts_with_all = ["matcher", "front_end", "loop_matcher", "detector", "gate", "information", "frames", "no_loops", "estimator"])]
     pub laps: Option<usize>,
-    /// After the last lap write the session into this file.
+    /// Write the session to this file after the last lap.
     #[arg(long, value_name = "FILE", requires = "laps")]
     session: Option<PathBuf>,
-    /// A wardrobe stands in the Apartment and is moved before this lap.
+    /// Place a wardrobe in the Apartment and move it before this lap.
     #[arg(long, value_name = "LAP", requires = "laps", value_parser = numbers::laps)]
     wardrobe: Option<usize>,
-    /// Let the map grow: nothing is taken out and nothing forgotten.
+    /// Disable map pruning: the map only grows.
     #[arg(long, requires = "laps")]
     keep_all: bool,
 }
@@ -58,10 +58,10 @@ struct LapsJson {
     laps: Vec<LapJson>,
 }
 
-/// Drives the laps and prints a line for each.
+/// Runs the laps and prints a line for each.
 ///
 /// # Errors
-/// Where the session cannot be written.
+/// If the session cannot be written.
 pub fn run(
     args: &LapsArgs,
     count: usize,
@@ -85,7 +85,7 @@ pub fn run(
     let mut done = Vec::new();
     let mut session = None;
     if !as_json {
-        say!("lap  nodes  edges  loops  taken out  nats   kB  ms/tick  error m  map m");
+        say!("lap  nodes  edges  loops    removed  nats   kB  ms/tick  error m  map m");
     }
     for _ in 0..count {
         let drive = laps.simulate();
@@ -95,7 +95,7 @@ pub fn run(
         let saved = Session {
             driven: laps.slam().snapshot(),
             mapped: None,
-            places: Vec::new(),
+            scan_poses: Vec::new(),
             sensor: Some(LaserScan {
                 ranges_m: Vec::new(),
                 ..drive.frame(0).scan

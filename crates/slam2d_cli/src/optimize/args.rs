@@ -9,36 +9,36 @@ use pr_optim::{RobustKernel, Start};
 use super::robust::RobustName;
 use crate::numbers;
 
-/// Solve a pose graph: g2o in, g2o out.
+/// Optimize a pose graph: g2o in, g2o out.
 #[derive(Args, Clone, Debug)]
 pub struct OptimizeArgs {
-    /// Graph to read: VERTEX_SE2, EDGE_SE2, FIX; other records are kept as they are.
+    /// Graph to read: VERTEX_SE2, EDGE_SE2, FIX; other records are kept unchanged.
     #[arg(value_name = "IN.g2o")]
     pub input: PathBuf,
-    /// Where to write the solved graph, through links; nothing is written without it.
+    /// File for the optimized graph; symbolic links are followed. Without it, no file is written.
     #[arg(short, long, value_name = "OUT.g2o")]
     pub output: Option<PathBuf>,
     /// Gauss–Newton or Levenberg–Marquardt.
     #[arg(long, value_enum, default_value_t = MethodName::Gn)]
     pub method: MethodName,
-    /// Where to start. `auto` tries the file and a spanning tree, and chordal where they fail; with
+    /// Initial guess. `auto` tries the file and a spanning tree, and chordal relaxation if they fail; with
     /// a kernel also the solution without it.
     #[arg(long, value_enum, default_value_t = StartName::Auto)]
     pub init: StartName,
     /// Robust kernel: none, huber:W (Mahalanobis norm) or dcs:PHI (squared norm).
     #[arg(long, value_parser = KernelName::from_str, default_value = "none")]
     pub kernel: KernelName,
-    /// Which loops are inliers: none keeps every measurement; gnc and gnc-gm are graduated
-    /// non-convexity, pcm is pairwise consistency. What is between neighbours in time always is.
+    /// Selection of inlier loops: none keeps every measurement; gnc and gnc-gm are graduated
+    /// non-convexity, pcm is pairwise consistency. Edges between consecutive nodes are always kept.
     #[arg(long, value_enum, default_value_t = RobustName::None)]
     pub robust: RobustName,
     /// Largest number of iterations of one attempt.
     #[arg(long, alias = "max-iters", value_name = "N", default_value_t = 100)]
     pub max_iterations: usize,
-    /// Stop where less than this share of χ² is estimated to be left to win.
+    /// Stop when the estimated remaining decrease is less than this share of χ².
     #[arg(long, value_name = "T", default_value = "1e-8", value_parser = numbers::share, allow_hyphen_values = true)]
     pub tolerance: f64,
-    /// Solve so many times and report the fastest; the result is the same.
+    /// Optimize this many times and report the fastest; the result is the same.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub repeat: u32,
     /// Print one JSON object instead of text.
@@ -62,14 +62,14 @@ pub enum StartName {
     Auto,
     /// The poses of the file.
     File,
-    /// Along a tree of measurements.
+    /// Along a spanning tree of measurements.
     SpanningTree,
     /// Chordal relaxation.
     Chordal,
 }
 
 impl StartName {
-    /// The solver's name for it.
+    /// The solver's value.
     pub fn start(self) -> Start {
         match self {
             Self::Auto => Start::Auto,

@@ -1,4 +1,4 @@
-//! `--robust`: which loops are inliers before the graph is solved.
+//! `--robust`: selects inlier loops before the graph is optimized.
 
 use clap::ValueEnum;
 use pr_optim::robust::{
@@ -11,22 +11,22 @@ use serde::Serialize;
 /// `--robust`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum RobustName {
-    /// Every loop is inliers.
+    /// Every loop is an inlier.
     None,
-    /// Loops along the way and graduated non-convexity, by truncated least squares.
+    /// Graduated non-convexity by truncated least squares, also started from the loops along the trajectory.
     Gnc,
-    /// The same, and then Geman–McClure from there: stricter, it drops what is half refuted.
+    /// The same, followed by Geman–McClure: stricter, it rejects ambiguous loops.
     GncGm,
-    /// The loops that agree with each other in pairs, and then what the graph by them says of each.
+    /// Pairwise consistent loops, each then tested against the graph that they give.
     Pcm,
 }
 
-/// What `--robust` found.
+/// Result of `--robust`.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct InlierCounts {
-    /// Measurements that are not between neighbours in time.
+    /// Number of measurements that are not between consecutive nodes.
     pub loops: usize,
-    /// Those among them that are inliers.
+    /// Number of inliers among them.
     pub inliers: usize,
     /// Rounds of graduated non-convexity.
     pub rounds: usize,
@@ -34,18 +34,18 @@ pub struct InlierCounts {
     pub from: &'static str,
 }
 
-/// What is to be solved, from where it is.
+/// The selected problem, with its initial guess.
 pub struct Selected {
-    /// The poses of the selection, with the measurements that are inliers.
+    /// Poses and inlier measurements.
     pub problem: Problem,
-    /// How many are inliers.
+    /// Number of inliers.
     pub inliers: InlierCounts,
 }
 
-/// Chooses the loops of `problem` that are inliers; none where all are.
+/// Selects the inlier loops of `problem`; `None` if all measurements are kept.
 ///
 /// # Errors
-/// Where a round of graduated non-convexity cannot be solved.
+/// If a round of graduated non-convexity cannot be solved.
 pub fn select(
     problem: &Problem,
     robust: RobustName,

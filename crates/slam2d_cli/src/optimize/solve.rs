@@ -1,4 +1,4 @@
-//! The solve of `slam2d optimize`: settings, repeats, times, progress.
+//! The solve of `slam2d optimize`: settings, repetitions, times, progress.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use measuring::CpuClock;
@@ -10,18 +10,18 @@ use pr_optim::{
 use super::args::{MethodName, OptimizeArgs};
 use super::robust::{InlierCounts, select};
 
-/// First damping of `--method lm`, relative to the diagonal.
+/// Initial damping of `--method lm`, relative to the diagonal.
 const INITIAL_DAMPING: f64 = 1e-6;
 
-/// Largest step, m and rad added, at which a graph without contradictions counts as solved: its
-/// cost is rounding noise, of which no share is ever small.
+/// Largest step, m and rad added, at which a graph without contradictions has converged: its
+/// cost is rounding noise, so a relative decrease is never small.
 const STEP_TOLERANCE: f64 = 1e-10;
 
-/// What a solve found, and how long it took.
+/// Result and times of a solve.
 pub struct Solved {
-    /// The last solve; all are the same.
+    /// The last solve; all are equal.
     pub outcome: Outcome,
-    /// What `--robust` inliers.
+    /// Result of `--robust`.
     pub inliers: Option<InlierCounts>,
     /// CPU time of the first solve, with ordering and symbolic analysis, ms.
     pub first_ms: f64,
@@ -29,10 +29,10 @@ pub struct Solved {
     pub best_ms: f64,
 }
 
-/// Solves from the file's poses `repeat` times; the analysis of the graph is kept after the first.
+/// Solves from the file's poses `repeat` times, reusing the symbolic analysis of the first.
 ///
 /// # Errors
-/// Where no step could be computed, or the cost is not finite at the end.
+/// If no step can be computed, or the final cost is not finite.
 pub fn solve_repeatedly(
     problem: &mut Problem,
     args: &OptimizeArgs,
@@ -44,7 +44,7 @@ pub fn solve_repeatedly(
     let (outcome, inliers) = loop {
         problem.poses_mut().copy_from_slice(&given);
         let (outcome, inliers, elapsed_ms) = solve_once(&mut optimizer, problem, args, &bar)?;
-        // Every solve takes as many iterations as the first: from now on the share is exact.
+        // Every solve takes as many iterations as the first, so the total is exact now.
         bar.set_length(u64::from(args.repeat) * outcome.total_iterations as u64);
         times_ms.push(elapsed_ms);
         if times_ms.len() >= args.repeat as usize {
@@ -83,7 +83,7 @@ fn settings(args: &OptimizeArgs) -> Settings {
     }
 }
 
-/// One solve; the time of the progress bar is not counted.
+/// Solves once; the time of the progress bar is excluded.
 fn solve_once(
     optimizer: &mut Optimizer,
     problem: &mut Problem,
@@ -107,7 +107,7 @@ fn solve_once(
     Ok((outcome, Some(selected.inliers), clock.elapsed_ms()))
 }
 
-/// The steps of a session; the clock stands still at its end.
+/// Iterates a session; the clock stops at its end.
 fn solve_session(
     optimizer: &mut Optimizer,
     problem: &mut Problem,
@@ -134,9 +134,9 @@ fn solve_session(
     Ok(outcome)
 }
 
-/// A bar on a terminal's standard error; nothing where it is not a terminal.
+/// A progress bar on standard error, hidden if that is not a terminal.
 ///
-/// `most` is the limit of the iterations, which the first solve replaces by their number.
+/// `most` is the limit of iterations, which the actual number replaces after the first solve.
 fn progress_bar(most: u64) -> ProgressBar {
     let style = ProgressStyle::with_template(
         "{wide_bar} {percent} %, {pos} of at most {len} iterations, {msg} ({elapsed})",

@@ -1,11 +1,11 @@
-//! What was tried on the way to the optimum: one line, and one JSON object, for every start.
+//! Starts that were tried: one line and one JSON object each.
 
 use core::fmt;
 
 use pr_optim::{Method, RobustKernel, Start, Trial};
 use serde::Serialize;
 
-/// One start that the solver looked at.
+/// One start that the solver tried.
 #[derive(Clone, Debug, Serialize)]
 pub struct Tried {
     init: &'static str,
@@ -14,11 +14,11 @@ pub struct Tried {
     /// Whether the robust kernel was on.
     robust: bool,
     iterations: usize,
-    /// What was lowered, at the start.
+    /// Initial cost.
     cost_initial: f64,
-    /// The same at the end.
+    /// Final cost.
     cost: f64,
-    /// Why it ended, or was not followed.
+    /// Why it ended or was not continued.
     stop: String,
 }
 
@@ -35,7 +35,7 @@ impl From<&Trial> for Tried {
             cost_initial: trial.cost_initial,
             cost: trial.cost,
             stop: trial.stop.map_or_else(
-                || "not followed, another start costs less".to_owned(),
+                || "not continued, another start has a lower cost".to_owned(),
                 |stop| stop.to_string(),
             ),
         }

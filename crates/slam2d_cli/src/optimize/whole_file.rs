@@ -1,37 +1,37 @@
-//! Writing a file whole: a reader sees either the old one or the new one, never half of it.
+//! Atomic file writing: a reader sees either the old file or the new one.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// Most links that lead from one to the next, as on Linux.
+/// Most symbolic links in a chain, as on Linux.
 const MAX_LINKS: usize = 40;
 
-/// Writes a file so that a reader sees either the old one or the whole new one.
+/// Writes a file atomically.
 ///
 /// # Errors
-/// What the system says; then the old file is as it was.
+/// If the system cannot write it; the old file is unchanged then.
 pub fn write_whole(path: &Path, content: &[u8]) -> io::Result<()> {
     let mut file = WholeFile::create(path)?;
     file.write_all(content)?;
     file.finish()
 }
 
-/// A file under way, which nobody sees before [`WholeFile::finish`].
+/// A file being written, invisible before [`WholeFile::finish`].
 ///
-/// A part file beside it takes its place, with its permissions. Links stay and what they point at is
-/// written. What exists and is no regular file, as a pipe or a terminal, is written directly.
+/// A temporary file next to it replaces it, with its permissions. Symbolic links are kept and their target is
+/// written. An existing target that is not a regular file, such as a pipe or a terminal, is written directly.
 pub struct WholeFile {
     file: BufWriter<File>,
-    /// The part, and what it becomes; none once it has, or where it is written directly.
+    /// Temporary file and target; `None` once it was renamed, or if the target is written directly.
     part: Option<[PathBuf; 2]>,
 }
 
 impl WholeFile {
-    /// Begins a file; dropped before it is finished, it leaves the old one as it was.
+    /// Creates the file; if it is dropped before it is finished, the old file is unchanged.
     ///
     /// # Errors
-    /// What the system says.
+    /// If the system cannot create it.
     pub fn create(path: &Path) -> io::Result<Self> {
         let (path, old) = match fs::metadata(path) {
             Ok(old) if old.is_file() => (fs::canonicalize(path)?, Some(old)),
@@ -54,16 +54,16 @@ impl WholeFile {
             part: Some([part, path]),
         };
         if let Some(old) = old {
-            // Before the content: nobody may read it who may not read the old one.
+            // Before the content is written: it must not be readable with wider permissions than the old file.
             begun.file.get_ref().set_permissions(old.permissions())?;
         }
         Ok(begun)
     }
 
-    /// Puts the file into its place.
+    /// Renames the temporary file to its target.
     ///
     /// # Errors
-    /// What the system says; then the old file is as it was.
+    /// If the system cannot rename it; the old file is unchanged then.
     pub fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
         if let Some([part, path]) = &self.part {
@@ -88,24 +88,24 @@ impl Write for WholeFile {
 impl Drop for WholeFile {
     fn drop(&mut self) {
         if let Some([part, _]) = &self.part {
-            // The write has failed already: that the rest cannot be removed either adds nothing.
+            // The write failed already; failing to remove the temporary file adds no information.
             let _ = fs::remove_file(part);
         }
     }
 }
 
-/// Whether a file can be written there, asked before the work that it is for.
+/// Checks whether a file can be written, before the work that it is for.
 ///
 /// # Errors
-/// What the system says.
+/// If it cannot be written.
 pub fn check_file(path: &Path) -> io::Result<()> {
     WholeFile::create(path).map(drop)
 }
 
-/// The same for a folder, which need not be there yet.
+/// Checks the same for a folder, which need not exist yet.
 ///
 /// # Errors
-/// What the system says.
+/// If it cannot be written.
 pub fn check_folder(folder: &Path) -> io::Result<()> {
     let mut ancestors = folder.ancestors();
     let here = ancestors.find(|path| path.as_os_str().is_empty() || path.exists());
@@ -117,7 +117,7 @@ pub fn check_folder(folder: &Path) -> io::Result<()> {
     check_file(&here.join("session.slam2d"))
 }
 
-/// Where a file is made that links point at and that does not exist yet.
+/// Target of a chain of symbolic links, which need not exist yet.
 fn end_of_links(path: &Path) -> io::Result<PathBuf> {
     let mut end = path.to_owned();
     for _ in 0..MAX_LINKS {
@@ -127,7 +127,7 @@ fn end_of_links(path: &Path) -> io::Result<PathBuf> {
         // An absolute target replaces the folder.
         end = end.parent().unwrap_or(Path::new("")).join(target);
     }
-    Err(io::Error::other("too many links lead from one to the next"))
+    Err(io::Error::other("too many levels of symbolic links"))
 }
 
 #[cfg(all(test, unix))]
@@ -153,7 +153,7 @@ mod tests {
             assert!(second.is_symlink() && link.is_symlink());
             assert_eq!(fs::read(inner.join(target)).unwrap(), b"solved");
         }
-        // Two files and two links: no part is left.
+        // Two files and two links: no temporary file is left.
         assert_eq!(fs::read_dir(&inner).unwrap().count(), 4);
     }
 

@@ -1,4 +1,4 @@
-//! How the figures of the laps at one noise factor are distributed.
+//! Distribution of the figures of the laps at one noise factor.
 
 use ch16_lab::lap::LapEstimator;
 use ch16_lab::results::{Column, LapStatistics, Row};
@@ -15,20 +15,20 @@ const MOST_SAMPLES: usize = 20;
 pub struct Level {
     noise: f64,
     runs: usize,
-    /// Shares of the runs with 0, 1, 2 and 3 or more closed loops.
+    /// Shares of the runs with 0, 1, 2 and 3 or more accepted loops.
     loop_shares: [f64; 4],
     accepted_loops: usize,
-    /// Accepted, but off by more than 0.3 m or 5° from the truth.
+    /// Accepted loops that are off by more than 0.3 m or 5° from the truth.
     false_acceptances: usize,
     /// Share of the runs with a false acceptance.
     false_run_share: f64,
-    /// Whether loops were looked for.
+    /// Whether loop closure was on.
     #[serde(skip)]
     has_loops: bool,
     entries: Vec<Entry>,
-    /// Medians of the errors at equal shares of the way, from its start to its end.
+    /// Medians of the errors at equal shares of the path, from start to end.
     along_the_way: AlongTheWay,
-    /// Digests of some of the laps, evenly spaced: who drives only these compares bits.
+    /// Digests of some laps, evenly spaced: for comparing bits by running only these.
     samples: Vec<Sample>,
 }
 
@@ -43,32 +43,32 @@ struct AlongTheWay {
     ml_cycles: Vec<f64>,
 }
 
-/// A lap by its bits.
+/// A lap with its digest.
 #[derive(Serialize)]
 struct Sample {
     seed: u32,
     digest: String,
 }
 
-/// An entry of the results table over the runs; runs that lack it are left out.
+/// A row of the results table over the runs; runs without it are left out.
 ///
-/// Column and row are ids that stay; [`column_title`] and [`row_title`] are for people.
+/// Column and row are stable ids; [`column_title`] and [`row_title`] are display names.
 #[derive(Serialize)]
 struct Entry {
     #[serde(serialize_with = "column_id")]
     column: Column,
     #[serde(serialize_with = "row_id")]
     row: Row,
-    /// 5 % of the runs are below, m.
+    /// 5th percentile, m.
     p05: f64,
-    /// Half of the runs are below, m.
+    /// Median, m.
     median: f64,
-    /// 95 % of the runs are below, m.
+    /// 95th percentile, m.
     p95: f64,
 }
 
 impl Level {
-    /// What came out of the runs at one factor.
+    /// Collects the results of the runs at one factor.
     pub fn new(noise: f64, args: &SweepArgs, statistics: &LapStatistics) -> Self {
         Self {
             noise,
@@ -84,7 +84,7 @@ impl Level {
         }
     }
 
-    /// Prints it for people.
+    /// Prints the distribution as text.
     pub fn print(&self) {
         say!("noise ×{}, {} runs", self.noise, self.runs);
         if self.has_loops {
@@ -167,7 +167,7 @@ fn column_id<S: Serializer>(column: &Column, serializer: S) -> Result<S::Ok, S::
     })
 }
 
-/// The names that the figures of the page have, too.
+/// The names that the figures of the page use as well.
 fn row_id<S: Serializer>(row: &Row, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(match row {
         Row::EndError => "end_error",
@@ -198,8 +198,8 @@ fn row_title(row: Row) -> &'static str {
         Row::LastKeyframesMin => "best of the last nine keyframes (m)",
         Row::LastKeyframesMax => "worst of the last nine keyframes (m)",
         Row::KeyframeMax => "largest keyframe error (m)",
-        Row::HalfWay => "error at half of the way (m)",
-        Row::HalfWaySigma => "its deviation, by the graph (m)",
+        Row::HalfWay => "error at half of the path (m)",
+        Row::HalfWaySigma => "standard deviation by the graph (m)",
         Row::MapDisagreement => "map self-disagreement (m)",
     }
 }
@@ -207,7 +207,7 @@ fn row_title(row: Row) -> &'static str {
 fn print_loops(level: &Level) {
     let [none, one, two, more] = level.loop_shares.map(|share| 100.0 * share);
     say!(
-        "  loops closed: 0 in {none:.1} %, 1 in {one:.1} %, 2 in {two:.1} %, 3 or more in {more:.1} %"
+        "  accepted loops: 0 in {none:.1} %, 1 in {one:.1} %, 2 in {two:.1} %, 3 or more in {more:.1} %"
     );
     say!(
         "  false acceptances: {} of {} loops, in {:.1} % of the runs",

@@ -1,4 +1,4 @@
-//! `slam2d sweep --nudge`: how many laps are another lap where the start differs in its last digits.
+//! `slam2d sweep --nudge`: sensitivity of laps to a start that differs in its last digits.
 
 use ch16_lab::lap::LapRunner;
 use ch16_lab::nudge::{CHANGED_M, NUDGE, NudgeStatistics, farthest_keyframe_m, nudged};
@@ -9,21 +9,21 @@ use super::{SweepArgs, progress_bar};
 use crate::output::{print_json, say};
 use crate::trial::Trial;
 
-/// The laps at one noise factor, each beside its twin.
+/// The laps at one noise factor, each with its twin.
 #[derive(Serialize)]
 struct NudgedLevel {
     noise: f64,
     runs: usize,
-    /// Share of itself by which the start was moved.
+    /// Relative change of the start.
     nudge: f64,
-    /// From which distance between a keyframe and its twin on a lap counts as changed, m.
+    /// Distance between a keyframe and its twin from which a lap counts as changed, m.
     changed_m: f64,
     changed: usize,
-    /// The farthest that a keyframe ended from its twin, m.
+    /// Largest distance between a keyframe and its twin, m.
     farthest_m: f64,
 }
 
-/// Drives every lap and its twin and prints how many are different laps.
+/// Runs every lap and its twin and prints how many differ.
 pub fn print(args: &SweepArgs, trial: &Trial) {
     let levels: Vec<NudgedLevel> = args
         .noise

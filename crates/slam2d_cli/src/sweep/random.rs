@@ -9,19 +9,19 @@ use serde::Serialize;
 use super::{SweepArgs, SweepFailure, progress_bar};
 use crate::output::{print_json, say};
 
-/// What random laps came to.
+/// Results of random laps.
 #[derive(Serialize)]
 struct RandomJson {
     laps: usize,
-    /// Laps of which every figure is finite.
+    /// Number of laps with only finite figures.
     sound: usize,
-    /// Loops closed in all.
+    /// Number of accepted loops in total.
     loops: usize,
-    /// Ticks of all of them.
+    /// Number of ticks in total.
     ticks: usize,
 }
 
-/// What one lap came to.
+/// Result of one lap.
 struct Random {
     seed: u32,
     loops: usize,
@@ -29,10 +29,10 @@ struct Random {
     fault: Option<String>,
 }
 
-/// Drives a lap at a random configuration for every seed, and prints whether all were sound.
+/// Runs a lap at a random configuration for every seed, and prints whether all succeeded.
 ///
 /// # Errors
-/// The first lap that panicked or has a figure that is not finite.
+/// If a lap panicked or has a figure that is not finite; the first one is returned.
 pub fn print(args: &SweepArgs) -> Result<(), SweepFailure> {
     let bar = progress_bar(args.seeds.count());
     let laps: Vec<Random> = (args.seeds.first..=args.seeds.last)
@@ -55,7 +55,7 @@ pub fn print(args: &SweepArgs) -> Result<(), SweepFailure> {
         print_json(&summary);
     } else {
         say!(
-            "{} of {} laps at random configurations ended with finite figures alone; {} ticks, {} loops \
+            "{} of {} laps at random configurations ended with finite figures only; {} ticks, {} loops \
              closed",
             summary.sound,
             summary.laps,
@@ -72,7 +72,7 @@ pub fn print(args: &SweepArgs) -> Result<(), SweepFailure> {
     }
 }
 
-/// One lap; a panic is a fault like any other, so that the seed is told.
+/// Runs one lap; a panic counts as a fault, so the seed is reported.
 fn run(seed: u32) -> Random {
     let lap = catch_unwind(|| LapRunner::new().run(&random_config(seed)));
     match lap {

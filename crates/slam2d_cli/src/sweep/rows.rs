@@ -1,13 +1,13 @@
-//! `--rows FILE`: what each lap of a sweep came to, a line each, so that a sweep can be spread over
-//! machines and goes on where it was ended.
+//! `--rows FILE`: the result of each lap of a sweep, one line each, so a sweep can be distributed over
+//! machines and resumed.
 //!
 //! ```text
 //! {"sweep": 1, "slam2d": "0.1.0", "seeds": [1, 1000], "noise": [0.25, 1], "laps": "9c1f…"}
 //! {"seed": 1, "noise": 0.25, "outcome": {…}}
 //! ```
 //!
-//! The first line says which sweep it is, the same in the files of all shards. `laps` is a digest of the
-//! configuration of its first laps: world, matchers, everything. Rows may stand in any order.
+//! The first line identifies the sweep and is the same in the files of all shards. `laps` is a digest of the
+//! configuration of its first laps: world, matchers, everything. Rows may be in any order.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -27,13 +27,13 @@ use crate::trial::Trial;
 /// Version of the format.
 const FORMAT: u32 = 1;
 
-/// Which sweep the rows of a file belong to.
+/// Identity of the sweep that the rows of a file belong to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     sweep: u32,
     slam2d: String,
     seeds: [u32; 2],
-    /// Factors of the wheels' noise.
+    /// Factors of odometry noise.
     pub noise: Vec<f64>,
     estimators: Vec<String>,
     laps: String,
@@ -42,45 +42,45 @@ pub struct Header {
 /// One lap.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LapRow {
-    /// Its seed.
+    /// Seed.
     pub seed: u32,
-    /// Its factor of the wheels' noise.
+    /// Factor of odometry noise.
     pub noise: f64,
-    /// What it came to.
+    /// Result.
     pub outcome: LapOutcome,
 }
 
-/// Why rows cannot be kept or put together.
+/// Why rows cannot be stored or merged.
 #[derive(Debug, Error)]
 pub enum RowsFailure {
-    /// The system could not do it.
+    /// A file cannot be read or written.
     #[error("{}: {source}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
-    /// It is no file of rows.
+    /// It is not a file of rows.
     #[error("{}: line {line}: {problem}; give a file that slam2d sweep --rows wrote", path.display())]
     NoRow {
         /// The file.
         path: PathBuf,
         /// Number of the line, counted from 1.
         line: usize,
-        /// What is wrong with it.
+        /// The problem.
         problem: String,
     },
-    /// It belongs to another sweep.
+    /// The file belongs to another sweep.
     #[error("{} holds rows of another sweep: {difference}; give another file", path.display())]
     OtherSweep {
         /// The file.
         path: PathBuf,
-        /// Where the two differ.
+        /// The difference.
         difference: String,
     },
     /// Two rows of one lap differ.
-    #[error("{}: line {line}: seed {seed} at noise ×{noise} ended otherwise before; one of the machines \
+    #[error("{}: line {line}: seed {seed} at noise ×{noise} differs from an earlier row; one of the machines \
              computes other bits", path.display())]
     OtherBits {
         /// The file.
@@ -98,9 +98,9 @@ pub enum RowsFailure {
              shard again with the same --rows file, or name its file as well"
     )]
     Missing {
-        /// How many.
+        /// Number of missing laps.
         missing: u64,
-        /// Of how many.
+        /// Number of laps.
         laps: u64,
         /// Seed of the first.
         seed: u32,
@@ -110,7 +110,7 @@ pub enum RowsFailure {
 }
 
 impl Header {
-    /// That of the sweep that `args` ask for, over such laps.
+    /// The header of the sweep that `args` request.
     pub fn new(args: &SweepArgs, trial: &Trial) -> Self {
         let mut digest = Digest::new();
         for &noise in &args.noise {
@@ -133,13 +133,13 @@ impl Header {
         Seeds { first, last }
     }
 
-    /// What estimated the laps.
+    /// The estimators of the laps.
     pub fn estimators(&self) -> Vec<LapEstimator> {
         let names = self.estimators.iter();
         names.filter_map(|name| LapEstimator::named(name)).collect()
     }
 
-    /// Where `other` is another sweep; none where it is the same.
+    /// How `other` differs; `None` if it is the same sweep.
     fn difference(&self, other: &Self) -> Option<String> {
         let differs = |what: &str, theirs: &str, ours: &str| {
             (theirs != ours).then(|| format!("its {what} {theirs}, not {ours}"))
@@ -168,15 +168,15 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// The lap at `seed` and `noise`, where it was driven.
+    /// The result at `seed` and `noise`, if it is present.
     pub fn get(&self, seed: u32, noise: f64) -> Option<LapOutcome> {
         self.by_lap.get(&(seed, noise.to_bits())).copied()
     }
 
-    /// The laps of every seed in order, each with one outcome for each noise factor.
+    /// The laps of every seed in order, with one outcome per noise factor.
     ///
     /// # Errors
-    /// Where laps are missing.
+    /// If laps are missing.
     pub fn by_seed(&self, header: &Header) -> Result<Vec<Vec<LapOutcome>>, RowsFailure> {
         let [first, last] = header.seeds;
         let laps =
@@ -199,8 +199,8 @@ impl Rows {
         Ok((first..=last).map(|seed| of_seed(seed).collect()).collect())
     }
 
-    /// Takes the rows of a file; answers with its header and the bytes of its whole lines. `expected` is
-    /// what the header has to be, where that is known.
+    /// Reads the rows of a file; returns its header and the number of bytes of its complete lines. `expected` is
+    /// the required header, if known.
     fn read(
         &mut self,
         file: &File,
@@ -217,7 +217,7 @@ impl Rows {
         loop {
             line.clear();
             let bytes = source.read_until(b'\n', &mut line).map_err(io)?;
-            // A last line without its end was being written when the program was ended.
+            // An incomplete last line was being written when the program ended.
             if line.last() != Some(&b'\n') {
                 return Ok((header, whole_bytes));
             }
@@ -229,9 +229,8 @@ impl Rows {
             };
             match &header {
                 None => {
-                    let found: Header = serde_json::from_slice(&line).map_err(|e| {
-                        no_row(format!("the header of a sweep was expected, but {e}"))
-                    })?;
+                    let found: Header = serde_json::from_slice(&line)
+                        .map_err(|e| no_row(format!("expected the header of a sweep: {e}")))?;
                     if let Some(difference) = expected.and_then(|ours| ours.difference(&found)) {
                         return Err(RowsFailure::OtherSweep {
                             path: path.to_owned(),
@@ -242,7 +241,7 @@ impl Rows {
                 }
                 Some(_) => {
                     let row: LapRow = serde_json::from_slice(&line)
-                        .map_err(|e| no_row(format!("a lap was expected, but {e}")))?;
+                        .map_err(|e| no_row(format!("expected a lap: {e}")))?;
                     let before = self
                         .by_lap
                         .insert((row.seed, row.noise.to_bits()), row.outcome);
@@ -261,10 +260,10 @@ impl Rows {
     }
 }
 
-/// The rows of all `paths`, which have to belong to one sweep.
+/// Reads the rows of all `paths`, which must belong to one sweep.
 ///
 /// # Errors
-/// Where a file cannot be read, or the files do not belong together.
+/// If a file cannot be read, or the files belong to different sweeps.
 pub fn read_all(paths: &[PathBuf]) -> Result<(Header, Rows), RowsFailure> {
     let mut rows = Rows::default();
     let mut header: Option<Header> = None;
@@ -284,7 +283,7 @@ pub fn read_all(paths: &[PathBuf]) -> Result<(Header, Rows), RowsFailure> {
     Ok((header.expect("clap asks for a file"), rows))
 }
 
-/// A file that rows are added to.
+/// A file that rows are appended to.
 #[derive(Debug)]
 pub struct RowsFile {
     path: PathBuf,
@@ -292,11 +291,11 @@ pub struct RowsFile {
 }
 
 impl RowsFile {
-    /// Opens or makes `path` for the rows of this sweep, and reads those that are there. Where another
-    /// program writes to it, this one waits until that has ended.
+    /// Opens or creates `path` for the rows of this sweep, and reads existing rows. If another
+    /// program writes to the file, waits until it has ended.
     ///
     /// # Errors
-    /// Where the file cannot be used, or belongs to another sweep.
+    /// If the file cannot be used, or belongs to another sweep.
     pub fn open(path: &Path, header: &Header) -> Result<(Self, Rows), RowsFailure> {
         let io = |source| RowsFailure::Io {
             path: path.to_owned(),
@@ -326,10 +325,10 @@ impl RowsFile {
         Ok((kept, rows))
     }
 
-    /// Adds a line by one call, so that no other program sees half of it.
+    /// Appends a line in one call, so no other program sees a part of it.
     ///
     /// # Errors
-    /// Where the system cannot write it.
+    /// If the system cannot write it.
     pub fn add(&mut self, line: &impl Serialize) -> Result<(), RowsFailure> {
         let mut bytes = serde_json::to_vec(line).expect("plain numbers and lists");
         bytes.push(b'\n');

@@ -1,4 +1,4 @@
-//! `--shard K/N`: one part of the seeds, for one machine of several.
+//! `--shard K/N`: one part of the seeds, for one of several machines.
 
 use std::path::Path;
 use std::sync::Mutex;
@@ -11,7 +11,7 @@ use super::rows::{Header, LapRow, RowsFailure, RowsFile};
 use super::{SweepArgs, progress_bar};
 use crate::trial::Trial;
 
-/// Most shards: more machines than anyone has.
+/// Most shards.
 const MOST_SHARDS: u32 = 100_000;
 
 /// Part `number`, counted from 1, of `count`.
@@ -22,20 +22,20 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// All seeds in one part.
+    /// A single shard with all seeds.
     pub const WHOLE: Self = Self {
         number: 1,
         count: 1,
     };
 
-    /// Whether the seed at this place in the list is in the part. Neighbours go to different parts, so
-    /// that all of them take about as long.
-    fn holds(self, index: u32) -> bool {
+    /// Whether the seed at this index is in the shard. Consecutive seeds go to different shards, which
+    /// balances their run times.
+    fn contains(self, index: u32) -> bool {
         index % self.count == self.number - 1
     }
 }
 
-/// `2/4`: the second of four.
+/// Parses `2/4`, the second of four.
 pub fn shard(text: &str) -> Result<Shard, String> {
     let parts = text.split_once('/');
     let parts = parts.and_then(|(number, count)| Some((number.parse().ok()?, count.parse().ok()?)));
@@ -49,20 +49,20 @@ pub fn shard(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// What a shard came to.
+/// Result of a shard.
 pub struct ShardResult {
-    /// Laps that are in the file now.
+    /// Number of laps in the file.
     pub laps: usize,
-    /// Of them, those that were there before.
+    /// Number of laps that were in the file before.
     pub kept: usize,
     /// The outcomes of every seed of the shard, one for each noise factor.
     pub by_seed: Vec<Vec<LapOutcome>>,
 }
 
-/// Drives the laps of a shard that `file` lacks, and adds each as it ends.
+/// Runs the laps of a shard that `file` lacks, and appends each result.
 ///
 /// # Errors
-/// Where a row cannot be written; the rows before it stay.
+/// If a row cannot be written; earlier rows are kept.
 pub fn drive(
     args: &SweepArgs,
     trial: &Trial,
@@ -74,7 +74,7 @@ pub fn drive(
     let file = Mutex::new(file);
     let seeds: Vec<u32> = (0..)
         .zip(args.seeds.first..=args.seeds.last)
-        .filter_map(|(index, seed)| part.holds(index).then_some(seed))
+        .filter_map(|(index, seed)| part.contains(index).then_some(seed))
         .collect();
     let bar = progress_bar(seeds.len() as u64);
     let by_seed: Result<Vec<Vec<(LapOutcome, bool)>>, RowsFailure> = seeds
@@ -119,10 +119,10 @@ mod tests {
         for count in 1..12 {
             for index in 0..50 {
                 let shards = (1..=count).map(|number| Shard { number, count });
-                assert_eq!(shards.filter(|shard| shard.holds(index)).count(), 1);
+                assert_eq!(shards.filter(|shard| shard.contains(index)).count(), 1);
             }
         }
-        assert!(Shard::WHOLE.holds(7));
+        assert!(Shard::WHOLE.contains(7));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The simulated drive as a recording without a fault, and what changes it.
+//! The simulated drive as a recording without faults, and functions that change it.
 
 use std::sync::OnceLock;
 
@@ -7,12 +7,12 @@ use pr_geom::SE2;
 use super::drive;
 use super::write::{Body, Message, Scan, Transform};
 
-/// The drive starts then, s.
+/// Start of the drive, s.
 pub const START_S: f64 = 1_700_000_000.0;
-/// Poses of odometry for each scan.
+/// Odometry poses per scan.
 const PER_SCAN: usize = 5;
 
-/// The drive as a recording without a fault.
+/// The drive as a recording without faults.
 pub fn messages() -> Vec<Message> {
     static MESSAGES: OnceLock<Vec<Message>> = OnceLock::new();
     MESSAGES.get_or_init(recorded).clone()
@@ -97,7 +97,7 @@ pub fn transform(topic: &str, parent: &str, child: &str, pose: [f64; 3], stamp_s
     }
 }
 
-/// Changes every scan; the first argument is its number.
+/// Changes every scan; the first argument is its index.
 pub fn scans(all: &mut [Message], mut change: impl FnMut(usize, &mut Scan)) {
     let bodies = all
         .iter_mut()
@@ -110,7 +110,7 @@ pub fn scans(all: &mut [Message], mut change: impl FnMut(usize, &mut Scan)) {
         .for_each(|(number, scan)| change(number, scan));
 }
 
-/// Changes stamp and pose of every message of odometry.
+/// Changes stamp and pose of every odometry message.
 pub fn poses(all: &mut [Message], mut change: impl FnMut(usize, &mut f64, &mut [f64; 3])) {
     let bodies = all
         .iter_mut()
@@ -123,7 +123,7 @@ pub fn poses(all: &mut [Message], mut change: impl FnMut(usize, &mut f64, &mut [
         .for_each(|(number, (stamp_s, pose))| change(number, stamp_s, pose));
 }
 
-/// The laser turned about its axis by whole beams, counter-clockwise.
+/// Turns the laser about its axis by whole beams, counter-clockwise.
 pub fn turned(all: &mut [Message], degrees: i32) {
     scans(all, |_, scan| {
         let beams = scan.ranges.len() as i32;
@@ -132,10 +132,10 @@ pub fn turned(all: &mut [Message], degrees: i32) {
     });
 }
 
-/// The beams in the other order.
+/// Reverses the order of the beams.
 pub fn mirrored(all: &mut [Message]) {
     scans(all, |_, scan| {
-        // Beam k looks to −π + k·step: its mirror image is beam n − k.
+        // Beam k points to −π + k·step: its mirror image is beam n − k.
         scan.ranges[1..].reverse();
     });
 }
@@ -144,7 +144,7 @@ pub fn without(all: &mut Vec<Message>, topic: &str) {
     all.retain(|message| message.topic != topic);
 }
 
-/// Odometry as transforms.
+/// Converts odometry to transforms.
 pub fn as_transforms(all: &mut [Message]) {
     for message in all {
         if let Body::Odometry {
@@ -162,7 +162,7 @@ pub fn as_transforms(all: &mut [Message]) {
     }
 }
 
-/// Where the robot was.
+/// True poses of the robot.
 pub fn truth() -> &'static [SE2] {
     static TRUTH: OnceLock<Vec<SE2>> = OnceLock::new();
     TRUTH.get_or_init(|| {

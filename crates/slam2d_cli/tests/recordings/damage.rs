@@ -1,4 +1,4 @@
-//! Damaged and split recordings, clouds, and a laser that is placed by hand.
+//! Damaged and split recordings, clouds, and a laser mounting set by the user.
 
 use pr_geom::SE2;
 use robot_io::log::LogOptions;
@@ -8,7 +8,7 @@ use super::base::{START_S, messages, mirrored, truth, turned, without};
 use super::write::{Body, mcap};
 use super::{BY_SCANS_M, Outcome, PER_CHUNK, distance_m, mapped, path, read};
 
-/// Where the first chunk's records begin and end.
+/// Byte range of the first chunk's records.
 fn first_chunk(bytes: &[u8]) -> std::ops::Range<usize> {
     let header = 8 + 9 + 12;
     let at = header + usize::from_le_bytes(bytes[9..17].try_into().unwrap()) - 12;
@@ -42,20 +42,20 @@ fn assert_mapped(outcome: &Outcome, least_scans: usize, word: &str) {
 fn damage_costs_the_chunk_that_it_is_in() {
     let whole = mcap(&messages(), PER_CHUNK);
     let options = LogOptions::default();
-    // The first chunk announces the topics; so does the end of the file.
+    // The first chunk declares the topics; so does the end of the file.
     let chunk = first_chunk(&whole);
     let mut bytes = whole.clone();
     bytes[chunk.start + 400] ^= 0x55;
-    assert_mapped(&read(&bytes, &options), 120, "another checksum");
-    // A length that reaches far over the next chunks.
+    assert_mapped(&read(&bytes, &options), 120, "its checksum does not match");
+    // A length that covers the next chunks as well.
     let mut bytes = whole.clone();
     bytes[chunk.end + 1 + 2] ^= 0x7f;
-    assert_mapped(&read(&bytes, &options), 120, "left out");
-    // Zeros from here to there, as of a disk that lost a block.
+    assert_mapped(&read(&bytes, &options), 120, "skipped");
+    // A range of zeros, as from a disk that lost a block.
     let mut bytes = whole.clone();
     let middle = whole.len() / 2;
     bytes[middle..middle + 8192].fill(0);
-    assert_mapped(&read(&bytes, &options), 110, "left out");
+    assert_mapped(&read(&bytes, &options), 110, "skipped");
     assert_mapped(
         &read(&whole[..whole.len() * 2 / 3], &options),
         80,
@@ -70,10 +70,10 @@ fn split_files_are_one_recording() {
     let [first, second] = [first, second].map(|part| mcap(part, PER_CHUNK));
     let parts = || vec![LogBytes::from(&first[..]), LogBytes::from(&second[..])];
     assert_mapped(&mapped(parts(), "x", &LogOptions::default()), 130, "");
-    // The end of the first file is missing: the second one is read all the same.
+    // The end of the first file is missing: the second one is still read.
     let cut = &first[..first.len() - 3000];
     let parts = vec![LogBytes::from(cut), LogBytes::from(&second[..])];
-    assert_mapped(&mapped(parts, "x", &LogOptions::default()), 125, "left out");
+    assert_mapped(&mapped(parts, "x", &LogOptions::default()), 125, "skipped");
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn a_cloud_of_several_rings_is_cut_by_heights() {
                 if range < scan.range_max {
                     points.push([range * bearing.cos(), range * bearing.sin(), 0.1]);
                 }
-                // The floor, which is no wall.
+                // The floor, which is not a wall.
                 points.push([bearing.cos(), bearing.sin(), -0.4]);
             }
             message.body = Body::Cloud {
@@ -112,7 +112,7 @@ fn a_cloud_of_several_rings_is_cut_by_heights() {
 }
 
 #[test]
-fn a_laser_may_be_placed_by_hand() {
+fn the_user_may_set_the_mounting() {
     let mut all = messages();
     turned(&mut all, 180);
     mirrored(&mut all);
@@ -122,14 +122,14 @@ fn a_laser_may_be_placed_by_hand() {
         ..LogOptions::default()
     };
     assert_mapped(&read(&mcap(&all, PER_CHUNK), &options), 130, "");
-    // What was set by hand stays, and the comparison tells what it thinks of it.
+    // A mounting set by the user is kept, and the comparison reports that it is wrong.
     let options = LogOptions {
         laser: Some("0,0,0".parse().unwrap()),
         ..LogOptions::default()
     };
     let outcome = read(&mcap(&all, PER_CHUNK), &options);
     assert!(
-        outcome.said.contains("mend it with --laser 0,0,"),
+        outcome.said.contains("correct it with --laser 0,0,"),
         "{}",
         outcome.said
     );

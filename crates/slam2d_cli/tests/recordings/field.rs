@@ -1,6 +1,6 @@
-//! Small recordings after public reports, each with one fault.
+//! Small recordings modelled on public reports, each with one fault.
 //!
-//! They lie in `../shared/data/field` beside the repository; where they are absent, this test says so and passes.
+//! They are in `../shared/data/field` next to the repository; if they are absent, this test reports it and passes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,13 +14,13 @@ use robot_io::trajectory::Trajectory;
 
 use super::{Outcome, distance_m, mapped, path};
 
-/// Largest distance of a map with odometry, and of one by scans alone, m.
+/// Largest error of a map with odometry, and of one by scans alone, m.
 const WITH_ODOMETRY_M: f64 = 0.1;
 const BY_SCANS_M: f64 = 0.15;
-/// The first scan was taken then, and the others half a second apart.
+/// Stamp of the first scan; the others follow every half second.
 const START_S: f64 = 1_700_000_000.0;
 
-/// Each recording: largest distance from the truth (m), scans at least, and a word of what is told.
+/// Each recording: largest error (m), least number of scans, and a word of the remark.
 const VERDICTS: [(&str, f64, usize, &str); 22] = [
     ("base/base.mcap", WITH_ODOMETRY_M, 240, ""),
     (
@@ -54,7 +54,7 @@ const VERDICTS: [(&str, f64, usize, &str); 22] = [
         "mount/child_not_in_tree.mcap",
         WITH_ODOMETRY_M,
         240,
-        "base_link leads there",
+        "base_link is connected to it",
     ),
     (
         "mount/mirrored_driver.mcap",
@@ -177,11 +177,11 @@ fn a_log_whose_stamps_have_six_digits_keeps_its_scans() {
     let outcome = mapped_log(&log, name);
     assert_eq!(outcome.path.len(), truth.len());
     assert!(outcome.said.contains("too few digits"), "{}", outcome.said);
-    // What is left is the laser's, which sees half a turn: good stamps give the same map.
+    // The remaining error is due to the laser's field of view of half a turn: good stamps give the same map.
     let good = mapped_log(&with_good_stamps(&log), name);
     assert_eq!(good.said, "");
     let (poses, good) = (path(&outcome), path(&good));
-    // 1e-6 m: the stamps decide nothing else.
+    // 1e-6 m: the stamps have no other effect.
     assert!(distance_m(&poses, &good) < 1e-6);
     let off_m = distance_m(&poses, &truth);
     assert!(off_m < 0.1, "{off_m} m");
@@ -202,12 +202,12 @@ fn the_other_files_of_the_field_are_read_or_refused_by_name() {
     assert!(graph.is_ok());
     let space = GraphFile::read(&of("g2o/se3.g2o"), "se3.g2o");
     let said = space.err().unwrap().to_string();
-    assert!(said.contains("three dimensions"), "{said}");
+    assert!(said.contains("three-dimensional"), "{said}");
     let read = |name: &str| Trajectory::read_tum(&of(name)[..], name);
     let plain = read("tum/t.tum").unwrap();
     assert_eq!(read("tum/commas.tum").unwrap().poses(), plain.poses());
     assert!(read("tum/est.tum").is_ok());
-    // Its nanoseconds overflowed, so that no order is left: neither a log nor a trajectory.
+    // Its nanoseconds overflowed, so its order is lost: it is neither a log nor a trajectory.
     let said = read("tum/euroc.csv").unwrap_err().to_string();
     assert!(said.contains("overflowed 32 bits"), "{said}");
     let said = mapped_log(&of("tum/euroc.csv"), "euroc.csv").said;
@@ -218,7 +218,7 @@ fn mapped_log(bytes: &[u8], name: &str) -> Outcome {
     mapped(vec![LogBytes::from(bytes)], name, &LogOptions::default())
 }
 
-/// The same log of CARMEN with the stamps that its writer had: two scans a second.
+/// The same CARMEN log with its original stamps: two scans per second.
 fn with_good_stamps(log: &[u8]) -> Vec<u8> {
     let text = std::str::from_utf8(log).unwrap();
     let lines = text.lines().enumerate().map(|(number, line)| {

@@ -1,4 +1,4 @@
-//! Recordings as people have them: each with one fault, and what has to come of it.
+//! Recordings with one typical fault each, and the required result.
 
 mod base;
 mod damage;
@@ -14,17 +14,17 @@ use robot_io::log_format::LogFormat;
 use robot_io::motion::ComparedReader;
 use robot_io::run::{LogRun, OdometryUse};
 
-/// Messages in a chunk.
+/// Messages per chunk.
 const PER_CHUNK: usize = 40;
-/// Largest distance from the truth, m; and by scans alone.
+/// Largest error, m; and by scans alone.
 const NEAR_M: f64 = 0.1;
 const BY_SCANS_M: f64 = 0.15;
 
-/// What comes of a recording: where each scan was taken, and what its owner is told.
+/// Result of a recording: the pose of each scan, and the messages for the user.
 pub struct Outcome {
     /// Stamps (s) and poses.
     pub path: Vec<(f64, SE2)>,
-    /// Sentences, or the refusal.
+    /// Sentences, or the error.
     pub said: String,
 }
 
@@ -63,8 +63,8 @@ pub fn mapped(parts: Vec<LogBytes<'_>>, name: &str, options: &LogOptions) -> Out
     }
 }
 
-/// Root of the mean square distance between paths after the best rigid motion of the first onto the second,
-/// m. A mirror image is none.
+/// RMS distance between paths after the best rigid alignment of the first with the second, m.
+/// Mirror images do not count as rigid.
 pub fn distance_m(path: &[SE2], truth: &[SE2]) -> f64 {
     assert_eq!(path.len(), truth.len());
     let mean = |of: &[SE2]| {
@@ -88,7 +88,7 @@ pub fn distance_m(path: &[SE2], truth: &[SE2]) -> f64 {
     (squares.sum::<f64>() / path.len() as f64).sqrt()
 }
 
-/// The simulated drive that every variant is made of.
+/// The simulated drive that every variant is based on.
 pub fn drive() -> Drive {
     Drive::simulate(&DriveConfig::default())
 }

@@ -1,4 +1,4 @@
-//! Variants of one simulated drive, each with a fault that people report.
+//! Variants of one simulated drive, each with a fault that users report.
 
 use std::f32::consts::{PI, TAU};
 
@@ -14,7 +14,7 @@ use super::{BY_SCANS_M, NEAR_M, PER_CHUNK, distance_m, path, read};
 
 type Change = fn(&mut Vec<Message>);
 
-/// Each variant: what it is, how it is made, how near its map has to be (m), and a word of what is told.
+/// Each variant: name, change, largest error of its map (m), and a word of the remark.
 const VARIANTS: &[(&str, Change, f64, &str)] = &[
     ("nothing", |_| {}, NEAR_M, ""),
     (
@@ -93,7 +93,7 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
             }
         },
         NEAR_M,
-        "base_link leads there",
+        "base_link is connected to it",
     ),
     (
         "millimetres",
@@ -128,7 +128,7 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
             }
         },
         NEAR_M,
-        "s late against the scans",
+        "s late relative to the scans",
     ),
     (
         "scans that are stamped as they arrive, 0.3 s late",
@@ -141,7 +141,7 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
             }
         },
         NEAR_M,
-        "s early against the scans",
+        "s early relative to the scans",
     ),
     (
         "wheels a fifth too large",
@@ -152,7 +152,7 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
             })
         },
         BY_SCANS_M,
-        "check the radius",
+        "check the wheel radius",
     ),
     (
         "odometry turns the wrong way",
@@ -163,7 +163,7 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
             })
         },
         f64::INFINITY,
-        "mirror image",
+        "the scans are mirrored",
     ),
     (
         "odometry stands still",
@@ -175,13 +175,13 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         "odometry starts late",
         |all| all.retain(|message| message.topic != "/odom" || message.recorded_s > START_S + 12.0),
         BY_SCANS_M,
-        "have no odometry of their time",
+        "have no odometry at their stamp",
     ),
     (
         "odometry ends early",
         |all| all.retain(|message| message.topic != "/odom" || message.recorded_s < START_S + 12.0),
         BY_SCANS_M,
-        "have no odometry of their time",
+        "have no odometry at their stamp",
     ),
     (
         "odometry has a gap",
@@ -447,7 +447,7 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
             *all = twice.collect();
         },
         NEAR_M,
-        "130 scans of /scan are the one before once more",
+        "130 scans of /scan are a duplicate of the one before",
     ),
     (
         "stamps in whole seconds",
@@ -491,7 +491,7 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
             all.iter_mut().for_each(|message| message.recorded_s = 0.0);
         },
         BY_SCANS_M,
-        "have no odometry of their time",
+        "have no odometry at their stamp",
     ),
     (
         "a step of the scans' clock alone",
@@ -569,7 +569,7 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
             });
             turned(all, 0);
         },
-        // A sweep the other way round is thinned to other points.
+        // A reversed sweep is filtered to other points.
         BY_SCANS_M,
         "angle_increment",
     ),
@@ -577,7 +577,7 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
         "the last angle of twice the sweep",
         |all| scans(all, |_, scan| scan.angle_max = 3.0 * PI),
         NEAR_M,
-        "angle_increment is taken",
+        "angle_increment is used",
     ),
     (
         "ranges in millimetres",
@@ -627,7 +627,7 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
                     let beams = scan.ranges.len();
                     let mut other = scan.clone();
                     "rear".clone_into(&mut other.frame);
-                    // The rear one looks backward, and a little later.
+                    // The rear one faces backward and is slightly later.
                     other.ranges = (0..beams / 2)
                         .map(|k| scan.ranges[(k + 3 * beams / 4) % beams])
                         .collect();
@@ -663,7 +663,7 @@ const VARIANTS: &[(&str, Change, f64, &str)] = &[
 ];
 
 #[test]
-fn every_fault_is_mended_or_named() {
+fn every_fault_is_corrected_or_named() {
     let mut failures = Vec::new();
     for (name, change, most_m, word) in VARIANTS {
         let mut all = messages();

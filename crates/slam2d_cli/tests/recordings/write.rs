@@ -1,4 +1,4 @@
-//! A writer of recordings of ROS 2: messages in CDR, in an MCAP file without compression.
+//! Writes ROS 2 recordings: messages in CDR, in an uncompressed MCAP file.
 //!
 //! Source: "MCAP format specification", version 0; OMG, "Extended and dynamic topic types for DDS", 7.4.
 
@@ -10,7 +10,7 @@ pub struct Message {
     pub body: Body,
 }
 
-/// What a message says.
+/// Content of a message.
 #[derive(Clone, Debug)]
 pub enum Body {
     Scan(Scan),
@@ -29,7 +29,7 @@ pub enum Body {
     },
 }
 
-/// The fields of a scan; several echoes make a scan of that kind.
+/// The fields of a scan; several echoes make a multi-echo scan.
 #[derive(Clone, Debug, Default)]
 pub struct Scan {
     pub stamp_s: f64,
@@ -45,7 +45,7 @@ pub struct Scan {
     pub has_echoes: bool,
 }
 
-/// A frame in the frame above it.
+/// Transform of a frame to its parent.
 #[derive(Clone, Debug)]
 pub struct Transform {
     pub stamp_s: f64,
@@ -55,7 +55,7 @@ pub struct Transform {
     pub is_upside_down: bool,
 }
 
-/// Fields of CDR, the low byte first.
+/// Little-endian CDR fields.
 struct Cdr(Vec<u8>);
 
 impl Cdr {
@@ -141,7 +141,7 @@ impl Message {
                 }
                 if scan.has_echoes {
                     cdr.u32(scan.ranges.len() as u32);
-                    // The second echo is of what stands behind.
+                    // The second echo is from behind.
                     scan.ranges
                         .iter()
                         .for_each(|&range| cdr.floats(&[range, range + 1.0]));
@@ -207,7 +207,7 @@ fn text(text: &str) -> Vec<u8> {
     [&(text.len() as u32).to_le_bytes()[..], text.as_bytes()].concat()
 }
 
-/// Messages as an MCAP file, with so many of them in each chunk.
+/// Writes messages as an MCAP file, with `per_chunk` messages in each chunk.
 pub fn mcap(messages: &[Message], per_chunk: usize) -> Vec<u8> {
     let magic = b"\x89MCAP0\r\n";
     let mut file = [&magic[..], &record(1, &[&text("ros2"), &text("test")])].concat();
@@ -243,7 +243,7 @@ pub fn mcap(messages: &[Message], per_chunk: usize) -> Vec<u8> {
         ));
     }
     file.extend(record(15, &[&[0; 4]]));
-    // The summary announces every topic once more.
+    // The summary repeats the declarations of all topics.
     file.extend(&announced);
     file.extend(record(2, &[&[0; 20]]));
     file.extend_from_slice(magic);

@@ -1,4 +1,4 @@
-//! Running the command as a reader runs it.
+//! Runs the command in tests.
 
 use std::process::{Command, Output};
 
@@ -20,7 +20,7 @@ pub fn json(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).expect("one JSON value")
 }
 
-/// Asserts exit code 2, nothing on standard output, and one line on standard error that holds `said`.
+/// Asserts exit code 2, empty standard output, and one line on standard error that contains `said`.
 #[track_caller]
 pub fn assert_refused(arguments: &[&str], said: &str) {
     let output = slam2d(arguments);

@@ -1,3 +1,3 @@
-//! The worker that maps logs, linked to one module. All of it is in [`slam_robot`].
+//! The module of the worker that maps logs. The implementation is in [`slam_robot`].
 
 extern crate slam_robot as _;

@@ -1,4 +1,4 @@
-//! What is known of the graph's quality: covariances, each loop against the rest, and what to look into.
+//! Quality of the graph: covariances, tests of each loop against the rest, and doubts.
 
 use robot_io::quality::{LinkQuality, Quality, edge_tests};
 
@@ -28,14 +28,14 @@ impl Engine<'_> {
         if !self.is_ranked {
             self.rank();
         }
-        self.news.keyframes = true;
-        self.news.loops = true;
-        self.news.doubts = true;
+        self.changes.keyframes = true;
+        self.changes.loops = true;
+        self.changes.doubts = true;
         self.work = Work::Idle;
     }
 
-    /// Puts the loops in the order of doubt: those of the graph that it contradicts most come first. It
-    /// is done once, so that a loop keeps its number while the reader changes others.
+    /// Sorts the loops by doubt: those of the graph that contradict it most come first. This is
+    /// done once, so a loop keeps its number while the user changes others.
     fn rank(&mut self) {
         let doubt = |link: &Link| link.chi2.unwrap_or(f64::INFINITY) / link.gate_chi2;
         self.links.sort_by(|a, b| {
@@ -46,7 +46,7 @@ impl Engine<'_> {
         self.is_ranked = true;
     }
 
-    /// The quality of the run; the loops of a session have no registration to tell of.
+    /// The quality of the run; loops of a session have no registration.
     pub(super) fn quality(&mut self) -> Quality {
         let mut quality = self.run.quality();
         let unregistered = self.links.iter().filter(|link| link.found.is_none());
@@ -66,7 +66,7 @@ impl Engine<'_> {
         quality
     }
 
-    /// The loops of a session against the rest of the graph.
+    /// Tests the loops of a session against the rest of the graph.
     fn test_unregistered(&mut self) {
         let is_open = |link: &Link| link.found.is_none();
         let Some(slam) = self.run.slam_mut() else {
@@ -95,7 +95,7 @@ impl Engine<'_> {
             .filter(|link| link.verdict.is_in_graph())
         {
             let Some(found) = &link.found else { continue };
-            // Two registrations of one pair of keyframes differ in what fitted.
+            // Two registrations of one pair of keyframes differ in their inliers.
             let known = quality.links.iter().find(|known| {
                 (known.from, known.to, known.inliers) == (link.new, link.old, found.inliers)
                     && known.score == found.score
@@ -108,7 +108,7 @@ impl Engine<'_> {
         let stamps: Vec<f64> = quality.keyframes.iter().map(|k| k.stamp_s).collect();
         let at = |stamp_s: f64| stamps.partition_point(|&s| s <= stamp_s).saturating_sub(1);
         let poor = self.run.poor().iter().map(|poor| at(poor.stamp_s));
-        let refuted = quality.refuted_ways.iter().map(|way| way.to);
+        let refuted = quality.refuted_paths.iter().map(|path| path.to);
         let doubted = contradicting(&self.links).chain(refuted).chain(poor);
         let mut all: Vec<usize> = doubted.collect();
         all.sort_unstable();
@@ -117,7 +117,7 @@ impl Engine<'_> {
     }
 }
 
-/// The newer keyframes of loops in the graph that the rest of it contradicts.
+/// The newer keyframes of loops in the graph that the rest contradicts.
 fn contradicting(links: &[Link]) -> impl Iterator<Item = usize> + '_ {
     let is_doubted = |link: &&Link| {
         link.verdict.is_in_graph() && link.chi2.is_some_and(|chi2| chi2 > link.gate_chi2)

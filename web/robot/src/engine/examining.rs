@@ -1,4 +1,4 @@
-//! The doctor's pass over a log, which comes before its map.
+//! The doctor's pass over a log, before it is mapped.
 
 use robot_io::doctor::Checkup;
 use robot_io::log::LogReader as _;
@@ -8,20 +8,20 @@ use super::{Engine, Work};
 use crate::given::{Choices, Given, compared};
 use crate::update::Update;
 
-/// A log under the doctor's eyes.
+/// A log that the doctor is reading.
 pub(super) struct Examination<'a> {
     pub(super) reader: ComparedReader<'a>,
     checkup: Checkup,
-    /// What is opened once more to be mapped.
+    /// The files, which are opened again for mapping.
     given: Given<'a>,
     choices: Choices,
 }
 
 impl<'a> Examination<'a> {
-    /// Opens what was given.
+    /// Opens the given files.
     ///
     /// # Errors
-    /// One sentence if it is no log.
+    /// If they are not a log; the message is one sentence.
     pub(super) fn begin(given: Given<'a>, choices: Choices) -> Result<Self, String> {
         Ok(Self {
             reader: compared(&given, &choices)?,
@@ -43,12 +43,12 @@ impl<'a> Engine<'a> {
                 self.work = Work::Examining(examination);
                 return;
             }
-            // What the log ends with is told again when it is mapped.
+            // An error at the end of the log is reported again when it is mapped.
             Ok(None) => {}
             Err(_) if checkup.scans() > 0 => {}
             Err(problem) => return self.end_of_log(&examination.reader, Some(problem.to_string())),
         }
-        self.tell_diagnosis(&examination);
+        self.send_diagnosis(&examination);
         let Examination {
             reader,
             given,
@@ -57,20 +57,20 @@ impl<'a> Engine<'a> {
         } = *examination;
         self.work = match compared(&given, &choices) {
             Ok(again) => Work::Reading(Box::new(match reader.motion() {
-                Some(motion) => again.knowing(motion.clone()),
+                Some(motion) => again.with_motion(motion.clone()),
                 None => again,
             })),
             Err(problem) => Work::Failed(problem),
         };
     }
 
-    pub(super) fn tell_diagnosis(&mut self, examination: &Examination<'_>) {
+    pub(super) fn send_diagnosis(&mut self, examination: &Examination<'_>) {
         let Examination {
             reader, checkup, ..
         } = examination;
         let motion = reader.motion().cloned().unwrap_or_default();
         let diagnosis = checkup.finish(&self.name, reader.notes(), &motion);
-        let told = serde_json::to_string(&diagnosis).expect("plain numbers, strings and lists");
-        self.waiting.push(Update::text("diagnosis", told));
+        let json = serde_json::to_string(&diagnosis).expect("plain numbers, strings and lists");
+        self.waiting.push(Update::text("diagnosis", json));
     }
 }

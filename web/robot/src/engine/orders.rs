@@ -1,11 +1,11 @@
-//! What the reader asks of the engine, in words: `turn 3`, `add 120 14`, `pin 7 1.5 2 0.1`, `unpin`,
-//! `look 12`, `cancel`; and where the robot of another log was.
+//! The user's orders as text: `turn 3`, `add 120 14`, `pin 7 1.5 2 0.1`, `unpin`,
+//! `look 12`, `cancel`; and the localization of another log.
 
 use ch16_slam2d::localize::StartPose;
 use ch16_slam2d::loops::LoopVerification;
 use ch16_slam2d::metrics::position_error_m;
 use pr_geom::SE2;
-use robot_io::map_image::map_of;
+use robot_io::map_image::build_map;
 use robot_io::report::Report;
 use robot_io::session;
 
@@ -18,7 +18,7 @@ use crate::links::{Link, Verdict};
 use crate::update::Update;
 use crate::whereabouts::Whereabouts;
 
-/// How a graph from a file is solved after a change.
+/// Settings for optimizing a graph file after a change.
 const PLAIN: Solving = Solving {
     iterations: 30,
     tolerance: 1e-6,
@@ -26,7 +26,7 @@ const PLAIN: Solving = Solving {
 };
 
 impl<'a> Engine<'a> {
-    /// Does what the reader asks; what became of it is told by the next updates.
+    /// Executes an order; the result is in the next updates.
     pub fn order(&mut self, order: &str) {
         let mut words = order.split_ascii_whitespace();
         let name = words.next().unwrap_or_default();
@@ -40,7 +40,7 @@ impl<'a> Engine<'a> {
                 self.pin(*keyframe as usize, SE2::new(*x, *y, *theta))
             }
             ("unpin", []) => self.unpin(),
-            _ => Err("this order is unknown".to_owned()),
+            _ => Err("unknown order".to_owned()),
         };
         let said = answered.unwrap_or_else(|problem| problem);
         if !said.is_empty() {
@@ -48,10 +48,10 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Looks for the robot of another log on the map, once the map stands.
+    /// Localizes another log on the map, once the map is complete.
     ///
     /// # Errors
-    /// One sentence where there is no map, or the file is no log; what was known of a log before stays.
+    /// If there is no map, or the file is not a log; an earlier log is kept then.
     pub fn locate(
         &mut self,
         given: Given<'a>,
@@ -59,23 +59,23 @@ impl<'a> Engine<'a> {
         start: StartPose,
     ) -> Result<(), String> {
         if !self.has_scans {
-            return Err("A graph has no scans, so nobody can be found on it.".to_owned());
+            return Err("A graph has no scans, so a robot cannot be localized on it.".to_owned());
         }
         self.may_edit().map_err(|_| {
             format!(
-                "{} has to wait: the map does not stand yet; ask again once the log is read.",
+                "{} has to wait: the map is not complete; try again once the log is read.",
                 given.name
             )
         })?;
         let Some(session) = self.run.session() else {
-            return Err("There is no map to be found on.".to_owned());
+            return Err("There is no map for localization.".to_owned());
         };
         let opened = Whereabouts::open(given, choices, &session, start)?;
         self.whereabouts = Some(opened);
         Ok(())
     }
 
-    /// Ends the reading, and keeps what was read.
+    /// Stops reading, and keeps what was read.
     fn cancel(&mut self) -> Result<String, String> {
         if let Some(whereabouts) = self.whereabouts.as_mut().filter(|it| !it.is_over()) {
             whereabouts.end();
@@ -83,7 +83,7 @@ impl<'a> Engine<'a> {
         }
         match core::mem::replace(&mut self.work, Work::Idle) {
             Work::Examining(examination) => {
-                self.tell_diagnosis(&examination);
+                self.send_diagnosis(&examination);
                 self.end_of_log(&examination.reader, None);
                 Ok(String::new())
             }
@@ -91,7 +91,7 @@ impl<'a> Engine<'a> {
                 self.end_of_log(reader.as_ref(), None);
                 match self.work {
                     Work::Finishing => self.close_last_loops(),
-                    // It says itself that nothing was read.
+                    // Ending an empty log reports that itself.
                     _ => return Ok(String::new()),
                 }
                 Ok(format!("Stopped after {} scans.", self.run.scans()))
@@ -103,7 +103,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// The scan of a keyframe, to be laid over the map.
+    /// Sends the scan of a keyframe, to be drawn over the map.
     fn look(&mut self, keyframe: usize) -> Result<String, String> {
         let keyframes = self.run.slam().map_or(&[][..], |slam| slam.keyframes());
         if let Some(at) = keyframes.get(keyframe) {
@@ -114,17 +114,17 @@ impl<'a> Engine<'a> {
         Ok(String::new())
     }
 
-    /// Refuses a loop that is in the graph, or puts one in.
+    /// Removes a loop from the graph, or adds it.
     fn turn(&mut self, link: usize) -> Result<String, String> {
         self.may_edit()?;
         let Some(found) = self.links.get_mut(link) else {
             return Err(format!("there is no loop {link}"));
         };
         let (before, ends) = (found.verdict, format!("{} to {}", found.new, found.old));
-        found.verdict = before.turned();
+        found.verdict = before.toggled();
         let said = match found.verdict {
-            Verdict::Refused => format!("The loop {ends} is out of the graph"),
-            _ => format!("The loop {ends} is in the graph"),
+            Verdict::Removed => format!("The loop {ends} was removed from the graph"),
+            _ => format!("The loop {ends} was added to the graph"),
         };
         match self.resolve() {
             Ok(moved_m) => Ok(format!("{said}; keyframes moved by up to {moved_m:.2} m.")),
@@ -135,7 +135,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Registers one keyframe on what was seen around another, and closes the loop if it passes.
+    /// Registers one keyframe on the submap around another, and adds the loop if it is accepted.
     fn add(&mut self, a: usize, b: usize) -> Result<String, String> {
         self.may_edit()?;
         let (old, new) = (a.min(b), a.max(b));
@@ -146,10 +146,10 @@ impl<'a> Engine<'a> {
         }
         let reason = link.reason.clone();
         self.links.insert(0, link);
-        self.news.loops = true;
+        self.changes.loops = true;
         if !found.accepted() {
             return Ok(format!(
-                "Keyframe {new} does not close a loop with {old}: {reason}. It stands in the list; you may close it all the same."
+                "Keyframe {new} does not close a loop with {old}: {reason}. The loop is in the list, and you can still add it."
             ));
         }
         match self.resolve() {
@@ -168,13 +168,13 @@ impl<'a> Engine<'a> {
             return Err("A graph has no scans, so nothing can be registered.".to_owned());
         };
         if new >= slam.keyframes().len() || old == new {
-            return Err("A loop needs two keyframes: mark one, then go to the other.".to_owned());
+            return Err("A loop needs two keyframes: mark one, then select the other.".to_owned());
         }
         let found = slam.register_loop(old, new);
-        found.map_err(|problem| format!("Nothing can be tested against this graph: {problem}."))
+        found.map_err(|problem| format!("The loop cannot be tested against this graph: {problem}."))
     }
 
-    /// Holds a keyframe where the reader put it.
+    /// Fixes a keyframe at the user's pose.
     fn pin(&mut self, keyframe: usize, pose: SE2) -> Result<String, String> {
         self.may_edit()?;
         if keyframe >= self.fixed.len() {
@@ -196,7 +196,7 @@ impl<'a> Engine<'a> {
         self.pins.clear();
         let moved_m = self.resolve()?;
         Ok(format!(
-            "No keyframe is held any more; they moved by up to {moved_m:.2} m."
+            "No keyframe is fixed any more; they moved by up to {moved_m:.2} m."
         ))
     }
 
@@ -208,7 +208,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Solves the graph of what was decided; says how far a keyframe moved at most, m.
+    /// Optimizes the graph of all decisions; returns the largest displacement of a keyframe, m.
     fn resolve(&mut self) -> Result<f64, String> {
         let Some(base) = self.graph() else {
             return Err("There is no graph to change.".to_owned());
@@ -221,7 +221,9 @@ impl<'a> Engine<'a> {
             huber: slam.config().huber,
         });
         if !solve(&mut graph, &how) {
-            return Err("The graph cannot be solved so; it stays as it was.".to_owned());
+            return Err(
+                "The graph cannot be optimized with this change; it was left unchanged.".to_owned(),
+            );
         }
         let moved = before.iter().zip(graph.poses());
         let moved_m = moved.map(|(old, new)| position_error_m(old, new));
@@ -231,30 +233,30 @@ impl<'a> Engine<'a> {
                 *slam.graph_mut() = graph;
                 let in_graph = self.links.iter().filter(|link| link.verdict.is_in_graph());
                 let found = in_graph.filter_map(|link| link.found);
-                let told = found.map(|found| LoopVerification {
+                let accepted = found.map(|found| LoopVerification {
                     rejection: None,
                     ..found
                 });
-                self.run.set_links(told.collect());
+                self.run.set_links(accepted.collect());
             }
             _ => self.graph = Some(graph),
         }
-        self.changed();
+        self.graph_changed();
         Ok(moved_m)
     }
 
-    /// Takes a reference, and compares with it from now on.
+    /// Reads a reference, and compares with it from now on.
     ///
     /// # Errors
-    /// One sentence where it is none.
+    /// If it is not a reference; the message is one sentence.
     pub fn take_reference(&mut self, bytes: &[u8], name: &str) -> Result<(), String> {
         let reference = Reference::read(bytes, name)?;
         self.reference = Some((name.to_owned(), reference));
-        self.news.grade = true;
+        self.changes.grade = true;
         Ok(())
     }
 
-    /// The errors against the reference, where there is one.
+    /// The errors against the reference, if there is one.
     pub(super) fn grade_updates(&self) -> Vec<Update> {
         let Some((name, reference)) = &self.reference else {
             return Vec::new();
@@ -265,10 +267,10 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// The bytes of one of [`NAMES`].
+    /// The content of one of [`NAMES`].
     ///
     /// # Errors
-    /// One sentence where there is nothing to write.
+    /// If there is nothing to write; the message is one sentence.
     pub fn file(&mut self, name: &str) -> Result<Vec<u8>, String> {
         let Some(graph) = self.graph() else {
             return Err("There is nothing to save yet.".to_owned());
@@ -281,7 +283,7 @@ impl<'a> Engine<'a> {
                 Some(whereabouts) => {
                     files::trajectory_file(&whereabouts.trajectory(super::poses_of(&self.run)))
                 }
-                None => Err("No other log was looked for on this map.".to_owned()),
+                None => Err("No other log was localized on this map.".to_owned()),
             },
             _ if !NAMES.contains(&name) => Err(format!("there is no file {name} to save")),
             _ if !self.has_scans => {
@@ -293,7 +295,7 @@ impl<'a> Engine<'a> {
             },
             _ => {
                 let lines = self.recorder.map_lines(&self.run);
-                let map = map_of(&lines, MAP_CELL_M).map_err(|problem| problem.to_string())?;
+                let map = build_map(&lines, MAP_CELL_M).map_err(|problem| problem.to_string())?;
                 let saved = files::MAP_IMAGES.into_iter().find(|image| *image == name);
                 self.image = saved.unwrap_or(self.image);
                 files::map_file(&map, name, self.image)
@@ -304,7 +306,7 @@ impl<'a> Engine<'a> {
     fn report(&mut self) -> String {
         let quality = self.quality();
         let lines = self.recorder.map_lines(&self.run);
-        let map = map_of(&lines, REPORT_CELL_M).ok();
+        let map = build_map(&lines, REPORT_CELL_M).ok();
         let mut remarks = self.remarks.clone();
         remarks.extend(self.grade_updates().into_iter().map(|update| update.text));
         remarks.retain(|remark| !remark.is_empty());

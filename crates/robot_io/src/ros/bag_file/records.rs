@@ -8,13 +8,13 @@ use crate::ros::wire::Wire;
 /// More topics than any robot has.
 const MOST_CONNECTIONS: usize = 10_000;
 
-/// Kinds of records, by their field `op`.
+/// Kinds of records, by their `op` field.
 pub mod op {
     pub const MESSAGE: u8 = 2;
     pub const INDEX: u8 = 4;
     pub const CHUNK: u8 = 5;
     pub const CONNECTION: u8 = 7;
-    /// Bytes of an entry of an index: a time and an offset.
+    /// Bytes of an index entry: a time and an offset.
     pub const INDEX_ENTRY: usize = 12;
 }
 
@@ -25,16 +25,16 @@ struct Connection {
     kind: String,
 }
 
-/// The connections that were announced so far, by their numbers.
+/// The connections declared so far, by id.
 #[derive(Clone, Debug, Default)]
 pub struct Connections {
     known: BTreeMap<u32, Connection>,
-    /// Numbers that messages named before they were announced.
+    /// Ids that messages used before they were declared.
     orphans: BTreeSet<u32>,
 }
 
 impl Connections {
-    /// Takes a record that is no chunk; answers with its message where it is one.
+    /// Takes a record that is not a chunk; returns its message if it is one.
     pub fn take(&mut self, fields: &Fields<'_>, data: &[u8]) -> Result<Option<Recorded>, String> {
         match fields.op()? {
             op::CONNECTION => self.take_connection(fields, data).map(|()| None),
@@ -80,10 +80,10 @@ impl Connections {
     }
 }
 
-/// So many bytes show that a record begins: the headers of known records are shorter.
+/// Bytes that suffice to recognize a record: the headers of known records are shorter.
 pub const LONGEST_START: usize = 1024;
 
-/// Whether a record that can be read begins here.
+/// Whether a valid record starts here.
 pub fn begins(bytes: &[u8]) -> bool {
     let mut rest = bytes;
     let Ok(header) = piece(&mut rest, "a header") else {
@@ -97,9 +97,9 @@ pub fn begins(bytes: &[u8]) -> bool {
         && length.is_some_and(|length| length as usize <= MOST_BYTES)
 }
 
-/// A length and as many bytes.
+/// Splits off a length and that many bytes.
 pub fn piece<'a>(rest: &mut &'a [u8], what: &str) -> Result<&'a [u8], String> {
-    let short = || format!("{what} was expected, and the bytes end");
+    let short = || format!("expected {what}, but the bytes end");
     let (length, after) = rest.split_first_chunk::<4>().ok_or_else(short)?;
     let length = u32::from_le_bytes(*length) as usize;
     let (piece, after) = after.split_at_checked(length).ok_or_else(short)?;
@@ -113,13 +113,13 @@ pub struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// The fields of these bytes.
+    /// Parses the fields of these bytes.
     pub fn parse(mut header: &'a [u8]) -> Result<Self, String> {
         let mut named = BTreeMap::new();
         while !header.is_empty() {
             let field = piece(&mut header, "a field")?;
             let equals = field.iter().position(|&byte| byte == b'=');
-            let equals = equals.ok_or("a field ‘name=value’ was expected")?;
+            let equals = equals.ok_or("expected a field ‘name=value’")?;
             named.insert(&field[..equals], &field[equals + 1..]);
         }
         Ok(Self { named })
@@ -127,33 +127,33 @@ impl<'a> Fields<'a> {
 
     fn value(&self, name: &str) -> Result<&'a [u8], String> {
         let value = self.named.get(name.as_bytes()).copied();
-        value.ok_or_else(|| format!("a field ‘{name}’ was expected"))
+        value.ok_or_else(|| format!("expected a field ‘{name}’"))
     }
 
-    /// What kind of record it is.
+    /// The kind of record.
     pub fn op(&self) -> Result<u8, String> {
         match self.value("op")? {
             &[op] => Ok(op),
-            _ => Err("a field ‘op’ of one byte was expected".to_owned()),
+            _ => Err("expected a field ‘op’ of one byte".to_owned()),
         }
     }
 
-    /// A whole number.
+    /// A 32-bit integer.
     pub fn u32(&self, name: &str) -> Result<u32, String> {
         let value = self.value(name)?.try_into();
-        let value = value.map_err(|_| format!("a field ‘{name}’ of four bytes was expected"))?;
+        let value = value.map_err(|_| format!("expected a field ‘{name}’ of four bytes"))?;
         Ok(u32::from_le_bytes(value))
     }
 
-    /// Half of the field `time`, which starts at byte `from`.
+    /// Half of the `time` field, starting at byte `from`.
     fn time(&self, from: usize) -> Result<u32, String> {
         let value = self.value("time")?.get(from..from + 4);
         let value = value.and_then(|value| value.try_into().ok());
-        let value = value.ok_or("a field ‘time’ of eight bytes was expected")?;
+        let value = value.ok_or("expected a field ‘time’ of eight bytes")?;
         Ok(u32::from_le_bytes(value))
     }
 
-    /// A text, as a name that can be printed; bytes that are no text become question marks.
+    /// A printable name; invalid bytes become question marks.
     pub fn name(&self, name: &str) -> Result<String, String> {
         let text = String::from_utf8_lossy(self.value(name)?);
         Ok(crate::lines::name(&text))

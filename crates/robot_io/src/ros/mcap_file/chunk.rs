@@ -1,24 +1,24 @@
-//! The records of a chunk, unpacked.
+//! Decompressed records of a chunk.
 
 use super::records::{HEAD_BYTES, broken, fields, head as record_head, op};
 use crate::ros::container::{ContainerError, MOST_BYTES};
 use crate::ros::decompress::Packing;
 use crate::ros::wire::{WireError, WireReader};
 
-/// What stands before the records.
+/// Header of a chunk.
 struct Head {
     /// Bytes of the records.
     size: u64,
-    /// Their checksum; 0 where there is none.
+    /// Checksum; 0 if there is none.
     sum: u32,
     packing: String,
-    /// Bytes that they are packed in.
+    /// Bytes of the compressed records.
     packed: u64,
 }
 
-/// The records of a chunk. Of one that is cut off, those that are there, unless they are packed.
+/// Returns the records of a chunk; if it is truncated and not compressed, those that are complete.
 pub fn records(chunk: &[u8], is_cut_off: bool) -> Result<Vec<u8>, ContainerError> {
-    let cut_off = || ContainerError::CutOff("the end of a chunk was expected".to_owned());
+    let cut_off = || ContainerError::CutOff("expected the end of a chunk".to_owned());
     let mut fields = fields(chunk)?;
     let head = head(&mut fields).map_err(|problem| match is_cut_off {
         true => cut_off(),
@@ -31,7 +31,7 @@ pub fn records(chunk: &[u8], is_cut_off: bool) -> Result<Vec<u8>, ContainerError
             (true, "") => Ok(there.to_vec()),
             (true, _) => Err(cut_off()),
             (false, _) => Err(ContainerError::Broken(format!(
-                "a chunk of {} bytes was expected, and {} are there",
+                "expected a chunk of {} bytes, found {}",
                 head.packed,
                 there.len()
             ))),
@@ -43,30 +43,30 @@ pub fn records(chunk: &[u8], is_cut_off: bool) -> Result<Vec<u8>, ContainerError
         "lz4" => Packing::Lz4.unpack(packed, size),
         "zstd" => Packing::Zstd.unpack(packed, size),
         other => Err(format!(
-            "a chunk packed by lz4, by zstd or not at all was expected, and it is packed by ‘{}’; convert it with mcap compress",
+            "expected a chunk compressed by lz4, zstd or none, found ‘{}’; convert it with mcap compress",
             crate::lines::printable(other)
         )),
     };
     let records = records.map_err(ContainerError::Broken)?;
     if records.len() as u64 != head.size {
         return Err(ContainerError::Broken(format!(
-            "a chunk of {} bytes was expected, and it unpacks to {}",
+            "expected a chunk of {} bytes, but it decompresses to {}",
             head.size,
             records.len()
         )));
     }
     if head.sum != 0 && head.sum != crc32fast::hash(&records) {
         return Err(ContainerError::Broken(
-            "a chunk is damaged: another checksum was expected".to_owned(),
+            "a chunk is damaged: its checksum does not match".to_owned(),
         ));
     }
     Ok(records)
 }
 
-/// So many bytes show that a chunk begins: record head, times, sizes, and the name of the packing.
+/// Bytes that suffice to recognize a chunk: record head, times, sizes, and the name of the compression.
 pub const LONGEST_START: usize = HEAD_BYTES + 8 + 8 + 8 + 4 + 4 + 4 + 8;
 
-/// Whether a chunk that can be read begins here.
+/// Whether a valid chunk starts here.
 pub fn begins(bytes: &[u8]) -> bool {
     let Some((op::CHUNK, length)) = record_head(bytes) else {
         return false;
@@ -89,7 +89,7 @@ fn head(fields: &mut WireReader<'_>) -> Result<Head, WireError> {
     Ok(Head {
         size: fields.u64("a chunk's size")?,
         sum: fields.u32("a chunk's checksum")?,
-        packing: fields.name("a chunk's packing")?,
-        packed: fields.u64("a chunk's packed size")?,
+        packing: fields.name("a chunk's compression")?,
+        packed: fields.u64("a chunk's compressed size")?,
     })
 }

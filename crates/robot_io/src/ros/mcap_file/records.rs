@@ -1,4 +1,4 @@
-//! Schemas, channels and messages: what the records of MCAP say.
+//! MCAP records of schemas, channels and messages.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,7 +6,7 @@ use crate::lines::printable;
 use crate::ros::container::{ContainerError, Recorded, kind_of};
 use crate::ros::wire::{Wire, WireError, WireReader};
 
-/// What a record is (1 byte), and its length.
+/// Bytes of a record's kind (1) and length.
 pub const HEAD_BYTES: usize = 9;
 
 /// Kinds of records.
@@ -19,36 +19,36 @@ pub mod op {
     pub const ATTACHMENT: u8 = 9;
 }
 
-/// What a record is, and its length.
+/// Kind of a record, and its length.
 pub fn head(bytes: &[u8]) -> Option<(u8, u64)> {
     let (&op, rest) = bytes.split_first()?;
     let (length, _) = rest.split_first_chunk()?;
     Some((op, u64::from_le_bytes(*length)))
 }
 
-/// The fields of a record: as those of ROS 1, without gaps.
+/// Reader of a record's fields, which are serialized as in ROS 1.
 pub fn fields(body: &[u8]) -> Result<WireReader<'_>, ContainerError> {
     WireReader::new(Wire::Ros1, body).map_err(broken)
 }
 
-/// A record that is not what it has to be.
+/// A malformed record.
 pub fn broken(problem: WireError) -> ContainerError {
-    ContainerError::Broken(format!("a record of MCAP: {problem}"))
+    ContainerError::Broken(format!("an MCAP record: {problem}"))
 }
 
-/// Where messages of a type are published.
+/// A channel: topic, type and serialization.
 #[derive(Clone, Debug)]
 struct Channel {
     topic: String,
     kind: String,
-    /// Else the name of an encoding that is another system's.
+    /// The error is the name of an unsupported encoding.
     wire: Result<Wire, String>,
 }
 
-/// What was announced so far, by its numbers.
+/// Schemas and channels declared so far, by id.
 #[derive(Clone, Debug, Default)]
 pub struct Records {
-    /// Numbers of channels that messages named before they were announced.
+    /// Ids of channels that messages used before they were declared.
     orphans: BTreeSet<u16>,
     kinds: BTreeMap<u16, String>,
     channels: BTreeMap<u16, Channel>,
@@ -65,16 +65,16 @@ impl Records {
             .any(|number| self.channels.contains_key(number))
     }
 
-    /// What stands in the file in place of messages of ROS; none where it has such messages or nothing.
+    /// What the file contains instead of ROS messages; `None` if it has ROS messages or none at all.
     pub fn instead(&self) -> Option<String> {
         let (topic, encoding) = self.other.as_ref().filter(|_| !self.has_ros)?;
         let [topic, encoding] = [topic, encoding].map(|name| printable(name));
         Some(format!(
-            "its messages are no messages of ROS, such as those on {topic} in the encoding ‘{encoding}’; record with ros2 bag record -s mcap"
+            "it has no ROS messages but, for example, those on {topic} with the encoding ‘{encoding}’; record with ros2 bag record -s mcap"
         ))
     }
 
-    /// Takes a record; answers with its message where it is one that can be read.
+    /// Takes a record; returns its message if it is a readable one.
     pub fn take(&mut self, op: u8, body: &[u8]) -> Result<Option<Recorded>, ContainerError> {
         match op {
             op::SCHEMA => self.take_schema(body).map(|()| None).map_err(broken),

@@ -1,27 +1,27 @@
-//! Where a laser sits, by the transforms of the whole recording.
+//! Mounting of a laser by the transforms of the whole recording.
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use crate::laser_mount::LaserMount;
 use crate::log::LogOptions;
 use crate::ros::survey::Survey;
-use crate::ros::transforms::mount_of;
+use crate::ros::transforms::planar_mount;
 
-/// A mounting, and how it was found.
+/// A mounting, and how it was determined.
 pub struct Found {
-    /// In the plane.
+    /// Mounting in the plane.
     pub mount: LaserMount,
-    /// With height and lean.
+    /// Mounting in 3-D.
     pub body_from_sensor: Isometry3<f64>,
-    /// The frame of the body that it is on.
+    /// The body frame that it refers to.
     pub body: String,
-    /// Whether transforms or the user gave it.
+    /// Whether transforms or the user define it.
     pub is_known: bool,
     /// What was missing.
     pub warning: Option<String>,
 }
 
-/// Where `sensor` sits on `body`.
+/// Determines the mounting of `sensor` on `body`.
 pub fn find(
     survey: &Survey,
     body: &str,
@@ -42,12 +42,11 @@ pub fn find(
         && options.body_frame.is_none()
         && let Some(root) = transforms.root_of(sensor, ground)
     {
-        // The body of the odometry is in no transform: the highest frame that the laser is fixed to is
-        // the robot's.
+        // The odometry's body frame is in no transform: take the highest frame that the laser is fixed to.
         chain = transforms.body_from_sensor(root, sensor, ground);
         if chain.is_some() {
             found.warning = Some(format!(
-                "no transform leads from {body} to {sensor}; {root} leads there and is taken for the body. Choose another with --body-frame"
+                "there is no transform from {body} to {sensor}; {root} is connected to it and is used as the body. Choose another with --body-frame"
             ));
             found.body = root.to_owned();
         }
@@ -62,33 +61,31 @@ pub fn find(
         found.warning = None;
         return found;
     }
-    let why = match chain.as_ref().map(mount_of) {
+    let why = match chain.as_ref().map(planar_mount) {
         Some(Ok(mount)) => {
             found.mount = mount;
             found.body_from_sensor = chain.unwrap_or_default();
             found.is_known = true;
             if transforms.moves_on(&found.body, sensor) {
                 found.warning = Some(format!(
-                    "{sensor} moves on {}; its newest place is taken for all scans. Fix it, or give its place with --laser x,y,degrees",
+                    "{sensor} moves relative to {}; its latest pose is used for all scans. Fix it, or set its mounting with --laser x,y,degrees",
                     found.body
                 ));
             }
             return found;
         }
         Some(Err(problem)) => problem,
-        None if sensor.is_empty() => "the scans do not name their frame".to_owned(),
-        None => format!("no transform leads from {body} to {sensor}"),
+        None if sensor.is_empty() => "the scans have no frame".to_owned(),
+        None => format!("there is no transform from {body} to {sensor}"),
     };
     if let Some(mount) = options.laser_before {
         found.mount = mount;
         found.is_known = true;
-        found.warning = Some(format!(
-            "{why}; the laser is taken to sit where the session has it"
-        ));
+        found.warning = Some(format!("{why}; the mounting of the session is used"));
         return found;
     }
     found.warning = Some(format!(
-        "{why}; the laser is taken to sit at the body's origin, looking ahead. Set its place with --laser x,y,degrees"
+        "{why}; the laser is assumed at the body's origin, facing forward. Set its mounting with --laser x,y,degrees"
     ));
     found
 }
@@ -97,7 +94,7 @@ pub fn find(
 pub fn sentence(found: &Found) -> String {
     let [x, y, theta] = found.mount.body_from_sensor.to_array();
     format!(
-        "the laser sits at {x:.3} m, {y:.3} m, {:.2}° on {}{}",
+        "the laser is at {x:.3} m, {y:.3} m, {:.2}° on {}{}",
         theta.to_degrees(),
         found.body,
         if found.mount.is_flipped {

@@ -1,20 +1,20 @@
-//! What options could choose in a recording, and what they ask for in vain.
+//! Choices for options in a recording, and requested names that do not exist.
 
 use std::collections::BTreeSet;
 
 use super::TRANSFORMS;
-use super::wheels::Wheels;
+use super::odometry::SelectedOdometry;
 use crate::log::{LogOffer, LogOption, LogOptions};
 use crate::ros::survey::{ODOMETRY, SCANS, Survey};
 
-/// So many topics or frames are offered for an option.
+/// Most topics or frames listed for an option.
 const MOST_OFFERED: usize = 100;
 
-/// What each option could choose, and what is taken.
+/// Lists the choices for each option, and the one in use.
 pub fn list(
     survey: &Survey,
     scans: Option<&str>,
-    wheels: Option<&Wheels<'_>>,
+    odometry: Option<&SelectedOdometry<'_>>,
     body: Option<&str>,
 ) -> Vec<LogOffer> {
     let topics = |kinds: &[&str]| {
@@ -28,20 +28,21 @@ pub fn list(
     let parents: BTreeSet<String> = frames().map(|(parent, _)| parent.to_owned()).collect();
     let children = frames().map(|(_, child)| child.to_owned());
     let bodies: BTreeSet<String> = children.chain(parents.iter().cloned()).collect();
-    let mut odometry = topics(&[ODOMETRY]);
+    let mut odometry_topics = topics(&[ODOMETRY]);
     if !survey.tracks.is_empty() {
-        odometry.insert(TRANSFORMS.to_owned());
+        odometry_topics.insert(TRANSFORMS.to_owned());
     }
-    let above = wheels.filter(|wheels| wheels.is_transform);
+    let above = odometry.filter(|odometry| odometry.is_transform);
     LogOption::ALL
         .map(|option| {
             let (taken, names) = match option {
                 LogOption::ScanTopic => (scans.map(str::to_owned), topics(&SCANS)),
-                LogOption::OdometryTopic => {
-                    (wheels.map(|wheels| wheels.topic.clone()), odometry.clone())
-                }
+                LogOption::OdometryTopic => (
+                    odometry.map(|odometry| odometry.topic.clone()),
+                    odometry_topics.clone(),
+                ),
                 LogOption::OdometryFrame => (
-                    above.map(|wheels| wheels.track.above.clone()),
+                    above.map(|odometry| odometry.track.above.clone()),
                     parents.clone(),
                 ),
                 LogOption::BodyFrame => (body.map(str::to_owned), bodies.clone()),
@@ -55,24 +56,24 @@ pub fn list(
         .to_vec()
 }
 
-/// An option that asks for what is not there: the odometry's topic or frame, or the body's frame.
+/// Returns the first option (odometry topic, odometry frame or body frame) whose name does not exist.
 pub fn missing(
     survey: &Survey,
     options: &LogOptions,
     offers: &[LogOffer],
-    wheels: Option<&Wheels<'_>>,
+    odometry: Option<&SelectedOdometry<'_>>,
 ) -> Option<(LogOption, String)> {
     let lacks = |option: LogOption, wanted: &Option<String>| {
         let wanted = wanted.as_ref()?;
         let plain = wanted.trim_start_matches('/');
         let offer = offers.iter().find(|offer| offer.option == option)?;
         let is_there = |name: &String| name.trim_start_matches('/') == plain;
-        let of_wheels = wheels.map(|wheels| &wheels.track.body);
+        let of_odometry = odometry.map(|odometry| &odometry.track.body);
         let mut bodies = survey
             .odometry
             .values()
             .map(|track| &track.body)
-            .chain(of_wheels);
+            .chain(of_odometry);
         let is_body = option == LogOption::BodyFrame && bodies.any(is_there);
         (!is_body && !offer.names.iter().any(is_there)).then(|| (option, wanted.clone()))
     };

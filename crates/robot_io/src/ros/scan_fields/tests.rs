@@ -1,4 +1,4 @@
-//! Fields that agree, and fields that contradict each other.
+//! Consistent and inconsistent fields.
 
 use super::*;
 
@@ -16,7 +16,7 @@ fn fields() -> ScanFields {
 #[track_caller]
 fn assert_taken(fields: ScanFields, first: f64, step: f64, words: &str) {
     let (scan, said) = fields.checked(0.1).unwrap();
-    // 1e-6: four-byte numbers.
+    // 1e-6: 32-bit floats.
     assert!(
         (scan.first_angle_rad - first).abs() < 1e-6,
         "{}",
@@ -33,7 +33,7 @@ fn assert_taken(fields: ScanFields, first: f64, step: f64, words: &str) {
 }
 
 #[test]
-fn angles_that_agree_are_taken_and_others_by_what_two_say() {
+fn inconsistent_angles_are_corrected_by_two_that_agree() {
     let (first, step) = (-PI, TAU / 360.0);
     assert_taken(fields(), first, step, "");
     // Some drivers state the angle after the last beam.
@@ -94,19 +94,19 @@ fn angles_that_agree_are_taken_and_others_by_what_two_say() {
         },
         first,
         step,
-        "angle_increment is taken",
+        "angle_increment is used",
     );
 }
 
 #[test]
-fn angles_of_which_nothing_agrees_are_refused() {
+fn inconsistent_angles_are_rejected() {
     let bad = ScanFields {
         angle_max: 40.0,
         angle_increment: 3.0,
         ..fields()
     };
     let said = bad.checked(0.1).unwrap_err();
-    assert!(said.contains("neither is a sweep"), "{said}");
+    assert!(said.contains("neither gives a sweep"), "{said}");
     let bad = ScanFields {
         angle_max: f64::NAN,
         angle_increment: f64::NAN,
@@ -136,7 +136,7 @@ fn the_time_of_a_beam_is_checked_against_the_period() {
         "{said}"
     );
     let (taken_s, said) = interval(7.0);
-    assert!(taken_s == 0.0 && said.contains("one moment"), "{said}");
+    assert!(taken_s == 0.0 && said.contains("instantaneous"), "{said}");
 }
 
 #[test]

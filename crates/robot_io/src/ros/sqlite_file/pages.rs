@@ -1,33 +1,33 @@
-//! Pages of a database, read as they are needed.
+//! Pages of a database, read on demand.
 
 use std::io::{Read, Seek, SeekFrom};
 
 use crate::log_bytes::SeekRead;
 use crate::ros::container::ContainerError;
 
-/// The header of the file stands in front of the first page's own.
+/// Bytes of the file header, which precedes the first page's own header.
 pub const FILE_HEADER: usize = 100;
 
 /// The pages of a file.
 pub struct Pages<'a> {
     source: Box<dyn SeekRead + 'a>,
-    /// Where the source stands.
+    /// Position of the source.
     at: u64,
     size: usize,
-    /// Bytes of a page without those that are reserved at its end.
+    /// Bytes of a page without those reserved at its end.
     usable: usize,
     offset: u64,
 }
 
 impl<'a> Pages<'a> {
-    /// The pages of a file, whose source stands at its start.
+    /// Opens the pages of a file; the source must be at its start.
     pub fn new(mut source: Box<dyn SeekRead + 'a>) -> Result<Self, ContainerError> {
         let mut header = [0; FILE_HEADER];
         source
             .read_exact(&mut header)
             .map_err(|error| match error.kind() {
                 std::io::ErrorKind::UnexpectedEof => {
-                    ContainerError::CutOff("the header of a database was expected".to_owned())
+                    ContainerError::CutOff("expected the header of a database".to_owned())
                 }
                 _ => ContainerError::Io(error),
             })?;
@@ -38,13 +38,13 @@ impl<'a> Pages<'a> {
         let usable = size.saturating_sub(usize::from(header[20]));
         if !size.is_power_of_two() || size < 512 || usable < 480 {
             return Err(ContainerError::Broken(format!(
-                "pages of 512 to 65536 bytes were expected, and the database has pages of {size}"
+                "expected pages of 512 to 65536 bytes, found {size}"
             )));
         }
         // 2 and 3 are UTF-16, which rosbag2 never writes.
         if u32::from_be_bytes([header[56], header[57], header[58], header[59]]) > 1 {
             return Err(ContainerError::Broken(
-                "text in UTF-8 was expected, and the database has UTF-16; give a recording of ros2 bag record".to_owned(),
+                "expected text in UTF-8, but the database uses UTF-16; pass a recording of ros2 bag record".to_owned(),
             ));
         }
         Ok(Self {
@@ -56,26 +56,26 @@ impl<'a> Pages<'a> {
         })
     }
 
-    /// Bytes of a page that hold data.
+    /// Data bytes of a page.
     pub fn usable(&self) -> usize {
         self.usable
     }
 
-    /// Where the last page read ends.
+    /// End of the last page read.
     pub fn offset(&self) -> u64 {
         self.offset
     }
 
-    /// A page by its number, which counts from 1, without what is reserved at its end.
+    /// Reads a page by its number, counted from 1, without the reserved bytes.
     pub fn page(&mut self, number: u32) -> Result<Vec<u8>, ContainerError> {
         let Some(index) = number.checked_sub(1) else {
             return Err(ContainerError::Skipped(
-                "a number of a page was expected, and 0 stands there".to_owned(),
+                "expected a page number, found 0".to_owned(),
             ));
         };
         let start = u64::from(index) * self.size as u64;
         let moved = match i64::try_from(i128::from(start) - i128::from(self.at)) {
-            // What is buffered stays.
+            // Keeps the buffered bytes.
             Ok(by) => self.source.seek_relative(by),
             Err(_) => self.source.seek(SeekFrom::Start(start)).map(|_| ()),
         };
@@ -93,7 +93,7 @@ impl<'a> Pages<'a> {
         }
         if count < self.size {
             return Err(ContainerError::Skipped(format!(
-                "page {number} of the database was expected, and {count} of its {} bytes are there",
+                "expected page {number} of the database, found {count} of its {} bytes",
                 self.size
             )));
         }

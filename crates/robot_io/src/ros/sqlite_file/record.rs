@@ -1,23 +1,23 @@
-//! Rows of a table from their bytes.
+//! Decodes rows of a table.
 
 /// A value of a row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Value {
-    /// Not set: the number of a row stands so in its column.
+    /// NULL; also stored for an integer primary key, whose value is the row id.
     #[default]
     Null,
-    /// A whole number.
+    /// An integer.
     Integer(i64),
-    /// A number.
+    /// A floating-point number.
     Real(f64),
-    /// A text; bytes that are no text become question marks.
+    /// A text; invalid bytes become question marks.
     Text(String),
     /// Bytes.
     Blob(Vec<u8>),
 }
 
 impl Value {
-    /// The whole number that it is.
+    /// The value, if it is an integer.
     pub fn integer(&self) -> Option<i64> {
         match self {
             Self::Integer(value) => Some(*value),
@@ -25,7 +25,7 @@ impl Value {
         }
     }
 
-    /// The text that it is.
+    /// The value, if it is a text.
     pub fn text(&self) -> Option<&str> {
         match self {
             Self::Text(text) => Some(text),
@@ -34,7 +34,7 @@ impl Value {
     }
 }
 
-/// A number of one to nine bytes, seven bits each and eight of the last; and how many bytes it has.
+/// Decodes a varint of one to nine bytes, seven bits each and eight in the ninth; returns it with its length.
 pub fn varint(bytes: &[u8]) -> Option<(u64, usize)> {
     let mut value = 0_u64;
     for (at, &byte) in bytes.iter().take(9).enumerate() {
@@ -49,7 +49,7 @@ pub fn varint(bytes: &[u8]) -> Option<(u64, usize)> {
     None
 }
 
-/// The values of a row; none where its bytes are no row.
+/// Decodes the values of a row; `None` if the bytes are malformed.
 pub fn values(record: &[u8]) -> Option<Vec<Value>> {
     let (header, mut at) = varint(record)?;
     let header = usize::try_from(header).ok()?;
@@ -87,7 +87,7 @@ pub fn values(record: &[u8]) -> Option<Vec<Value>> {
     Some(values)
 }
 
-/// The names of a table's columns, from the text that made it.
+/// Column names of a table, from its CREATE statement.
 pub fn columns(sql: &str) -> Vec<String> {
     let (Some(from), Some(to)) = (sql.find('('), sql.rfind(')')) else {
         return Vec::new();

@@ -1,41 +1,41 @@
-//! The rows of a table in their order: the leaves of a tree of pages.
+//! Iterates over the rows of a table: the leaves of a B-tree of pages.
 
 use super::pages::{FILE_HEADER, Pages};
 use super::record::{Value, values, varint};
 use crate::ros::container::{ContainerError, MOST_BYTES};
 
-/// Deeper trees hold more than any disk, or go in a circle.
+/// Deeper trees exceed any disk, or are cyclic.
 const DEEPEST: usize = 20;
-/// Pages on the way to others, and those with rows.
+/// Page types: interior pages, and leaves with rows.
 const INTERIOR: u8 = 5;
 const LEAF: u8 = 13;
 
 /// A row of a table.
 pub struct Row {
-    /// Its number.
+    /// Row id.
     pub id: i64,
-    /// Its values, column by column.
+    /// Values by column.
     pub values: Vec<Value>,
 }
 
-/// A page of the tree under way.
+/// Current page of a level of the tree.
 struct Level {
     number: u32,
     page: Vec<u8>,
     next: usize,
 }
 
-/// The rows of a table, one after the other.
+/// The rows of a table in sequence.
 pub struct Table {
     root: Option<u32>,
-    /// From the root down to the leaf under way.
+    /// From the root to the current leaf.
     levels: Vec<Level>,
-    /// The row before: rows stand in order, so that a circle of pages ends.
+    /// Id of the row before. Ids must increase, which ends cycles of pages.
     last_id: Option<i64>,
 }
 
 impl Table {
-    /// The table whose tree starts at this page.
+    /// Creates for the table whose root is this page.
     pub fn at(root: u32) -> Self {
         Self {
             root: Some(root),
@@ -44,10 +44,10 @@ impl Table {
         }
     }
 
-    /// The next row; none at the end.
+    /// Returns the next row; `None` at the end.
     ///
     /// # Errors
-    /// What is wrong with a page or a row; the next call goes on behind it.
+    /// If a page or a row is malformed; the next call continues after it.
     pub fn next_row(&mut self, pages: &mut Pages<'_>) -> Result<Option<Row>, ContainerError> {
         if let Some(root) = self.root.take() {
             self.descend(root, pages)?;
@@ -71,7 +71,7 @@ impl Table {
                 let row = row.ok_or_else(|| broken(&problem))?;
                 let row = row_of(&row, pages, &problem)?;
                 if self.last_id.is_some_and(|last_id| row.id <= last_id) {
-                    // Pages that come a second time have the same rows.
+                    // A page that recurs has the same rows.
                     self.levels.pop();
                     return Err(broken(&problem));
                 }
@@ -94,7 +94,7 @@ impl Table {
         if self.levels.len() >= DEEPEST
             || self.levels.iter().any(|level| level.number == page_number)
         {
-            return Err(broken("a page that is not above itself"));
+            return Err(broken("a page that is not its own ancestor"));
         }
         let page = pages.page(page_number)?;
         let start = if page_number == 1 { FILE_HEADER } else { 0 };
@@ -111,22 +111,20 @@ impl Table {
 }
 
 fn broken(expected: &str) -> ContainerError {
-    ContainerError::Skipped(format!(
-        "{expected} was expected, and other bytes stand there"
-    ))
+    ContainerError::Skipped(format!("expected {expected}, found other bytes"))
 }
 
-/// Two bytes of a page as a number.
+/// Two bytes of a page as an integer.
 fn number(page: &[u8], at: usize) -> Option<u16> {
     Some(u16::from_be_bytes(page.get(at..at + 2)?.try_into().ok()?))
 }
 
-/// Four of them.
+/// Four bytes of a page as an integer.
 fn four(page: &[u8], at: usize) -> Option<u32> {
     Some(u32::from_be_bytes(page.get(at..at + 4)?.try_into().ok()?))
 }
 
-/// The row of a cell, with what stands on other pages.
+/// Decodes the row of a cell, including its overflow pages.
 fn row_of(cell: &[u8], pages: &mut Pages<'_>, what: &str) -> Result<Row, ContainerError> {
     let read = || {
         let (length, first) = varint(cell)?;
@@ -137,7 +135,7 @@ fn row_of(cell: &[u8], pages: &mut Pages<'_>, what: &str) -> Result<Row, Contain
         Some((length, id as i64, &cell[first + second..]))
     };
     let (length, id, rest) = read().ok_or_else(|| broken(what))?;
-    // Section 1.6 of the format: what stays in the page.
+    // Section 1.6 of the format: bytes that stay on the page.
     let usable = pages.usable();
     let most = usable - 35;
     let local = if length <= most {

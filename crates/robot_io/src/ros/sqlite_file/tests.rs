@@ -1,4 +1,4 @@
-//! Databases that rosbag2's writers made, whole and damaged.
+//! Databases that rosbag2's writers made, intact and damaged.
 
 use std::io::Cursor;
 
@@ -16,7 +16,7 @@ fn count(bytes: &[u8]) -> (usize, usize) {
                 messages += 1;
             }
             Ok(None) => return (messages, lost),
-            Err(error) if error.goes_on() => lost += 1,
+            Err(error) if error.is_recoverable() => lost += 1,
             Err(_) => return (messages, lost + 1),
         }
         assert!(messages + lost < 10_000, "it never ends");
@@ -25,7 +25,7 @@ fn count(bytes: &[u8]) -> (usize, usize) {
 
 #[test]
 fn every_message_of_a_database_comes_once() {
-    // A transform, and of 24 scans each with two poses.
+    // One transform, and 24 scans with two poses each.
     assert_eq!(count(PLAIN), (73, 0));
 }
 
@@ -47,7 +47,7 @@ fn a_damaged_page_costs_the_rows_on_it() {
 }
 
 #[test]
-fn a_database_of_something_else_is_told_by_its_tables() {
+fn other_databases_are_rejected_by_their_tables() {
     let mut bytes = PLAIN.to_vec();
     let name = b"messages";
     let at: Vec<usize> = (0..4096)
@@ -58,5 +58,7 @@ fn a_database_of_something_else_is_told_by_its_tables() {
     }
     let mut file = SqliteFile::new(Box::new(Cursor::new(&bytes[..])));
     let said = file.next_message().unwrap_err();
-    assert!(matches!(said, ContainerError::Broken(said) if said.contains("rosbag2 was expected")));
+    assert!(
+        matches!(said, ContainerError::Broken(said) if said.contains("expected a database with rosbag2's tables"))
+    );
 }

@@ -1,4 +1,4 @@
-//! What the engine tells of its work: how far it is, the keyframes, the loops, and what could be chosen.
+//! Updates of the engine: progress, keyframes, loops, and choices for options.
 
 use robot_io::log::{LogOffer, LogReader};
 
@@ -6,34 +6,34 @@ use super::{Engine, Work, links_of, poses_of};
 use crate::links::Link;
 use crate::update::{Stage, Update};
 
-/// Share of the work that is done once the doctor has seen the log, and once it is read; the last loops are the rest.
+/// Share of the work after the doctor's pass, and after reading; the rest is the last loops.
 const EXAMINED_SHARE: f64 = 0.1;
 const READING_SHARE: f64 = 0.99;
 
 impl Engine<'_> {
-    /// What changed since the last call.
+    /// Changes since the last call.
     pub fn updates(&mut self) -> Vec<Update> {
         let mut updates = Vec::new();
-        let news = core::mem::take(&mut self.news);
-        if news.file {
+        let changes = core::mem::take(&mut self.changes);
+        if changes.file {
             let mut file = Update::text("file", self.name.clone());
             let has_scans = f64::from(u8::from(self.has_scans));
             file.numbers = vec![self.size_bytes as f64, has_scans];
             updates.push(file);
         }
         updates.push(self.stage_update());
-        if news.keyframes {
+        if changes.keyframes {
             updates.push(self.keyframes_update());
         }
-        if news.loops {
+        if changes.loops {
             updates.push(self.loops_update());
         }
-        if news.doubts {
+        if changes.doubts {
             let mut doubts = Update::text("doubts", self.doubts.join("\n"));
             doubts.numbers = self.look_into.iter().map(|&k| k as f64).collect();
             updates.push(doubts);
         }
-        if news.grade && !matches!(self.stage(), Stage::Reading | Stage::Failed) {
+        if changes.grade && !matches!(self.stage(), Stage::Reading | Stage::Failed) {
             updates.extend(self.grade_updates());
         }
         if self.has_scans {
@@ -110,8 +110,8 @@ impl Engine<'_> {
         }
     }
 
-    /// What the options of a recording could choose.
-    pub(super) fn tell_offers(&mut self, offers: &[LogOffer]) {
+    /// Reports the choices for the options of a recording.
+    pub(super) fn send_offers(&mut self, offers: &[LogOffer]) {
         let lines = offers.iter().map(|offer| {
             let taken = offer.taken.as_deref().unwrap_or_default();
             let names = offer.names.iter().map(String::as_str);

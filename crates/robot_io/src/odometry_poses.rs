@@ -1,4 +1,4 @@
-//! The poses that odometry gave, around the time of the scans or over a whole recording.
+//! Odometry poses around the stamps of scans, or of a whole recording.
 
 use std::collections::VecDeque;
 
@@ -7,32 +7,32 @@ use pr_geom::{SE2, math, sort_numbers};
 use crate::counted::counted;
 use crate::remark::{Part, Remark};
 
-/// So many poses are kept of a log that is read once: 20 s at 200 a second.
+/// Most poses kept of a log that is read once: 20 s at 200 per second.
 const MOST_POSES: usize = 4096;
-/// A pose holds this long beyond the first and the last one, s: until the next message would have come.
+/// A pose is valid this long before the first and after the last one, s: until the next message would have come.
 const SLACK_S: f64 = 0.25;
-/// Between poses farther apart than this the path is unknown, s.
+/// Poses farther apart than this are not interpolated, s.
 const LONGEST_GAP_S: f64 = 2.0;
-/// The same in periods, for odometry that is slow.
+/// The same in periods, for slow odometry.
 const LONGEST_GAP_PERIODS: f64 = 10.0;
 
-/// A step that is longer, and so many times as fast as nine of ten steps, is a jump; no robot that moves at all is
-/// slower than the last one, m/s.
+/// A step is a jump if it is longer than this (m) and faster than nine of ten steps by this factor; speeds below the
+/// last value (m/s) count as that.
 const JUMP: f64 = 0.5;
 const JUMP_SPEEDS: f64 = 10.0;
 const LEAST_SPEED: f64 = 0.3;
-/// Poses of one time were not taken at one time, s.
+/// Least time between poses for a speed, s.
 const LEAST_APART_S: f64 = 1e-3;
 
-/// Poses of the body in the odometry's frame, in the order of time.
+/// Odometry poses of the body in the order of time.
 #[derive(Clone, Debug)]
-pub struct WheelPoses {
+pub struct OdometryPoses {
     poses: VecDeque<(f64, SE2)>,
     slack_s: f64,
     gap_s: f64,
 }
 
-impl Default for WheelPoses {
+impl Default for OdometryPoses {
     fn default() -> Self {
         Self {
             poses: VecDeque::new(),
@@ -42,10 +42,10 @@ impl Default for WheelPoses {
     }
 }
 
-impl WheelPoses {
-    /// All poses of a recording with their stamps (s), in any order; `period_s` is the usual time between two.
-    /// Also returns the stamps at which odometry jumped, as where it started again at zero: what follows is moved
-    /// back, so that the path goes on.
+impl OdometryPoses {
+    /// Takes all poses of a recording with their stamps (s), in any order; `period_s` is the usual time between two.
+    /// Also returns the stamps at which odometry jumped, for example because it restarted at zero; later poses are
+    /// shifted to continue the path.
     #[must_use]
     pub fn new(mut poses: Vec<(f64, SE2)>, period_s: f64) -> (Self, Vec<f64>) {
         poses.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -59,7 +59,7 @@ impl WheelPoses {
         (poses, jumps)
     }
 
-    /// Takes a pose; one that is not after the one before it is left out.
+    /// Adds a pose; skips one that is not later than the one before.
     pub fn push(&mut self, stamp_s: f64, pose: SE2) {
         if self
             .poses
@@ -74,7 +74,7 @@ impl WheelPoses {
         self.poses.push_back((stamp_s, pose));
     }
 
-    /// Stamps of the first pose and of the last one, s.
+    /// Stamps of the first and the last pose, s.
     #[must_use]
     pub fn ends_s(&self) -> Option<(f64, f64)> {
         Some((self.poses.front()?.0, self.poses.back()?.0))
@@ -87,8 +87,8 @@ impl WheelPoses {
             .is_some_and(|&(last_s, _)| last_s >= stamp_s)
     }
 
-    /// The pose at a time, on the twist between the poses around it; none beyond the poses that are known,
-    /// or in a gap between them.
+    /// The pose at a time, interpolated on the twist between its neighbours; `None` outside the known poses or in a
+    /// gap.
     pub fn at(&self, stamp_s: f64) -> Option<SE2> {
         let after = self.poses.partition_point(|&(pose_s, _)| pose_s < stamp_s);
         let before = after.checked_sub(1).and_then(|k| self.poses.get(k));
@@ -114,18 +114,18 @@ impl WheelPoses {
     }
 }
 
-/// What is said of odometry that jumped at these stamps (s), if it did.
+/// Remark on odometry that jumped at these stamps (s), if there are any.
 pub fn jumps_remark(jumps: &[f64]) -> Option<Remark> {
     let first_s = jumps.first()?;
     let text = format!(
-        "odometry jumps {}, first at {first_s:.2} s, as a driver that starts again makes it; what follows is moved back, so that the path goes on",
+        "odometry jumps {}, first at {first_s:.2} s, as after a restart of its driver; later poses were shifted to continue the path",
         counted(jumps.len(), "time")
     );
     Some(Remark::mended(Part::Odometry, text))
 }
 
-/// Moves what follows a jump back to where the path was; returns the stamps of the jumps, s. The poses are in the order
-/// of time.
+/// Shifts the poses after each jump to continue the path; returns the stamps of the jumps, s. The poses are in the
+/// order of time.
 pub fn take_jumps_out(poses: &mut [(f64, SE2)]) -> Vec<f64> {
     let step = |two: &[(f64, SE2)]| {
         let motion = two[0].1.between(&two[1].1);
@@ -134,7 +134,7 @@ pub fn take_jumps_out(poses: &mut [(f64, SE2)]) -> Vec<f64> {
     };
     let mut speeds: Vec<f64> = poses.windows(2).map(|two| step(two).1).collect();
     sort_numbers(&mut speeds);
-    // Nine of ten steps are slower; in any unit of length.
+    // Nine of ten steps are slower; independent of the unit of length.
     let Some(&usual) = speeds.get(speeds.len() * 9 / 10) else {
         return Vec::new();
     };
@@ -142,7 +142,7 @@ pub fn take_jumps_out(poses: &mut [(f64, SE2)]) -> Vec<f64> {
     let mut moved_back = SE2::identity();
     for at in 1..poses.len() {
         let (before, after) = (poses[at - 1].1, poses[at].1);
-        // The pose before was moved already.
+        // The pose before was shifted already.
         let unmoved = moved_back.inverse() * before;
         let (moved, speed) = step(&[(poses[at - 1].0, unmoved), (poses[at].0, after)]);
         if moved > JUMP && speed > JUMP_SPEEDS * usual.max(LEAST_SPEED) {
@@ -159,39 +159,39 @@ mod tests {
     use super::*;
 
     #[test]
-    fn between_two_poses_of_the_wheels_the_body_is_on_the_way() {
-        let mut wheels = WheelPoses::default();
-        assert_eq!(wheels.at(1.0), None);
+    fn poses_are_interpolated_between_odometry() {
+        let mut odometry = OdometryPoses::default();
+        assert_eq!(odometry.at(1.0), None);
         for (stamp_s, x) in [(1.0, 0.0), (2.0, 1.0), (1.5, 9.0), (4.0, 2.0)] {
-            wheels.push(stamp_s, SE2::translation(x, 0.0));
+            odometry.push(stamp_s, SE2::translation(x, 0.0));
         }
-        // The pose of 1.5 s came too late and is left out.
+        // The pose of 1.5 s came too late and is skipped.
         for (stamp_s, x) in [(0.9, 0.0), (1.5, 0.5), (3.0, 1.5), (4.1, 2.0)] {
-            let pose = wheels.at(stamp_s).unwrap();
+            let pose = odometry.at(stamp_s).unwrap();
             assert!((pose.x() - x).abs() < 1e-12, "{stamp_s}: {}", pose.x());
         }
-        assert!(wheels.reaches(4.0) && !wheels.reaches(4.1));
+        assert!(odometry.reaches(4.0) && !odometry.reaches(4.1));
     }
 
     #[test]
-    fn odometry_that_starts_again_goes_on_where_it_was() {
+    fn restarted_odometry_continues_the_path() {
         let pose = |k: u32| SE2::translation(5.0 + 0.1 * f64::from(k % 30), 0.0);
         let poses = (0..60).map(|k| (0.1 * f64::from(k), pose(k)));
-        let (wheels, jumps) = WheelPoses::new(poses.collect(), 0.1);
+        let (odometry, jumps) = OdometryPoses::new(poses.collect(), 0.1);
         assert_eq!(jumps.len(), 1);
         // 29 steps before and 29 after it.
-        assert!((wheels.at(5.9).unwrap().x() - 10.8).abs() < 1e-9);
+        assert!((odometry.at(5.9).unwrap().x() - 10.8).abs() < 1e-9);
     }
 
     #[test]
     fn beyond_the_known_poses_and_in_a_gap_there_is_none() {
-        let mut wheels = WheelPoses::default();
+        let mut odometry = OdometryPoses::default();
         for stamp_s in [1.0, 2.0, 60.0] {
-            wheels.push(stamp_s, SE2::translation(stamp_s, 0.0));
+            odometry.push(stamp_s, SE2::translation(stamp_s, 0.0));
         }
         for stamp_s in [0.0, 30.0, 61.0] {
-            assert_eq!(wheels.at(stamp_s), None, "{stamp_s}");
+            assert_eq!(odometry.at(stamp_s), None, "{stamp_s}");
         }
-        assert!(wheels.at(2.2).is_some() && wheels.at(59.9).is_some());
+        assert!(odometry.at(2.2).is_some() && odometry.at(59.9).is_some());
     }
 }
