@@ -3,7 +3,7 @@
 //! Thousands of laps take minutes, so the figures are those that the commands of `docs/worlds.md` wrote
 //! down. Some of the laps are driven again, and their bits compared.
 
-use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner, WAY_SHARES};
+use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner, PATH_SHARES};
 use ch16_slam2d::chapter::InformationFrame;
 
 use serde_json::Value;
@@ -139,13 +139,13 @@ fn panel(world: BuiltInWorld, left: f64) -> String {
         let points: Vec<[f64; 2]> = medians
             .enumerate()
             .map(|(k, error)| {
-                let x = left + 130.0 * k as f64 / WAY_SHARES as f64;
+                let x = left + 130.0 * k as f64 / PATH_SHARES as f64;
                 let share = error.as_f64().unwrap() / PICTURE_M;
                 assert!((0.0..=1.0).contains(&share), "the picture is too low");
                 [x, 10.0 + PICTURE_PX * (1.0 - share)]
             })
             .collect();
-        assert_eq!(points.len(), WAY_SHARES + 1);
+        assert_eq!(points.len(), PATH_SHARES + 1);
         points
     });
     let line = |points: &[[f64; 2]]| {

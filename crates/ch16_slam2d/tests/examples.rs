@@ -89,11 +89,14 @@ fn the_walk_of_the_frames_is_followed_although_the_wheels_turn_too_far() {
         (pose.translation() - truth.translation()).norm()
     };
     // The wheels alone claim 1.2 rad too much.
-    let wheels_m = off_m(run_slam_on_your_frames::wheels(120), 120);
-    assert!(wheels_m > 0.5, "{wheels_m}");
+    let dead_reckoning_m = off_m(run_slam_on_your_frames::wheels(120), 120);
+    assert!(dead_reckoning_m > 0.5, "{dead_reckoning_m}");
     for (step, (_, pose)) in pipeline.trajectory().enumerate() {
         let error_m = off_m(pose, step);
-        assert!(error_m < 0.2 * wheels_m, "{error_m} of {wheels_m}");
+        assert!(
+            error_m < 0.2 * dead_reckoning_m,
+            "{error_m} of {dead_reckoning_m}"
+        );
     }
     run_slam_on_your_frames::main();
 }

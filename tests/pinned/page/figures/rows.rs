@@ -19,7 +19,7 @@ pub fn value(path: &[&str]) -> Option<f64> {
         "wheels" => (rows.rows.len(), Some(WHEELS_SIGMA_M)),
         count => (count.parse().ok()?, None),
     };
-    let know = rows.know(taken, sigma_m);
+    let know = rows.constraints(taken, sigma_m);
     match what {
         "taken" => Some(taken as f64),
         "rank" => Some(know.rank as f64),

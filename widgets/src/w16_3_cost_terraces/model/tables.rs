@@ -101,7 +101,7 @@ fn rows(terrains: &Terrains) -> Table {
             signed(row.normal.x, 0),
             signed(row.normal.y, 0),
             format!("{:.4}", row.lever_m),
-            terrains.rows.know(index + 1, None).rank.to_string(),
+            terrains.rows.constraints(index + 1, None).rank.to_string(),
         ]
     });
     Table::exported(

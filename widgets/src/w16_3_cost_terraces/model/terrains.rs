@@ -1,8 +1,8 @@
 //! Both landscapes of a place, and what has to be computed again when a setting changes.
 
 use ch16_lab::terrain::{
-    Ball as Roller, BallConfig, BallStop, Objective, PartnerChange, PlaneRows, RowsKnow, SceneKind,
-    Terrain, TerrainProbe, TerrainScene, TerrainSettings,
+    Ball as Roller, BallConfig, BallStop, Objective, PartnerChange, PlaneRows, RowConstraints,
+    SceneKind, Terrain, TerrainProbe, TerrainScene, TerrainSettings,
 };
 use ch16_slam2d::cloud::{NearestMap, PointCloud};
 use ch16_slam2d::ndt::NdtCell;
@@ -248,8 +248,9 @@ impl Terrains {
     }
 
     /// What they know, with the row of odometry where there is one.
-    pub fn rows_know(&self) -> RowsKnow {
-        self.rows.know(self.rows_taken(), self.settings.odometry_m)
+    pub fn rows_know(&self) -> RowConstraints {
+        self.rows
+            .constraints(self.rows_taken(), self.settings.odometry_m)
     }
 
     /// Width of NDT's cells, m.
