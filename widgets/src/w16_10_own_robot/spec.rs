@@ -1,17 +1,17 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use kit::layers::Opening;
 use kit::param::{Choice, MORE, ParamKind, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, WidgetSpec};
 
-/// More keyframes than any log has, and past the end of every timeline.
+/// An upper bound of the number of keyframes, beyond the end of every timeline.
 pub const MOST_KEYFRAMES: f64 = 999_999.0;
 
-/// More scans than any log has.
+/// An upper bound of the number of scans.
 pub const MOST_SCANS: f64 = 99_999_999.0;
 
-/// The options of recordings, named as on the command line.
+/// The options for recordings, with the names of the command line.
 pub const OPTIONS: &[Choice] = &[
     choice("scan-topic", "scan topic"),
     choice("odom-topic", "odometry topic"),
@@ -35,7 +35,7 @@ const fn choice(id: &'static str, label: &'static str) -> Choice {
     Choice { id, label }
 }
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &ParamSpec {
         id: "colour",
@@ -174,7 +174,7 @@ pub const KEYS: &[(&str, &str)] = &[
     ("ArrowDown", "south"),
 ];
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.10",
     title: "Your own robot",

@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_lab::procrustes::{Handedness, Shape};
 use kit::layers::Opening;
@@ -9,7 +9,7 @@ use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 /// Pairs of the largest scene.
 pub const MOST_PAIRS: usize = 5;
 
-/// A point of the target is dragged at most so far, m.
+/// Largest displacement of a target point, m.
 pub const REACH_M: f64 = 3.0;
 
 /// A whole turn, °.
@@ -46,7 +46,7 @@ pub(super) static TURN: Param<f64> = Param::timeline("turn", "angle tried", WHOL
     .unit("°")
     .help("By how much the source is turned, after the mirror where there is one.");
 
-/// The parameters that move the points of the target: along x and along y.
+/// The parameters that move the points of the target along x and y.
 pub(super) static MOVED: [[Param<f64>; 2]; MOST_PAIRS] = [
     [
         moved("x1", "target 1: moved in x"),
@@ -70,7 +70,7 @@ pub(super) static MOVED: [[Param<f64>; 2]; MOST_PAIRS] = [
     ],
 ];
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &SHAPE.spec,
     &TRIED.spec,
@@ -98,7 +98,7 @@ const fn moved(id: &'static str, label: &'static str) -> Param<f64> {
         )
 }
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.11",
     title: "Turn or mirror image",

@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_lab::jacobians::WrongJacobian;
 use kit::layers::Opening;
@@ -6,15 +6,15 @@ use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
-/// Steps at which a descent ends in any case.
+/// Largest number of steps.
 pub const MOST_STEPS: usize = 40;
 
-/// What the curves show over the steps.
+/// The quantity of the curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Curve {
-    /// How far the farthest pose is from the optimum.
+    /// Largest distance of a pose from its optimum.
     Distance,
-    /// How far χ² is above its minimum.
+    /// Difference of χ² from its minimum.
     Chi2,
 }
 
@@ -61,7 +61,7 @@ pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MOS
     .default(MOST_STEPS as f64)
     .help("How many steps each solver has done; past its last one it rests.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &BIAS.spec,
     &WRONG.spec,
@@ -73,7 +73,7 @@ pub const PARAMS: &[&ParamSpec] = &[
     &MORE.spec,
 ];
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.12",
     title: "Wrong Jacobians, wrong residual",

@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_lab::basin::BasinScene;
 use ch16_lab::basin::{BasinPlace, OffsetAxis};
@@ -11,27 +11,27 @@ use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 /// Largest offset of a start, m.
 pub const OFFSET_SPAN_M: f64 = 1.5;
 
-/// The Huber width at which no pair is weighed down: no pair is longer than the largest τ.
+/// The Huber width at which every pair has full weight: no pair is longer than the largest τ.
 pub const HUBER_OFF_M: f64 = 1.6;
 
-/// Iterations at which a registration ends in any case.
+/// Largest number of iterations of a registration.
 pub const MAX_ITERS: f64 = BasinScene::MAX_ITERS as f64;
 
-/// Sweeps the edge and compares it with the marks.
+/// Computes the edge and compares it with the marks.
 pub const SWEEP: ButtonSpec = ButtonSpec {
     id: "sweep",
     label: "Sweep the edge",
     help: "Register from every heading outwards from the truth, and compare the edge with your marks.",
 };
 
-/// How far the question is.
+/// The state of the question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Nobody asks.
+    /// Off.
     Off,
     /// The reader marks both edges; the maps are covered.
     Marking,
-    /// The edges are swept, and all is shown.
+    /// The edges are computed, and everything is shown.
     Swept,
 }
 
@@ -106,7 +106,7 @@ pub(super) static EDGE: OneOf<Phase> = OneOf::new(
 )
 .help("Asks from how far a guess at the right place may be turned and still comes home; while you mark it, the maps are covered.");
 
-/// Where the reader marks the edge of the basin, for both errors.
+/// The reader's marks of the edge of the basin, for both errors.
 pub(super) static EDGES: [Param<f64>; 2] = [
     edge("edge-p2p", "your edge, point to point"),
     edge("edge-p2l", "your edge, point to plane"),
@@ -118,7 +118,7 @@ pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScen
 pub(super) static ITERATION: Param<f64> = Param::timeline("iteration", "iteration", MAX_ITERS)
     .help("Which iteration is shown; 0 is the first guess, and past the last one is the end.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &HEADING.spec,
     &DX.spec,
@@ -152,7 +152,7 @@ const fn offset(id: &'static str, label: &'static str, default: f64) -> Param<f6
         .help("How far the first guess is moved away from the truth.")
 }
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.1",
     title: "Basin explorer",

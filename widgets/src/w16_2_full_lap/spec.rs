@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use super::model::flat::Tool;
 use ch16_lab::lap;
@@ -16,28 +16,29 @@ use pr_sim::sketch::limits;
 /// Ticks of a lap of the Apartment.
 pub const LAP_TICKS: f64 = lap::LAP_TICKS as f64;
 
-/// Ticks of a lap elsewhere: like those of the Apartment they do not depend on the noise.
+/// Ticks of a lap elsewhere, which do not depend on the noise, either.
 const RING_TICKS: f64 = 290.0;
 const TWINS_TICKS: f64 = 469.0;
 const CORRIDOR_TICKS: f64 = 287.0;
 const HALL_TICKS: f64 = 154.0;
 
-/// The latest tick that a link may ask for: a drive that has not ended then is cut off.
+/// The latest tick that a link may contain: a drive is cut off there.
 pub const MOST_TICKS: f64 = 2000.0;
 
-/// Largest number of a keyframe that a link may ask for.
+/// Largest number of a keyframe that a link may contain.
 const MOST_NODES: f64 = 999.0;
 
-/// Where the widget starts: the tick of the canonical run's first loop.
+/// The initial tick: that of the canonical run's first loop.
 const FIRST_LOOP_TICK: f64 = 92.0;
 
-/// Most characters of a flat in a link: four digits of base 64 for each number of the largest.
+/// Largest number of characters of a flat in a link: four digits of base 64 for each number of the largest
+/// flat.
 const MOST_FLAT: usize = 33_000;
 
 /// Largest number of a wall, counted from 1.
 const MOST_PIECES: f64 = limits::WALLS as f64;
 
-/// What kind of part of the graph is looked at.
+/// The kind of the selected part of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Picked {
     /// No part.
@@ -224,7 +225,7 @@ pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", MOST_TICKS)
 pub(super) static FUTURE: Param<bool> = Param::switch("future", "show what is to come")
     .help("Draws the whole lap into the plots, also what comes after the moment shown.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &WORLD.spec,
     &EDIT.spec,
@@ -251,59 +252,59 @@ pub const PARAMS: &[&ParamSpec] = &[
     &MORE.spec,
 ];
 
-/// One tick before the loop.
+/// Goes to the tick before the loop.
 const BEFORE: ButtonSpec = ButtonSpec {
     id: "before",
     label: "Before the loop",
     help: "One tick before the loop is tried.",
 };
 
-/// The tick of the loop, with its animation.
+/// Goes to the tick of the loop, with its animation.
 const AT: ButtonSpec = ButtonSpec {
     id: "at",
     label: "At the loop",
     help: "The tick of the loop: watch the history move.",
 };
 
-/// One tick after the loop.
+/// Goes to the tick after the loop.
 const AFTER: ButtonSpec = ButtonSpec {
     id: "after",
     label: "After the loop",
     help: "One tick after the loop was tried.",
 };
 
-/// On to the next loop.
+/// Goes to the next loop.
 const NEXT: ButtonSpec = ButtonSpec {
     id: "next",
     label: "Next loop",
     help: "On to the next loop; after the last one, to the first.",
 };
 
-/// The buttons that go by the loops of the lap.
+/// The buttons that go from loop to loop.
 pub const LOOP_BUTTONS: [ButtonSpec; 4] = [BEFORE, AT, AFTER, NEXT];
 
-/// Back among the keyframes, edges or loops.
+/// Selects the previous keyframe, edge or loop.
 const ONE_BACK: ButtonSpec = ButtonSpec {
     id: "one-back",
     label: "One back",
     help: "Looks at the keyframe, edge or loop before; from nothing, at the newest keyframe.",
 };
 
-/// On among them.
+/// Selects the next one.
 const ONE_ON: ButtonSpec = ButtonSpec {
     id: "one-on",
     label: "One on",
     help: "Looks at the next keyframe, edge or loop; from nothing, at the first keyframe.",
 };
 
-/// One end of a loop, then the other.
+/// Sets one end of a custom loop, then the other.
 const TIE: ButtonSpec = ButtonSpec {
     id: "tie",
     label: "Tie",
     help: "Begins a loop of your own at the keyframe that is looked at; look at another one and press it again.",
 };
 
-/// The loop before the last change of it.
+/// Undoes the last change of the custom loop.
 const UNDO: ButtonSpec = ButtonSpec {
     id: "undo",
     label: "Undo",
@@ -314,14 +315,14 @@ const fn flat_button(id: &'static str, label: &'static str, help: &'static str) 
     ButtonSpec { id, label, help }
 }
 
-/// Begins and ends the editing of the flat.
+/// Starts and ends the editing of the flat.
 const EDIT_FLAT: ButtonSpec = flat_button(
     "edit-flat",
     "Edit the flat",
     "Puts a pencil into your hand, with which a drag on the map draws a wall, or puts it away.",
 );
 
-/// What edits the flat.
+/// The buttons that edit the flat.
 const FLAT_BUTTONS: [ButtonSpec; 14] = [
     flat_button(
         "piece-back",
@@ -408,7 +409,7 @@ pub const FLAT_KEYS: &[(&str, &str)] = &[
     ("Control+y", "do-again"),
 ];
 
-/// What waits until the flat is edited.
+/// Controls that are shown only during editing.
 pub const FLAT_CONTROLS: &[&str] = &[
     "piece",
     "piece-number",
@@ -428,7 +429,7 @@ pub const FLAT_CONTROLS: &[&str] = &[
     "save-flat",
 ];
 
-/// What the widget shows while the flat is edited.
+/// The parts shown during editing.
 pub const EDITING: Opening = Opening {
     panels: &["map", "loop"],
     params: &["edit", "piece", "piece-number"],
@@ -452,7 +453,7 @@ pub const EDITING: Opening = Opening {
     ],
 };
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.2",
     title: "The full lap",

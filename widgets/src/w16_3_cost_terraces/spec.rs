@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_lab::terrain::TerrainScene;
 use kit::layers::Opening;
@@ -6,33 +6,33 @@ use kit::param::{Choice, MORE, OneOf, Param, ParamSpec};
 use kit::playback::SPEED;
 use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 
-/// The maps reach this far from the truth in every direction, m.
+/// Largest shift of the maps from the truth in every direction, m.
 pub const HALF_SPAN_M: f64 = 1.3;
 
-/// Fewest and most cells a side; both odd, so that one cell lies on the truth.
+/// Smallest and largest number of cells on a side; both odd, so that one cell is at the truth.
 const CELLS_OF_A_SIDE: [f64; 2] = [49.0, 161.0];
 
-/// Most steps that a ball may take; the timeline never gets longer.
+/// Largest number of steps of a ball, and largest length of the timeline.
 pub const MAX_BALL_STEPS: usize = 400;
 
-/// Most sweeps that are dropped at once.
+/// Largest number of sweeps that are dropped at once.
 pub const MOST_DROPS: f64 = 100.0;
 
-/// The end of the slider of rows, where all are taken, however many points a sweep has.
+/// Upper end of the slider of rows, which selects all rows of any sweep.
 pub const MOST_ROWS: f64 = 120.0;
 
-/// Where the sweep was taken, and what it is matched with.
+/// Location of the sweep, and its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Room A: walls in both directions. The sweep is its own map.
     Room,
-    /// A corridor without doors: walls along x alone. Map and sweep were measured apart.
+    /// A corridor without doors: walls along x alone. Map and sweep have independent noise.
     Corridor,
-    /// The Apartment's corridor, doors and all. The sweep is its own map.
+    /// The Apartment's corridor, with its doors. The sweep is its own map.
     OwnCorridor,
 }
 
-/// What decides a cell's colour.
+/// What determines a cell's colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colors {
     /// Its height, evenly from dark to bright.
@@ -114,13 +114,13 @@ pub(super) static ODOMETRY: Param<f64> =
         .unit("m")
         .help("Adds the row (1, 0, 0) with the weight 1/σ²; 0 adds none.");
 
-// Past the last step means the end: the balls lie where they rest.
+// A position beyond the last step means the end of both balls.
 pub(super) static BALL_STEP: Param<f64> =
     Param::timeline("t", "step of the balls", MAX_BALL_STEPS as f64)
         .default(MAX_BALL_STEPS as f64)
         .help("How many gradient steps both balls have taken.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &SCENE.spec,
     &TAU.spec,
@@ -146,7 +146,7 @@ const DROP: ButtonSpec = ButtonSpec {
     help: "Start both balls at the cross hair and let them descend.",
 };
 
-/// Drops many sweeps, each with noise of its own.
+/// Drops many sweeps, each with independent noise.
 const DROP_100: ButtonSpec = ButtonSpec {
     id: "drop-100",
     label: "Drop 100",
@@ -275,7 +275,7 @@ const PRESETS: &[Preset] = &[
     },
 ];
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.3",
     title: "Cost terraces",

@@ -1,4 +1,4 @@
-//! The state of a morning and every rule that changes it.
+//! The state of a localization run and its logic.
 
 mod hands;
 mod known;
@@ -28,24 +28,24 @@ use known::{Known, Work};
 
 /// Names of the panels.
 pub mod panel {
-    /// The saved map, and what is localized on it.
+    /// The saved map, and the localization on it.
     pub const MAP: &str = "map";
-    /// How well the best place and the next one fit, scan by scan.
+    /// Scores of the best pose and of the next one, scan by scan.
     pub const SCORES: &str = "scores";
 }
 
 /// Moments a second at normal speed.
 const MOMENTS_PER_S: f64 = 6.0;
 
-/// Come back tomorrow, without its picture.
+/// The model of the widget.
 pub struct ComeBack {
     values: Values,
     played: Played,
-    /// What is being computed; none once the morning is over.
+    /// The work under way; `None` once the run is over.
     work: Option<Work>,
-    /// The last map that was saved.
+    /// The last saved map.
     known: Option<Known>,
-    /// The last morning that is over.
+    /// The last finished run.
     morning: Option<Morning>,
 }
 
@@ -64,7 +64,7 @@ impl Default for ComeBack {
 }
 
 impl ComeBack {
-    /// Drives another map, or switches the robot on elsewhere on the one that is known.
+    /// Drives another map, or switches the robot on elsewhere on the known one.
     fn follow(&mut self) {
         let known = self
             .known
@@ -80,7 +80,7 @@ impl ComeBack {
         settings::start(&self.values)
     }
 
-    /// What is shown: the morning that is over, whose map and start are those of the values.
+    /// The finished run on screen, whose map and start are those of the values.
     fn told(&self) -> Option<(&Known, &Morning)> {
         if self.work.is_some() {
             return None;
@@ -93,7 +93,7 @@ impl ComeBack {
         told.map_or(0, |morning| morning.moments().len() - 1)
     }
 
-    /// Where a run ends: past every place, while the morning is still computed.
+    /// The end of a run: beyond every position while it is being computed.
     fn end(&self) -> f64 {
         match self.work {
             Some(_) => MOST_MOMENTS,
@@ -110,7 +110,7 @@ impl ComeBack {
         morning.moments().get(self.place())
     }
 
-    /// Puts the robot elsewhere, rounded so that links stay short.
+    /// Moves the robot, rounded, which keeps links short.
     fn put(&mut self, pose: SE2) {
         let tenth = |value: f64, most: f64| ((value * 10.0).round() / 10.0).clamp(0.0, most);
         let heading_deg = (pose.theta().to_degrees() / 5.0).round() * 5.0;
@@ -151,7 +151,7 @@ impl Model for ComeBack {
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
         if self.played.is_playing() && self.work.is_some() {
-            // The morning is ahead of its playback: it ends in a few frames.
+            // The run is ahead of its playback and ends within a few frames.
             return Activity::Busy;
         }
         let last = self.last() as f64;

@@ -1,4 +1,4 @@
-//! The widget's words and its one list of parameters.
+//! The widget's texts and its list of parameters.
 
 use ch16_lab::lap::BuiltInWorld;
 use ch16_lab::lap::CANONICAL_SEED;
@@ -11,7 +11,7 @@ use kit::spec::{ButtonSpec, DEFAULTS, PLAY, Preset, RESET, STEP, WidgetSpec};
 /// Sides of the plan, m: no world is larger.
 pub const PLAN_M: [f64; 2] = [12.0, 9.0];
 
-/// More moments than any morning has.
+/// An upper bound of the moments of a run.
 pub const MOST_MOMENTS: f64 = 4000.0;
 
 pub(super) static LAPS: Param<usize> =
@@ -49,7 +49,7 @@ pub(super) static MOMENT: Param<f64> = Param::timeline("moment", "moment", MOST_
     .default(MOST_MOMENTS)
     .help("Which moment of the morning is shown: boxes of a search, and scans.");
 
-/// What the reader can change.
+/// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
     &LAPS.spec,
     &START_X.spec,
@@ -69,14 +69,14 @@ const fn place(id: &'static str, label: &'static str, max: f64, default: f64) ->
         .help("Where the robot is put overnight, on the plan. Nobody tells it.")
 }
 
-/// One moment, under the name that it has here.
+/// The step button: one moment.
 const ONE_MOMENT: ButtonSpec = ButtonSpec {
     label: "Next moment",
     help: "On to more boxes of the search, or to the next scan.",
     ..STEP
 };
 
-/// What never changes.
+/// The constant description of the widget.
 pub const SPEC: WidgetSpec = WidgetSpec {
     id: "w16.9",
     title: "Come back tomorrow",

@@ -1,5 +1,5 @@
-//! The tables: loops with their evidence and what should be doubted beside the picture; all keyframes and
-//! all loops for the export.
+//! The tables: loops with their evidence and doubts beside the picture; all keyframes and all loops for the
+//! export.
 
 use kit::model::{Table, TablePlace};
 

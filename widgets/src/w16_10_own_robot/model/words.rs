@@ -7,10 +7,10 @@ use pr_geom::math;
 use super::OwnRobot;
 use super::robot::{Link, Robot, Stage, Verdict};
 
-/// What is promised of the reader's file.
+/// The privacy statement about the reader's file.
 const STAYS: &str = "The file stays in this browser; nothing of it is sent anywhere.";
 
-/// The result, as far as it is.
+/// The current result.
 pub fn outcome(own: &OwnRobot) -> Outcome {
     let robot = &own.robot;
     let (standing, verdict) = match robot.stage {
@@ -76,7 +76,7 @@ fn sentence(own: &OwnRobot) -> String {
     format!("{said}{held}{grade}{visitor}{answer} {STAYS}")
 }
 
-/// What is known of the other log's robot: on the whole, and at the scan that is shown.
+/// The state of the other log's robot: overall, and at the current scan.
 fn visitor(own: &OwnRobot) -> String {
     let Some(told) = &own.robot.whereabouts else {
         return String::new();
@@ -152,14 +152,14 @@ fn finished(robot: &Robot) -> String {
     )
 }
 
-/// Length of the way over the keyframes, m.
+/// Path length over the keyframes, m.
 fn path_length_m(robot: &Robot) -> f64 {
     let steps = robot.keyframes.windows(2);
     let steps = steps.map(|two| {
         let [a, b] = [two[0].pose, two[1].pose];
         math::norm2(b[0] - a[0], b[1] - a[1])
     });
-    // The sum of nothing is -0.
+    // The empty sum is -0.
     steps.fold(0.0, |sum, step| sum + step)
 }
 
@@ -190,7 +190,7 @@ pub fn evidence(link: &Link) -> String {
     )
 }
 
-/// What was decided on a loop.
+/// The decision on a loop.
 pub fn verdict(link: &Link) -> &'static str {
     match link.verdict {
         Verdict::Closed => "closed",
@@ -244,7 +244,7 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
     facts
 }
 
-/// A text that stands for the picture.
+/// The text alternative of the picture.
 pub fn summary(own: &OwnRobot) -> String {
     let robot = &own.robot;
     if robot.keyframes.is_empty() {
@@ -256,7 +256,7 @@ pub fn summary(own: &OwnRobot) -> String {
     let shown = own.keyframe();
     let [x, y, theta] = robot.keyframes[shown].pose;
     let link = own.link().map(|link| evidence(&robot.links[link]));
-    // Who has just gone to it has its words in the sentence.
+    // After a step to this loop the sentence already describes it.
     let link = link.filter(|link| *link != robot.answer);
     format!(
         "A map with the way of the robot. {} Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°. {}",

@@ -13,7 +13,7 @@ use crate::w16_1_basin_explorer::spec::{EDGE, Phase};
 
 use crate::w16_1_basin_explorer::spec::HEADING;
 
-/// How the minimum is judged that a run reached: the same that colours its cell of a basin map.
+/// The standing of the minimum that a run reached: the same that colours its cell of a basin map.
 pub fn standing(minimum: Minimum) -> Standing {
     match minimum {
         Minimum::Right => Standing::Good,

@@ -13,7 +13,7 @@ pub mod parts;
 
 pub use parts::part_label;
 
-/// What is said first: how good, in a word or two, and in a sentence.
+/// The main statement: an assessment, a verdict in a word or two, and a sentence.
 pub struct Said {
     /// Good or bad.
     pub standing: Standing,
@@ -46,8 +46,8 @@ pub fn standing(judgement: LoopJudgement) -> Standing {
     }
 }
 
-/// The result at a moment: of what is looked at, else of the reader's own loop, else of the loop that is
-/// tried in the tick, else of the estimates. `refused` says why the own loop cannot be.
+/// The result at a tick: of the selected part, else of the custom loop, else of the loop tried in the tick,
+/// else of the estimates. `refused` is the reason why the custom loop is impossible.
 pub fn outcome(moment: &Moment, refused: Option<&OwnLoopError>) -> Outcome {
     let Said {
         standing,
@@ -170,7 +170,7 @@ fn moment_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
     ]
 }
 
-/// Of the newest attempt; not finite before the first one, so that the list never changes.
+/// Facts of the newest attempt; not finite before the first one, because the list of facts is fixed.
 fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
     let attempt = runs.graph.newest_attempt(tick);
     let of = |read: &dyn Fn(&LoopAttempt) -> f64| attempt.map_or(f64::NAN, read);
@@ -223,7 +223,7 @@ fn loop_facts(runs: &Runs, tick: usize) -> Vec<Fact> {
     ]
 }
 
-/// A text that stands for the picture.
+/// The text alternative of the picture.
 pub fn summary(moment: &Moment, refused: Option<&OwnLoopError>) -> String {
     let (runs, tick) = (moment.runs, moment.tick);
     let truth = runs.truth(tick);

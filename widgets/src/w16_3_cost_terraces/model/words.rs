@@ -9,7 +9,7 @@ use super::settings::Settings;
 use super::terrains::Terrains;
 use crate::w16_3_cost_terraces::spec::Place;
 
-/// What became of the balls, with the numbers.
+/// The results of the balls, with the numbers.
 pub fn outcome(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Outcome {
     let (icp, ndt) = (&terrains.icp.ball, &terrains.ndt.ball);
     let (standing, verdict) = match (icp.is_home(), ndt.is_home()) {
@@ -43,7 +43,7 @@ pub fn outcome(terrains: &Terrains, rests: &Rests, settings: &Settings) -> Outco
     }
 }
 
-/// The last row that is taken, and what all of them know.
+/// The last row, and the constraints of all rows so far.
 pub fn row_in_words(terrains: &Terrains) -> String {
     let (taken, know) = (terrains.rows_taken(), terrains.rows_know());
     let row = match taken.checked_sub(1).map(|last| terrains.rows.rows[last]) {
@@ -63,7 +63,7 @@ pub fn row_in_words(terrains: &Terrains) -> String {
     format!("{row}; rank {}{held}", know.rank)
 }
 
-/// A shift as readers see it, with true minus signs.
+/// A shift as text, with true minus signs.
 fn shift([x, y]: [f64; 2]) -> String {
     format!("({}, {}) m", signed(x, 2), signed(y, 2))
 }
@@ -160,7 +160,7 @@ fn facts(terrains: &Terrains, scatter: &Scatter, settings: &Settings) -> Vec<Fac
     facts
 }
 
-/// A text that stands for the picture.
+/// The text alternative of the picture.
 pub fn summary(terrains: &Terrains, rests: &Rests, settings: &Settings) -> String {
     let place = match settings.place {
         Place::Room => "a room, over its own points",

@@ -1,4 +1,4 @@
-//! The tables: the turns of the room and both answers beside the picture, the search for the export.
+//! The tables: the headings of the room and both results beside the picture, the search for the export.
 
 use kit::model::Table;
 use kit::ticks::signed;
@@ -19,7 +19,7 @@ pub fn all(window: &WholeWindow) -> Vec<Table> {
     tables
 }
 
-/// The best pose, and the best ones at the other turns of the room.
+/// The best pose, and the best ones at the other headings of the room.
 fn turns(window: &WholeWindow) -> Table {
     let found = window.hunt.found.as_ref();
     let best = found.and_then(|found| found.home.as_ref().map(|(best, _)| *best));
@@ -49,7 +49,7 @@ fn turns(window: &WholeWindow) -> Table {
     )
 }
 
-/// ICP alone, and ICP from what the search finds.
+/// ICP alone, and ICP from the result of the search.
 fn answers(window: &WholeWindow) -> Table {
     let alone = Some(("ICP alone", &window.hunt.alone));
     let searched = window
@@ -73,7 +73,7 @@ fn answers(window: &WholeWindow) -> Table {
     )
 }
 
-/// Every box that was taken up.
+/// Every expanded box.
 fn boxes(window: &WholeWindow) -> Table {
     let head = [
         "step",

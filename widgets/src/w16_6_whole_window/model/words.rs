@@ -10,7 +10,7 @@ use super::hunt::TURNS;
 
 use crate::w16_6_whole_window::spec::HEADING;
 
-/// How the answer is judged.
+/// The assessment of the result.
 pub fn standing(window: &WholeWindow) -> Standing {
     match (&window.hunt.found, window.refined()) {
         (None, _) => Standing::Neutral,
@@ -19,7 +19,7 @@ pub fn standing(window: &WholeWindow) -> Standing {
     }
 }
 
-/// The answer in a few words.
+/// The result in a few words.
 pub fn verdict(window: &WholeWindow) -> &'static str {
     match (&window.hunt.found, window.refined()) {
         (None, _) => "searching",
@@ -171,13 +171,13 @@ pub fn summary(window: &WholeWindow) -> String {
     )
 }
 
-/// How many boxes wait at the place that is shown.
+/// Number of open boxes at the current position.
 pub fn waiting(window: &WholeWindow) -> usize {
     let boxes = window.hunt.window.boxes().iter();
     boxes.filter(|seen| seen.waits_after(window.step())).count()
 }
 
-/// What the place that is shown is about.
+/// The current position in words.
 pub fn now(window: &WholeWindow) -> String {
     if let Some(k) = window.refining().filter(|k| *k > 0) {
         return format!("ICP from there, step {k}");
@@ -205,7 +205,7 @@ pub fn now(window: &WholeWindow) -> String {
     )
 }
 
-/// How far a heading is from the truth, degrees.
+/// Error of a heading, degrees.
 pub fn heading_error_deg(window: &WholeWindow, heading_rad: f64) -> f64 {
     let turn = SE2::new(0.0, 0.0, heading_rad - window.scene.truth().theta());
     turn.theta().to_degrees()

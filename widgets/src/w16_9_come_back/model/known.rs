@@ -1,4 +1,4 @@
-//! The saved map and the morning on it, computed in pieces between frames.
+//! The saved map and the localization run on it, computed in pieces between frames.
 
 use std::sync::Arc;
 
@@ -11,19 +11,19 @@ use kit::values::Values;
 
 use super::settings;
 
-/// Ticks of a morning: ten seconds.
+/// Ticks of a run: ten seconds.
 const MORNING_TICKS: usize = 40;
 
-/// The noise of the morning is not that of the laps.
+/// Offset of the seed: the noise of the run differs from that of the laps.
 const ANOTHER_DAY: u32 = 1000;
 
-/// A map as it was saved, and what is known of it.
+/// A saved map and its properties.
 pub struct Known {
     config: LapsConfig,
     laps: usize,
     /// The keyframes at their poses.
     pub map: Arc<KnownMap>,
-    /// The drive of the day after, but for where it begins.
+    /// The drive of the next day, without its start.
     pub tomorrow: DriveConfig,
     /// The estimator's parameters.
     slam: SlamConfig,
@@ -32,41 +32,41 @@ pub struct Known {
 }
 
 impl Known {
-    /// Whether it is the map that the values ask for.
+    /// Whether it is the map of the values.
     pub fn is_of(&self, values: &Values) -> bool {
         self.laps == settings::laps(values) && self.config == settings::laps_config(values)
     }
 }
 
-/// What is being computed.
+/// The work under way.
 pub enum Work {
-    /// A lap is driven.
+    /// A lap is simulated.
     Driving(Box<Laps>, Box<DriveSimulation>),
     /// A lap is mapped.
     Mapping(Box<Laps>, LapUnderWay, Box<Drive>),
-    /// The robot of the morning is driven.
+    /// The robot's drive is simulated.
     Waking(Box<(Arc<KnownMap>, SlamConfig)>, Box<DriveSimulation>),
-    /// It looks for its place, and follows it.
+    /// The robot is localized, and tracked.
     Looking(Box<Morning>),
 }
 
-/// What one piece of work came to.
+/// The result of one piece of work.
 pub enum Step {
     /// There is more to do.
     GoesOn(Work),
-    /// The map is there.
+    /// The map is finished.
     Saved(Box<Known>),
-    /// The morning is over.
+    /// The run is over.
     Over(Box<Morning>),
 }
 
 impl Work {
-    /// A map that has not begun.
+    /// A map before its first step.
     pub fn map(values: &Values) -> Self {
         Self::next_lap(Box::new(Laps::new(settings::laps_config(values))))
     }
 
-    /// A morning on a map, from where the values put the robot.
+    /// A run on a map, from the start in the values.
     pub fn morning(known: &Known, values: &Values) -> Self {
         let start = settings::start(values);
         let drive = switched_on(&known.tomorrow, start, MORNING_TICKS);
@@ -81,7 +81,7 @@ impl Work {
         Self::Driving(laps, Box::new(drive))
     }
 
-    /// One piece.
+    /// Does one piece.
     pub fn step(self, values: &Values) -> Step {
         Step::GoesOn(match self {
             Self::Driving(laps, mut simulation) => match simulation.step() {

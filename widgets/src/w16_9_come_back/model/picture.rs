@@ -1,4 +1,4 @@
-//! The panels: the map with what is localized, and the scores over the scans.
+//! The panels: the map with the localization, and the scores over the scans.
 
 use ch16_slam2d::search::PoseBox;
 use kit::scene::{Aspect, Axis, Layer, LegendEntry, Mark, Panel, Scene, Stroke, Tone, Weight};
@@ -68,7 +68,7 @@ fn map(back: &ComeBack) -> Panel {
     }
 }
 
-/// What is localized at the moment that is shown.
+/// The localization at the current moment.
 fn belief(back: &ComeBack) -> Vec<Layer> {
     let Some(((_, morning), moment)) = back.told().zip(back.moment()) else {
         return Vec::new();

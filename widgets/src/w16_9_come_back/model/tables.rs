@@ -1,4 +1,4 @@
-//! The tables: each scan of the morning, for the export.
+//! The tables: each scan of the run, for the export.
 
 use kit::model::Table;
 

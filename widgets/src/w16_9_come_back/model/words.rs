@@ -6,10 +6,10 @@ use kit::model::{Fact, Outcome, Standing};
 
 use super::ComeBack;
 
-/// A pose farther off than this is another place, m.
+/// A pose with a larger error counts as wrong, m.
 const ELSEWHERE_M: f64 = 0.5;
 
-/// How a morning ended.
+/// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ending {
     Computing,
@@ -42,7 +42,7 @@ fn ending(back: &ComeBack) -> Ending {
     }
 }
 
-/// Good is a robot that knows where it is.
+/// Good is a localized robot.
 pub fn standing(back: &ComeBack) -> Standing {
     match ending(back) {
         Ending::Computing | Ending::Ambiguous | Ending::Lost => Standing::Neutral,
@@ -51,7 +51,7 @@ pub fn standing(back: &ComeBack) -> Standing {
     }
 }
 
-/// The morning in a few words.
+/// The run in a few words.
 pub fn verdict(back: &ComeBack) -> &'static str {
     match ending(back) {
         Ending::Computing => "a lap is driven",
@@ -74,7 +74,7 @@ pub fn outcome(back: &ComeBack) -> Outcome {
             "After {} scans no place of the map fits well enough. The robot says that it is lost: what it sees is not on the map that was saved.",
             morning.reports().len()
         ),
-        // As long as what comes: the page below stays where it is.
+        // As long as the text that follows, so that the page below does not move.
         _ => "A lap is driven and its map is saved. Then the robot is switched on where you put it, on another day: it looks for its place on the whole map, box by box.".to_owned(),
     };
     Outcome {
@@ -189,7 +189,7 @@ pub fn summary(back: &ComeBack) -> String {
     )
 }
 
-/// What the moment that is shown is about.
+/// The current moment in words.
 pub fn now(back: &ComeBack) -> String {
     let Some(moment) = back.moment() else {
         let is_saved = back.known.is_some();

@@ -6,10 +6,10 @@ use pr_geom::math;
 use super::OTHER;
 use crate::w16_10_own_robot::model::OwnRobot;
 
-/// Standard deviations that its ellipse shows.
+/// Size of its ellipse in standard deviations.
 const SIGMAS: f64 = 3.0;
 
-/// The way of the other log's robot, and how well the place that is shown is known.
+/// The path of the other log's robot, and the uncertainty of its current pose.
 pub fn whereabouts(own: &OwnRobot) -> Vec<Layer> {
     let Some(((_, shown), told)) = own.place().zip(own.robot.whereabouts.as_ref()) else {
         return Vec::new();

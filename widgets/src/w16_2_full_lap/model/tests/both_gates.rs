@@ -1,4 +1,4 @@
-//! Both gates of every loop: their verdicts, their regions, and what each lets through.
+//! Both gates of every loop: their verdicts, their regions, and what each accepts.
 
 use ch16_lab::lap::{FALSE_LOOP_DISTANCE_M, FALSE_LOOP_TURN_DEG, LoopJudgement};
 use ch16_slam2d::loops::{GateModel, LoopVerification};
@@ -43,7 +43,7 @@ fn the_facts_give_the_chi_squared_of_both_gates() {
     assert_eq!(fact(&model, "chi2"), exact);
 }
 
-/// Whether the registered position lies in the region: |A⁻¹ (p − center)| ≤ 1.
+/// Whether the registered position is in the region: |A⁻¹ (p − center)| ≤ 1.
 fn holds(region: &Region, loop_: &LoopVerification) -> bool {
     let [a, b] = region.half_axes;
     let [x, y] = [
@@ -125,7 +125,7 @@ fn the_exact_gate_lets_the_locked_out_loops_in() {
 
 #[test]
 fn the_exact_gate_closes_more_loops_wrong_ones_among_them() {
-    // The figures of the note: laps of seeds 1 to 50 at four times the noise.
+    // The numbers of the note: laps of seeds 1 to 50 at four times the noise.
     let mut model = at(&[("noise", 4.0)]);
     let mut closed = [[0, 0]; 2];
     for seed in 1..=50 {

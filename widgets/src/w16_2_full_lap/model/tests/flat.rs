@@ -1,4 +1,4 @@
-//! The reader's own flat: drawn by the pointer and by buttons, carried by links and files, driven.
+//! The reader's own flat: drawn by pointer and buttons, stored in links and files, driven.
 
 use ch16_lab::lap::{LapConfig, LapRunner};
 use kit::model::Handle;
@@ -11,7 +11,7 @@ use crate::w16_2_full_lap::spec::WORLD;
 
 const REACH: [f64; 2] = [0.15, 0.15];
 
-/// A press at the first place, a drag over the others, and the release.
+/// A press at the first position, a drag over the others, and the release.
 fn stroke(model: &mut FullLap, places: &[[f64; 2]]) {
     let handle = model
         .grab("map", places[0], REACH)
@@ -39,7 +39,7 @@ fn a_wall_that_is_drawn_is_there_at_once_and_the_lap_follows() {
     let mut model = editing(2.0);
     let before = results(&model);
     stroke(&mut model, &[[4.98, 3.81], [5.0, 4.2], [5.01, 4.12]]);
-    // On the grid of 5 cm, before any lap was driven.
+    // On the grid of 5 cm, before any lap.
     let drawn = flat(&model).walls_cm;
     assert_eq!(drawn.len(), 19);
     assert_eq!(drawn[18], [[500, 380], [500, 410]]);
@@ -53,7 +53,7 @@ fn a_wall_that_is_drawn_is_there_at_once_and_the_lap_follows() {
     assert_eq!(results(&model), before, "the lap is still the old one");
     model.finish_work();
     assert_ne!(results(&model), before);
-    // The lap is that of the command line in the file of this flat.
+    // The lap equals that of the command line with the file of this flat.
     let course = Course::from_json(flat(&model).to_json().as_bytes()).unwrap();
     let config = LapConfig::default().elsewhere(&course);
     let config = config.with_information(LapConfig::default().slam.chapter.information_frame);
@@ -133,7 +133,7 @@ fn way_points_are_placed_behind_the_chosen_one_and_removed() {
     set(&mut model, "edit", 4.0);
     model.tap("map", [6.0, 4.4], REACH);
     assert_eq!(flat(&model).way_points_cm.len(), count + 1);
-    // A place before a wall, where both lie under the pointer.
+    // A point is hit before a wall under the same pointer.
     model.tap("map", [0.0, 8.0], REACH);
     assert_eq!(flat(&model).walls_cm.len(), 17);
     model.tap("map", Piece::Start.place(&flat(&model)), REACH);
@@ -226,7 +226,7 @@ fn a_flat_that_cannot_be_driven_says_why_and_draws_no_lap_of_another() {
         })
     };
     assert!(!nodes(&model));
-    // A link opens it, too, and says the same.
+    // A link opens it with the same result.
     let mut linked = FullLap::default();
     linked
         .set_text("flat", &model.values().to_text("flat"))
@@ -258,7 +258,7 @@ fn a_link_carries_the_flat_and_a_damaged_one_leaves_it() {
     model.finish_work();
     let text = model.values().to_text("flat");
     let mut other = FullLap::default();
-    // In the order of the list, as a new picture is set up: the world first.
+    // In the order of the list, as for a new widget: the world first.
     for (id, text) in [("world", "own"), ("flat", &text)] {
         other.set_text(id, text).unwrap();
     }

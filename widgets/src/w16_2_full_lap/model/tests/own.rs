@@ -1,4 +1,4 @@
-//! A loop of the reader's own: set by values, by a drag, by keys; its words, and the way back.
+//! A custom loop: set by values, by a drag, by keys; its texts, and undo.
 
 use super::*;
 
@@ -71,7 +71,7 @@ fn a_loop_is_dragged_from_the_keyframe_that_is_looked_at_to_another_and_taken_ba
     model.tap("map", from, REACH);
     let node = model.values().number("number");
     let handle = model.grab("map", from, REACH).unwrap();
-    // A press that trembles ties nothing.
+    // A press with little movement creates no loop.
     model.drag(handle, from);
     assert_eq!(ends(&model)[0], 0.0);
     model.drag(handle, further);
@@ -150,7 +150,7 @@ fn an_own_loop_is_there_from_the_tick_of_its_newer_keyframe_on() {
     assert!(model.own.tried().is_none());
     set(&mut model, "t", 129.0);
     assert!(model.own.tried().is_some());
-    // The nodes move from where they were, and rest where the solver put them.
+    // The nodes move from their old positions to the solver's result.
     let rest = shown_nodes(&model);
     set(&mut model, "kernel", 1.0);
     assert_eq!(model.advance(0.1), Activity::Busy);

@@ -1,4 +1,4 @@
-//! Keyframes, edges and loops that are looked at: by pointer, by keys, by values.
+//! Selection of keyframes, edges and loops: by pointer, by keys, by values.
 
 use super::*;
 use crate::w16_2_full_lap::model::moment::Moment;
@@ -67,7 +67,7 @@ fn loops_and_edges_answer_on_the_map_and_in_the_plots() {
         set(&mut model, "number", number);
         assert_eq!(model.outcome().verdict, verdict);
         assert!(fact(&model, "looked_at_chi2").is_finite());
-        // Where the plot of strains marks it, a tap finds it again.
+        // A tap on its mark in the plot of strains finds it again.
         let part = Part::chosen(model.values());
         let moment = model.moment();
         let edge = moment

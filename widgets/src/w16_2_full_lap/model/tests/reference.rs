@@ -1,4 +1,4 @@
-//! Against the reference laps of an independent implementation, and the words said of them.
+//! Against the reference laps of an independent implementation, and the claims about them.
 
 use serde_json::Value;
 
@@ -131,7 +131,7 @@ fn what_the_notes_say_of_the_canonical_run_holds() {
         graph.keyframe_max_m < 1.1 * front_end.keyframe_max_m,
         "a little"
     );
-    // "Almost a metre too short": the worst node is at the far end and short of the truth.
+    // "Almost a metre too short": the worst node is at the far end and before the truth.
     let nodes = model.runs.graph.poses_at(model.runs.ticks());
     let truth = |node: usize| model.runs.truth(model.runs.graph.keyframe_tick(node));
     let error = |node: &usize| {

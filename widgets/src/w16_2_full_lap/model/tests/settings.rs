@@ -1,4 +1,4 @@
-//! What settings and presets do to the lap.
+//! Effects of settings and presets on the lap.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner};
 use ch16_slam2d::chapter::InformationFrame;
@@ -8,7 +8,7 @@ use kit::param::ParamKind;
 use super::*;
 use crate::w16_2_full_lap::spec::WORLD;
 
-/// The help of a preset says so.
+/// The help of a preset makes this claim.
 fn assert_promised(preset: &str, words: &str) {
     let help = SPEC.presets.iter().find(|p| p.id == preset).unwrap().help;
     assert!(help.contains(words), "`{help}` does not say `{words}`");
@@ -24,7 +24,7 @@ fn the_start_is_the_first_loop_of_the_canonical_run() {
     );
 }
 
-/// Settings that lead to another lap, noisy enough for the two models of the gate to disagree.
+/// Settings of another lap, noisy enough that the two models of the gate disagree.
 const NOISY: [(&str, f64); 3] = [("seed", 2.0), ("noise", 3.0), ("t", 110.0)];
 
 const OTHER_LAPS: [(&str, f64); 8] = [
@@ -82,7 +82,7 @@ fn setting_a_value_runs_nothing_and_the_old_picture_stays_until_the_new_lap_is_w
             );
             pieces += 1;
         }
-        // At least a tick each: no piece is the whole lap.
+        // At least one piece per tick: no piece is the whole lap.
         assert!(pieces >= model.runs.ticks(), "{id}: {pieces} pieces");
         let mut at_once = at(&NOISY);
         set(&mut at_once, id, value);
@@ -95,7 +95,7 @@ fn of_two_hundred_values_at_once_only_the_newest_lap_is_run() {
     let mut model = at(&[]);
     let before = model.laps.steps();
     for value in 1..=200 {
-        // Twice over the slider, ending at 4.
+        // The slider is moved across its range twice and ends at 4.
         let noise = 0.25 + 3.75 * f64::from((value - 1) % 100) / 99.0;
         model.set("noise", noise).unwrap();
     }
@@ -227,7 +227,7 @@ fn the_first_loop_helps_the_robot_and_not_its_history() {
 
 #[test]
 fn a_wrong_loop_is_called_wrong_wherever_it_is_named() {
-    // In the reference laps, too: within every gate, and more than 0.3 m off the truth.
+    // In the reference laps, too: accepted by every gate, and more than 0.3 m off the truth.
     let model = at(&[("seed", 6.0), ("noise", 2.0), ("t", 92.0)]);
     let outcome = model.outcome();
     assert_eq!(outcome.standing, Standing::Bad);

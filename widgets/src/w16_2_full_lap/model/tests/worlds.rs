@@ -1,4 +1,4 @@
-//! Other worlds than the Apartment, and what goes wrong in those that break a map.
+//! Worlds other than the Apartment, and the failures in those that break a map.
 
 use ch16_lab::lap::{BuiltInWorld, Choice, LapConfig, LapMatcher, LapRunner, LoopJudgement};
 use ch16_slam2d::chapter::InformationFrame;
@@ -55,7 +55,7 @@ fn a_moment_asked_for_before_its_lap_is_known_is_kept() {
     assert!(model.tick() <= 129, "the old lap is shown until then");
     model.finish_work();
     assert_eq!(model.tick(), 200);
-    // A lap that ends before it is shown at its end.
+    // A lap that ends before the current tick is shown at its end.
     set(&mut model, "world", 0.0);
     assert_eq!(model.values().number("t"), 129.0);
 }

@@ -1,4 +1,4 @@
-//! What is said of a flat while it is edited, and where it cannot be driven.
+//! Texts about a flat during editing, and if it cannot be driven.
 
 use kit::counted::counted;
 use kit::model::Standing;
@@ -16,8 +16,8 @@ pub fn counts(sketch: &Sketch) -> String {
     format!("{walls}, {way_points}")
 }
 
-/// What is said first of a flat: why the last change was none, why it cannot be driven, what is chosen.
-/// `lap` is what the shown lap says.
+/// The main statement about a flat: why the last edit was rejected, why it cannot be driven, or the
+/// selection. `lap` is the statement about the lap on screen.
 pub fn said(drawn: &Drawn, lap: Said) -> Said {
     let neutral = |sentence: String| Said {
         standing: Standing::Neutral,
@@ -78,7 +78,7 @@ pub fn piece_words(sketch: &Sketch, piece: Piece) -> String {
     }
 }
 
-/// What a reader hears of the flat beside the rest.
+/// The flat's part of the text alternative.
 pub fn summary(drawn: &Drawn) -> String {
     let counts = counts(drawn.sketch);
     let mut words = match drawn.tool {

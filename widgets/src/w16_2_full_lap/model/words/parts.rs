@@ -1,4 +1,4 @@
-//! What is said of a keyframe, an edge or a loop that is looked at, and of the reader's own loop.
+//! Texts about a selected keyframe, edge or loop, and about the custom loop.
 
 use ch16_lab::lap::{Claim, EdgeStrain, GateUse, LoopJudgement, OwnLoop, edge_strain};
 use ch16_slam2d::metrics::position_error_m;
@@ -17,7 +17,7 @@ struct Numbers {
     chi2: f64,
 }
 
-/// A few words beside the part on the map.
+/// A short label beside the part on the map.
 pub fn part_label(moment: &Moment, part: Part) -> String {
     let Numbers { error_m, chi2, .. } = numbers(moment, part);
     match part {
@@ -144,7 +144,7 @@ pub fn part_said(moment: &Moment, part: Part) -> Said {
     }
 }
 
-/// What the poses leave of a measurement.
+/// The residual of an edge in words.
 fn left(strain: &EdgeStrain) -> String {
     let [x, y, turn] = [0, 1, 2].map(|i| strain.residual[i]);
     let off_m = math::norm2(x, y);
@@ -184,7 +184,7 @@ fn numbers(moment: &Moment, part: Part) -> Numbers {
             Numbers {
                 error_m: error.position_m,
                 error_deg: error.heading_deg,
-                // A refused one has the χ² of its gate.
+                // A rejected one has the χ² of its gate.
                 chi2: closed.map_or(loop_.gate.chi2, |edge| {
                     edge_strain(edge, &moment.nodes).chi2
                 }),
@@ -206,14 +206,14 @@ fn numbers(moment: &Moment, part: Part) -> Numbers {
     }
 }
 
-/// Of nothing.
+/// No values.
 const NONE: Numbers = Numbers {
     error_m: f64::NAN,
     error_deg: f64::NAN,
     chi2: f64::NAN,
 };
 
-/// The verdict and the sentence on the reader's own loop.
+/// The verdict and the sentence on the custom loop.
 pub fn own_said(moment: &Moment, own: &OwnLoop) -> Said {
     let lap = moment.runs.graph.lap();
     let judgement = lap.judge(&own.attempt);
@@ -264,7 +264,7 @@ pub fn own_said(moment: &Moment, own: &OwnLoop) -> Said {
     }
 }
 
-/// Of what is looked at, and of the own loop; not finite where there is none.
+/// Facts of the selected part and of the custom loop; not finite if there is none.
 pub fn facts(moment: &Moment) -> Vec<Fact> {
     let looked_at = moment.picked.map_or(NONE, |part| numbers(moment, part));
     let own = moment.own;

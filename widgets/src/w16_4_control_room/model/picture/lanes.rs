@@ -1,4 +1,4 @@
-//! The two machines over time: a lane for each thing that they do, and a mark where it was done.
+//! Front end and back end over time: a lane for each of their operations, and a mark for each execution.
 
 use ch16_lab::lap::{LapRecord, LoopAttempt, TickReport};
 use ch16_slam2d::loops::LoopRejection;
@@ -8,27 +8,27 @@ use kit::ticks::signed;
 /// Name of the panel.
 pub const ID: &str = "lanes";
 
-/// How something that was done came out.
+/// The result of an operation in a tick.
 #[derive(Clone, Copy, PartialEq)]
 enum Done {
-    /// It was not asked for in this tick.
+    /// Not executed in this tick.
     Not,
-    /// It passed.
+    /// Passed.
     Well,
-    /// It was refused.
+    /// Rejected.
     Refused,
 }
 
-/// A lane, and what it says of a tick.
+/// A lane, and its data in a tick.
 struct Lane {
     name: &'static str,
     done: fn(&TickReport) -> Done,
-    /// The numbers of what was done.
+    /// The numbers of the operation.
     data: fn(&TickReport) -> String,
 }
 
-/// What happens in a tick, in its order: the front end's two at every tick, the back end's at
-/// keyframes, and the map at last.
+/// The operations of a tick in order: the front end's two at every tick, the back end's at keyframes, and the
+/// map last.
 static LANES: [Lane; 8] = [
     Lane {
         name: "predict",
@@ -138,7 +138,7 @@ static LANES: [Lane; 8] = [
     },
 ];
 
-/// What a lane says of a tick in which it had nothing to do.
+/// The data of a lane in a tick without its operation.
 const NOTHING: &str = "nothing to do";
 
 fn of_loop(report: &TickReport, say: impl Fn(&LoopAttempt) -> String) -> String {
@@ -171,12 +171,12 @@ pub fn of_name(name: &str) -> Option<usize> {
     LANES.iter().position(|lane| lane.name == name)
 }
 
-/// Height of a lane on the axis: the first one on top.
+/// Position of a lane on the axis: the first one on top.
 fn height(lane: usize) -> f64 {
     (LANES.len() - lane) as f64
 }
 
-/// Everything that was done up to a tick.
+/// All executions with that result up to a tick.
 fn done(record: &LapRecord, now: usize, wanted: Done) -> Vec<[f64; 2]> {
     let reports = record.lap.reports.iter().take(now);
     reports
@@ -188,14 +188,14 @@ fn done(record: &LapRecord, now: usize, wanted: Done) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// What every lane did in a tick, by its name.
+/// The data of every lane in a tick, by its name.
 pub fn data(report: &TickReport) -> impl Iterator<Item = (&'static str, String)> + '_ {
     LANES
         .iter()
         .map(move |lane| (lane.name, (lane.data)(report)))
 }
 
-/// The lanes up to a tick; a ring stands round the mark of the chosen lane at the tick shown.
+/// The lanes up to a tick; a ring around the mark of the selected lane at the current tick.
 pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
     let last = record.ticks() as f64;
     let names = LANES.iter().enumerate();
@@ -234,7 +234,7 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
         title: "Who does what when".to_owned(),
         weight: Weight::Side,
         aspect: Aspect::Free,
-        // The names have room before the first tick, and the ring at the last one is whole.
+        // Space for the names before the first tick, and for the ring at the last one.
         x: Axis::new("tick", -0.28 * last.max(1.0), 1.03 * last.max(1.0)),
         y: Axis::new("lane", 0.4, height(0) + 0.9),
         layers,

@@ -1,4 +1,4 @@
-//! Boxes as bars over the heading, as high as their bounds; and how bound and best score meet.
+//! Boxes as bars over the heading, as high as their bounds; and the convergence of bound and best score.
 
 use ch16_lab::whole_window::SeenBox;
 use ch16_slam2d::search::BoxFate;
@@ -7,10 +7,10 @@ use kit::scene::{Aspect, Axis, Layer, LegendEntry, Panel, Stroke, Tone, Weight};
 use super::super::words::heading_error_deg;
 use super::super::{WholeWindow, panel};
 
-/// A box that was dropped stays in the picture for so many steps.
+/// Number of steps for which a dropped box stays visible.
 const SEEN_FALLING: usize = 120;
 
-/// Steps between two points of the gap's lines, where there are more than that many.
+/// Largest number of points of the gap's lines.
 const GAP_POINTS: usize = 300;
 
 pub fn panel(window: &WholeWindow) -> Panel {
@@ -70,7 +70,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
     }
 }
 
-/// A box as a bar over its headings, a step of them at least.
+/// A box as a bar over its headings, at least one step wide.
 fn bar(window: &WholeWindow, seen: &SeenBox) -> [[f64; 2]; 2] {
     let search = window.hunt.window.search();
     let step_deg = 360.0 / search.headings().max(1) as f64;
@@ -81,7 +81,7 @@ fn bar(window: &WholeWindow, seen: &SeenBox) -> [[f64; 2]; 2] {
     [[middle - half, bound], [middle + half, bound]]
 }
 
-/// The best score at each heading that is known, from the lowest error to the highest.
+/// The best score at each known heading, from the lowest error to the highest.
 fn surface(window: &WholeWindow) -> Vec<[f64; 2]> {
     let search = window.hunt.window.search();
     let by_heading = window.hunt.surface.by_heading().iter().enumerate();
@@ -95,7 +95,7 @@ fn surface(window: &WholeWindow) -> Vec<[f64; 2]> {
     points
 }
 
-/// The largest bound falls, the best score rises; where they meet, nothing is left to look for.
+/// The largest bound falls, the best score rises; the search ends where they meet.
 pub fn gap(window: &WholeWindow) -> Panel {
     let moments = window.hunt.window.moments();
     let every = moments.len().div_ceil(GAP_POINTS);

@@ -1,4 +1,4 @@
-//! The window from above: the best score of each place, and the boxes that wait over it.
+//! The window from above: the best score of each position, and the open boxes over it.
 
 use ch16_slam2d::search::PoseBox;
 use kit::scene::{
@@ -8,7 +8,7 @@ use kit::scene::{
 use super::super::{WholeWindow, panel};
 use super::sensor;
 
-/// Room around the window: a share of its width.
+/// Margin around the window as a share of its width.
 const MARGIN: f64 = 0.06;
 
 pub fn panel(window: &WholeWindow) -> Panel {
@@ -81,7 +81,7 @@ fn boxes<'a>(boxes: impl Iterator<Item = &'a PoseBox>, tone: Tone, width_px: f32
     Layer::line(points, Stroke::Solid, tone, width_px)
 }
 
-/// Paper where nothing fits, ink where all does.
+/// Paper for no fit, ink for a perfect one.
 fn raster(window: &WholeWindow) -> Raster {
     let (surface, search) = (&window.hunt.surface, window.hunt.window.search());
     let [rows, columns] = search.places();
@@ -92,7 +92,7 @@ fn raster(window: &WholeWindow) -> Raster {
         columns,
         rows,
         cells: cells.map(|score| Cell::Occupancy(*score as f32)).collect(),
-        // Surfaces of two searches may be filled as far.
+        // Surfaces of two searches may have equally many rows.
         revision: (window.searches << 32) + surface.rows_done() as u64,
     }
 }
