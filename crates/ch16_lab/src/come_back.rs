@@ -91,7 +91,7 @@ pub struct Moment {
 }
 
 /// A localization under way: one drive on one map.
-pub struct Morning {
+pub struct LocalizationRun {
     localizer: Localizer,
     drive: Arc<Drive>,
     pending: Option<PendingFix>,
@@ -102,7 +102,7 @@ pub struct Morning {
     reports: Vec<LocalizeReport>,
 }
 
-impl Morning {
+impl LocalizationRun {
     /// A localization before its first frame.
     #[must_use]
     pub fn new(localizer: Localizer, drive: Arc<Drive>) -> Self {

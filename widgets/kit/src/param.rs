@@ -432,7 +432,7 @@ pub enum ParamError {
         expected: String,
     },
     /// A text with valid characters and invalid content.
-    #[error("`{id}` cannot be taken: {problem}")]
+    #[error("`{id}` is invalid: {problem}")]
     Refused {
         /// Parameter.
         id: &'static str,

@@ -141,8 +141,8 @@ impl OwnRobot {
         let is_change = |k: &usize| {
             let before = k
                 .checked_sub(1)
-                .map(|before| places[before].belief.is_localized());
-            before != Some(places[*k].belief.is_localized())
+                .map(|before| places[before].state.is_localized());
+            before != Some(places[*k].state.is_localized())
         };
         let next = (here + 1..places.len()).find(is_change).unwrap_or(0);
         let scan = places[next].scan;

@@ -81,7 +81,7 @@ pub(super) static HUBER: Param<f64> =
     Param::slider("huber", "Huber width", [0.02, HUBER_OFF_M], 0.02)
         .unit("m")
         .default(HUBER_OFF_M)
-        .help("Longer pairs pull less; at 1.6 m all pairs pull alike.");
+        .help("Longer pairs have less weight; at 1.6 m all pairs have equal weight.");
 
 pub(super) static AXIS: OneOf<OffsetAxis> = OneOf::new(
     "axis",
@@ -92,7 +92,7 @@ pub(super) static AXIS: OneOf<OffsetAxis> = OneOf::new(
 .help("The vertical axis of the basin maps; the other offset comes from its slider.");
 
 pub(super) static PATHS: Param<bool> = Param::switch("paths", "ways of other starts")
-    .help("Draws over the basin map which way starts all over it go, iteration by iteration.");
+    .help("Draws over the basin map the paths from starts all over it, iteration by iteration.");
 
 pub(super) static EDGE: OneOf<Phase> = OneOf::new(
     "edge",
@@ -104,7 +104,7 @@ pub(super) static EDGE: OneOf<Phase> = OneOf::new(
     ],
     &[Phase::Off, Phase::Marking, Phase::Swept],
 )
-.help("Asks from how far a guess at the right place may be turned and still comes home; while you mark it, the maps are covered.");
+.help("Asks how far a guess at the right position may be turned and still converge to the truth; while you mark it, the maps are covered.");
 
 /// The reader's marks of the edge of the basin, for both errors.
 pub(super) static EDGES: [Param<f64>; 2] = [
@@ -113,10 +113,10 @@ pub(super) static EDGES: [Param<f64>; 2] = [
 ];
 
 pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
-    .help("Where the range noise of both sweeps starts; 457 is the chapter's.");
+    .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
 
 pub(super) static ITERATION: Param<f64> = Param::timeline("iteration", "iteration", MAX_ITERS)
-    .help("Which iteration is shown; 0 is the first guess, and past the last one is the end.");
+    .help("Which iteration is shown; 0 is the first guess, and beyond the last one is the end.");
 
 /// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
@@ -142,7 +142,7 @@ pub const PARAMS: &[&ParamSpec] = &[
 const fn edge(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [0.0, 180.0], 1.0)
         .unit("°")
-        .help("Your mark of the edge, to either side of the truth; 0 is none.")
+        .help("Your mark of the edge, on either side of the truth; 0 is none.")
 }
 
 const fn offset(id: &'static str, label: &'static str, default: f64) -> Param<f64> {
@@ -230,7 +230,7 @@ pub const SPEC: WidgetSpec = WidgetSpec {
         Preset {
             id: "mark-edge",
             label: "Where is the edge?",
-            help: "The maps are covered: mark on each how far a guess may be turned and still comes home, then sweep the edge.",
+            help: "The maps are covered: mark on each how far a guess may be turned and still converge to the truth, then sweep the edge.",
             set: &[
                 HEADING.to(0.0),
                 DX.to(0.0),

@@ -51,7 +51,7 @@ pub(super) static SCENE: OneOf<Place> = OneOf::new(
     ],
     &[Place::Room, Place::Corridor, Place::OwnCorridor],
 )
-.help("Room A on its own points; a corridor without doors on a map that was measured apart; the Apartment's corridor, doors and all, on its own points.");
+.help("Room A on its own points; a corridor without doors on a map with independent noise; the Apartment's corridor, with its doors, on its own points.");
 
 pub(super) static TAU: Param<f64> = Param::slider("tau", "pair limit τ", [0.1, 1.6], 0.05)
     .unit("m")
@@ -84,30 +84,30 @@ pub(super) static COLOURS: OneOf<Colors> = OneOf::new(
     &[Colors::ByHeight, Colors::ByRank],
 )
 .default("rank")
-.help("By rank, every colour covers as many cells: low steps show on high ground.");
+.help("By rank, every colour covers equally many cells, which shows low steps on high ground.");
 
 pub(super) static SEED: Param<u32> = Param::seed("seed of the sweep", TerrainScene::SEED)
-    .help("Where the range noise of the sweep starts; 1472 is the chapter's.");
+    .help("Seed of the range noise of the sweep; 1472 is the chapter's.");
 
 pub(super) static PROBE_X: Param<f64> =
     Param::slider("probe-x", "drop at Δx", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
         .unit("m")
         .default(0.4)
-        .help("Where the cross hair stands and the balls start, east of the truth.");
+        .help("Position of the cross hair and start of the balls, east of the truth.");
 
 pub(super) static PROBE_Y: Param<f64> =
     Param::slider("probe-y", "drop at Δy", [-HALF_SPAN_M, HALF_SPAN_M], 0.05)
         .unit("m")
         .default(0.1)
-        .help("Where the cross hair stands and the balls start, north of the truth.");
+        .help("Position of the cross hair and start of the balls, north of the truth.");
 
 pub(super) static DROPS: Param<usize> =
     Param::slider("drops", "sweeps dropped", [0.0, MOST_DROPS], 1.0)
-        .help("So many sweeps, each with noise of its own, are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m.");
+        .help("Number of sweeps with independent noise that are dropped up to 0.3 m from the truth and registered point to plane with a τ of 0.6 m.");
 
 pub(super) static ROWS: Param<f64> = Param::slider("rows", "rows of H", [0.0, MOST_ROWS], 1.0)
     .default(MOST_ROWS)
-    .help("So many points, in the order of the beams, give a row (n_x, n_y, p × n) of the point-to-plane step; to the right, all.");
+    .help("Number of points, in the order of the beams, that give a row (n_x, n_y, p × n) of the point-to-plane step; at the right end, all.");
 
 pub(super) static ODOMETRY: Param<f64> =
     Param::slider("odometry", "σ of a row of odometry", [0.0, 0.5], 0.01)
@@ -150,7 +150,7 @@ const DROP: ButtonSpec = ButtonSpec {
 const DROP_100: ButtonSpec = ButtonSpec {
     id: "drop-100",
     label: "Drop 100",
-    help: "Drop 100 sweeps, each with noise of its own, and watch them fly to rest.",
+    help: "Drop 100 sweeps, each with independent noise, and watch them settle.",
 };
 
 /// "What to try".

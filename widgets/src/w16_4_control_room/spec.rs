@@ -28,7 +28,7 @@ pub(super) static LANE: OneOf<usize> = OneOf::new(
     &[0, 1, 2, 3, 4, 5, 6, 7],
 )
 .default("register")
-.help("The thing whose data of this tick are said; a press on a mark of the lanes chooses it.");
+.help("The operation whose data of this tick are described; a press on a mark of the lanes selects it.");
 
 pub(super) static TICK: Param<f64> = Param::timeline("t", "tick", LAP_TICKS)
     .default(60.0)
@@ -56,7 +56,7 @@ const fn lane(name: &'static str) -> Choice {
 const NEXT_EVENT: ButtonSpec = ButtonSpec {
     id: "next-event",
     label: "Next event",
-    help: "On to the next keyframe, loop test or way point; after the last one, to the first.",
+    help: "Go to the next keyframe, loop test or way point; after the last one, to the first.",
 };
 
 /// The constant description of the widget.

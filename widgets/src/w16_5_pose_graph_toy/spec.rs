@@ -28,13 +28,17 @@ pub enum Shape {
     Ring,
 }
 
-pub(super) static STIFFNESS: Param<f64> =
-    Param::slider("stiffness", "stiffness of the loop", [0.1, 10.0], 0.1)
-        .unit("×")
-        .default(1.0)
-        .help(
-            "How sure the loop is, against each edge of odometry: a stiffer spring gives way less.",
-        );
+pub(super) static STIFFNESS: Param<f64> = Param::slider(
+    "stiffness",
+    "stiffness of the loop",
+    [0.1, 10.0],
+    0.1,
+)
+.unit("×")
+.default(1.0)
+.help(
+    "Information of the loop, relative to each edge of odometry: a stiffer spring gives way less.",
+);
 
 pub(super) static GRAPH: OneOf<Shape> = OneOf::new(
     "graph",
@@ -62,14 +66,14 @@ pub(super) static ODOMETRY: Param<f64> =
     Param::slider("odometry", "stiffness of odometry", [0.1, 10.0], 0.1)
         .unit("×")
         .default(1.0)
-        .help("How sure each edge of odometry is.");
+        .help("Information of each edge of odometry.");
 
 pub(super) static PINNED: Param<bool> = Param::switch("pinned", "pin the first pose")
     .on()
-    .help("Measurements are relative: without a pin the whole graph may stand anywhere.");
+    .help("Measurements are relative: without a fixed pose the whole graph may be anywhere.");
 
 pub(super) static STEPS: Param<f64> = Param::timeline("steps", "steps done", MOST_STEPS as f64)
-    .help("How many steps of the solver are done; 0 is the graph as it was put.");
+    .help("How many steps the solver has done; 0 is the graph before the first one.");
 
 /// The parameters that move a pose: along x, along y, and its heading.
 pub(super) static MOVED: [[Param<f64>; 3]; MOST_POSES] = [
@@ -138,13 +142,13 @@ pub const PARAMS: &[&ParamSpec] = &[
 const fn along(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-REACH_M, REACH_M], 0.05)
         .unit("m")
-        .help("How far the pose is put from where odometry has it, before the first step.")
+        .help("How far the pose is moved from odometry, before the first step.")
 }
 
 const fn turn(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-180.0, 180.0], 1.0)
         .unit("°")
-        .help("How far the pose is turned from where odometry has it, before the first step.")
+        .help("How far the pose is turned from odometry, before the first step.")
 }
 
 /// The step button: one iteration of the solver.

@@ -1,8 +1,8 @@
 //! The state of the search and its logic.
 
 mod hands;
-mod hunt;
 mod picture;
+mod search_task;
 mod settings;
 mod tables;
 mod words;
@@ -25,7 +25,7 @@ use pr_geom::{SE2, math};
 use crate::w16_6_whole_window::spec::{
     DX, DY, HEADING, OFFSET_SPAN_M, PARAMS, PROGRESS, SEED, SPEC,
 };
-use hunt::{Hunt, Refined};
+use search_task::{Refined, SearchTask};
 
 /// Names of the panels.
 pub mod panel {
@@ -51,7 +51,7 @@ pub struct WholeWindow {
     played: Played,
     scene: BasinScene,
     workspace: IcpWorkspace,
-    hunt: Hunt,
+    search_task: SearchTask,
     /// Number of searches so far.
     searches: u64,
 }
@@ -63,7 +63,7 @@ impl Default for WholeWindow {
         let scene = BasinScene::with_seed(values.get(&SEED));
         let mut workspace = IcpWorkspace::new();
         Self {
-            hunt: Hunt::new(&scene, settings::config(&values), &mut workspace),
+            search_task: SearchTask::new(&scene, settings::config(&values), &mut workspace),
             played: Played::along(&PROGRESS),
             values,
             scene,
@@ -76,29 +76,29 @@ impl Default for WholeWindow {
 impl WholeWindow {
     fn start_over(&mut self) {
         let config = settings::config(&self.values);
-        self.hunt = Hunt::new(&self.scene, config, &mut self.workspace);
+        self.search_task = SearchTask::new(&self.scene, config, &mut self.workspace);
         self.searches += 1;
     }
 
     /// The start of ICP, which is the center of the window.
     fn guess(&self) -> SE2 {
-        self.scene.guess(&self.hunt.window.config().start)
+        self.scene.guess(&self.search_task.window.config().start)
     }
 
     /// Number of boxes that the search expanded in total.
     fn boxes_taken(&self) -> usize {
-        self.hunt.window.moments().len() - 1
+        self.search_task.window.moments().len() - 1
     }
 
     /// ICP from the result of the search.
     fn refined(&self) -> Option<&Refined> {
-        let found = self.hunt.found.as_ref()?;
+        let found = self.search_task.found.as_ref()?;
         found.home.as_ref().map(|(_, refined)| refined)
     }
 
     /// Last position on the timeline: the boxes, followed by the iterations of ICP.
     fn last(&self) -> usize {
-        let refining = self.refined().map_or(0, |refined| refined.way.len() - 1);
+        let refining = self.refined().map_or(0, |refined| refined.path.len() - 1);
         self.boxes_taken() + refining
     }
 
@@ -120,9 +120,9 @@ impl WholeWindow {
     /// The pose on screen: ICP's, the best one so far, or the start.
     fn shown_pose(&self) -> SE2 {
         if let (Some(k), Some(refined)) = (self.refining(), self.refined()) {
-            return refined.way[k];
+            return refined.path[k];
         }
-        let moment = &self.hunt.window.moments()[self.step()];
+        let moment = &self.search_task.window.moments()[self.step()];
         moment.best.map_or_else(|| self.guess(), |best| best.pose)
     }
 
@@ -184,7 +184,7 @@ impl Model for WholeWindow {
     }
 
     fn advance(&mut self, elapsed_s: f64) -> Activity {
-        if self.played.is_playing() && self.hunt.found.is_none() {
+        if self.played.is_playing() && self.search_task.found.is_none() {
             // The search is ahead of its playback and ends within a few frames.
             return Activity::Busy;
         }
@@ -204,17 +204,17 @@ impl Model for WholeWindow {
     }
 
     fn work(&mut self) -> Activity {
-        if self.hunt.search(&self.scene, &mut self.workspace) == Activity::Busy {
+        if self.search_task.search(&self.scene, &mut self.workspace) == Activity::Busy {
             return Activity::Busy;
         }
-        self.hunt.fill()
+        self.search_task.fill()
     }
 
     fn finish_work(&mut self) -> Activity {
-        if self.hunt.is_settled() {
+        if self.search_task.is_settled() {
             return Activity::Idle;
         }
-        while self.hunt.search(&self.scene, &mut self.workspace) == Activity::Busy {}
+        while self.search_task.search(&self.scene, &mut self.workspace) == Activity::Busy {}
         Activity::Busy
     }
 
@@ -231,7 +231,7 @@ impl Model for WholeWindow {
     }
 
     fn timeline(&self) -> Option<Timeline> {
-        let moments = self.hunt.window.moments();
+        let moments = self.search_task.window.moments();
         let mut marks = Vec::new();
         let mut mark = |at: usize, label: &str, standing| {
             marks.push(TimelineMark {
@@ -240,7 +240,7 @@ impl Model for WholeWindow {
                 standing,
             });
         };
-        if self.hunt.found.is_some() {
+        if self.search_task.found.is_some() {
             let after = moments.iter().position(|m| m.goal == SearchGoal::RunnerUp);
             if let Some(at) = after {
                 mark(at - 1, "the best pose is certain", Standing::Neutral);

@@ -39,13 +39,13 @@ pub(super) static TURN: Param<f64> = Param::slider("turn", "headings ±", [30.0,
 pub(super) static CELL: Param<f64> = Param::slider("cell", "cell", [0.05, 0.2], 0.01)
     .unit("m")
     .default(0.05)
-    .help("How fine the search is; the map is blurred with it.");
+    .help("The resolution of the search; the map is blurred accordingly.");
 
 pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", BasinScene::SEED)
-    .help("Where the range noise of both sweeps starts; 457 is the chapter's.");
+    .help("Seed of the range noise of both sweeps; 457 is the chapter's.");
 
 pub(super) static PROGRESS: Param<f64> = Param::timeline("progress", "boxes taken up", MOST_STEPS)
-    .help("How many boxes the search has taken up; behind the last one come the steps of ICP.");
+    .help("How many boxes the search has expanded; the iterations of ICP follow the last one.");
 
 /// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[
@@ -64,13 +64,13 @@ pub const PARAMS: &[&ParamSpec] = &[
 const fn offset(id: &'static str, label: &'static str) -> Param<f64> {
     Param::slider(id, label, [-OFFSET_SPAN_M, OFFSET_SPAN_M], 0.05)
         .unit("m")
-        .help("How far the start, which is the window's middle, is moved away from the truth.")
+        .help("How far the start, which is the window's center, is moved away from the truth.")
 }
 
 /// The step button: one box.
 const ONE_BOX: ButtonSpec = ButtonSpec {
     label: "One box",
-    help: "Take up the most promising box: split it, or drop it.",
+    help: "Expand the most promising box: split it, or drop it.",
     ..STEP
 };
 

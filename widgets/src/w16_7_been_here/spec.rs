@@ -26,7 +26,7 @@ pub(super) static CALLED: Param<f64> = Param::slider(
 .unit("%")
 .default(15.0)
 .help(
-    "So many pairs, those most alike, are called the same: a threshold for every detector at once.",
+    "Share of the most similar pairs that are called the same: a threshold for every detector at once.",
 );
 
 pub(super) static DETECTOR: OneOf<usize> = OneOf::new(
@@ -51,7 +51,7 @@ pub(super) static WORLD: OneOf<BuiltInWorld> = OneOf::new(
     ],
     &[BuiltInWorld::Apartment, BuiltInWorld::Ring],
 )
-.help("Where the lap is driven.");
+.help("The world of the lap.");
 
 pub(super) static OLDER: Param<f64> = Param::slider(
     "old",
@@ -60,13 +60,13 @@ pub(super) static OLDER: Param<f64> = Param::slider(
     1.0,
 )
 .default(MOST_ALIKE)
-.help("Which older keyframe the newest one is compared with; −1 is the one that looks most alike.");
+.help("The older keyframe that is compared with the newest one; −1 is the most similar one.");
 
 pub(super) static SEED: Param<u32> = run::seed(CANONICAL_SEED);
 
 pub(super) static NEWEST: Param<f64> = Param::timeline("new", "keyframe", MOST_KEYFRAMES)
     .default(MOST_KEYFRAMES)
-    .help("The newest keyframe that is known; past the last one it is the whole lap.");
+    .help("The newest keyframe so far; beyond the last one it is the whole lap.");
 
 /// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[

@@ -50,14 +50,16 @@ pub(super) static VARIANT: OneOf<IcpVariant> = OneOf::new(
 )
 .help("Distance between paired points, or distance along the wall's normal.");
 
-pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", 1).help(
-    "Where the range noise of the sweeps above starts; the curves go over their own hundred seeds.",
-);
+pub(super) static SEED: Param<u32> = Param::seed("seed of the sweeps", 1)
+    .help("Seed of the range noise of the sweeps above; the curves have their own hundred seeds.");
 
-pub(super) static ITERATION: Param<f64> =
-    Param::timeline("iteration", "iteration", MOST_ITERATIONS)
-        .default(MOST_ITERATIONS)
-        .help("Which iteration is shown of all three; past its last one a registration rests.");
+pub(super) static ITERATION: Param<f64> = Param::timeline(
+    "iteration",
+    "iteration",
+    MOST_ITERATIONS,
+)
+.default(MOST_ITERATIONS)
+.help("Which iteration is shown of all three; beyond its last one a registration has converged.");
 
 /// The widget's parameters.
 pub const PARAMS: &[&ParamSpec] = &[

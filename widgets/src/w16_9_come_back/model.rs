@@ -7,7 +7,7 @@ mod settings;
 mod tables;
 mod words;
 
-use ch16_lab::come_back::{Moment, Morning};
+use ch16_lab::come_back::{LocalizationRun, Moment};
 use kit::model::{
     Activity, Handle, Model, Motion, Outcome, Table, Timeline, TimelineMark, finish_work,
     press_preset,
@@ -46,7 +46,7 @@ pub struct ComeBack {
     /// The last saved map.
     known: Option<Known>,
     /// The last finished run.
-    morning: Option<Morning>,
+    run: Option<LocalizationRun>,
 }
 
 impl Default for ComeBack {
@@ -57,7 +57,7 @@ impl Default for ComeBack {
             work: Some(Work::map(&values)),
             played: Played::along(&MOMENT),
             known: None,
-            morning: None,
+            run: None,
             values,
         }
     }
@@ -71,7 +71,7 @@ impl ComeBack {
             .as_ref()
             .filter(|known| known.is_of(&self.values));
         self.work = Some(match known {
-            Some(known) => Work::morning(known, &self.values),
+            Some(known) => Work::run(known, &self.values),
             None => Work::map(&self.values),
         });
     }
@@ -81,16 +81,16 @@ impl ComeBack {
     }
 
     /// The finished run on screen, whose map and start are those of the values.
-    fn told(&self) -> Option<(&Known, &Morning)> {
+    fn finished(&self) -> Option<(&Known, &LocalizationRun)> {
         if self.work.is_some() {
             return None;
         }
-        self.known.as_ref().zip(self.morning.as_ref())
+        self.known.as_ref().zip(self.run.as_ref())
     }
 
     fn last(&self) -> usize {
-        let told = self.morning.as_ref();
-        told.map_or(0, |morning| morning.moments().len() - 1)
+        let finished = self.run.as_ref();
+        finished.map_or(0, |run| run.moments().len() - 1)
     }
 
     /// The end of a run: beyond every position while it is being computed.
@@ -106,8 +106,8 @@ impl ComeBack {
     }
 
     fn moment(&self) -> Option<&Moment> {
-        let (_, morning) = self.told()?;
-        morning.moments().get(self.place())
+        let (_, run) = self.finished()?;
+        run.moments().get(self.place())
     }
 
     /// Moves the robot, rounded, which keeps links short.
@@ -164,16 +164,16 @@ impl Model for ComeBack {
             return Activity::Idle;
         };
         match work.step(&self.values) {
-            known::Step::GoesOn(work) => {
+            known::Step::Continue(work) => {
                 self.work = Some(work);
                 return Activity::Unseen;
             }
             known::Step::Saved(known) => {
-                self.work = Some(Work::morning(&known, &self.values));
+                self.work = Some(Work::run(&known, &self.values));
                 self.known = Some(*known);
-                self.morning = None;
+                self.run = None;
             }
-            known::Step::Over(morning) => self.morning = Some(*morning),
+            known::Step::Over(run) => self.run = Some(*run),
         }
         Activity::Busy
     }
@@ -196,10 +196,10 @@ impl Model for ComeBack {
 
     fn timeline(&self) -> Option<Timeline> {
         let mut marks = Vec::new();
-        if let Some((_, morning)) = self.told()
-            && let Some(found) = morning.found()
+        if let Some((_, run)) = self.finished()
+            && let Some(found) = run.found()
         {
-            let moments = morning.moments();
+            let moments = run.moments();
             let at = moments.partition_point(|moment| moment.tick <= found) - 1;
             marks.push(TimelineMark {
                 at: at as f64,

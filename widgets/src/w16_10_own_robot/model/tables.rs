@@ -26,7 +26,7 @@ pub fn all(own: &OwnRobot) -> Vec<Table> {
 pub fn shown(own: &OwnRobot) -> Vec<Table> {
     let robot = &own.robot;
     let mut tables = vec![loops(own)];
-    tables.extend(sentences("doubts", "What should be doubted", &robot.doubts));
+    tables.extend(sentences("doubts", "Doubts about the map", &robot.doubts));
     tables.extend(sentences("remarks", "About the log", &robot.remarks));
     if let Some(told) = &robot.whereabouts {
         let title = format!("About {}", told.name);
@@ -137,7 +137,7 @@ fn places(own: &OwnRobot) -> Option<Table> {
         vec![
             place.scan.to_string(),
             place.stamp_s.to_string(),
-            place.belief.name().to_owned(),
+            place.state.name().to_owned(),
             number(x, 4),
             number(y, 4),
             number(theta, 5),

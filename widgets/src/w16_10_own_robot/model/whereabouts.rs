@@ -12,7 +12,7 @@ const PLACE: usize = 10;
 
 /// The localization state of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Belief {
+pub enum LocalizationState {
     /// Found by a search in this scan.
     Found,
     /// Tracked from the previous scan.
@@ -23,7 +23,7 @@ pub enum Belief {
     Lost,
 }
 
-impl Belief {
+impl LocalizationState {
     fn from_number(number: f64) -> Option<Self> {
         let all = [Self::Found, Self::Tracking, Self::Doubtful, Self::Lost];
         all.get(number as usize).copied()
@@ -57,7 +57,7 @@ pub struct Place {
     /// `[x, y, θ]` on the map, m and rad.
     pub pose: [f64; 3],
     /// Its localization state.
-    pub belief: Belief,
+    pub state: LocalizationState,
     /// Share of the scan that fits at the pose.
     pub fit: f64,
     /// Half axes of the 1σ ellipse, m, and the heading of the long one, rad.
@@ -70,7 +70,7 @@ impl Place {
             scan: numbers[0],
             stamp_s: numbers[1],
             pose: [numbers[2], numbers[3], numbers[4]],
-            belief: Belief::from_number(numbers[5])?,
+            state: LocalizationState::from_number(numbers[5])?,
             fit: numbers[6],
             ellipse: [numbers[7], numbers[8], numbers[9]],
         })

@@ -87,7 +87,7 @@ fn visitor(own: &OwnRobot) -> String {
         return if told.is_over {
             format!(" {why}.")
         } else {
-            format!(" {name} is looked for on the map.")
+            format!(" {name} is being localized on the map.")
         };
     };
     let [.., doubtful, lost] = told.counts;
@@ -123,7 +123,7 @@ fn visitor(own: &OwnRobot) -> String {
         " The robot of {name} {first}{done}: of {scans:.0} scans {:.0} are localized, {doubtful:.0} doubtful, {lost:.0} lost. At scan {:.0} it is {}{at}.",
         told.localized(),
         shown.scan,
-        shown.belief.name()
+        shown.state.name()
     )
 }
 
@@ -145,7 +145,7 @@ fn finished(robot: &Robot) -> String {
         counted(robot.keyframes.len(), "pose")
     };
     format!(
-        "{}: {source} on a way of {:.0} m with {}; {doubted}.",
+        "{}: {source} on a path of {:.0} m with {}; {doubted}.",
         robot.name,
         path_length_m(robot),
         counted(closed, "loop")
@@ -259,7 +259,7 @@ pub fn summary(own: &OwnRobot) -> String {
     // After a step to this loop the sentence already describes it.
     let link = link.filter(|link| *link != robot.answer);
     format!(
-        "A map with the way of the robot. {} Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°. {}",
+        "A map with the path of the robot. {} Keyframe {shown} is shown, at x {x:.1} m, y {y:.1} m, turned {:.0}°. {}",
         sentence(own),
         theta.to_degrees(),
         link.unwrap_or_default()

@@ -50,9 +50,9 @@ pub fn outcome(trace: &ProcrustesTrace) -> Outcome {
     let here = problem.trace_m2(trace.tried(), trace.theta_rad());
     let winner = problem.winner();
     let consequence = match winner {
-        Winner::Turn => "so a decomposition that nobody checks finds the turn, too",
-        Winner::Mirror => "so a decomposition that nobody checks mirrors the map",
-        Winner::Tie => "so a decomposition that nobody checks may return either",
+        Winner::Turn => "so an unchecked decomposition finds the turn, too",
+        Winner::Mirror => "so an unchecked decomposition mirrors the map",
+        Winner::Tie => "so an unchecked decomposition may return either",
     };
     let standing = match winner {
         Winner::Turn => Standing::Good,

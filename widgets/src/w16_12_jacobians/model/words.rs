@@ -30,7 +30,7 @@ fn verdict(widget: &WrongJacobians) -> &'static str {
     let runs = &widget.solved.runs;
     let at_home = |solver| ends_at_the_optimum(widget, solver);
     if runs.iter().any(|run| !run.rests) {
-        "not all come to rest"
+        "not all converge"
     } else if (0..RESIDUAL).all(at_home) {
         if at_home(RESIDUAL) {
             "all four end alike"

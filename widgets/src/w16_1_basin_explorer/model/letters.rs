@@ -103,7 +103,7 @@ mod tests {
     const NOWHERE: (f64, f64) = (-100.0, -100.0);
 
     #[test]
-    fn room_is_the_distance_to_the_next_other_cell() {
+    fn room_is_the_distance_to_the_next_cell_of_another_class() {
         let mut cells = vec![Some('a'); 9 * 9];
         cells[4 * 9 + 8] = Some('b');
         let distances = distances(&cells, 9);
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn every_wide_area_gets_its_letter_inside_and_narrow_ones_none() {
+    fn every_wide_area_gets_a_letter_and_narrow_ones_do_not() {
         let cells: Vec<_> = (0..20)
             .flat_map(|_| 0..60)
             .map(|column| match column {
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_known_yet_carries_no_letter() {
+    fn cells_not_computed_yet_have_no_letter() {
         assert!(rooms(&vec![None::<char>; 400], 20).is_empty());
     }
 }

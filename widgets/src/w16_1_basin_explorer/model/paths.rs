@@ -79,7 +79,7 @@ impl Paths {
         let poses = workspace.trace().iter().map(|state| state.pose);
         let spots = poses.map(|pose| start_spot(&scene.start_of(&pose), along_y));
         self.done.push(Path {
-            spots: broken(spots),
+            spots: split_at_half_turn(spots),
         });
         Activity::Busy
     }
@@ -117,7 +117,7 @@ fn starts(values: &Values) -> Vec<BasinStart> {
 }
 
 /// The spots of a path as a line with a gap where it crosses ±180°.
-pub fn broken(spots: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+pub fn split_at_half_turn(spots: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
     let mut line: Vec<[f64; 2]> = Vec::new();
     for spot in spots {
         if let Some(last) = line.last()

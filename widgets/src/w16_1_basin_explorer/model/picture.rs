@@ -10,7 +10,7 @@ use pr_geom::{Point2, SE2};
 use super::basins::{class, spot_of, start_spot};
 use super::edge;
 use super::hands::turn_handle;
-use super::paths::broken;
+use super::paths::split_at_half_turn;
 use super::settings::{axis, start, variant, variant_name};
 use super::words::error_m;
 use super::{BasinExplorer, panel};
@@ -154,7 +154,7 @@ fn sweeps(explorer: &BasinExplorer) -> Panel {
                 None,
             ),
             entry(
-                "where it will end, and the way there",
+                "final pose, and the path to it",
                 Tone::Posterior,
                 Some(Mark::Dot),
                 Some(Stroke::Dotted),
@@ -265,7 +265,7 @@ fn basin(explorer: &BasinExplorer, id: &'static str, of: IcpVariant) -> Panel {
     let spot = spot_of(&explorer.values);
     // While the maps are covered the reader marks the edge instead of choosing a start.
     if chosen && !covered {
-        layers.extend(ways(explorer));
+        layers.extend(paths(explorer));
         layers.push(Layer::Handle {
             at: spot,
             tone: Tone::Prior,
@@ -332,7 +332,7 @@ fn letters(explorer: &BasinExplorer, of: IcpVariant) -> impl Iterator<Item = Lay
 
 /// The paths from other starts over the map, each with a dot at its end, and that of the current start if its
 /// result may be shown.
-fn ways(explorer: &BasinExplorer) -> Vec<Layer> {
+fn paths(explorer: &BasinExplorer) -> Vec<Layer> {
     let line =
         |points: Vec<[f64; 2]>, tone, width_px| Layer::line(points, Stroke::Solid, tone, width_px);
     let mut layers = Vec::new();
@@ -349,7 +349,7 @@ fn ways(explorer: &BasinExplorer) -> Vec<Layer> {
     let along_y = axis(&explorer.values) == OffsetAxis::Dy;
     let own = explorer.run.trace[..seen].iter();
     let own = own.map(|state| start_spot(&explorer.scene.start_of(&state.pose), along_y));
-    let own = broken(own);
+    let own = split_at_half_turn(own);
     let end = own.last().copied().into_iter().collect();
     layers.push(line(own, Tone::Posterior, 2.0));
     layers.push(Layer::points(end, Mark::Square, Tone::Posterior, 4.0));

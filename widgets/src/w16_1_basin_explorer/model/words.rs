@@ -90,7 +90,7 @@ fn stop_words(stop: &StopReason) -> &'static str {
     match stop {
         StopReason::SmallStep { .. } => "converged after",
         StopReason::IterationLimit { .. } => "stopped at the limit of",
-        StopReason::TooFewPairs { .. } => "gave up for want of pairs after",
-        StopReason::NotFinite => "left the range of numbers after",
+        StopReason::TooFewPairs { .. } => "stopped for too few pairs after",
+        StopReason::NotFinite => "stopped at a non-finite value after",
     }
 }

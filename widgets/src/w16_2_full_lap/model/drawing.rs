@@ -72,7 +72,7 @@ impl FullLap {
     fn take(&mut self, sketch: Sketch) {
         let text = sketch.to_text();
         if let Err(error) = self.values.set_text(SPEC.id, "flat", &text) {
-            panic!("a flat of our own was refused: {error}");
+            panic!("the edited flat is invalid: {error}");
         }
         self.values.put(&WORLD, None);
         self.flat.become_of(sketch);
@@ -144,11 +144,11 @@ impl FullLap {
             "turn-here" => self.turn_here(),
             "take-back" => {
                 let before = self.flat.back(self.kept());
-                self.restore(before, "nothing to take back");
+                self.restore(before, "nothing to undo");
             }
             "do-again" => {
                 let after = self.flat.again(self.kept());
-                self.restore(after, "nothing was taken back");
+                self.restore(after, "nothing to redo");
             }
             "open-flat" => self.flat.orders.push("open-text .json".to_owned()),
             "save-flat" => {
@@ -175,7 +175,7 @@ impl FullLap {
 
     fn nudge(&mut self, by: [i32; 2]) {
         let Some(piece) = self.piece() else {
-            self.refuse("nothing is chosen: choose a wall, an end or a way point first");
+            self.refuse("nothing is selected: select a wall, an end or a way point first");
             return;
         };
         match piece.nudged(&self.flat.sketch, by) {
@@ -186,7 +186,7 @@ impl FullLap {
 
     fn remove_piece(&mut self) {
         let Some(piece) = self.piece() else {
-            self.refuse("nothing is chosen: choose a wall or a way point first");
+            self.refuse("nothing is selected: select a wall or a way point first");
             return;
         };
         match piece.removed(&self.flat.sketch) {
@@ -216,7 +216,7 @@ impl FullLap {
     fn turn_here(&mut self) {
         let Some(index) = self.chosen_way_point() else {
             self.refuse(
-                "no way point is chosen: choose the one from which on places are seen again",
+                "no way point is selected: select the one from which on known locations are seen again",
             );
             return;
         };

@@ -169,7 +169,7 @@ pub fn add_way_point(
     if count >= limits::WAY_POINTS {
         let most = limits::WAY_POINTS;
         return Err(format!(
-            "a way has at most {most} way points: remove one before you place another"
+            "a path has at most {most} way points: remove one before you place another"
         ));
     }
     let index = behind.map_or(count, |behind| (behind + 1).min(count));

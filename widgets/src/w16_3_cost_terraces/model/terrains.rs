@@ -247,7 +247,7 @@ impl Terrains {
     }
 
     /// Their constraints, with the row of odometry if there is one.
-    pub fn rows_know(&self) -> RowConstraints {
+    pub fn row_constraints(&self) -> RowConstraints {
         self.rows
             .constraints(self.rows_taken(), self.settings.odometry_m)
     }

@@ -31,13 +31,15 @@ fn sweeps(window: &WholeWindow) -> Panel {
         points(scene.target(), Mark::Cross, Tone::Measurement, 3.0),
         // ICP alone: its result, and its path.
         points(
-            &scene.source().transformed(&window.hunt.alone.outcome.pose),
+            &scene
+                .source()
+                .transformed(&window.search_task.alone.outcome.pose),
             Mark::Dot,
             Tone::Prediction,
             1.6,
         ),
         Layer::line(
-            window.hunt.alone.way.iter().map(position).collect(),
+            window.search_task.alone.path.iter().map(position).collect(),
             Stroke::Dotted,
             Tone::Prediction,
             1.5,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ch16_lab::come_back::{Morning, switched_on};
+use ch16_lab::come_back::{LocalizationRun, switched_on};
 use ch16_lab::lap::{Drive, DriveConfig, DriveSimulation};
 use ch16_lab::laps::{LapNumbers, LapUnderWay, Laps, LapsConfig};
 use ch16_slam2d::localize::{KnownMap, LocalizeConfig, Localizer, StartPose};
@@ -12,7 +12,7 @@ use kit::values::Values;
 use super::settings;
 
 /// Ticks of a run: ten seconds.
-const MORNING_TICKS: usize = 40;
+const RUN_TICKS: usize = 40;
 
 /// Offset of the seed: the noise of the run differs from that of the laps.
 const ANOTHER_DAY: u32 = 1000;
@@ -45,19 +45,19 @@ pub enum Work {
     /// A lap is mapped.
     Mapping(Box<Laps>, LapUnderWay, Box<Drive>),
     /// The robot's drive is simulated.
-    Waking(Box<(Arc<KnownMap>, SlamConfig)>, Box<DriveSimulation>),
+    Simulating(Box<(Arc<KnownMap>, SlamConfig)>, Box<DriveSimulation>),
     /// The robot is localized, and tracked.
-    Looking(Box<Morning>),
+    Localizing(Box<LocalizationRun>),
 }
 
 /// The result of one piece of work.
 pub enum Step {
     /// There is more to do.
-    GoesOn(Work),
+    Continue(Work),
     /// The map is finished.
     Saved(Box<Known>),
     /// The run is over.
-    Over(Box<Morning>),
+    Over(Box<LocalizationRun>),
 }
 
 impl Work {
@@ -67,10 +67,10 @@ impl Work {
     }
 
     /// A run on a map, from the start in the values.
-    pub fn morning(known: &Known, values: &Values) -> Self {
+    pub fn run(known: &Known, values: &Values) -> Self {
         let start = settings::start(values);
-        let drive = switched_on(&known.tomorrow, start, MORNING_TICKS);
-        Self::Waking(
+        let drive = switched_on(&known.tomorrow, start, RUN_TICKS);
+        Self::Simulating(
             Box::new((Arc::clone(&known.map), known.slam.clone())),
             Box::new(DriveSimulation::new(drive)),
         )
@@ -83,7 +83,7 @@ impl Work {
 
     /// Does one piece.
     pub fn step(self, values: &Values) -> Step {
-        Step::GoesOn(match self {
+        Step::Continue(match self {
             Self::Driving(laps, mut simulation) => match simulation.step() {
                 None => Self::Driving(laps, simulation),
                 Some(drive) => {
@@ -98,20 +98,20 @@ impl Work {
                     Some(numbers) => return Step::Saved(Box::new(saved(&laps, numbers, values))),
                 }
             }
-            Self::Waking(known, mut simulation) => match simulation.step() {
-                None => Self::Waking(known, simulation),
+            Self::Simulating(known, mut simulation) => match simulation.step() {
+                None => Self::Simulating(known, simulation),
                 Some(drive) => {
                     let (map, slam) = *known;
                     let config = LocalizeConfig::default();
                     let localizer = Localizer::new(map, slam, config, StartPose::Anywhere);
-                    Self::Looking(Box::new(Morning::new(localizer, Arc::new(drive))))
+                    Self::Localizing(Box::new(LocalizationRun::new(localizer, Arc::new(drive))))
                 }
             },
-            Self::Looking(mut morning) => {
-                if !morning.step() {
-                    return Step::Over(morning);
+            Self::Localizing(mut run) => {
+                if !run.step() {
+                    return Step::Over(run);
                 }
-                Self::Looking(morning)
+                Self::Localizing(run)
             }
         })
     }

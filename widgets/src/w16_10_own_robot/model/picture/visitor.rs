@@ -16,7 +16,7 @@ pub fn whereabouts(own: &OwnRobot) -> Vec<Layer> {
     };
     let line = |is_localized: bool, stroke, width_px| {
         let places = told.places.iter().map(|place| {
-            if place.belief.is_localized() == is_localized {
+            if place.state.is_localized() == is_localized {
                 [place.pose[0], place.pose[1]]
             } else {
                 [f64::NAN; 2]

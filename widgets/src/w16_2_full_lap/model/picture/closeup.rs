@@ -27,7 +27,7 @@ pub fn closeup(moment: &Moment) -> Panel {
             gates: &runs.gates_of_own(own),
             before,
             after: &own.poses,
-            title: format!("Your loop {} from near", ends(&own.attempt)),
+            title: format!("Close-up of your loop {}", ends(&own.attempt)),
         };
         return of_loop(runs, &shown);
     }
@@ -39,7 +39,7 @@ pub fn closeup(moment: &Moment) -> Panel {
                 gates: runs.gates(attempt),
                 before: runs.graph.poses_before_loop(attempt.tick),
                 after: runs.graph.poses_at(attempt.tick),
-                title: format!("Loop {} from near, tick {}", ends(attempt), attempt.tick),
+                title: format!("Close-up of loop {}, tick {}", ends(attempt), attempt.tick),
             },
         ),
         None => view(

@@ -86,12 +86,7 @@ fn chosen(drawn: &Drawn) -> Vec<Layer> {
 
 /// The legend entry of the plan.
 pub fn legend() -> LegendEntry {
-    LegendEntry::marked_line(
-        "the way as planned",
-        Tone::Ink,
-        Mark::Circle,
-        Stroke::Dotted,
-    )
+    LegendEntry::marked_line("the planned path", Tone::Ink, Mark::Circle, Stroke::Dotted)
 }
 
 /// `Your own flat: 18 walls, 3 way points`.

@@ -71,7 +71,7 @@ fn part_layers(moment: &Moment, part: Part, is_picked: bool) -> Vec<Layer> {
                 Layer::Handle {
                     at,
                     tone: Tone::Posterior,
-                    label: "drag to another keyframe: a loop of your own",
+                    label: "drag to another keyframe: your own loop",
                 }
             } else {
                 Layer::points(vec![at], Mark::Circle, Tone::Ink, 7.0)

@@ -147,7 +147,7 @@ fn the_line_at_the_moment_shown_can_be_dragged_in_every_plot_over_time() {
 }
 
 /// The last tick of any line, in the plots over time.
-fn told_until(model: &FullLap) -> f64 {
+fn drawn_until(model: &FullLap) -> f64 {
     let scene = model.scene();
     let plots = scene.panels.iter().filter(|panel| panel.x.label == "tick");
     let layers = plots.flat_map(|panel| &panel.layers);
@@ -161,12 +161,12 @@ fn told_until(model: &FullLap) -> f64 {
 }
 
 #[test]
-fn nothing_of_the_future_is_drawn_unless_the_reader_asks_for_it() {
+fn the_future_is_drawn_only_on_request() {
     for tick in [0.0, 50.0, 91.0, 100.0] {
         let mut model = at(&[("t", tick)]);
-        assert_eq!(told_until(&model), tick);
+        assert_eq!(drawn_until(&model), tick);
         set(&mut model, "future", 1.0);
-        assert_eq!(told_until(&model), 129.0);
+        assert_eq!(drawn_until(&model), 129.0);
     }
     // One tick before the first loop, it is shown nowhere.
     let mut model = at(&[("t", 91.0)]);
@@ -217,7 +217,7 @@ fn loops_on(model: &FullLap, panel: usize) -> [usize; 2] {
 }
 
 #[test]
-fn accepted_loops_are_solid_and_refused_ones_hollow_on_the_map_and_in_the_plot() {
+fn accepted_loops_are_solid_and_rejected_ones_hollow_on_the_map_and_in_the_plot() {
     // Seed 6: one loop rejected at tick 90, others accepted.
     let model = at(&[("seed", 6.0), ("t", 129.0)]);
     let attempts = model.runs.graph.attempts();
@@ -232,7 +232,7 @@ fn accepted_loops_are_solid_and_refused_ones_hollow_on_the_map_and_in_the_plot()
 }
 
 #[test]
-fn the_way_out_and_the_way_back_are_two_shades() {
+fn the_outward_and_the_return_path_have_two_shades() {
     let points = |tick: f64, tone: Tone| {
         let scene = at(&[("t", tick)]).scene();
         let layers = scene.panels[0].layers.iter();
@@ -253,7 +253,7 @@ fn the_way_out_and_the_way_back_are_two_shades() {
 }
 
 #[test]
-fn a_closed_loop_shows_by_arrows_how_its_history_moved() {
+fn arrows_show_how_a_closed_loop_moved_the_history() {
     let model = at(&[("t", 92.0)]);
     let scene = model.scene();
     let heads = scene.panels[0].layers.iter().any(|layer| {

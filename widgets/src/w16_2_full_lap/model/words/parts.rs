@@ -5,7 +5,7 @@ use ch16_slam2d::metrics::position_error_m;
 use kit::model::{Fact, Standing};
 use pr_geom::{SE2, math};
 
-use super::{Said, ends, standing};
+use super::{Statement, ends, standing};
 use crate::w16_2_full_lap::model::found::{Found, find};
 use crate::w16_2_full_lap::model::moment::Moment;
 use crate::w16_2_full_lap::model::pick::Part;
@@ -45,13 +45,13 @@ fn named(moment: &Moment, part: Part) -> String {
 }
 
 /// The verdict and the sentence on a part.
-pub fn part_said(moment: &Moment, part: Part) -> Said {
+pub fn part_statement(moment: &Moment, part: Part) -> Statement {
     let Numbers {
         error_m,
         error_deg,
         chi2,
     } = numbers(moment, part);
-    let neutral = |verdict: String, sentence| Said {
+    let neutral = |verdict: String, sentence| Statement {
         standing: Standing::Neutral,
         verdict,
         sentence,
@@ -67,7 +67,7 @@ pub fn part_said(moment: &Moment, part: Part) -> Said {
             let edges = if count == 1 { "edge" } else { "edges" };
             let tied = match moment.tied {
                 Some(from) if from == node => {
-                    "; a loop of your own begins here: look at another keyframe and press Tie again"
+                    "; your own loop begins here: look at another keyframe and press Tie again"
                         .to_owned()
                 }
                 Some(from) => format!("; press Tie for a loop from keyframe {from} to here"),
@@ -106,7 +106,7 @@ pub fn part_said(moment: &Moment, part: Part) -> Said {
             } else {
                 format!("; measured {error_m:.2} m and {error_deg:.1}° off the truth")
             };
-            Said {
+            Statement {
                 standing: standing(judgement),
                 verdict: format!("loop {}", ends(attempt)),
                 sentence: format!("{sentence}{off}{now}"),
@@ -119,7 +119,7 @@ pub fn part_said(moment: &Moment, part: Part) -> Said {
                     "no loop of your own".to_owned(),
                 )
             },
-            |own| own_said(moment, own),
+            |own| own_statement(moment, own),
         ),
         (Part::Loop(node), None) => neutral(
             "no such loop".to_owned(),
@@ -214,7 +214,7 @@ const NONE: Numbers = Numbers {
 };
 
 /// The verdict and the sentence on the custom loop.
-pub fn own_said(moment: &Moment, own: &OwnLoop) -> Said {
+pub fn own_statement(moment: &Moment, own: &OwnLoop) -> Statement {
     let lap = moment.runs.graph.lap();
     let judgement = lap.judge(&own.attempt);
     let verdict = match judgement {
@@ -257,7 +257,7 @@ pub fn own_said(moment: &Moment, own: &OwnLoop) -> Said {
             )
         }
     };
-    Said {
+    Statement {
         standing: standing(judgement),
         verdict: verdict.to_owned(),
         sentence,

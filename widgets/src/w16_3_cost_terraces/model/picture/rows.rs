@@ -16,7 +16,7 @@ const HEAD_M: [f64; 2] = [0.25, 0.12];
 /// A normal for every row so far, the last one highlighted, and the null direction as an arrow; if every
 /// direction is constrained, a bar of one standard deviation on either side along x.
 pub fn panel(terrains: &Terrains) -> Panel {
-    let know = terrains.rows_know();
+    let constraints = terrains.row_constraints();
     let taken = &terrains.rows.rows[..terrains.rows_taken()];
     let center: [f64; 2] = terrains.rows.centroid.into();
     let normals: Vec<_> = taken
@@ -26,8 +26,8 @@ pub fn panel(terrains: &Terrains) -> Panel {
     let lines = |segments, tone, width_px| Layer::segments(segments, Stroke::Solid, tone, width_px);
     let last: Vec<_> = normals.last().copied().into_iter().collect();
     let ends = last.iter().map(|[from, _]| *from).collect();
-    let null = know.null.map(|null| arrow(center, [null.x, null.y]));
-    let known = know.along_m.map(|along_m| {
+    let null = constraints.null.map(|null| arrow(center, [null.x, null.y]));
+    let known = constraints.along_m.map(|along_m| {
         let [x, y] = center;
         vec![[[x - along_m, y], [x + along_m, y]]]
     });

@@ -12,11 +12,11 @@ pub const ID: &str = "lanes";
 #[derive(Clone, Copy, PartialEq)]
 enum Done {
     /// Not executed in this tick.
-    Not,
+    Idle,
     /// Passed.
-    Well,
+    Passed,
     /// Rejected.
-    Refused,
+    Rejected,
 }
 
 /// A lane, and its data in a tick.
@@ -32,7 +32,7 @@ struct Lane {
 static LANES: [Lane; 8] = [
     Lane {
         name: "predict",
-        done: |_| Done::Well,
+        done: |_| Done::Passed,
         data: |report| {
             let at = report.registration.prediction;
             let off_m = (at.position() - report.registration.estimate.position()).norm();
@@ -45,7 +45,7 @@ static LANES: [Lane; 8] = [
     },
     Lane {
         name: "register",
-        done: |report| judged(report.registration.accepted),
+        done: |report| tested(report.registration.accepted),
         data: |report| {
             let found = &report.registration.matched;
             format!(
@@ -56,7 +56,7 @@ static LANES: [Lane; 8] = [
     },
     Lane {
         name: "keyframe",
-        done: |report| only(report.new_keyframe.is_some()),
+        done: |report| executed(report.new_keyframe.is_some()),
         data: |report| match report.new_keyframe {
             Some(node) => format!("node {node} and an edge to node {}", node.saturating_sub(1)),
             None => NOTHING.to_owned(),
@@ -64,7 +64,7 @@ static LANES: [Lane; 8] = [
     },
     Lane {
         name: "candidate",
-        done: |report| only(report.loop_attempt.is_some()),
+        done: |report| executed(report.loop_attempt.is_some()),
         data: |report| {
             of_loop(report, |attempt| {
                 let candidate = &attempt.verification.candidate;
@@ -79,8 +79,8 @@ static LANES: [Lane; 8] = [
     Lane {
         name: "fit",
         done: |report| match &report.loop_attempt {
-            None => Done::Not,
-            Some(attempt) => judged(!matches!(
+            None => Done::Idle,
+            Some(attempt) => tested(!matches!(
                 attempt.verification.rejection,
                 Some(
                     LoopRejection::PoorFit { .. }
@@ -99,8 +99,8 @@ static LANES: [Lane; 8] = [
     Lane {
         name: "gate",
         done: |report| match &report.loop_attempt {
-            None => Done::Not,
-            Some(attempt) => judged(attempt.verification.gate.passes()),
+            None => Done::Idle,
+            Some(attempt) => tested(attempt.verification.gate.passes()),
         },
         data: |report| {
             of_loop(report, |attempt| {
@@ -112,7 +112,7 @@ static LANES: [Lane; 8] = [
     },
     Lane {
         name: "optimize",
-        done: |report| only(closed_loop(report)),
+        done: |report| executed(closed_loop(report)),
         data: |report| {
             of_loop(report, |attempt| match &attempt.effect {
                 Some(effect) => format!(
@@ -125,7 +125,7 @@ static LANES: [Lane; 8] = [
     },
     Lane {
         name: "repaint",
-        done: |report| only(closed_loop(report)),
+        done: |report| executed(closed_loop(report)),
         data: |report| {
             of_loop(report, |attempt| match attempt.effect {
                 Some(_) => format!(
@@ -146,12 +146,12 @@ fn of_loop(report: &TickReport, say: impl Fn(&LoopAttempt) -> String) -> String 
     attempt.map_or_else(|| NOTHING.to_owned(), say)
 }
 
-fn judged(well: bool) -> Done {
-    if well { Done::Well } else { Done::Refused }
+fn tested(passed: bool) -> Done {
+    if passed { Done::Passed } else { Done::Rejected }
 }
 
-fn only(done: bool) -> Done {
-    if done { Done::Well } else { Done::Not }
+fn executed(is_done: bool) -> Done {
+    if is_done { Done::Passed } else { Done::Idle }
 }
 
 fn closed_loop(report: &TickReport) -> bool {
@@ -207,20 +207,20 @@ pub fn lanes(record: &LapRecord, now: usize, chosen: usize) -> Panel {
     )];
     layers.extend([
         Layer::points(
-            done(record, now, Done::Well),
+            done(record, now, Done::Passed),
             Mark::Dot,
             Tone::Measurement,
             2.4,
         ),
         Layer::points(
-            done(record, now, Done::Refused),
+            done(record, now, Done::Rejected),
             Mark::Circle,
             Tone::Truth,
             3.5,
         ),
     ]);
     let here = record.lap.report(now);
-    if here.is_some_and(|report| (LANES[chosen].done)(report) != Done::Not) {
+    if here.is_some_and(|report| (LANES[chosen].done)(report) != Done::Idle) {
         let at = vec![[now as f64, height(chosen)]];
         layers.push(Layer::points(at, Mark::Circle, Tone::Ink, 7.0));
     }
@@ -257,7 +257,7 @@ pub fn event_at(
         let [x, y] = [0, 1].map(|i: usize| ((mark[i] - at[i]) / reach[i]).abs());
         x.max(y)
     };
-    let marks = [Done::Well, Done::Refused].map(|wanted| done(record, now, wanted));
+    let marks = [Done::Passed, Done::Rejected].map(|wanted| done(record, now, wanted));
     let marks = marks.iter().flatten().filter(|mark| away(mark) <= 1.0);
     let [tick, high] = *marks.min_by(|a, b| away(a).total_cmp(&away(b)))?;
     Some((tick, LANES.len() - high as usize))

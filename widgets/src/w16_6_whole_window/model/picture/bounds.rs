@@ -14,7 +14,7 @@ const SEEN_FALLING: usize = 120;
 const GAP_POINTS: usize = 300;
 
 pub fn panel(window: &WholeWindow) -> Panel {
-    let search = &window.hunt.window;
+    let search = &window.search_task.window;
     let step = window.step();
     let moment = &search.moments()[step];
     let bar = |seen: &SeenBox| bar(window, seen);
@@ -72,7 +72,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
 
 /// A box as a bar over its headings, at least one step wide.
 fn bar(window: &WholeWindow, seen: &SeenBox) -> [[f64; 2]; 2] {
-    let search = window.hunt.window.search();
+    let search = window.search_task.window.search();
     let step_deg = 360.0 / search.headings().max(1) as f64;
     let [low, high] = seen.poses.heading_rad;
     let middle = heading_error_deg(window, 0.5 * (low + high));
@@ -83,8 +83,8 @@ fn bar(window: &WholeWindow, seen: &SeenBox) -> [[f64; 2]; 2] {
 
 /// The best score at each known heading, from the lowest error to the highest.
 fn surface(window: &WholeWindow) -> Vec<[f64; 2]> {
-    let search = window.hunt.window.search();
-    let by_heading = window.hunt.surface.by_heading().iter().enumerate();
+    let search = window.search_task.window.search();
+    let by_heading = window.search_task.surface.by_heading().iter().enumerate();
     let mut points: Vec<[f64; 2]> = by_heading
         .filter_map(|(k, score)| {
             let error = heading_error_deg(window, search.heading_rad(k));
@@ -97,7 +97,7 @@ fn surface(window: &WholeWindow) -> Vec<[f64; 2]> {
 
 /// The largest bound falls, the best score rises; the search ends where they meet.
 pub fn gap(window: &WholeWindow) -> Panel {
-    let moments = window.hunt.window.moments();
+    let moments = window.search_task.window.moments();
     let every = moments.len().div_ceil(GAP_POINTS);
     let last = moments.len() - 1;
     let steps = (0..last).step_by(every).chain([last]);

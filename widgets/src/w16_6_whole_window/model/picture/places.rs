@@ -12,7 +12,7 @@ use super::sensor;
 const MARGIN: f64 = 0.06;
 
 pub fn panel(window: &WholeWindow) -> Panel {
-    let search = &window.hunt.window;
+    let search = &window.search_task.window;
     let moment = &search.moments()[window.step()];
     let [low, high] = search.search().extent_m();
     let margin = MARGIN * (high[0] - low[0]);
@@ -40,7 +40,7 @@ pub fn panel(window: &WholeWindow) -> Panel {
     if moment.best.is_some() {
         layers.push(sensor(window.shown_pose(), Mark::Square, Tone::Posterior));
     }
-    let progress = window.hunt.surface.progress();
+    let progress = window.search_task.surface.progress();
     let filled = if progress < 1.0 {
         format!(", {:.0} % drawn", (100.0 * progress).floor())
     } else {
@@ -83,7 +83,10 @@ fn boxes<'a>(boxes: impl Iterator<Item = &'a PoseBox>, tone: Tone, width_px: f32
 
 /// Paper for no fit, ink for a perfect one.
 fn raster(window: &WholeWindow) -> Raster {
-    let (surface, search) = (&window.hunt.surface, window.hunt.window.search());
+    let (surface, search) = (
+        &window.search_task.surface,
+        window.search_task.window.search(),
+    );
     let [rows, columns] = search.places();
     let [min, max] = search.extent_m();
     let cells = surface.by_place().iter();

@@ -24,7 +24,7 @@ pub struct Refined {
     /// Its result.
     pub outcome: BasinOutcome,
     /// Its poses, from the start on.
-    pub way: Vec<SE2>,
+    pub path: Vec<SE2>,
 }
 
 /// The results of a search.
@@ -38,7 +38,7 @@ pub struct Found {
 }
 
 /// One window.
-pub struct Hunt {
+pub struct SearchTask {
     /// The search with its history.
     pub window: WindowSearch,
     /// The scores that it avoids to compute.
@@ -49,12 +49,12 @@ pub struct Hunt {
     pub found: Option<Found>,
 }
 
-impl Hunt {
+impl SearchTask {
     /// A search before its first step.
     pub fn new(scene: &BasinScene, config: WindowConfig, workspace: &mut IcpWorkspace) -> Self {
         let window = match WindowSearch::new(scene, config) {
             Ok(window) => window,
-            Err(error) => panic!("a window of the parameter list was refused: {error}"),
+            Err(error) => panic!("the parameters yield an invalid window: {error}"),
         };
         Self {
             surface: ScoreSurface::new(window.search()),
@@ -122,9 +122,9 @@ impl Hunt {
 
 fn icp(scene: &BasinScene, from: SE2, workspace: &mut IcpWorkspace) -> Refined {
     let outcome = refine(scene, from, workspace);
-    let way = workspace.trace().iter().map(|state| state.pose);
+    let path = workspace.trace().iter().map(|state| state.pose);
     Refined {
         outcome,
-        way: way.collect(),
+        path: path.collect(),
     }
 }
