@@ -1,4 +1,4 @@
-//! Clouds as CSV: what `slam2d register` reads, and the registration that follows.
+//! Clouds as CSV: the input of `slam2d register`, and the registration after it.
 
 use ch16_slam2d::cloud::{DenseMap, PointCloud};
 use ch16_slam2d::icp::{IcpConfig, IcpVariant};
@@ -6,10 +6,10 @@ use pr_geom::SE2;
 
 use crate::registration::register;
 
-/// Larger clouds are read, but not registered: the target is about the reader.
+/// Larger clouds are read, but not registered, because the target is the reader.
 const MAX_REGISTERED: usize = 24;
 
-/// What is refused names a line. What is read has finite points and normals of length 1.
+/// An error names a line. A valid cloud has finite points and normals of length 1.
 pub fn fuzz(text: &[u8]) {
     let lines = text.split(|&byte| byte == b'\n').count();
     let cloud = match PointCloud::from_csv(text) {
@@ -24,7 +24,7 @@ pub fn fuzz(text: &[u8]) {
         let point = cloud.point(index);
         assert!(point.x.is_finite() && point.y.is_finite(), "{point}");
         if let Some(normal) = cloud.normal(index) {
-            // 1e-15: a few last digits of a number near 1.
+            // 1e-15: a few units of the last digit of a number near 1.
             assert!((normal.norm() - 1.0).abs() < 1e-15, "{normal}");
         }
     }

@@ -1,14 +1,15 @@
-//! Recordings of ROS 2 in SQLite: any bytes behind a header that is in order.
+//! Recordings of ROS 2 in SQLite: any bytes after a valid header.
 
 use robot_io::log::LogOptions;
 
 use crate::logs;
 
-/// Bytes of the header, and of a page: the smallest that SQLite has, so that trees come soon.
+/// Bytes of the header, and of a page: the smallest size of SQLite, so that small inputs contain trees.
 const HEADER: usize = 100;
 const PAGE: u16 = 512;
 
-/// Read, not mapped: the target `logs` does that. The header is made valid, which no fuzzer would find.
+/// Reads without mapping, which the target `logs` covers. The header is made valid, because a fuzzer would
+/// not find one.
 pub fn fuzz(bytes: &[u8]) {
     if bytes.len() < HEADER {
         return;

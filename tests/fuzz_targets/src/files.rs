@@ -1,4 +1,4 @@
-//! The small formats of text: trajectories, relations, graphs, and worlds as files and in links.
+//! The small text formats: trajectories, relations, graphs, and worlds as files and in links.
 //!
 //! The first byte names the format, the rest is the text.
 
@@ -12,7 +12,7 @@ use robot_io::trajectory::{StampedPose, Trajectory};
 
 use crate::sentences::{NAME, assert_refusal, assert_sentence};
 
-/// A text is refused in one sentence, or reads back to the same once it was written.
+/// An invalid text yields one sentence; a valid one reads back equal after writing.
 pub fn fuzz(data: &[u8]) {
     let Some((format, text)) = data.split_first() else {
         return;
@@ -23,12 +23,12 @@ pub fn fuzz(data: &[u8]) {
         2 => graph(text),
         3 => world(text),
         4 => sketch(&String::from_utf8_lossy(text)),
-        // What only the checksum refuses is read all the same.
+        // A text with a wrong checksum is read anyway.
         _ => sketch(&with_checksum(&String::from_utf8_lossy(text))),
     }
 }
 
-/// What was read, or nothing: then the refusal was one sentence.
+/// The value, or `None` for an error, which must be one sentence.
 fn taken<T, E: std::error::Error>(read: Result<T, E>) -> Option<T> {
     read.map_err(|refusal| assert_refusal(&refusal.to_string()))
         .ok()
@@ -47,7 +47,7 @@ fn trajectory(text: &[u8]) {
         assert_same(&old.pose, &new.pose);
     }
     if let Ok(report) = truth_errors(&read, &again, Alignment::None) {
-        // 1e-9: a shift of as much as the Earth's size, turned by the last bit of a heading.
+        // 1e-9: the last bit of a heading at a distance of the Earth's size.
         assert!(report.ate.max <= 1e-9, "{report:?}");
         assert!(report.rpe.trans.max.is_finite() && report.rpe.rot_deg.max < 1e-9);
     }
@@ -118,11 +118,11 @@ fn pose([x, y, theta]: [f64; 3]) -> SE2 {
     SE2::new(x, y, theta)
 }
 
-/// Places to the same bits; a heading is wrapped once more where it is read again.
+/// Positions are equal to the bit; a heading is wrapped again when it is read.
 fn assert_same(old: &SE2, new: &SE2) {
     assert_eq!((old.x(), old.y()), (new.x(), new.y()));
     let turn = (old.theta() - new.theta()).abs();
-    // 1e-12: a few last bits of a turn, which may be a whole one.
+    // 1e-12: a few units of the last digit of a full turn.
     let is_turn = turn < 1e-12 || (turn - core::f64::consts::TAU).abs() < 1e-12;
     assert!(is_turn, "{old:?} is not {new:?}");
 }
@@ -141,7 +141,7 @@ fn sketch(text: &str) {
     }
 }
 
-/// A flat travels as a text and as a file; its course is the same whichever way it came.
+/// A flat is stored as a text and as a file; both yield the same course.
 fn sketched(sketch: &Sketch) {
     assert_eq!(Sketch::from_text(&sketch.to_text()).as_ref(), Ok(sketch));
     let json = sketch.to_json();
@@ -152,7 +152,7 @@ fn sketched(sketch: &Sketch) {
     }
 }
 
-/// The text with the five digits that it has to end in, as `pr_sim::sketch` describes them.
+/// The text with its five final digits, the checksum of `pr_sim::sketch`.
 fn with_checksum(text: &str) -> String {
     const DIGITS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
     let step = |hash: u32, byte: u8| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193);

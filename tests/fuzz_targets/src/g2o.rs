@@ -1,16 +1,16 @@
-//! Pose graphs in the text format of g2o: read, written, and solved as the command does it.
+//! Pose graphs in g2o's text format: read, written, and solved like the command does.
 
 use pr_optim::g2o::G2oFile;
 use pr_optim::{JacobianModel, Settings, Start};
 
 use crate::solve::solve;
 
-/// Larger graphs are read and written, but not solved: the target is about the reader.
+/// Larger graphs are read and written, but not solved, because the target is the reader.
 const MAX_SOLVED: usize = 12;
-/// Most steps of an attempt.
+/// Largest number of iterations.
 const MAX_ITERATIONS: usize = 8;
 
-/// What is refused names a line of the file. What is read writes back to the same graph.
+/// An error names a line of the file. A valid graph reads back equal after writing.
 pub fn fuzz(text: &[u8]) {
     let mut file = match G2oFile::parse(text) {
         Ok(file) => file,
@@ -28,7 +28,7 @@ pub fn fuzz(text: &[u8]) {
     assert_eq!(again.problem.factors(), file.problem.factors());
     assert_eq!(again.problem.fixed(), file.problem.fixed());
     for (node, (old, new)) in pairs(&file, &again) {
-        // A heading is wrapped once more where it is read again.
+        // A heading is wrapped again when it is read.
         assert_eq!(old.x().to_bits(), new.x().to_bits(), "node {node}");
         assert_eq!(old.y().to_bits(), new.y().to_bits(), "node {node}");
         assert!((old.theta() - new.theta()).abs() < 1e-12, "node {node}");

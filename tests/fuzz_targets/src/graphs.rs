@@ -1,4 +1,4 @@
-//! Arbitrary sparse pose graphs, by every start, method, kernel and factorization.
+//! Arbitrary sparse pose graphs with every start, method, kernel and factorization.
 
 use arbitrary::{Result, Unstructured};
 use nalgebra::Matrix3;
@@ -16,17 +16,17 @@ const MAX_NODES: usize = 10;
 const MAX_FACTORS: usize = 16;
 const MAX_ITERATIONS: usize = 10;
 
-/// A finite result that costs no more than its start, or an error that is typed; never a panic.
+/// The result is finite and costs no more than its start, or it is a typed error; no panic.
 pub fn fuzz(data: &[u8]) {
     let mut bytes = Unstructured::new(data);
-    // Bytes that end early read as zeros.
+    // Missing bytes read as zeros.
     if let Ok((mut problem, settings, start)) = case(&mut bytes) {
         choose_loops(&problem, settings);
         solve(&mut problem, settings, start);
     }
 }
 
-/// Believes the path and what fits of the loops, or says by type why not.
+/// Selects inlier loops, or returns a typed error.
 fn choose_loops(problem: &Problem, solver: Settings) {
     let trusted: Vec<bool> = problem.factors().iter().map(is_sequential).collect();
     let Ok(selection) = select_inliers(problem, &trusted, solver, &GncSettings::default()) else {
@@ -57,7 +57,7 @@ fn case(bytes: &mut Unstructured<'_>) -> Result<(Problem, Settings, Start)> {
     let nodes = bytes.int_in_range(1..=MAX_NODES)?;
     for node in 0..nodes {
         let pose = pose(bytes)?;
-        // Most graphs hang on their first node alone.
+        // In most graphs only the first node is fixed.
         if node == 0 || bytes.ratio(1, 16)? {
             problem.add_fixed_pose(pose);
         } else {
@@ -113,7 +113,7 @@ fn settings(bytes: &mut Unstructured<'_>) -> Result<Settings> {
         },
         ..Settings::default()
     };
-    // Without a byte of its own: the inputs that were found stay what they are.
+    // Uses no further byte, so that existing inputs keep their meaning.
     if !settings.max_iterations.is_multiple_of(2) {
         settings.factor_use = FactorUse::WhileItShrinks;
     }
@@ -128,7 +128,7 @@ fn pose(bytes: &mut Unstructured<'_>) -> Result<SE2> {
     })
 }
 
-/// `L Lᵀ` of a tame `L`, scaled; now and then any symmetric matrix, definite or not.
+/// `L Lᵀ` of a moderate `L`, scaled; sometimes any symmetric matrix, definite or not.
 fn information(bytes: &mut Unstructured<'_>) -> Result<Matrix3<f64>> {
     match bytes.int_in_range(0..=15)? {
         0..=7 => Ok(Matrix3::identity() * scale(bytes)?),

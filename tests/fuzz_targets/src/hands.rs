@@ -1,4 +1,4 @@
-//! Random hands on every widget's model: set, press, drag, hover, play, work, in any order.
+//! Random input to every widget's model: set, press, drag, hover, play, work, in any order.
 
 use arbitrary::{Result, Unstructured};
 use kit::model::{Activity, Model, Motion};
@@ -9,19 +9,19 @@ use widgets::registry::MODELS;
 
 use crate::numbers::any;
 
-/// Most things that a case does.
+/// Largest number of actions in a case.
 const MAX_ACTIONS: usize = 8;
-/// Most pieces of work that a case waits for at a time.
+/// Largest number of work pieces per action.
 const MAX_WORK: usize = 40;
 
-/// Nothing panics, every value stays in its range, and the picture has finite numbers.
+/// No panic, every value stays in its range, and the picture has finite numbers.
 pub fn fuzz(data: &[u8]) {
     let mut bytes = Unstructured::new(data);
     let Ok(maker) = bytes.choose(&MODELS) else {
         return;
     };
     let mut model = maker();
-    // Bytes that end early end the case.
+    // The case ends with its bytes.
     for _ in 0..MAX_ACTIONS {
         if act(&mut bytes, model.as_mut()).is_err() {
             break;
@@ -119,7 +119,7 @@ fn drag(bytes: &mut Unstructured<'_>, model: &mut dyn Model) -> Result<()> {
     Ok(())
 }
 
-/// A point of a panel: at something that can be grabbed, somewhere on it, or far off.
+/// A point of a panel: on something draggable, anywhere on it, or far away.
 fn point(bytes: &mut Unstructured<'_>, panel: &Panel) -> Result<[f64; 2]> {
     match bytes.int_in_range(0..=7)? {
         0..=2 => {

@@ -1,7 +1,7 @@
-//! Every target from outside, as a function that takes any bytes and panics where a promise breaks.
+//! Every fuzz target as a function that takes any bytes and panics if a guarantee is violated.
 //!
-//! The fuzzer in `fuzz/` drives these functions with inputs that it makes up. What it found worth
-//! keeping lies in `fuzz/corpus` and `fuzz/found`, and the tests of this package replay it.
+//! The fuzzer in `fuzz/` calls these functions with generated inputs. `fuzz/corpus` and `fuzz/found` contain
+//! the inputs worth keeping, and the tests of this package replay them.
 
 pub mod clouds;
 pub mod databases;
@@ -21,11 +21,11 @@ mod sentences;
 pub mod sessions;
 mod solve;
 
-/// A target: takes any bytes, and panics where the code behind it breaks a promise.
-pub type Door = fn(&[u8]);
+/// A target: takes any bytes, and panics if the code violates a guarantee.
+pub type FuzzTarget = fn(&[u8]);
 
 /// Every target with the name of its fuzz target.
-pub const TARGETS: [(&str, Door); 11] = [
+pub const TARGETS: [(&str, FuzzTarget); 11] = [
     ("links", links::fuzz),
     ("messages", messages::fuzz),
     ("g2o", g2o::fuzz),

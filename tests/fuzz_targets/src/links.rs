@@ -7,7 +7,7 @@ use kit::values::Values;
 
 use widgets::registry::SPECS;
 
-/// A text is taken or refused. What is taken lies in the range and reads back to the same bits.
+/// A valid text has a value in the range that reads back to the same bits.
 pub fn fuzz(data: &[u8]) {
     let [widget, param, text @ ..] = data else {
         return;

@@ -1,4 +1,4 @@
-//! A widget that only listens.
+//! A widget without computation.
 
 use kit::model::{Activity, Model, Outcome, Standing, Table, unknown_button};
 use kit::param::ParamError;
@@ -6,16 +6,16 @@ use kit::scene::Scene;
 use kit::spec::WidgetSpec;
 use kit::values::Values;
 
-/// A widget that takes values and presses by the rules of another, and computes nothing.
+/// A widget that validates values and presses like another one, and computes nothing.
 pub struct Listener {
     spec: &'static WidgetSpec,
     values: Values,
-    /// Buttons pressed so far.
+    /// Number of pressed buttons.
     pub presses: usize,
 }
 
 impl Listener {
-    /// A listener with the parameters and buttons of that widget.
+    /// Creates a listener with the parameters and buttons of that widget.
     pub fn new(spec: &'static WidgetSpec) -> Self {
         Self {
             spec,

@@ -1,4 +1,4 @@
-//! Recorded logs of every format: read, told of, written in other formats, and mapped.
+//! Recorded logs of every format: read, described, written in other formats, and mapped.
 
 use robot_io::carmen::{CarmenReader, write_carmen};
 use robot_io::doctor::Checkup;
@@ -12,12 +12,13 @@ use robot_io::run::{LogRun, OdometryUse};
 use crate::runs::{assert_finite, assert_loads, drive};
 use crate::sentences::{NAME, assert_refusal, assert_sentence};
 
-/// More frames are read, but not mapped: the target is about the readers.
+/// Longer logs are read, but not mapped, because the target is the readers.
 const MAX_MAPPED: usize = 6;
-/// Nor are scans with more beams.
+/// The same for scans with more beams.
 const MAX_BEAMS: usize = 64;
 
-/// A log is refused in one sentence, or yields frames of finite numbers, which can be written and mapped.
+/// An invalid log yields one sentence; a valid one has frames of finite numbers, which can be written and
+/// mapped.
 pub fn fuzz(bytes: &[u8]) {
     let Some((frames, notes)) = read(bytes, &LogOptions::default()) else {
         return;
@@ -44,7 +45,7 @@ pub fn fuzz(bytes: &[u8]) {
     saved.iter().for_each(|saved| assert_loads(saved));
 }
 
-/// What scans against odometry show is told in sentences, and moves no pose out of the world.
+/// The comparison of scans with odometry yields sentences and finite poses.
 fn compare(bytes: &[u8]) {
     let reader =
         LogFormat::open(bytes, NAME, &LogOptions::default()).expect("it was opened before");
@@ -60,7 +61,7 @@ fn compare(bytes: &[u8]) {
     screen.lines().skip(1).for_each(assert_sentence);
 }
 
-/// The frames and notes of a log, unless it is refused in a sentence.
+/// The frames and notes of a log, or `None` for an error, which must be one sentence.
 pub fn read(bytes: &[u8], options: &LogOptions) -> Option<(Vec<LogFrame>, LogNotes)> {
     let told = |refusal: robot_io::log::LogError| assert_refusal(&refusal.to_string());
     let mut reader = LogFormat::open(bytes, NAME, options).map_err(told).ok()?;
@@ -72,7 +73,7 @@ pub fn read(bytes: &[u8], options: &LogOptions) -> Option<(Vec<LogFrame>, LogNot
         frames.push(frame);
     }
     let notes = reader.notes();
-    // Bytes of a packed file are counted as they come out.
+    // Bytes of a compressed file are counted after decompression.
     let is_packed = bytes.starts_with(b"\x1f\x8b") || bytes.starts_with(b"\x28\xb5\x2f\xfd");
     assert!(is_packed || notes.bytes <= bytes.len() as u64);
     notes
@@ -83,7 +84,7 @@ pub fn read(bytes: &[u8], options: &LogOptions) -> Option<(Vec<LogFrame>, LogNot
     Some((frames, notes.clone()))
 }
 
-/// A frame reads back from a line of JSON to the same bits, and from one of CARMEN with as many beams.
+/// A frame reads back from a JSON line to the same bits, and from a CARMEN line with as many beams.
 fn assert_written(frame: &LogFrame) {
     let mut line = Vec::new();
     FrameLine::from(frame)

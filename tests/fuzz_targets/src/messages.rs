@@ -1,7 +1,7 @@
-//! Messages of a page around an embedded widget, as JSON: what of them reaches the core.
+//! JSON messages of a page to an embedded widget, as far as they reach the core.
 //!
-//! The first byte names the widget, the rest is the message: `{"type": "set", "values": {…}}` or
-//! `{"type": "press", "button": "…"}`. What `embed.ts` refuses by itself ends there and here alike.
+//! The first byte selects the widget, the rest is the message: `{"type": "set", "values": {…}}` or `{"type":
+//! "press", "button": "…"}`. Messages that `embed.ts` rejects end here, too.
 
 use kit::model::Model;
 use serde_json::Value;
@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::listener::Listener;
 use widgets::registry::SPECS;
 
-/// A refused value or press changes nothing; a taken one changes what it names and nothing else.
+/// A rejected value or press changes no state; an accepted one changes only what it names.
 pub fn fuzz(data: &[u8]) {
     let [widget, message @ ..] = data else {
         return;

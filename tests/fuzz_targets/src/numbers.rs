@@ -1,8 +1,8 @@
-//! Numbers as they come from outside: tame, wild, and at the edges of what an `f64` can hold.
+//! Numbers from outside: moderate, arbitrary, and at the limits of an `f64`.
 
 use arbitrary::{Result, Unstructured};
 
-/// Numbers at which code breaks that is right for all others.
+/// Special values that often reveal faults.
 const EDGES: [f64; 20] = [
     0.0,
     -0.0,
@@ -26,12 +26,12 @@ const EDGES: [f64; 20] = [
     f64::MIN,
 ];
 
-/// A small number on a grid of sixteenths: inputs that meet each other, as points do in a cell.
+/// A small number on a grid of sixteenths, so that inputs coincide, like points in a cell.
 pub fn tame(bytes: &mut Unstructured<'_>) -> Result<f64> {
     Ok(f64::from(bytes.arbitrary::<i8>()?) / 16.0)
 }
 
-/// Any finite number, mostly a tame one.
+/// Any finite number, mostly a moderate one.
 pub fn finite(bytes: &mut Unstructured<'_>) -> Result<f64> {
     match bytes.arbitrary::<u8>()? {
         0..=199 => tame(bytes),
@@ -43,7 +43,7 @@ pub fn finite(bytes: &mut Unstructured<'_>) -> Result<f64> {
     }
 }
 
-/// Any number at all, mostly a tame one.
+/// Any number, mostly a moderate one.
 pub fn any(bytes: &mut Unstructured<'_>) -> Result<f64> {
     match bytes.arbitrary::<u8>()? {
         0..=239 => finite(bytes),
@@ -54,7 +54,7 @@ pub fn any(bytes: &mut Unstructured<'_>) -> Result<f64> {
     }
 }
 
-/// A factor of a power of ten between 1e-12 and 1e12.
+/// A power of ten between 1e-12 and 1e12.
 pub fn scale(bytes: &mut Unstructured<'_>) -> Result<f64> {
     const POWERS: [f64; 9] = [1.0, 1e-12, 1e-6, 1e-3, 10.0, 1e2, 1e3, 1e6, 1e12];
     bytes.choose(&POWERS).copied()

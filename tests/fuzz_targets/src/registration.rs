@@ -1,4 +1,4 @@
-//! Registration of arbitrary clouds: empty, collinear, duplicate, and as far out as numbers go.
+//! Registration of arbitrary clouds: empty, collinear, duplicate, and with extreme coordinates.
 
 use arbitrary::{Result, Unstructured};
 use ch16_slam2d::cloud::{DenseMap, NearestMap, PointCloud, VoxelMap};
@@ -8,16 +8,16 @@ use pr_geom::{Point2, SE2};
 
 use crate::numbers::{finite, tame};
 
-/// Most points of a cloud.
+/// Largest number of points in a cloud.
 const MAX_POINTS: usize = 32;
-/// Most iterations of a registration.
+/// Largest number of iterations.
 const MAX_ITERATIONS: usize = 12;
-/// Radius within which points give each other normals, m.
+/// Radius of the normals, m.
 const NORMAL_RADIUS_M: f64 = 0.5;
 
-/// The result is finite; both maps lead to the same one; nothing panics.
+/// The result is finite and the same for both maps; no panic.
 pub fn fuzz(data: &[u8]) {
-    // Bytes that end early read as zeros; nothing else can fail to be read.
+    // Missing bytes read as zeros; nothing else can fail.
     let _ = case(&mut Unstructured::new(data));
 }
 
@@ -84,12 +84,12 @@ fn align_by_icp(
     dense.rebuild(cloud);
     let found = register(scan, &voxels, init, &config);
     let again = register(scan, &dense, init, &config);
-    // Debug prints every bit of a number, and a difference where there is one.
+    // Debug output contains every bit of a number.
     assert_eq!(format!("{found:?}"), format!("{again:?}"));
     Ok(())
 }
 
-/// Registers, and checks what every registration promises.
+/// Registers, and checks the guarantees of every registration.
 pub fn register(
     scan: &PointCloud,
     map: &impl NearestMap,

@@ -1,4 +1,4 @@
-//! What every run of the estimator promises, whatever it was given.
+//! Guarantees of every run of the estimator, for any input.
 
 use pr_geom::SE2;
 use robot_io::log::LogFrame;
@@ -7,7 +7,7 @@ use robot_io::session::Session;
 
 use crate::sentences::{NAME, assert_sentence};
 
-/// Takes some frames and ends: every pose is finite. Answers with what is saved, if anything is.
+/// Processes some frames and ends: every pose is finite. Returns the saved session, if there is one.
 pub fn drive(run: &mut LogRun, frames: impl IntoIterator<Item = LogFrame>) -> Option<Vec<u8>> {
     for frame in frames {
         if let Some(report) = run.step(frame) {
@@ -29,13 +29,13 @@ pub fn drive(run: &mut LogRun, frames: impl IntoIterator<Item = LogFrame>) -> Op
     run.session().map(|session| session.to_bytes())
 }
 
-/// What was saved is saved to the same bytes once it was loaded.
+/// A loaded session saves to the same bytes.
 pub fn assert_loads(saved: &[u8]) {
     let loaded = Session::of_bytes(saved, NAME).expect("what a run saves can be loaded");
     assert!(loaded.to_bytes() == saved, "{loaded:?}");
 }
 
-/// Every number of a pose is one.
+/// Every number of a pose is finite.
 pub fn assert_finite(pose: &SE2) {
     let is_finite = pose.to_array().iter().all(|value| value.is_finite());
     assert!(is_finite, "{pose:?}");

@@ -1,4 +1,5 @@
-//! Bytes as a session's file: with the lengths and the checksum that would stop every other change.
+//! Completes bytes to a session file, with lengths and the checksum, without which every mutation would be
+//! rejected.
 //!
 //! `docs/sessions.md` describes the file.
 
@@ -31,8 +32,8 @@ pub fn sealed(body: &[u8]) -> Vec<u8> {
     file
 }
 
-/// The sections of `text`, which follow each other by their letters alone, with their lengths. Lines
-/// `NAME VALUE` of the first section change the default parameters.
+/// Adds the lengths to the sections of `text`, which are separated only by their tags. Lines `NAME VALUE` of
+/// the first section change the default parameters.
 pub fn with_lengths(mut text: &[u8]) -> Vec<u8> {
     let mut body = Vec::new();
     for (number, tag) in SECTIONS.iter().enumerate() {
@@ -52,7 +53,7 @@ pub fn with_lengths(mut text: &[u8]) -> Vec<u8> {
     body
 }
 
-/// The start at the origin, and the default parameters with those that the lines change.
+/// The start at the origin, and the default parameters with the changes of the lines.
 fn parameters(lines: &[u8]) -> Vec<u8> {
     let mut config = RobotConfig::default();
     for line in String::from_utf8_lossy(lines).lines() {
@@ -77,7 +78,7 @@ mod tests {
 
     use super::*;
 
-    /// What [`sealed`] and [`with_lengths`] put around the sections of a file.
+    /// Removes what [`sealed`] and [`with_lengths`] add to the sections of a file.
     fn taken_apart(file: &[u8]) -> Vec<u8> {
         let mut rest = &file[20..file.len() - 8];
         let mut text = Vec::new();
@@ -85,7 +86,7 @@ mod tests {
             let length = u64::from_le_bytes(rest[4..12].try_into().unwrap()) as usize;
             let (content, after) = rest[12..].split_at(length);
             text.extend_from_slice(&tag[..]);
-            // The scanner of the test has the default parameters but for one.
+            // The scanner of the test has the default parameters except for one.
             if tag == b"CONF" {
                 text.extend_from_slice(b"scan_normal_radius_m 0.7\n");
             } else {
@@ -97,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_taken_apart_and_put_together_is_a_session_again() {
+    fn a_file_without_lengths_and_checksum_is_restored_to_a_session() {
         let mut run = LogRun::new(OdometryUse::Log);
         for step in 0..3 {
             let along_m = 0.4 * f64::from(step);

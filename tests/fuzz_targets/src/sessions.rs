@@ -1,7 +1,7 @@
-//! Saved sessions: loaded, written back, gone on from, mapped, and localized on.
+//! Saved sessions: loaded, written back, continued, mapped, and localized on.
 //!
-//! The first byte says how much of the file is put right, see [`crate::sealed`]; the rest is the file,
-//! or its sections.
+//! The first byte selects how much of the file is repaired, see [`crate::sealed`]; the rest is the file, or
+//! its sections.
 
 use std::f64::consts::TAU;
 
@@ -19,16 +19,17 @@ use crate::runs::{assert_finite, assert_loads, drive};
 use crate::sealed::{sealed, with_lengths};
 use crate::sentences::{NAME, assert_refusal, assert_sentence};
 
-/// Larger sessions are loaded and written, but not gone on from: the target is about the file.
+/// Larger sessions are loaded and written, but not continued, because the target is the file format.
 const MAX_KEYFRAMES: usize = 6;
-/// Nor are those with more points of a scan.
+/// The same for scans with more points.
 const MAX_POINTS: usize = 64;
-/// Nor are those with larger numbers in their parameters: iterations, say, take the time they are given.
+/// The same for larger parameters, because iterations, for example, take time.
 const MAX_SETTING: f64 = 100.0;
 /// Side of a map's cells, m.
 const CELL_M: f64 = 0.5;
 
-/// A file is refused in one sentence, or writes back to what loads to the same, and can be used.
+/// An invalid file yields one sentence; a valid one can be used, and its written copy loads to the same
+/// session.
 pub fn fuzz(data: &[u8]) {
     let Some((&how, text)) = data.split_first() else {
         return;
@@ -46,7 +47,7 @@ pub fn fuzz(data: &[u8]) {
     let written = session.to_bytes();
     let again = Session::of_bytes(&written, NAME).expect("what was written can be loaded");
     assert!(again.to_bytes() == written);
-    // Debug prints every bit of a number, and of what is none.
+    // Debug output contains every bit of a number, NaN included.
     assert_eq!(format!("{again:?}"), format!("{session:?}"));
     if is_small(&session) {
         go_on(&session);
@@ -67,7 +68,7 @@ fn is_small(session: &Session) -> bool {
         && values.all(|value| value <= MAX_SETTING)
 }
 
-/// The next scans: a round room, and the wheels drive on.
+/// The next scans: a round room, with moving odometry.
 fn frames(session: &Session) -> impl Iterator<Item = LogFrame> + '_ {
     (1..=2).map(|step| LogFrame {
         stamp_s: session.driven.last_stamp_s + 0.25 * f64::from(step),
@@ -82,7 +83,7 @@ fn frames(session: &Session) -> impl Iterator<Item = LogFrame> + '_ {
 
 fn go_on(session: &Session) {
     match LogRun::resume(session, OdometryUse::Log) {
-        // Numbers at the end of what can be loaded may grow beyond it.
+        // Numbers at the limit of what can be loaded may grow beyond it.
         Ok(mut run) => {
             let saved = drive(&mut run, frames(session)).expect("a run goes on");
             if let Err(refusal) = Session::of_bytes(&saved, NAME) {

@@ -1,9 +1,9 @@
-//! What every solve promises, whatever the graph.
+//! Guarantees of every solve, for any graph.
 
 use pr_geom::SE2;
 use pr_optim::{OptimizeError, Optimizer, Problem, Session, Settings, Start, StopReason};
 
-/// Solves, and checks that the result is finite and no worse than its start, or an error that is typed.
+/// Solves, and checks that the result is finite and no worse than its start, or a typed error.
 pub fn solve(problem: &mut Problem, settings: Settings, start: Start) {
     let given = problem.poses().to_vec();
     let (cost, chi2) = problem.cost_and_chi2(settings.kernel);
@@ -37,13 +37,13 @@ pub fn solve(problem: &mut Problem, settings: Settings, start: Start) {
     }
     for (node, is_fixed) in problem.fixed().iter().enumerate() {
         if *is_fixed {
-            // Adding nothing to −0 makes it 0.
+            // Adding zero to −0 makes it 0.
             assert_eq!(given[node], problem.poses()[node], "node {node} is fixed");
         }
     }
 }
 
-/// Whether the poses are the same, bit by bit.
+/// Whether the poses are equal, bit by bit.
 fn assert_same(expected: &[SE2], found: &[SE2]) {
     let bits = |pose: &SE2| pose.to_array().map(f64::to_bits);
     assert!(

@@ -1,6 +1,6 @@
-//! What the fuzzer keeps and what it found passes through its target, without any fuzzer.
+//! Replays the inputs of the corpus and of earlier findings without a fuzzer.
 //!
-//! For a report of coverage `TARGET` names one target and `MORE_INPUTS` a folder of further inputs.
+//! For a coverage report `TARGET` selects one target and `MORE_INPUTS` a folder of further inputs.
 
 use std::env;
 use std::fs;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use slam2d_fuzz_targets::TARGETS;
 
-/// The inputs are part of the repository: hundreds of small files at most.
+/// The inputs are part of the repository: at most some hundred small files.
 const MAX_FILES: usize = 800;
 const MAX_BYTES: usize = 200_000;
 
@@ -17,7 +17,7 @@ fn fuzz() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz")
 }
 
-/// The inputs of a folder by name; none where there is no folder.
+/// The inputs of a folder by name; empty without the folder.
 fn inputs(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let entries = fs::read_dir(folder).into_iter().flatten();
     let mut paths: Vec<_> = entries
@@ -32,7 +32,7 @@ fn inputs(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 }
 
 #[test]
-fn every_kept_input_passes_through_its_door() {
+fn every_kept_input_passes_its_target() {
     let only = env::var("TARGET").ok();
     for (name, target) in TARGETS {
         if only.as_deref().is_some_and(|only| only != name) {
@@ -53,7 +53,7 @@ fn every_kept_input_passes_through_its_door() {
 }
 
 #[test]
-fn the_inputs_of_the_repository_stay_small_and_each_belongs_to_a_door() {
+fn the_inputs_of_the_repository_are_small_and_each_belongs_to_a_target() {
     let (mut files, mut bytes) = (0, 0);
     for kind in ["corpus", "found"] {
         for entry in fs::read_dir(fuzz().join(kind)).expect("the folder is there") {

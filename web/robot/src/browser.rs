@@ -1,4 +1,4 @@
-//! What the worker's JavaScript sees: a file in, orders in, updates out.
+//! The worker's interface for JavaScript: files and orders in, updates out.
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
@@ -9,14 +9,14 @@ use robot_io::log_bytes::LogBytes;
 use wasm_bindgen::prelude::*;
 
 use crate::engine::Engine;
-use crate::given::{Choices, Given, GivenFile};
+use crate::input::{Choices, InputFile, LogInput};
 use crate::sample;
 use crate::update::{Stage, Update};
 
-/// So much of a file is asked for at once, bytes.
+/// Number of bytes of a file that are read at once.
 const PIECE_BYTES: usize = 1 << 18;
 
-/// A file that JavaScript reads: `read(which, from, to)` gives the bytes of that part.
+/// A file that JavaScript reads: `read(which, from, to)` returns the bytes of that range.
 struct JsFile {
     read: Function,
     which: f64,
@@ -59,7 +59,7 @@ impl Seek for JsFile {
     }
 }
 
-/// A log on its way to a map.
+/// A log that is being mapped.
 #[wasm_bindgen]
 pub struct Robot {
     engine: Engine<'static>,
@@ -67,11 +67,11 @@ pub struct Robot {
 
 #[wasm_bindgen]
 impl Robot {
-    /// Opens files that came together: `read(which, from, to)` gives bytes of one of them as a `Uint8Array`, and
-    /// `chosen` holds options, a line each: `scan-topic /front`.
+    /// Opens files that were given together: `read(which, from, to)` returns bytes of one of them as a
+    /// `Uint8Array`, and `chosen` holds options, one per line: `scan-topic /front`.
     ///
     /// # Errors
-    /// One sentence where they cannot be mapped.
+    /// One sentence if they cannot be mapped.
     #[wasm_bindgen(constructor)]
     pub fn new(
         names: Vec<String>,
@@ -85,11 +85,11 @@ impl Robot {
         Ok(Self { engine })
     }
 
-    /// Looks for the robot of another log on the map; `start` is `[x, y, θ]`, m and rad, or empty where
-    /// it may be anywhere.
+    /// Localizes the robot of another log on the map; `start` is `[x, y, θ]`, m and rad, or empty if the
+    /// start pose is unknown.
     ///
     /// # Errors
-    /// One sentence where that cannot be done.
+    /// One sentence if that is impossible.
     pub fn locate(
         &mut self,
         names: Vec<String>,
@@ -107,31 +107,31 @@ impl Robot {
         begun.map_err(|said| JsError::new(&said))
     }
 
-    /// Does the next piece of work; false where nothing is left to do.
+    /// Does the next piece of work. Returns false if there is none.
     pub fn step(&mut self) -> bool {
         self.engine.step()
     }
 
-    /// Whether all of the file's work is done, or nothing came of it.
+    /// Whether all work on the file is finished, or has failed.
     #[wasm_bindgen(js_name = isOver)]
     pub fn is_over(&self) -> bool {
         matches!(self.engine.stage(), Stage::Done | Stage::Failed)
     }
 
-    /// Does what the reader asks.
+    /// Executes an order of the reader.
     pub fn order(&mut self, order: &str) {
         self.engine.order(order);
     }
 
-    /// What changed since the last call: objects of kind, text, numbers, bytes.
+    /// The changes since the last call: objects of kind, text, numbers, bytes.
     pub fn updates(&mut self) -> Array {
         self.engine.updates().iter().map(to_js).collect()
     }
 
-    /// Takes the file of a reference.
+    /// Reads the file of a reference.
     ///
     /// # Errors
-    /// One sentence where it is none.
+    /// One sentence if the file is invalid.
     pub fn reference(&mut self, bytes: &[u8], name: &str) -> Result<(), JsError> {
         let taken = self.engine.take_reference(bytes, name);
         taken.map_err(|said| JsError::new(&said))
@@ -140,14 +140,14 @@ impl Robot {
     /// The bytes of a file to save.
     ///
     /// # Errors
-    /// One sentence where there is nothing to write.
+    /// One sentence if there is no data for it.
     pub fn file(&mut self, name: &str) -> Result<Vec<u8>, JsError> {
         self.engine.file(name).map_err(|said| JsError::new(&said))
     }
 }
 
-/// The log that files make up; each is read once more for each pass over it.
-fn given(names: Vec<String>, sizes: &[f64], read: &Function) -> Result<Given<'static>, String> {
+/// The log in these files; each is read again for each pass.
+fn given(names: Vec<String>, sizes: &[f64], read: &Function) -> Result<LogInput<'static>, String> {
     let files = names.into_iter().zip(sizes).enumerate();
     let files = files.map(|(which, (name, &size))| {
         let read = read.clone();
@@ -160,19 +160,19 @@ fn given(names: Vec<String>, sizes: &[f64], read: &Function) -> Result<Given<'st
             };
             Ok(BufReader::with_capacity(PIECE_BYTES, file))
         };
-        GivenFile {
+        InputFile {
             name,
             size_bytes: size as u64,
             bytes: LogBytes::new(open),
         }
     });
-    Given::new(files.collect())
+    LogInput::new(files.collect())
 }
 
 fn to_js(update: &Update) -> JsValue {
     let object = Object::new();
     let set = |name: &str, value: &JsValue| {
-        // A fresh object takes every property.
+        // Setting a property of a new object cannot fail.
         let _ = Reflect::set(&object, &JsValue::from_str(name), value);
     };
     set("kind", &JsValue::from_str(update.kind));

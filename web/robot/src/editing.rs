@@ -1,4 +1,4 @@
-//! A graph made anew of what stays and what the reader decided.
+//! Rebuilds a graph from its odometry and the reader's decisions.
 
 use std::collections::BTreeMap;
 
@@ -7,20 +7,20 @@ use pr_geom::SE2;
 
 use crate::links::Link;
 
-/// What the reader may change of a graph, and how it is solved.
+/// Solver settings for an edited graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solving {
-    /// Most iterations.
+    /// Largest number of iterations.
     pub iterations: usize,
-    /// A step that moves no node by as much ends it, m and rad added.
+    /// The solver ends if no node moves by more, m and rad added.
     pub tolerance: f64,
     /// Width of the robust kernel, in standard deviations of an edge.
     pub huber: f64,
 }
 
-/// The graph with its odometry, these links and these pins; poses as they were.
+/// Builds the graph with its odometry, these links and these pins, at unchanged poses.
 ///
-/// `fixed` says which nodes held the gauge before any pin.
+/// `fixed` marks the nodes that held the gauge before any pin.
 #[must_use]
 pub fn rebuilt(
     base: &PoseGraph,
@@ -61,7 +61,7 @@ pub fn rebuilt(
     graph
 }
 
-/// Solves; false where it could not be, and then the poses are those before.
+/// Solves the graph. Returns false on failure; then the poses are unchanged.
 pub fn solve(graph: &mut PoseGraph, how: &Solving) -> bool {
     let report = graph.optimize_robust(how.iterations, how.tolerance, how.huber);
     !matches!(report.stop, pr_optim::StopReason::Failed { .. })

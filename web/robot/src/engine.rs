@@ -1,13 +1,13 @@
-//! A log on its way to a map, one piece of work at a time, and the orders of its reader.
+//! Maps a log one piece of work at a time, and executes the reader's orders.
 //!
-//! [`Engine::step`] reads a scan, links a keyframe or paints a few scans, and says whether there is
-//! more; [`Engine::updates`] tells what changed. The file is read as far as a step needs it, so that its
-//! size costs no memory. Nothing here asks a clock: who calls decides how long a slice is.
+//! [`Engine::step`] reads a scan, links a keyframe or paints a few scans, and returns whether there is more
+//! to do; [`Engine::updates`] returns the changes. The file is read only as far as a step needs it, so memory
+//! does not depend on its size. The engine uses no clock: the caller decides on the length of a time slice.
 
 mod checking;
 mod examining;
 mod orders;
-mod telling;
+mod reporting;
 
 use std::collections::BTreeMap;
 use std::io::{self, BufRead, Read};
@@ -22,21 +22,21 @@ use robot_io::session::{self, Session};
 use robot_io::trajectory::{StampedPose, Trajectory};
 
 use crate::files;
-use crate::given::{Choices, Given};
 use crate::grade::Reference;
 use crate::graph_log::{self, GraphSolving, loops_of};
+use crate::input::{Choices, LogInput};
 use crate::links::Link;
+use crate::other_log::OtherLog;
 use crate::picture::MapPicture;
 use crate::update::{Stage, Update};
-use crate::whereabouts::Whereabouts;
 use examining::Examination;
 
-/// What is under way.
+/// The current work.
 enum Work<'a> {
-    /// The doctor looks through all of the log before it is mapped.
+    /// The doctor reads the complete log before it is mapped.
     Examining(Box<Examination<'a>>),
     Reading(Box<dyn LogReader + 'a>),
-    /// No scan follows: the last loops are closed.
+    /// All scans are read: the last loops are closed.
     Finishing,
     Solving(Box<GraphSolving>),
     Checking,
@@ -44,7 +44,7 @@ enum Work<'a> {
     Failed(String),
 }
 
-/// Which parts changed since they were told.
+/// Parts that changed since their last update.
 #[derive(Clone, Copy, Debug, Default)]
 struct News {
     file: bool,
@@ -54,23 +54,23 @@ struct News {
     grade: bool,
 }
 
-/// A log under way.
+/// A log that is being mapped.
 pub struct Engine<'a> {
     name: String,
     size_bytes: u64,
     work: Work<'a>,
     run: LogRun,
     recorder: RunRecorder,
-    /// The graph of a file that has no scans.
+    /// The graph of a file without scans.
     graph: Option<PoseGraph>,
-    /// Share of each keyframe's scan that fits; NaN where none was registered.
+    /// Share of each keyframe's scan that fits; NaN if it was not registered.
     fits: Vec<f64>,
-    /// σ of each keyframe, m, once it was computed.
+    /// σ of each keyframe, m; empty before it is computed.
     sigmas_m: Vec<f64>,
-    /// Which nodes held the gauge before any pin.
+    /// The nodes that held the gauge before any pin.
     fixed: Vec<bool>,
     links: Vec<Link>,
-    /// Whether they stand in the order of doubt, by which the reader names them.
+    /// Whether the loops are sorted by doubt, which defines their numbers for the reader.
     is_ranked: bool,
     pins: BTreeMap<usize, SE2>,
     picture: MapPicture,
@@ -78,24 +78,24 @@ pub struct Engine<'a> {
     doubts: Vec<String>,
     look_into: Vec<usize>,
     reference: Option<(String, Reference)>,
-    /// The picture of the map that was saved last, which `map.yaml` names.
+    /// The image format that was saved last, to which `map.yaml` refers.
     image: &'static str,
     /// Another log on this map.
-    whereabouts: Option<Whereabouts<'a>>,
+    other_log: Option<OtherLog<'a>>,
     has_scans: bool,
-    /// Scans of a session that was opened.
+    /// Number of scans of the opened session.
     scans_before: usize,
     news: News,
-    /// Updates that wait to be taken, answers among them.
+    /// Updates for the next call, including answers.
     waiting: Vec<Update>,
 }
 
 impl<'a> Engine<'a> {
-    /// Opens what was given, with the options that were chosen.
+    /// Opens files with the selected options.
     ///
     /// # Errors
-    /// One sentence where it is nothing that can be mapped, solved or looked at.
-    pub fn open(given: Given<'a>, choices: &Choices) -> Result<Self, String> {
+    /// One sentence if they can be neither mapped nor solved nor shown.
+    pub fn open(given: LogInput<'a>, choices: &Choices) -> Result<Self, String> {
         let name = given.name.clone();
         let (name, size_bytes) = (name.as_str(), given.size_bytes);
         let Some(bytes) = given.parts.first() else {
@@ -143,7 +143,7 @@ impl<'a> Engine<'a> {
         })
     }
 
-    /// A session is a map that stands already.
+    /// A session contains a finished map.
     fn of_session(session: &Session, name: &str, size_bytes: u64) -> Result<Self, String> {
         let run = LogRun::reopen(session).map_err(|problem| format!("{name}: {problem}"))?;
         let keyframes = session.driven.keyframes.len();
@@ -170,7 +170,7 @@ impl<'a> Engine<'a> {
             size_bytes,
             has_scans: matches!(work, Work::Examining(_)),
             scans_before: 0,
-            whereabouts: None,
+            other_log: None,
             work,
             run: LogRun::new(OdometryUse::Log),
             recorder: RunRecorder::default(),
@@ -195,7 +195,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Where it is.
+    /// The current stage.
     #[must_use]
     pub fn stage(&self) -> Stage {
         match self.work {
@@ -208,7 +208,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Does the next piece of work; false where nothing is left to do until an order comes.
+    /// Does the next piece of work. Returns false if there is none until the next order.
     pub fn step(&mut self) -> bool {
         match core::mem::replace(&mut self.work, Work::Idle) {
             Work::Examining(examination) => self.examine(examination),
@@ -216,7 +216,7 @@ impl<'a> Engine<'a> {
             Work::Finishing => self.close_last_loops(),
             Work::Solving(solving) => self.solve(solving),
             Work::Checking => self.check(),
-            Work::Idle => return self.paint() || self.look_around(),
+            Work::Idle => return self.paint() || self.localize_next(),
             Work::Failed(problem) => {
                 self.work = Work::Failed(problem);
                 return false;
@@ -231,7 +231,7 @@ impl<'a> Engine<'a> {
                 let is_first = self.run.scans() == 0;
                 if let Some(report) = self.run.step(frame.clone()) {
                     if is_first {
-                        self.tell_offers(&reader.notes().offers);
+                        self.report_offers(&reader.notes().offers);
                     }
                     self.recorder.take(&frame, &report);
                     if report.new_keyframe.is_some() {
@@ -255,13 +255,13 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// No scan follows: what is there is linked, or the reader is told why there is nothing.
+    /// Ends the reading: links what was read, or reports why there is nothing.
     fn end_of_log(&mut self, reader: &dyn LogReader, problem: Option<String>) {
         let notes = reader.notes();
-        self.tell_offers(&notes.offers);
+        self.report_offers(&notes.offers);
         self.remarks.clone_from(&notes.about);
         let said = notes.sentences(&self.name);
-        // A map of a part of the file must not look like one of all of it.
+        // A map of a part of the file must be distinguishable from one of all of it.
         let is_cut = notes.half_written.is_some() || notes.ended_early.is_some();
         let missing = problem.as_ref().or(said.first().filter(|_| is_cut));
         let missing = missing.map_or(String::new(), |missing| format!("{missing}."));
@@ -310,7 +310,7 @@ impl<'a> Engine<'a> {
         self.begin_editing(links);
     }
 
-    /// The graph stands, and from now on the reader may change it.
+    /// The graph is finished; the reader may edit it from now on.
     fn begin_editing(&mut self, links: Vec<Link>) {
         self.links = links;
         self.fixed = self.graph().map_or_else(Vec::new, |graph| {
@@ -319,7 +319,7 @@ impl<'a> Engine<'a> {
         self.changed();
     }
 
-    /// The graph changed: all that follows from it is computed anew, and told.
+    /// Recomputes and reports everything that depends on the changed graph.
     fn changed(&mut self) {
         self.news.keyframes = true;
         self.news.loops = true;
@@ -327,21 +327,21 @@ impl<'a> Engine<'a> {
         if self.has_scans {
             self.picture.follow(poses_of(&self.run));
         }
-        if let Some(whereabouts) = &mut self.whereabouts {
-            whereabouts.moved();
+        if let Some(other_log) = &mut self.other_log {
+            other_log.moved();
         }
         self.work = Work::Checking;
     }
 
-    /// Paints the next scans; false where all are painted.
+    /// Paints the next scans. Returns false if all are painted.
     fn paint(&mut self) -> bool {
         let frames = self.recorder.keyframes();
         self.picture.step(frames, poses_of(&self.run))
     }
 
-    /// Looks for the robot of another log; false where there is none, or no scan of it is left.
-    fn look_around(&mut self) -> bool {
-        self.whereabouts.as_mut().is_some_and(Whereabouts::step)
+    /// Localizes the robot of another log. Returns false if there is no log, or no scan left.
+    fn localize_next(&mut self) -> bool {
+        self.other_log.as_mut().is_some_and(OtherLog::step)
     }
 
     fn graph(&self) -> Option<&PoseGraph> {
@@ -349,7 +349,7 @@ impl<'a> Engine<'a> {
         self.graph.as_ref().or_else(of_run)
     }
 
-    /// The keyframes with their times; nodes of a graph from a file are a second apart.
+    /// The keyframes with their times; nodes of a graph from a file are one second apart.
     fn keyframes(&self) -> Trajectory {
         let poses = self.graph().map_or(&[][..], |graph| graph.poses());
         let keyframes = self.run.slam().map_or(&[][..], |slam| slam.keyframes());
@@ -361,7 +361,7 @@ impl<'a> Engine<'a> {
         Trajectory::new(stamped.collect())
     }
 
-    /// Where every scan was taken; the nodes where there are no scans.
+    /// The pose of every scan, or of every node if there are no scans.
     fn trajectory(&self) -> Trajectory {
         if self.has_scans {
             self.run.trajectory()
@@ -375,7 +375,7 @@ fn poses_of(run: &LogRun) -> &[SE2] {
     run.slam().map_or(&[], |slam| slam.graph().poses())
 }
 
-/// The loops that were tried, or those that the reader left in the graph.
+/// The loops that were tried, or those of an edited graph.
 fn links_of(run: &LogRun) -> Vec<Link> {
     if run.links().is_empty() {
         let tried = run.loops().iter();

@@ -1,4 +1,4 @@
-//! What the reader saves, by the writers of `robot_io`.
+//! Writes the files that the reader saves, by means of `robot_io`.
 
 use std::io;
 
@@ -8,7 +8,7 @@ use robot_io::map_image::{MapImage, MapMode};
 use robot_io::session::FILE_NAME;
 use robot_io::trajectory::Trajectory;
 
-/// Side of the saved map's cells, m: what Nav2's maps have.
+/// Side of the saved map's cells, m: as usual for Nav2.
 pub const MAP_CELL_M: f64 = 0.05;
 /// Side of the report's cells, m.
 pub const REPORT_CELL_M: f64 = 0.1;
@@ -25,18 +25,18 @@ pub const NAMES: [&str; 8] = [
     "where.tum",
 ];
 
-/// The pictures of the map; the first is what `map.yaml` names before any was saved.
+/// The images of the map; `map.yaml` refers to the first one before any was saved.
 pub const MAP_IMAGES: [&str; 2] = ["map.pgm", "map.png"];
 
-/// What goes wrong where memory takes what is written: nothing that a writer could tell.
+/// An error of writing to memory, where a writer has no details to report.
 fn in_words(problem: &io::Error) -> String {
     format!("the file cannot be written: {problem}")
 }
 
-/// The map's image, or the text that names `image`.
+/// The map's image, or the text that refers to `image`.
 ///
 /// # Errors
-/// Where it cannot be written.
+/// If it cannot be written.
 pub fn map_file(map: &MapImage, name: &str, image: &str) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let written = match name {
@@ -51,7 +51,7 @@ pub fn map_file(map: &MapImage, name: &str, image: &str) -> Result<Vec<u8>, Stri
 /// TUM lines.
 ///
 /// # Errors
-/// Where they cannot be written.
+/// If they cannot be written.
 pub fn trajectory_file(trajectory: &Trajectory) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let written = trajectory.write_tum(&mut bytes);
@@ -59,7 +59,7 @@ pub fn trajectory_file(trajectory: &Trajectory) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// The graph for g2o.
+/// The graph in g2o's format.
 #[must_use]
 pub fn graph_file(graph: &PoseGraph) -> Vec<u8> {
     GraphFile::of_graph(graph).to_g2o().into_bytes()

@@ -1,9 +1,9 @@
-//! A trajectory against a reference that the reader gives: relations, or the truth.
+//! Compares a trajectory with the reader's reference: relations, or the truth.
 //!
-//! The update `grade` has ten numbers: 1 for relations or 2 for the truth, how many were compared, then
-//! mean, standard deviation, median and 95 % of the translation's error (m), and the same of the
-//! rotation's (degrees). Against the truth the trajectory is moved onto it first, and the first number of
-//! each four is the root of the mean square.
+//! The update `grade` has ten numbers: 1 for relations or 2 for the truth, the number of compared poses, then
+//! mean, standard deviation, median and 95 % quantile of the translation error (m), and the same of the
+//! rotation error (degrees). With the truth the trajectory is aligned first, and the first number of each
+//! four is the root mean square.
 
 use pr_geom::math;
 use robot_io::evaluate::{Alignment, Spread, onto_truth, relation_errors, truth_errors};
@@ -12,12 +12,12 @@ use robot_io::trajectory::{StampedPose, Trajectory};
 
 use crate::update::Update;
 
-/// A true pose may lie so far in time from a keyframe, s.
+/// Largest time difference between a true pose and a keyframe, s.
 const SLACK_S: f64 = 0.1;
-/// How far a quaternion's length may be from 1 to be one.
+/// Largest deviation of a quaternion's length from 1.
 const UNIT_SLACK: f64 = 1e-3;
 
-/// What a trajectory is compared with.
+/// The reference of a comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reference {
     /// Relations between two times.
@@ -27,10 +27,10 @@ pub enum Reference {
 }
 
 impl Reference {
-    /// Reads either; the name decides, and else whether the last four numbers are a quaternion.
+    /// Reads either kind; the name decides, otherwise whether the last four numbers are a quaternion.
     ///
     /// # Errors
-    /// One sentence with the line that is not what it has to be.
+    /// One sentence with the invalid line.
     pub fn read(bytes: &[u8], name: &str) -> Result<Self, String> {
         let ends = |end: &str| name.to_ascii_lowercase().ends_with(end);
         let is_truth = ends(".tum") || (!ends(".relations") && has_quaternions(bytes));
@@ -45,7 +45,7 @@ impl Reference {
     /// The errors in numbers and words, and the error of each keyframe, m.
     ///
     /// # Errors
-    /// One sentence where the two have no times in common.
+    /// One sentence if the two have no times in common.
     pub fn grade(
         &self,
         trajectory: &Trajectory,
@@ -114,7 +114,7 @@ fn numbers_of(spread: &Spread) -> [f64; 4] {
     [spread.mean, spread.std, spread.median, spread.p95]
 }
 
-/// The largest error of the relations that end at a keyframe or at the scans after it.
+/// The largest error of the relations that end at a keyframe or at a later scan of it.
 fn errors_by_relation(
     trajectory: &Trajectory,
     relations: &[Relation],
@@ -129,14 +129,14 @@ fn errors_by_relation(
         let poses = keyframes.poses();
         let after = poses.partition_point(|pose| pose.stamp_s <= relation.second_s);
         if let Some(slot) = errors.get_mut(after.saturating_sub(1)) {
-            // A NaN gives way to any number.
+            // `max` prefers any number to NaN.
             *slot = slot.max(error_m);
         }
     }
     errors
 }
 
-/// Whether the last four numbers of the first line have the length 1.
+/// Whether the last four numbers of the first line have length 1.
 fn has_quaternions(bytes: &[u8]) -> bool {
     let lines = bytes.split(|&byte| byte == b'\n').take(1000);
     let mut lines = lines.filter_map(|line| core::str::from_utf8(line).ok());

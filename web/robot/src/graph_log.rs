@@ -8,12 +8,12 @@ use robot_io::quality::GATE_CHI2;
 
 use crate::links::{Link, Verdict};
 
-/// Larger graphs as text are not read, bytes.
+/// Largest size of a graph as text, bytes.
 pub const MOST_BYTES: u64 = 1 << 28;
-/// First damping of the solver, relative to the diagonal.
+/// Initial damping of the solver, relative to the diagonal.
 const DAMPING: f64 = 1e-4;
 
-/// A graph under way to its minimum.
+/// A graph that is being solved.
 pub struct GraphSolving {
     problem: Problem,
     optimizer: Optimizer,
@@ -21,10 +21,10 @@ pub struct GraphSolving {
 }
 
 impl GraphSolving {
-    /// Reads a graph; `name` is what errors call it.
+    /// Reads a graph; `name` appears in errors.
     ///
     /// # Errors
-    /// One sentence with the line that is not what it has to be.
+    /// One sentence with the invalid line.
     pub fn read(bytes: &[u8], name: &str) -> Result<Self, String> {
         let graph = GraphFile::read(bytes, name).map_err(|problem| problem.to_string())?;
         if graph.nodes.is_empty() {
@@ -52,20 +52,20 @@ impl GraphSolving {
         })
     }
 
-    /// One step; false once it has ended.
+    /// Does one iteration. Returns false once it has ended.
     pub fn step(&mut self) -> bool {
         self.optimizer
             .advance(&mut self.problem, &mut self.steps)
             .is_none()
     }
 
-    /// Steps so far.
+    /// The number of iterations so far.
     #[must_use]
     pub fn steps(&self) -> usize {
         self.steps.len()
     }
 
-    /// The graph, as one that can be edited: edges between neighbours are odometry, all else loops.
+    /// The graph for editing: edges between neighbours are odometry, all others loops.
     #[must_use]
     pub fn graph(&self) -> PoseGraph {
         let mut graph = PoseGraph::new();
@@ -94,7 +94,7 @@ impl GraphSolving {
     }
 }
 
-/// The same problem with its first pose held.
+/// The same problem with its first pose fixed.
 fn with_first_fixed(problem: &Problem) -> Problem {
     let mut held = Problem::new();
     for (node, pose) in problem.poses().iter().enumerate() {

@@ -1,35 +1,35 @@
-//! Loops with their evidence and what was decided on them.
+//! Loops with their evidence and the decisions on them.
 
 use ch16_slam2d::loops::LoopVerification;
 use nalgebra::Matrix3;
 use pr_geom::SE2;
 
-/// What was decided on a loop.
+/// The decision on a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// It passed its tests and is in the graph.
     Closed = 0,
-    /// The tests turned it away.
-    TurnedAway = 1,
-    /// The reader took it out.
-    Refused = 2,
-    /// The reader put it in.
+    /// It failed the tests.
+    Rejected = 1,
+    /// The reader rejected it.
+    Removed = 2,
+    /// The reader added it.
     Added = 3,
 }
 
 impl Verdict {
-    /// Whether the graph holds it.
+    /// Whether it is in the graph.
     #[must_use]
     pub fn is_in_graph(self) -> bool {
         matches!(self, Self::Closed | Self::Added)
     }
 
-    /// What the reader's other choice makes of it.
+    /// The verdict after the reader's opposite decision.
     #[must_use]
     pub fn turned(self) -> Self {
         match self {
-            Self::Closed | Self::Added => Self::Refused,
-            Self::TurnedAway | Self::Refused => Self::Added,
+            Self::Closed | Self::Added => Self::Removed,
+            Self::Rejected | Self::Removed => Self::Added,
         }
     }
 }
@@ -37,31 +37,31 @@ impl Verdict {
 /// A loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
-    /// The older keyframe, which measured.
+    /// The older keyframe, in whose frame it was measured.
     pub old: usize,
     /// The newer keyframe.
     pub new: usize,
-    /// The newer one in the older one's frame.
+    /// Pose of the newer keyframe in the older one's frame.
     pub measurement: SE2,
     /// Inverse covariance of the residual.
     pub information: Matrix3<f64>,
-    /// The registration behind it; none in a graph from a file.
+    /// Its registration; `None` in a graph from a file.
     pub found: Option<LoopVerification>,
-    /// Squared innovation against the rest of the graph, or of the residual; none where there is none.
+    /// Squared innovation against the rest of the graph, or of the residual; `None` if unknown.
     pub chi2: Option<f64>,
-    /// The largest χ² that passes.
+    /// The threshold of χ².
     pub gate_chi2: f64,
-    /// Why its tests turned it away.
+    /// Why it failed the tests.
     pub reason: String,
-    /// What was decided.
+    /// The decision.
     pub verdict: Verdict,
 }
 
-/// Numbers that [`Link::numbers`] writes.
+/// Count of the numbers of [`Link::numbers`].
 pub const NUMBERS: usize = 10;
 
 impl Link {
-    /// A loop that was registered.
+    /// A registered loop.
     #[must_use]
     pub fn registered(found: &LoopVerification, is_in_graph: bool) -> Self {
         let chi2 = found.gate.chi2;
@@ -79,13 +79,13 @@ impl Link {
             verdict: if is_in_graph {
                 Verdict::Closed
             } else {
-                Verdict::TurnedAway
+                Verdict::Rejected
             },
         }
     }
 
-    /// New and old keyframe, share that fits, fit (m), points, margin, χ², gate, verdict, and whether it
-    /// was registered; NaN where there is no number.
+    /// New and old keyframe, share that fits, fit (m), points, margin, χ², gate, verdict, and whether it was
+    /// registered; NaN if unknown.
     #[must_use]
     pub fn numbers(&self) -> [f64; NUMBERS] {
         let found = self.found.as_ref();

@@ -1,4 +1,4 @@
-//! The map as a picture, painted a few scans at a time, and anew where the graph has moved.
+//! The map as a picture, painted a few scans at a time, and repainted after the graph has moved.
 
 use pr_geom::{SE2, math};
 use robot_io::log::LogFrame;
@@ -8,13 +8,13 @@ use crate::update::Update;
 
 /// Side of the finest cells, m.
 const FINEST_M: f64 = 0.05;
-/// A picture of more cells is painted with coarser ones.
+/// Largest number of cells; larger areas have coarser cells.
 const MOST_CELLS: usize = 1_000_000;
-/// A scan that stands farther off than this share of a cell is painted anew.
+/// Movement that requires repainting a scan, as a share of a cell.
 const MOVED_CELLS: f64 = 0.5;
 /// The same for its heading, rad.
 const TURNED_RAD: f64 = 0.01;
-/// So many scans are painted at once.
+/// Number of scans per step.
 const SCANS_AT_ONCE: usize = 8;
 
 /// The picture.
@@ -22,9 +22,9 @@ const SCANS_AT_ONCE: usize = 8;
 pub struct MapPicture {
     cell_m: f64,
     map: MapBuilder,
-    /// Where each scan stood when it was painted.
+    /// Pose of each scan when it was painted.
     painted: Vec<SE2>,
-    /// Something changed since the last [`MapPicture::update`].
+    /// Whether it changed since the last [`MapPicture::update`].
     is_new: bool,
 }
 
@@ -40,7 +40,7 @@ impl Default for MapPicture {
 }
 
 impl MapPicture {
-    /// Begins anew where poses have moved since they were painted.
+    /// Starts over if poses have moved since they were painted.
     pub fn follow(&mut self, poses: &[SE2]) {
         let has_moved = self.painted.iter().zip(poses).any(|(old, new)| {
             let shift_m = math::norm2(old.x() - new.x(), old.y() - new.y());
@@ -57,7 +57,7 @@ impl MapPicture {
         self.painted.clear();
     }
 
-    /// Paints the next scans; false where all are painted.
+    /// Paints the next scans. Returns false if all are painted.
     pub fn step(&mut self, frames: &[LogFrame], poses: &[SE2]) -> bool {
         let next = self.painted.len();
         let todo = frames.iter().zip(poses).skip(next).take(SCANS_AT_ONCE);
@@ -75,7 +75,7 @@ impl MapPicture {
         true
     }
 
-    /// The picture, where it is whole and another one than before.
+    /// The picture, if it is complete and has changed.
     pub fn update(&mut self, scans: usize) -> Option<Update> {
         if !self.is_new || self.painted.len() < scans {
             return None;
@@ -103,7 +103,7 @@ impl MapPicture {
     }
 }
 
-/// 0 where nothing is known, else 1 for free to 255 for occupied.
+/// 0 for unknown, else 1 for free to 255 for occupied.
 fn shade(log_odds: f64) -> u8 {
     if log_odds == 0.0 {
         return 0;

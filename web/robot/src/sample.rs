@@ -1,5 +1,5 @@
-//! The sample: the simulator's ring, twice around, as a log of CARMEN, and the truth of it; and another
-//! day in the ring, where the robot is switched on half way and knows nothing of the first.
+//! The sample: the simulator's ring, twice around, as a CARMEN log with its truth; and another day in the
+//! ring, on which the robot is switched on halfway with an unknown pose.
 
 use core::ops::RangeInclusive;
 
@@ -10,12 +10,12 @@ use robot_io::carmen::write_carmen;
 use robot_io::log::LogFrame;
 use robot_io::trajectory::{StampedPose, Trajectory};
 
-/// Its noise: wheels twice as bad as the chapter's.
+/// Its noise: odometry with twice the chapter's variances.
 const NOISE_FACTOR: f64 = 2.0;
 
 /// Seed of the other day.
 const OTHER_SEED: u32 = 11;
-/// The robot of the other day is switched on after this share of the way, and off after that one.
+/// The shares of the path at which the robot of the other day is switched on and off.
 const OTHER_PART: [f64; 2] = [0.55, 0.85];
 
 fn drive(config: &DriveConfig) -> Drive {
@@ -26,7 +26,7 @@ fn drive(config: &DriveConfig) -> Drive {
     Drive::simulate(&config.on_course(&Course::ring()))
 }
 
-/// To the millimetre, as a sensor tells it.
+/// Rounds like a sensor's output.
 fn rounded(value: f64, digits: i32) -> f64 {
     let scale = f64::from(10_i32.pow(digits.unsigned_abs()));
     (value * scale).round() / scale
@@ -59,7 +59,7 @@ pub fn another_day() -> Vec<u8> {
     log_of(&drive, first..=last)
 }
 
-/// Lines of CARMEN; the wheels count from where the robot is switched on.
+/// CARMEN lines; odometry starts where the robot is switched on.
 fn log_of(drive: &Drive, ticks: RangeInclusive<usize>) -> Vec<u8> {
     let mut log = Vec::new();
     let mut wheels = SE2::identity();

@@ -1,4 +1,4 @@
-//! What changed since the widget was last told: a kind, a text, numbers and bytes.
+//! Changes for the widget: a kind, a text, numbers and bytes.
 //!
 //! | kind | numbers | text, bytes |
 //! |---|---|---|
@@ -6,38 +6,38 @@
 //! | `stage` | [`Stage`] as a number, share done, scans, loops tried, loops closed | what failed |
 //! | `keyframes` | stamp (s), x, y (m), θ (rad), fit, σ (m) of each | |
 //! | `map` | columns, rows, least x, least y, cell (m) | a byte a cell from the least y: 0 unknown, 1 free … 255 occupied |
-//! | `loops` | ten for each, see [`links`](crate::links) | a line each: why it was turned away |
-//! | `doubts` | keyframes to look into | a sentence a line |
+//! | `loops` | ten for each, see [`links`](crate::links) | a line each: why it was rejected |
+//! | `doubts` | keyframes to check | a sentence a line |
 //! | `diagnosis` | | the doctor's screen as `slam2d doctor --json` prints it |
-//! | `remarks` | | what the log's owner should know, a sentence a line |
+//! | `remarks` | | remarks for the log's owner, a sentence a line |
 //! | `scan` | keyframe, then x and y of every point in the body's frame, m | |
 //! | `grade` | see [`grade`](crate::grade) | in words |
-//! | `errors` | error of each keyframe, m; NaN where there is none | |
-//! | `offers` | | an option a line: its name, what is taken, what could be, with tabs between them |
-//! | `where` | see [`whereabouts`](crate::whereabouts) | the other log's name, then a sentence a line |
-//! | `answer` | | what became of the last order |
+//! | `errors` | error of each keyframe, m; NaN if unknown | |
+//! | `offers` | | an option a line: its name, the current choice, the others, separated by tabs |
+//! | `where` | see [`other_log`](crate::other_log) | the other log's name, then a sentence a line |
+//! | `answer` | | the reply to the last order |
 
-/// How far the engine is.
+/// Progress of the engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// The file is read, scan by scan.
     Reading = 1,
-    /// No scan follows: the last loops are closed.
+    /// All scans are read: the last loops are closed.
     Finishing = 2,
     /// A graph from a file is solved.
     Solving = 3,
     /// The covariances are computed.
     Checking = 4,
-    /// The map stands.
+    /// The map is finished.
     Done = 5,
-    /// Nothing could be done with the file.
+    /// The file could not be processed.
     Failed = 6,
 }
 
 /// One change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Update {
-    /// Which part changed.
+    /// The part that changed.
     pub kind: &'static str,
     /// Words.
     pub text: String,
@@ -48,7 +48,7 @@ pub struct Update {
 }
 
 impl Update {
-    /// A change that is numbers alone.
+    /// A change that consists of numbers only.
     #[must_use]
     pub fn numbers(kind: &'static str, numbers: Vec<f64>) -> Self {
         Self {
@@ -59,7 +59,7 @@ impl Update {
         }
     }
 
-    /// A change that is words alone.
+    /// A change that consists of text only.
     #[must_use]
     pub fn text(kind: &'static str, text: impl Into<String>) -> Self {
         Self {

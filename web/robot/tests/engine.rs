@@ -1,4 +1,4 @@
-//! The sample through the engine, and what a reader asks of it.
+//! The sample through the engine, and the reader's orders.
 
 use std::sync::OnceLock;
 
@@ -7,7 +7,7 @@ use robot_io::log_bytes::LogBytes;
 use robot_io::log_format::LogFormat;
 use robot_io::run::{LogRun, OdometryUse};
 use slam_robot::engine::Engine;
-use slam_robot::given::{Choices, Given};
+use slam_robot::input::{Choices, LogInput};
 use slam_robot::sample;
 use slam_robot::update::{Stage, Update};
 
@@ -16,8 +16,8 @@ pub fn files() -> &'static (Vec<u8>, Vec<u8>) {
     FILES.get_or_init(sample::ring)
 }
 
-pub fn given<'a>(bytes: &'a [u8], name: &str) -> Given<'a> {
-    Given::one(name, bytes.len() as u64, bytes)
+pub fn given<'a>(bytes: &'a [u8], name: &str) -> LogInput<'a> {
+    LogInput::one(name, bytes.len() as u64, bytes)
 }
 
 pub fn open<'a>(bytes: &'a [u8], name: &str) -> Result<Engine<'a>, String> {
@@ -30,7 +30,7 @@ pub fn finished(bytes: &[u8]) -> Engine<'_> {
     engine
 }
 
-/// Refuses the first loop of the list; what is told then.
+/// Rejects the first loop of the list. Returns the updates.
 pub fn refuse_first(engine: &mut Engine<'_>) -> Vec<Update> {
     engine.order("turn 0");
     while engine.step() {}
@@ -64,13 +64,13 @@ fn the_sample_becomes_a_map_with_loops_and_its_grade() {
     let loops = &of(&updates, "loops").numbers;
     assert!(loops.chunks(10).any(|found| found[8] == 0.0), "none closed");
     let grade = of(&updates, "grade");
-    // The sensor sees to the centimetre and the ring is 40 m long: off by more would be lost.
+    // The sensor reads to the centimetre and the ring is 40 m long: a larger error means a lost robot.
     assert!(grade.numbers[2] < 0.1, "{}", grade.text);
     assert_eq!(of(&updates, "errors").numbers.len(), keyframes);
 }
 
-/// A loop as it is told: newer and older keyframe, χ² and its gate, and the verdict.
-fn told_loops(updates: &[Update]) -> Vec<([usize; 2], f64, f64, f64)> {
+/// Reported loops: newer and older keyframe, χ² and its gate, and the verdict.
+fn reported_loops(updates: &[Update]) -> Vec<([usize; 2], f64, f64, f64)> {
     let loops = of(updates, "loops").numbers.chunks(10);
     loops
         .map(|told| {
@@ -81,10 +81,10 @@ fn told_loops(updates: &[Update]) -> Vec<([usize; 2], f64, f64, f64)> {
 }
 
 #[test]
-fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
+fn loops_are_sorted_by_doubt_each_with_its_own_evidence() {
     let (log, _) = files();
     let mut engine = finished(log);
-    let told = told_loops(&engine.updates());
+    let told = reported_loops(&engine.updates());
     let closed: Vec<_> = told.iter().filter(|told| told.3 == 0.0).collect();
     assert!(closed.len() > 5);
     assert!(
@@ -92,7 +92,7 @@ fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
         "{told:?}"
     );
 
-    // The same by the command's way through the file.
+    // The same file with the command's reader.
     let mut reader = LogFormat::open(&log[..], "ring.log", &LogOptions::default()).unwrap();
     let mut run = LogRun::new(OdometryUse::Log);
     while let Some(frame) = reader.next_frame().unwrap() {
@@ -105,15 +105,15 @@ fn loops_stand_in_the_order_of_doubt_each_with_its_own_evidence() {
         let found = closed.iter().find(|told| told.0 == [link.from, link.to]);
         assert_eq!(found.map(|told| Some(told.1)), Some(link.chi2), "{link:?}");
     }
-    // A loop keeps its number while it is refused, though it is not the most doubtful any more.
-    let after = told_loops(&refuse_first(&mut engine));
+    // A rejected loop keeps its number, although it is not the most doubtful any more.
+    let after = reported_loops(&refuse_first(&mut engine));
     let ends =
         |told: &[([usize; 2], f64, f64, f64)]| told.iter().map(|told| told.0).collect::<Vec<_>>();
     assert_eq!(ends(&after), ends(&told));
 }
 
 #[test]
-fn a_loop_that_is_refused_leaves_the_graph_and_comes_back() {
+fn a_rejected_loop_leaves_the_graph_and_can_be_restored() {
     let (log, _) = files();
     let mut engine = finished(log);
     let before = engine.updates();
@@ -135,14 +135,14 @@ fn a_loop_that_is_refused_leaves_the_graph_and_comes_back() {
     assert_eq!(edges(&mut engine), all);
     let back = engine.updates();
     let [old, new] = [&before, &back].map(|updates| &of(updates, "keyframes").numbers);
-    // 1e-3 m: the solver ends where a step is small, from another start.
+    // 1e-3 m: the solver's step tolerance, from another start.
     let off = |k: &usize| (old[*k] - new[*k]).abs() > 1e-3;
     let places = (0..old.len()).filter(|k| [1, 2].contains(&(k % 6)));
     assert_eq!(places.filter(off).count(), 0);
 }
 
 #[test]
-fn a_keyframe_that_is_dragged_stays_there_until_it_is_let_go() {
+fn a_dragged_keyframe_is_fixed_until_it_is_released() {
     let (log, _) = files();
     let mut engine = finished(log);
     let before = engine.updates();
@@ -176,7 +176,7 @@ fn a_keyframe_that_is_dragged_stays_there_until_it_is_let_go() {
 }
 
 #[test]
-fn a_loop_is_added_where_two_scans_fit_and_told_why_not_where_they_do_not() {
+fn a_loop_is_added_if_two_scans_fit_and_otherwise_the_reason_is_reported() {
     let (log, _) = files();
     let mut engine = finished(log);
     let updates = engine.updates();
@@ -186,7 +186,7 @@ fn a_loop_is_added_where_two_scans_fit_and_told_why_not_where_they_do_not() {
     engine.order(&format!("add {new} {old}"));
     let said = of(&engine.updates(), "answer").text.clone();
     assert!(said.contains("closes a loop with"), "{said}");
-    // Opposite sides of the ring see different corridors.
+    // Opposite sides of the ring show different corridors.
     engine.order(&format!("add 0 {}", keyframes / 4));
     let said = of(&engine.updates(), "answer").text.clone();
     assert!(said.contains("does not close a loop"), "{said}");
@@ -196,10 +196,10 @@ fn a_loop_is_added_where_two_scans_fit_and_told_why_not_where_they_do_not() {
 }
 
 #[test]
-fn a_reading_that_is_stopped_keeps_what_was_read() {
+fn a_stopped_reading_keeps_what_was_read() {
     let (log, truth) = files();
     let mut engine = open(log, "ring.log").unwrap();
-    // The doctor has seen all of it before its first scan is mapped.
+    // The doctor has read the complete log before its first scan is mapped.
     let scans = |engine: &mut Engine<'_>| of(&engine.updates(), "stage").numbers[2];
     while scans(&mut engine) < 60.0 {
         engine.step();
@@ -231,7 +231,7 @@ fn a_reading_that_is_stopped_keeps_what_was_read() {
 }
 
 #[test]
-fn every_file_that_can_be_saved_is_what_its_name_says() {
+fn every_saved_file_has_the_format_of_its_name() {
     let (log, _) = files();
     let mut engine = finished(log);
     for (name, start) in [
@@ -248,7 +248,7 @@ fn every_file_that_can_be_saved_is_what_its_name_says() {
     }
     assert!(engine.file("../x").is_err());
     for name in slam_robot::files::NAMES {
-        // No other log was looked for.
+        // There was no other log.
         assert_eq!(engine.file(name).is_ok(), name != "where.tum", "{name}");
     }
 }
@@ -274,12 +274,12 @@ impl std::io::Seek for Torn<'_> {
 }
 
 #[test]
-fn a_file_that_goes_while_it_is_read_leaves_a_map_of_a_part_and_says_so() {
+fn a_file_that_fails_during_reading_leaves_a_partial_map_with_a_remark() {
     let (log, _) = files();
     let half = log[..log.len() / 2].iter().rposition(|&byte| byte == b'\n');
     let bytes = &log[..=half.unwrap()];
     let source = LogBytes::new(move || Ok(std::io::BufReader::new(Torn { bytes })));
-    let given = Given::one("ring.log", log.len() as u64, source);
+    let given = LogInput::one("ring.log", log.len() as u64, source);
     let mut engine = Engine::open(given, &Choices::default()).unwrap();
     while engine.step() {}
     assert_eq!(engine.stage(), Stage::Done);
@@ -322,7 +322,7 @@ fn a_graph_is_solved_and_edited_without_scans() {
 }
 
 #[test]
-fn files_that_are_no_logs_are_answered_in_one_sentence() {
+fn files_that_are_not_logs_are_reported_in_one_sentence() {
     let (log, _) = files();
     let half = &log[..log.len() / 2];
     let mut engine = open(half, "half.log").unwrap();

@@ -1,5 +1,5 @@
-//! What the worker promises, without any browser.
+//! Integration tests of the worker, without a browser.
 
 mod engine;
-mod given;
+mod input;
 mod sessions;

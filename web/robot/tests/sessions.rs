@@ -1,4 +1,4 @@
-//! Sessions out and in, another log on the map, and recordings with several topics.
+//! Saved and opened sessions, another log on the map, and recordings with several topics.
 
 use ch16_slam2d::localize::StartPose;
 use pr_geom::SE2;
@@ -8,10 +8,10 @@ use robot_io::run::{LogRun, OdometryUse};
 use robot_io::session::Session;
 use robot_io::trajectory::Trajectory;
 use slam_robot::engine::Engine;
-use slam_robot::given::{Choices, Given};
+use slam_robot::input::{Choices, LogInput};
+use slam_robot::other_log::{HEAD, PLACE};
 use slam_robot::sample;
 use slam_robot::update::{Stage, Update};
-use slam_robot::whereabouts::{HEAD, PLACE};
 
 use crate::engine::{files, finished, given, of, open, refuse_first};
 
@@ -110,13 +110,13 @@ fn a_session_is_edited_further_and_what_was_changed_is_saved_with_it() {
     let mut third = opened(&pinned);
     let updates = third.updates();
     assert_eq!(of(&updates, "keyframes").numbers[121], keyframes[121] + 0.5);
-    // What goes on from it goes on from the scans, not from what was pinned.
+    // Continuing uses the scans, not the pinned poses.
     let session = Session::of_bytes(&pinned, "pinned").unwrap();
     assert!(LogRun::resume(&session, OdometryUse::Log).is_ok());
 }
 
 #[test]
-fn sessions_that_are_broken_are_answered_in_one_sentence() {
+fn damaged_sessions_are_reported_in_one_sentence() {
     let session = saved();
     let mut newer = session.clone();
     newer[8] = 9;
@@ -139,11 +139,11 @@ fn sessions_that_are_broken_are_answered_in_one_sentence() {
         assert_eq!(told.lines().count(), 1);
     }
     let huge = Engine::open(
-        Given::one("x.slam2d", 1 << 30, &session[..]),
+        LogInput::one("x.slam2d", 1 << 30, &session[..]),
         &Choices::default(),
     );
     assert!(huge.err().unwrap().contains("larger than 512 MB"));
-    // By its first bytes alone it is told from a log.
+    // Its first bytes distinguish it from a log.
     assert!(open(&session, "monday.log").is_ok());
 }
 
@@ -156,7 +156,7 @@ fn look<'a>(engine: &mut Engine<'a>, log: &'a [u8], start: StartPose) -> Update 
 }
 
 #[test]
-fn the_robot_of_another_day_is_found_on_the_map_and_followed() {
+fn the_robot_of_another_day_is_localized_on_the_map_and_tracked() {
     let day = sample::another_day();
     let session = saved();
     let mut engine = opened(&session);
@@ -177,7 +177,7 @@ fn the_robot_of_another_day_is_found_on_the_map_and_followed() {
     let way = Trajectory::read_tum(&written[..], "where.tum").unwrap();
     assert_eq!(way.poses().len() as f64, head[2] + head[3]);
 
-    // The same as on the command line, which takes the session from the file.
+    // The same as the command line, which reads the session from the file.
     let session = Session::of_bytes(&session, "monday").unwrap();
     let mut run =
         robot_io::localize::LocalizeRun::new(&session, OdometryUse::Log, StartPose::Anywhere)
@@ -188,23 +188,23 @@ fn the_robot_of_another_day_is_found_on_the_map_and_followed() {
     }
     for (report, place) in run.reports().iter().zip(places.chunks(PLACE)) {
         let [x, y, theta] = report.pose.map_or([f64::NAN; 3], |pose| pose.to_array());
-        // 1e-9: a pose that hung on a keyframe meanwhile.
+        // 1e-9: a pose that was stored relative to a keyframe meanwhile.
         let is_same = |a: f64, b: f64| (a - b).abs() < 1e-9 || a.is_nan() && b.is_nan();
         assert!(is_same(place[2], x) && is_same(place[3], y) && is_same(place[4], theta));
     }
 }
 
 #[test]
-fn a_start_that_is_given_is_where_the_robot_is_looked_for() {
+fn a_given_start_restricts_the_search() {
     let day = sample::another_day();
     let session = saved();
     let mut engine = opened(&session);
     let told = look(&mut engine, &day, StartPose::Anywhere);
     let places: Vec<&[f64]> = told.numbers[HEAD..].chunks(PLACE).collect();
-    // The best place of the whole map at the first scan, localized or not.
+    // The best pose of the whole map at the first scan, localized or not.
     let found = places.iter().find(|place| place[2].is_finite()).unwrap();
     let at = SE2::new(found[2], found[3], found[4]);
-    // Three metres beside it nobody is found at the first scan; there one is.
+    // Three metres off, the first scan is not localized; at the right start it is.
     let near = look(&mut engine, &day[..], StartPose::Near(at));
     let first = |told: &Update| told.numbers[6];
     let far = SE2::new(at.x() + 30.0, at.y() + 30.0, at.theta());
@@ -219,7 +219,7 @@ fn a_start_that_is_given_is_where_the_robot_is_looked_for() {
 }
 
 #[test]
-fn the_places_go_along_where_the_reader_moves_the_map() {
+fn the_poses_follow_when_the_reader_moves_the_map() {
     let day = sample::another_day();
     let session = saved();
     let mut engine = opened(&session);
@@ -238,13 +238,13 @@ fn the_places_go_along_where_the_reader_moves_the_map() {
         .chunks(PLACE)
         .zip(back[HEAD..].chunks(PLACE))
     {
-        // 1e-3 m: the solver ends where a step is small, from another start.
+        // 1e-3 m: the solver's step tolerance, from another start.
         assert!(old[2].is_nan() || (old[2] - new[2]).abs() < 1e-3);
     }
 }
 
 #[test]
-fn what_is_no_log_is_answered_and_leaves_the_map_and_the_place_before_it() {
+fn a_file_that_is_not_a_log_is_reported_and_changes_no_state() {
     let day = sample::another_day();
     let session = saved();
     let mut engine = opened(&session);
@@ -272,7 +272,7 @@ fn what_is_no_log_is_answered_and_leaves_the_map_and_the_place_before_it() {
 }
 
 #[test]
-fn a_search_is_stopped_and_keeps_what_was_found() {
+fn a_stopped_search_keeps_its_results() {
     let day = sample::another_day();
     let session = saved();
     let mut engine = opened(&session);
@@ -293,7 +293,7 @@ fn a_search_is_stopped_and_keeps_what_was_found() {
 }
 
 #[test]
-fn a_recording_says_what_its_options_could_choose_and_takes_them() {
+fn a_recording_lists_the_choices_of_its_options_and_accepts_them() {
     let recording = include_bytes!("../../../crates/robot_io/recordings/plain.mcap");
     let mut engine = open(recording, "plain.mcap").unwrap();
     while engine.step() {}

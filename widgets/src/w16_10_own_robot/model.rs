@@ -2,11 +2,11 @@
 
 mod buttons;
 mod hands;
+pub mod other_log;
 mod picture;
 pub mod robot;
 mod settings;
 mod tables;
-pub mod whereabouts;
 mod words;
 
 use kit::model::{
@@ -21,8 +21,8 @@ use kit::spec::{DEFAULTS, WidgetSpec};
 use kit::values::{Changed, Values};
 
 use crate::w16_10_own_robot::spec::{KEYS, MOST_KEYFRAMES, MOST_SCANS, PARAMS, SPEC};
+use other_log::Place;
 use robot::{Robot, Stage};
-use whereabouts::Place;
 
 /// Names of the panels.
 pub mod panel {
@@ -123,7 +123,7 @@ impl OwnRobot {
 
     /// The selected scan of the other log and its place.
     fn place(&self) -> Option<(usize, &Place)> {
-        let places = &self.robot.whereabouts.as_ref()?.places;
+        let places = &self.robot.other_log.as_ref()?.places;
         let last = places.len().checked_sub(1)?;
         let scan = self.values.number("scan");
         let after = places.partition_point(|place| place.scan <= scan);
@@ -133,11 +133,10 @@ impl OwnRobot {
 
     /// Moves on to the next scan of the other log whose localization state differs from the one before it.
     fn go_to_change(&mut self) {
-        let Some(((here, _), whereabouts)) = self.place().zip(self.robot.whereabouts.as_ref())
-        else {
+        let Some(((here, _), other_log)) = self.place().zip(self.robot.other_log.as_ref()) else {
             return;
         };
-        let places = &whereabouts.places;
+        let places = &other_log.places;
         let is_change = |k: &usize| {
             let before = k
                 .checked_sub(1)

@@ -4,7 +4,7 @@ use kit::model::{Model, Standing};
 use kit::outside::Delivery;
 use kit::scene::{Layer, Stroke};
 use widgets::w16_10_own_robot::model::OwnRobot;
-use widgets::w16_10_own_robot::model::whereabouts::LocalizationState;
+use widgets::w16_10_own_robot::model::other_log::LocalizationState;
 
 use crate::w16_10_own_robot::model::{mapped, tell};
 
@@ -202,7 +202,7 @@ fn a_log_without_scans_is_reported_and_wrong_numbers_change_no_state() {
     robot.press("change").unwrap();
     let mut robot = with_visitor(true);
     tell(&mut robot, "opening", "other.log", &[]);
-    assert!(robot.robot().whereabouts.is_none());
+    assert!(robot.robot().other_log.is_none());
     assert!(LocalizationState::Found.is_localized() && !LocalizationState::Doubtful.is_localized());
 }
 

@@ -1,4 +1,4 @@
-//! Rows of the point-to-plane step in w16.3, and what they know.
+//! Rows of the point-to-plane step in w16.3, and their constraints.
 
 use ch16_lab::terrain::{PlaneRows, TerrainScene, TerrainSettings};
 

@@ -1,3 +1,3 @@
-//! The worker that maps logs, linked to one module. All of it is in [`slam_robot`].
+//! Links the worker that maps logs to one module. The code is in [`slam_robot`].
 
 extern crate slam_robot as _;

@@ -1,4 +1,4 @@
-//! What is known of the graph's quality: covariances, each loop against the rest, and what to look into.
+//! The quality of the graph: covariances, each loop against the rest, and keyframes to check.
 
 use robot_io::quality::{LinkQuality, Quality, edge_tests};
 
@@ -34,8 +34,8 @@ impl Engine<'_> {
         self.work = Work::Idle;
     }
 
-    /// Puts the loops in the order of doubt: those of the graph that it contradicts most come first. It
-    /// is done once, so that a loop keeps its number while the reader changes others.
+    /// Sorts the loops by doubt: those that contradict the rest of the graph most come first. It is done
+    /// once, so that loops keep their numbers while the reader edits.
     fn rank(&mut self) {
         let doubt = |link: &Link| link.chi2.unwrap_or(f64::INFINITY) / link.gate_chi2;
         self.links.sort_by(|a, b| {
@@ -46,7 +46,7 @@ impl Engine<'_> {
         self.is_ranked = true;
     }
 
-    /// The quality of the run; the loops of a session have no registration to tell of.
+    /// The quality of the run; the loops of a session have no registration.
     pub(super) fn quality(&mut self) -> Quality {
         let mut quality = self.run.quality();
         let unregistered = self.links.iter().filter(|link| link.found.is_none());
@@ -66,7 +66,7 @@ impl Engine<'_> {
         quality
     }
 
-    /// The loops of a session against the rest of the graph.
+    /// Tests the loops of a session against the rest of the graph.
     fn test_unregistered(&mut self) {
         let is_open = |link: &Link| link.found.is_none();
         let Some(slam) = self.run.slam_mut() else {
@@ -95,7 +95,7 @@ impl Engine<'_> {
             .filter(|link| link.verdict.is_in_graph())
         {
             let Some(found) = &link.found else { continue };
-            // Two registrations of one pair of keyframes differ in what fitted.
+            // Two registrations of the same keyframes differ in their fit.
             let known = quality.links.iter().find(|known| {
                 (known.from, known.to, known.inliers) == (link.new, link.old, found.inliers)
                     && known.score == found.score

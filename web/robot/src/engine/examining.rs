@@ -1,28 +1,28 @@
-//! The doctor's pass over a log, which comes before its map.
+//! The doctor's pass over a log, before it is mapped.
 
 use robot_io::doctor::Checkup;
 use robot_io::log::LogReader as _;
 use robot_io::motion::ComparedReader;
 
 use super::{Engine, Work};
-use crate::given::{Choices, Given, compared};
+use crate::input::{Choices, LogInput, compared};
 use crate::update::Update;
 
-/// A log under the doctor's eyes.
+/// A log during the doctor's pass.
 pub(super) struct Examination<'a> {
     pub(super) reader: ComparedReader<'a>,
     checkup: Checkup,
-    /// What is opened once more to be mapped.
-    given: Given<'a>,
+    /// The files, which are opened again for mapping.
+    given: LogInput<'a>,
     choices: Choices,
 }
 
 impl<'a> Examination<'a> {
-    /// Opens what was given.
+    /// Opens the files.
     ///
     /// # Errors
-    /// One sentence if it is no log.
-    pub(super) fn begin(given: Given<'a>, choices: Choices) -> Result<Self, String> {
+    /// One sentence if they are not a log.
+    pub(super) fn begin(given: LogInput<'a>, choices: Choices) -> Result<Self, String> {
         Ok(Self {
             reader: compared(&given, &choices)?,
             checkup: Checkup::default(),
@@ -43,7 +43,7 @@ impl<'a> Engine<'a> {
                 self.work = Work::Examining(examination);
                 return;
             }
-            // What the log ends with is told again when it is mapped.
+            // Problems at the end of the log are reported again when it is mapped.
             Ok(None) => {}
             Err(_) if checkup.scans() > 0 => {}
             Err(problem) => return self.end_of_log(&examination.reader, Some(problem.to_string())),

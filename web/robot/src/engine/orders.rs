@@ -1,5 +1,5 @@
-//! What the reader asks of the engine, in words: `turn 3`, `add 120 14`, `pin 7 1.5 2 0.1`, `unpin`,
-//! `look 12`, `cancel`; and where the robot of another log was.
+//! The reader's orders: `turn 3`, `add 120 14`, `pin 7 1.5 2 0.1`, `unpin`, `look 12`, `cancel`; and the
+//! localization of another log.
 
 use ch16_slam2d::localize::StartPose;
 use ch16_slam2d::loops::LoopVerification;
@@ -12,13 +12,13 @@ use robot_io::session;
 use super::{Engine, Work};
 use crate::editing::{Solving, rebuilt, solve};
 use crate::files::{self, MAP_CELL_M, NAMES, REPORT_CELL_M};
-use crate::given::{Choices, Given};
 use crate::grade::Reference;
+use crate::input::{Choices, LogInput};
 use crate::links::{Link, Verdict};
+use crate::other_log::OtherLog;
 use crate::update::Update;
-use crate::whereabouts::Whereabouts;
 
-/// How a graph from a file is solved after a change.
+/// Solver settings for a graph from a file after a change.
 const PLAIN: Solving = Solving {
     iterations: 30,
     tolerance: 1e-6,
@@ -26,7 +26,7 @@ const PLAIN: Solving = Solving {
 };
 
 impl<'a> Engine<'a> {
-    /// Does what the reader asks; what became of it is told by the next updates.
+    /// Executes an order; the next updates contain the answer.
     pub fn order(&mut self, order: &str) {
         let mut words = order.split_ascii_whitespace();
         let name = words.next().unwrap_or_default();
@@ -48,13 +48,13 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Looks for the robot of another log on the map, once the map stands.
+    /// Starts to localize the robot of another log on the finished map.
     ///
     /// # Errors
-    /// One sentence where there is no map, or the file is no log; what was known of a log before stays.
+    /// One sentence if there is no map, or the file is no log; an earlier log then remains.
     pub fn locate(
         &mut self,
-        given: Given<'a>,
+        given: LogInput<'a>,
         choices: &Choices,
         start: StartPose,
     ) -> Result<(), String> {
@@ -70,15 +70,15 @@ impl<'a> Engine<'a> {
         let Some(session) = self.run.session() else {
             return Err("There is no map to be found on.".to_owned());
         };
-        let opened = Whereabouts::open(given, choices, &session, start)?;
-        self.whereabouts = Some(opened);
+        let opened = OtherLog::open(given, choices, &session, start)?;
+        self.other_log = Some(opened);
         Ok(())
     }
 
-    /// Ends the reading, and keeps what was read.
+    /// Ends the reading and keeps what was read.
     fn cancel(&mut self) -> Result<String, String> {
-        if let Some(whereabouts) = self.whereabouts.as_mut().filter(|it| !it.is_over()) {
-            whereabouts.end();
+        if let Some(other_log) = self.other_log.as_mut().filter(|it| !it.is_over()) {
+            other_log.end();
             return Ok("Stopped looking for the robot.".to_owned());
         }
         match core::mem::replace(&mut self.work, Work::Idle) {
@@ -91,7 +91,7 @@ impl<'a> Engine<'a> {
                 self.end_of_log(reader.as_ref(), None);
                 match self.work {
                     Work::Finishing => self.close_last_loops(),
-                    // It says itself that nothing was read.
+                    // It reports itself that nothing was read.
                     _ => return Ok(String::new()),
                 }
                 Ok(format!("Stopped after {} scans.", self.run.scans()))
@@ -103,7 +103,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// The scan of a keyframe, to be laid over the map.
+    /// The scan of a keyframe, to draw over the map.
     fn look(&mut self, keyframe: usize) -> Result<String, String> {
         let keyframes = self.run.slam().map_or(&[][..], |slam| slam.keyframes());
         if let Some(at) = keyframes.get(keyframe) {
@@ -114,7 +114,7 @@ impl<'a> Engine<'a> {
         Ok(String::new())
     }
 
-    /// Refuses a loop that is in the graph, or puts one in.
+    /// Rejects a loop of the graph, or adds one.
     fn turn(&mut self, link: usize) -> Result<String, String> {
         self.may_edit()?;
         let Some(found) = self.links.get_mut(link) else {
@@ -123,7 +123,7 @@ impl<'a> Engine<'a> {
         let (before, ends) = (found.verdict, format!("{} to {}", found.new, found.old));
         found.verdict = before.turned();
         let said = match found.verdict {
-            Verdict::Refused => format!("The loop {ends} is out of the graph"),
+            Verdict::Removed => format!("The loop {ends} is out of the graph"),
             _ => format!("The loop {ends} is in the graph"),
         };
         match self.resolve() {
@@ -135,7 +135,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Registers one keyframe on what was seen around another, and closes the loop if it passes.
+    /// Registers one keyframe on the surroundings of another, and closes the loop if it passes.
     fn add(&mut self, a: usize, b: usize) -> Result<String, String> {
         self.may_edit()?;
         let (old, new) = (a.min(b), a.max(b));
@@ -174,7 +174,7 @@ impl<'a> Engine<'a> {
         found.map_err(|problem| format!("Nothing can be tested against this graph: {problem}."))
     }
 
-    /// Holds a keyframe where the reader put it.
+    /// Fixes a keyframe at the reader's pose.
     fn pin(&mut self, keyframe: usize, pose: SE2) -> Result<String, String> {
         self.may_edit()?;
         if keyframe >= self.fixed.len() {
@@ -208,7 +208,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Solves the graph of what was decided; says how far a keyframe moved at most, m.
+    /// Solves the edited graph. Returns the largest movement of a keyframe, m.
     fn resolve(&mut self) -> Result<f64, String> {
         let Some(base) = self.graph() else {
             return Err("There is no graph to change.".to_owned());
@@ -243,10 +243,10 @@ impl<'a> Engine<'a> {
         Ok(moved_m)
     }
 
-    /// Takes a reference, and compares with it from now on.
+    /// Sets a reference for the comparison.
     ///
     /// # Errors
-    /// One sentence where it is none.
+    /// One sentence if it is invalid.
     pub fn take_reference(&mut self, bytes: &[u8], name: &str) -> Result<(), String> {
         let reference = Reference::read(bytes, name)?;
         self.reference = Some((name.to_owned(), reference));
@@ -254,7 +254,7 @@ impl<'a> Engine<'a> {
         Ok(())
     }
 
-    /// The errors against the reference, where there is one.
+    /// The errors against the reference, if there is one.
     pub(super) fn grade_updates(&self) -> Vec<Update> {
         let Some((name, reference)) = &self.reference else {
             return Vec::new();
@@ -268,7 +268,7 @@ impl<'a> Engine<'a> {
     /// The bytes of one of [`NAMES`].
     ///
     /// # Errors
-    /// One sentence where there is nothing to write.
+    /// One sentence if there is no data for it.
     pub fn file(&mut self, name: &str) -> Result<Vec<u8>, String> {
         let Some(graph) = self.graph() else {
             return Err("There is nothing to save yet.".to_owned());
@@ -277,9 +277,9 @@ impl<'a> Engine<'a> {
             "graph.g2o" => Ok(files::graph_file(graph)),
             "trajectory.tum" => files::trajectory_file(&self.trajectory()),
             "report.html" => Ok(self.report().into_bytes()),
-            "where.tum" => match &self.whereabouts {
-                Some(whereabouts) => {
-                    files::trajectory_file(&whereabouts.trajectory(super::poses_of(&self.run)))
+            "where.tum" => match &self.other_log {
+                Some(other_log) => {
+                    files::trajectory_file(&other_log.trajectory(super::poses_of(&self.run)))
                 }
                 None => Err("No other log was looked for on this map.".to_owned()),
             },

@@ -12,7 +12,7 @@ use super::robot::{Robot, Stage};
 use super::settings::{Colour, shows};
 use super::{OwnRobot, panel};
 use charts::{fit, sure};
-use visitor::whereabouts;
+use visitor::other_log;
 
 /// The view before there is a map, m.
 const EMPTY: Bounds = Bounds {
@@ -50,7 +50,7 @@ fn map(own: &OwnRobot) -> Panel {
         layers.extend(shades);
         color_bar = bar;
         layers.extend(here(own));
-        layers.extend(whereabouts(own));
+        layers.extend(other_log(own));
     }
     Panel {
         id: panel::MAP,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use kit::outside::Delivery;
 use kit::scene::{Bounds, Cell, Raster};
 
-use super::whereabouts::Whereabouts;
+use super::other_log::OtherLog;
 
 /// Progress of the worker.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -72,9 +72,9 @@ pub enum Verdict {
     /// It passed the tests.
     Closed,
     /// It failed the tests.
-    TurnedAway,
+    Rejected,
     /// The reader rejected it.
-    Refused,
+    Removed,
     /// The reader added it.
     Added,
 }
@@ -172,7 +172,7 @@ pub struct Robot {
     /// The choices for the options of a recording.
     pub offers: Vec<Offer>,
     /// The robot of another log on this map.
-    pub whereabouts: Option<Whereabouts>,
+    pub other_log: Option<OtherLog>,
     /// The reply to the last order.
     pub answer: String,
 }
@@ -191,7 +191,7 @@ impl Robot {
     /// Whether the worker is busy and can be paused.
     #[must_use]
     pub fn is_under_way(&self) -> bool {
-        self.stage.is_under_way() || self.whereabouts.as_ref().is_some_and(|it| !it.is_over)
+        self.stage.is_under_way() || self.other_log.as_ref().is_some_and(|it| !it.is_over)
     }
 
     /// Processes a delivery.
@@ -245,8 +245,8 @@ impl Robot {
             "errors" => self.errors_m = numbers.to_vec(),
             "offers" => self.offers = text.lines().filter_map(offer).collect(),
             "where" => {
-                if let Some(told) = Whereabouts::from_delivery(delivery) {
-                    self.whereabouts = Some(told);
+                if let Some(told) = OtherLog::from_delivery(delivery) {
+                    self.other_log = Some(told);
                 }
                 self.paused &= self.is_under_way();
             }
@@ -319,8 +319,8 @@ fn keyframe(numbers: &[f64]) -> Keyframe {
 fn link(numbers: &[f64], reason: &str) -> Option<Link> {
     let verdicts = [
         Verdict::Closed,
-        Verdict::TurnedAway,
-        Verdict::Refused,
+        Verdict::Rejected,
+        Verdict::Removed,
         Verdict::Added,
     ];
     Some(Link {

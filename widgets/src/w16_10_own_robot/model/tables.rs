@@ -28,7 +28,7 @@ pub fn shown(own: &OwnRobot) -> Vec<Table> {
     let mut tables = vec![loops(own)];
     tables.extend(sentences("doubts", "Doubts about the map", &robot.doubts));
     tables.extend(sentences("remarks", "About the log", &robot.remarks));
-    if let Some(told) = &robot.whereabouts {
+    if let Some(told) = &robot.other_log {
         let title = format!("About {}", told.name);
         tables.extend(sentences("remarks-where", &title, &told.remarks));
     }
@@ -131,7 +131,7 @@ fn offers(own: &OwnRobot) -> Option<Table> {
 
 /// Every scan of the other log.
 fn places(own: &OwnRobot) -> Option<Table> {
-    let told = own.robot.whereabouts.as_ref()?;
+    let told = own.robot.other_log.as_ref()?;
     let rows = told.places.iter().map(|place| {
         let [x, y, theta] = place.pose;
         vec![

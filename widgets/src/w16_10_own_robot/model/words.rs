@@ -78,7 +78,7 @@ fn sentence(own: &OwnRobot) -> String {
 
 /// The state of the other log's robot: overall, and at the current scan.
 fn visitor(own: &OwnRobot) -> String {
-    let Some(told) = &own.robot.whereabouts else {
+    let Some(told) = &own.robot.other_log else {
         return String::new();
     };
     let name = &told.name;
@@ -194,8 +194,8 @@ pub fn evidence(link: &Link) -> String {
 pub fn verdict(link: &Link) -> &'static str {
     match link.verdict {
         Verdict::Closed => "closed",
-        Verdict::TurnedAway => "turned away",
-        Verdict::Refused => "refused by you",
+        Verdict::Rejected => "turned away",
+        Verdict::Removed => "refused by you",
         Verdict::Added => "closed by you",
     }
 }
@@ -233,7 +233,7 @@ fn facts(own: &OwnRobot) -> Vec<Fact> {
         Fact::new("fit", "scan shown: fits", of_shown(|k| k.fit), "", 2),
         Fact::metres("sigma_m", "keyframe shown: σ", of_shown(|k| k.sigma_m)),
     ];
-    if let Some(told) = &robot.whereabouts {
+    if let Some(told) = &robot.other_log {
         let [.., doubtful, lost] = told.counts;
         facts.extend([
             Fact::count("where_localized", "other log: localized", told.localized()),

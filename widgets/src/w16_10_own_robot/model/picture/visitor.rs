@@ -10,8 +10,8 @@ use crate::w16_10_own_robot::model::OwnRobot;
 const SIGMAS: f64 = 3.0;
 
 /// The path of the other log's robot, and the uncertainty of its current pose.
-pub fn whereabouts(own: &OwnRobot) -> Vec<Layer> {
-    let Some(((_, shown), told)) = own.place().zip(own.robot.whereabouts.as_ref()) else {
+pub fn other_log(own: &OwnRobot) -> Vec<Layer> {
+    let Some(((_, shown), told)) = own.place().zip(own.robot.other_log.as_ref()) else {
         return Vec::new();
     };
     let line = |is_localized: bool, stroke, width_px| {

@@ -1,16 +1,16 @@
-//! Files that come together, the options for them, and the doctor's screen of them.
+//! Files that belong together, their options, and the doctor's report on them.
 
 use robot_io::log_bytes::LogBytes;
 use robot_io::run::OdometryUse;
 use serde_json::Value;
 use slam_robot::engine::Engine;
-use slam_robot::given::{Choices, Given, GivenFile};
+use slam_robot::input::{Choices, InputFile, LogInput};
 use slam_robot::update::Update;
 
 use crate::engine::{files, given, of, open};
 
-fn file<'a>(name: &str, text: &'a str) -> GivenFile<'a> {
-    GivenFile {
+fn file<'a>(name: &str, text: &'a str) -> InputFile<'a> {
+    InputFile {
         name: name.to_owned(),
         size_bytes: text.len() as u64,
         bytes: LogBytes::from(text.as_bytes()),
@@ -27,23 +27,23 @@ fn the_files_of_a_folder_are_one_recording_in_the_order_of_its_metadata() {
             file("b_1.db3", "11"),
         ]
     };
-    let given = Given::new(folder(listed)).unwrap();
+    let given = LogInput::new(folder(listed)).unwrap();
     assert_eq!(
         (given.name.as_str(), given.size_bytes),
         ("b_1.db3 and 1 more", 3)
     );
-    let given = Given::new(folder("")).unwrap();
+    let given = LogInput::new(folder("")).unwrap();
     assert_eq!(given.name, "b_0.db3 and 1 more");
-    let missing = Given::new(folder("relative_file_paths:\n  - b_2.db3\n"))
+    let missing = LogInput::new(folder("relative_file_paths:\n  - b_2.db3\n"))
         .err()
         .unwrap();
     assert!(
         missing.starts_with("metadata.yaml names b_2.db3"),
         "{missing}"
     );
-    // Alone it is for the reader of logs to refuse.
+    // A single file is rejected by the log reader.
     assert_eq!(
-        Given::new(vec![file("metadata.yaml", listed)])
+        LogInput::new(vec![file("metadata.yaml", listed)])
             .unwrap()
             .name,
         "metadata.yaml"
@@ -63,7 +63,7 @@ fn options_are_those_of_the_command() {
     assert_eq!(Choices::read(""), Ok(Choices::default()));
 }
 
-/// All that is told of a log, in its order.
+/// All updates of a log, in order.
 fn told(mut engine: Engine<'_>) -> Vec<Update> {
     let mut updates = engine.updates();
     while engine.step() {
@@ -95,7 +95,7 @@ fn the_doctor_s_screen_comes_before_the_first_keyframe_and_once() {
 }
 
 #[test]
-fn a_laser_that_was_turned_is_told_with_the_options_that_answer_it() {
+fn a_turned_laser_is_reported_with_the_options_that_correct_it() {
     let (log, _) = files();
     let choices = Choices::read("laser 0,0,180").unwrap();
     let turned = Engine::open(given(log, "ring.log"), &choices).unwrap();
@@ -111,7 +111,7 @@ fn a_laser_that_was_turned_is_told_with_the_options_that_answer_it() {
 }
 
 #[test]
-fn scans_go_alone_if_the_reader_leaves_odometry_out() {
+fn scans_are_used_alone_if_the_reader_turns_odometry_off() {
     let (log, _) = files();
     let choices = Choices::read("no-odometry").unwrap();
     let alone = told(Engine::open(given(log, "ring.log"), &choices).unwrap());

@@ -1,8 +1,8 @@
-//! “Where am I?”: the robot of another log on the map as it stands, scan by scan.
+//! “Where am I?”: localizes the robot of another log on the current map, scan by scan.
 //!
-//! The update `where` tells all of it: seven numbers on the whole ([`HEAD`]), then ten for each scan
-//! ([`PLACE`]); its text is the log's name, and below it what the owner should know, a sentence a line.
-//! Places hang on the keyframes next to them, so that they go along where the reader moves those.
+//! The update `where` contains the complete result: seven numbers for the whole ([`HEAD`]), then ten for each
+//! scan ([`PLACE`]); its text is the log's name, followed by remarks for the owner, a sentence a line. Poses
+//! are stored relative to the nearest keyframe, so they follow when the reader moves it.
 
 use ch16_slam2d::localize::{LocalizeReport, StartPose, Verdict};
 use ch16_slam2d::metrics::position_error_m;
@@ -14,49 +14,49 @@ use robot_io::run::late_scans;
 use robot_io::session::Session;
 use robot_io::trajectory::{StampedPose, Trajectory};
 
-use crate::given::{Choices, Given, compared};
+use crate::input::{Choices, LogInput, compared};
 use crate::update::Update;
 
-/// Share done, whether it is over, and the scans of each verdict: found, tracking, doubtful, lost; then
-/// the first scan that is localized, counted from 0, NaN where none is.
+/// Share done, whether it is over, and the number of scans with each verdict: found, tracking, doubtful,
+/// lost; then the first localized scan, counted from 0, NaN if there is none.
 pub const HEAD: usize = 7;
-/// Number of the scan, stamp (s), x, y (m), θ (rad), verdict, share that fits, then the half axes of the
-/// 1σ ellipse, long and short (m), and the heading of the long one (rad); NaN where there is none.
+/// Number of the scan, stamp (s), x, y (m), θ (rad), verdict, share that fits, then the half axes of the 1σ
+/// ellipse, long and short (m), and the heading of the long one (rad); NaN if unknown.
 pub const PLACE: usize = 10;
-/// Of a longer log every second scan is told, or every third.
-const MOST_TOLD: usize = 20_000;
-/// It is told again once there are so many times as many scans.
-const TOLD_AGAIN: f64 = 1.02;
+/// Of a longer log only every second or third scan is reported.
+const MOST_REPORTED: usize = 20_000;
+/// Growth of the number of scans that triggers a new report.
+const REPORT_GROWTH: f64 = 1.02;
 
-/// A place that hangs on a keyframe of the map.
+/// A pose relative to a keyframe of the map.
 #[derive(Clone, Copy, Debug)]
-struct Hung {
+struct AnchoredPose {
     keyframe: usize,
     keyframe_from_body: SE2,
 }
 
-/// Another log on its way through the map.
-pub struct Whereabouts<'a> {
+/// Another log that is being localized on the map.
+pub struct OtherLog<'a> {
     name: String,
     size_bytes: u64,
     reader: Box<dyn LogReader + 'a>,
     run: LocalizeRun,
-    /// Where the keyframes stood when it began.
+    /// Poses of the keyframes at the start.
     map: Vec<SE2>,
-    places: Vec<Option<Hung>>,
+    places: Vec<Option<AnchoredPose>>,
     is_over: bool,
     problem: Option<String>,
     told: usize,
     is_new: bool,
 }
 
-impl<'a> Whereabouts<'a> {
+impl<'a> OtherLog<'a> {
     /// Opens a log; `session` is the map.
     ///
     /// # Errors
-    /// One sentence where the file is no log, or the session no map.
+    /// One sentence if the file is not a log, or the session has no map.
     pub fn open(
-        given: Given<'a>,
+        given: LogInput<'a>,
         choices: &Choices,
         session: &Session,
         start: StartPose,
@@ -78,7 +78,7 @@ impl<'a> Whereabouts<'a> {
         })
     }
 
-    /// Looks for the robot in the next scan; false once there is none.
+    /// Localizes the robot in the next scan. Returns false if there is none.
     pub fn step(&mut self) -> bool {
         if self.is_over {
             return false;
@@ -86,9 +86,9 @@ impl<'a> Whereabouts<'a> {
         match self.reader.next_frame() {
             Ok(Some(frame)) => {
                 if let Some(report) = self.run.step(frame) {
-                    self.places.push(hung(&self.map, report));
+                    self.places.push(anchored(&self.map, report));
                 }
-                let enough = TOLD_AGAIN * self.told as f64;
+                let enough = REPORT_GROWTH * self.told as f64;
                 self.is_new |= self.places.len() as f64 > enough;
             }
             Ok(None) => self.end(),
@@ -100,7 +100,7 @@ impl<'a> Whereabouts<'a> {
         true
     }
 
-    /// No scan follows, because there is none or because nobody asks for more.
+    /// Ends the log, at its end or because the reader stopped it.
     pub fn end(&mut self) {
         self.is_over = true;
         self.is_new = true;
@@ -113,18 +113,18 @@ impl<'a> Whereabouts<'a> {
         }
     }
 
-    /// Whether no scan follows.
+    /// Whether the log has ended.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.is_over
     }
 
-    /// Says that the map has moved, and all places with it.
+    /// Marks the poses as changed, because the map moved.
     pub fn moved(&mut self) {
         self.is_new = true;
     }
 
-    /// The poses that are localized, on the map as it is now.
+    /// The localized poses on the current map.
     #[must_use]
     pub fn trajectory(&self, map: &[SE2]) -> Trajectory {
         let placed = self.run.reports().iter().zip(&self.places);
@@ -138,7 +138,7 @@ impl<'a> Whereabouts<'a> {
         Trajectory::new(poses.collect())
     }
 
-    /// What is known, where it is news.
+    /// The result, if it has changed.
     pub fn update(&mut self, map: &[SE2]) -> Option<Update> {
         if !core::mem::take(&mut self.is_new) {
             return None;
@@ -161,7 +161,7 @@ impl<'a> Whereabouts<'a> {
             count(Verdict::Lost),
             first.map_or(f64::NAN, |first| first as f64),
         ];
-        let stride = reports.len().div_ceil(MOST_TOLD).max(1);
+        let stride = reports.len().div_ceil(MOST_REPORTED).max(1);
         let placed = reports.iter().zip(&self.places).enumerate();
         for (number, (report, place)) in placed.step_by(stride) {
             let pose = place.and_then(|place| on(map, place));
@@ -193,18 +193,18 @@ impl<'a> Whereabouts<'a> {
     }
 }
 
-/// A place on the keyframe next to it.
-fn hung(map: &[SE2], report: &LocalizeReport) -> Option<Hung> {
+/// A pose relative to the nearest keyframe.
+fn anchored(map: &[SE2], report: &LocalizeReport) -> Option<AnchoredPose> {
     let pose = report.pose?;
     let distances = map.iter().map(|at| position_error_m(at, &pose)).enumerate();
     let (keyframe, _) = distances.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(Hung {
+    Some(AnchoredPose {
         keyframe,
         keyframe_from_body: map[keyframe].between(&pose),
     })
 }
 
-fn on(map: &[SE2], place: Hung) -> Option<SE2> {
+fn on(map: &[SE2], place: AnchoredPose) -> Option<SE2> {
     Some(*map.get(place.keyframe)? * place.keyframe_from_body)
 }
 

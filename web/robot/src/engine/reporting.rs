@@ -1,4 +1,4 @@
-//! What the engine tells of its work: how far it is, the keyframes, the loops, and what could be chosen.
+//! The engine's reports: progress, keyframes, loops, and the choices of a recording.
 
 use robot_io::log::{LogOffer, LogReader};
 
@@ -6,12 +6,12 @@ use super::{Engine, Work, links_of, poses_of};
 use crate::links::Link;
 use crate::update::{Stage, Update};
 
-/// Share of the work that is done once the doctor has seen the log, and once it is read; the last loops are the rest.
+/// Progress after the doctor's pass, and after reading; the last loops are the rest.
 const EXAMINED_SHARE: f64 = 0.1;
 const READING_SHARE: f64 = 0.99;
 
 impl Engine<'_> {
-    /// What changed since the last call.
+    /// The changes since the last call.
     pub fn updates(&mut self) -> Vec<Update> {
         let mut updates = Vec::new();
         let news = core::mem::take(&mut self.news);
@@ -40,8 +40,8 @@ impl Engine<'_> {
             let scans = self.recorder.keyframes().len();
             updates.extend(self.picture.update(scans));
         }
-        if let Some(whereabouts) = &mut self.whereabouts {
-            updates.extend(whereabouts.update(poses_of(&self.run)));
+        if let Some(other_log) = &mut self.other_log {
+            updates.extend(other_log.update(poses_of(&self.run)));
         }
         updates.append(&mut self.waiting);
         updates
@@ -110,8 +110,8 @@ impl Engine<'_> {
         }
     }
 
-    /// What the options of a recording could choose.
-    pub(super) fn tell_offers(&mut self, offers: &[LogOffer]) {
+    /// Reports the choices for the options of a recording.
+    pub(super) fn report_offers(&mut self, offers: &[LogOffer]) {
         let lines = offers.iter().map(|offer| {
             let taken = offer.taken.as_deref().unwrap_or_default();
             let names = offer.names.iter().map(String::as_str);

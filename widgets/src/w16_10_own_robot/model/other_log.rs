@@ -1,5 +1,5 @@
 //! The worker's report on another log on this map: the pose of its robot, scan by scan.
-//! `web/robot/src/whereabouts.rs` defines the numbers.
+//! `web/robot/src/other_log.rs` defines the numbers.
 
 use kit::outside::Delivery;
 
@@ -79,7 +79,7 @@ impl Place {
 
 /// Another log on this map.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Whereabouts {
+pub struct OtherLog {
     /// Name of its file.
     pub name: String,
     /// Processed share of the log.
@@ -96,7 +96,7 @@ pub struct Whereabouts {
     pub places: Vec<Place>,
 }
 
-impl Whereabouts {
+impl OtherLog {
     /// Parses a delivery; `None` if it is malformed.
     #[must_use]
     pub fn from_delivery(delivery: &Delivery<'_>) -> Option<Self> {

@@ -1,4 +1,4 @@
-//! What the reader gives: files that came together, and what was chosen for them.
+//! The reader's input: files that belong together, and the options for them.
 
 use std::io::Read as _;
 
@@ -11,11 +11,11 @@ use robot_io::remark::NO_ODOMETRY;
 use robot_io::rosbag2;
 use robot_io::run::OdometryUse;
 
-/// A description of a recording is a page or two, bytes.
+/// Largest size of a recording's description, bytes.
 const MOST_METADATA: u64 = 1 << 20;
 
 /// A file.
-pub struct GivenFile<'a> {
+pub struct InputFile<'a> {
     /// Its name, without a folder.
     pub name: String,
     /// Its size.
@@ -26,17 +26,17 @@ pub struct GivenFile<'a> {
 
 /// One log: a file, or the files of a recording in their order.
 #[derive(Clone)]
-pub struct Given<'a> {
-    /// What it is called.
+pub struct LogInput<'a> {
+    /// Its name.
     pub name: String,
-    /// Size of all its files.
+    /// Total size of its files.
     pub size_bytes: u64,
-    /// The bytes of each.
+    /// The bytes of each file.
     pub parts: Vec<LogBytes<'a>>,
 }
 
-impl<'a> Given<'a> {
-    /// The log that one file is.
+impl<'a> LogInput<'a> {
+    /// The log of a single file.
     pub fn one(name: &str, size_bytes: u64, bytes: impl Into<LogBytes<'a>>) -> Self {
         Self {
             name: name.to_owned(),
@@ -45,12 +45,12 @@ impl<'a> Given<'a> {
         }
     }
 
-    /// The log that files make up which came together: of a folder of rosbag2 those that its metadata lists, else
-    /// all recordings by name.
+    /// The log in files that were given together: from a rosbag2 folder the ones that its metadata lists,
+    /// else all recordings by name.
     ///
     /// # Errors
     /// One sentence if a file is missing or cannot be read.
-    pub fn new(files: Vec<GivenFile<'a>>) -> Result<Self, String> {
+    pub fn new(files: Vec<InputFile<'a>>) -> Result<Self, String> {
         let names: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
         let described = names.iter().position(|name| name == rosbag2::METADATA);
         let mut metadata = None;
@@ -69,7 +69,7 @@ impl<'a> Given<'a> {
             )
         })?;
         if order.is_empty() {
-            // No recording of ROS 2: the reader of logs says what it makes of them.
+            // Not a ROS 2 recording; the log reader reports what it is.
             order = (0..files.len()).collect();
         }
         let first = order.first().map_or("", |&first| names[first].as_str());
@@ -87,20 +87,21 @@ impl<'a> Given<'a> {
     }
 }
 
-/// What the reader chose for a log.
+/// The options for a log.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Choices {
-    /// Topics, frames and the place of the laser.
+    /// Topics, frames and the pose of the laser.
     pub log: LogOptions,
     /// Whether odometry is used.
     pub odometry: OdometryUse,
 }
 
 impl Choices {
-    /// Reads options as on the command line, one a line and without the dashes: `scan-topic /front`.
+    /// Parses options in the form of the command line, one per line and without the dashes: `scan-topic
+    /// /front`.
     ///
     /// # Errors
-    /// One sentence if a line is no option or has a value that does not fit.
+    /// One sentence if a line is not an option or has an invalid value.
     pub fn read(lines: &str) -> Result<Self, String> {
         let mut choices = Self::default();
         for line in lines.lines() {
@@ -120,11 +121,11 @@ impl Choices {
     }
 }
 
-/// A reader of what was given, whose first scans are compared with its odometry.
+/// A reader of the log whose first scans are compared with its odometry.
 ///
 /// # Errors
-/// One sentence if it is no log.
-pub fn compared<'a>(given: &Given<'a>, choices: &Choices) -> Result<ComparedReader<'a>, String> {
+/// One sentence if it is not a log.
+pub fn compared<'a>(given: &LogInput<'a>, choices: &Choices) -> Result<ComparedReader<'a>, String> {
     let parts = given.parts.clone();
     let reader = LogFormat::open_parts(parts, &given.name, &choices.log);
     let reader = reader.map_err(|problem| problem.to_string())?;
